@@ -32,16 +32,16 @@ if(TARGET pcor_tool)
 endif()
 
 # Headers of what is not built would promise what cannot be linked.
-set(pcor_headers ${pcor_realtime_rooms})
+set(pcor_headers ${pcor_realtime_modules})
 if(PCOR_MODEL)
-  list(APPEND pcor_headers ${pcor_model_rooms})
+  list(APPEND pcor_headers ${pcor_model_modules})
 endif()
 if(PCOR_OFFLINE)
-  list(APPEND pcor_headers ${pcor_offline_rooms})
+  list(APPEND pcor_headers ${pcor_offline_modules})
 endif()
-foreach(room IN LISTS pcor_headers)
-  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/include/pcor/${room})
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/pcor/${room}
+foreach(module IN LISTS pcor_headers)
+  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/include/pcor/${module})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/pcor/${module}
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcor FILES_MATCHING PATTERN "*.hpp")
   endif()
 endforeach()

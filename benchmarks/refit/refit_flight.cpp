@@ -56,8 +56,8 @@ Arguments read_arguments(const std::vector<std::string>& given) {
 }
 
 /// Equation 20 with neutral coefficients, as a fit finds it.
-pcor::ModelFile neutral_model() {
-  pcor::ModelFile file;
+pcor::ModelDefinition neutral_model() {
+  pcor::ModelDefinition file;
   file.model.name = "equation 20";
   file.variables = {{pcor::Quantity::static_pressure, "PSF"},
                     {pcor::Quantity::dynamic_pressure, "QCF"},
@@ -156,12 +156,12 @@ void run(const Arguments& arguments) {
   const Flights flights = make_flights(arguments);
   if (!arguments.folder.empty()) write(flights, arguments.folder);
   const double memory_before = peak_memory();
-  const pcor::ModelFile model = neutral_model();
+  const pcor::ModelDefinition model = neutral_model();
   const pcor::References references{pcor::pressure_reference("REFERENCE")};
   pcor::RefitOptions options;
   options.loss = pcor::Loss::soft_l1;
   options.threads = arguments.threads;
-  const pcor::FlightSet set(flights, {{}, &pcor::alone(), arguments.memory});
+  const pcor::FlightSet set(flights, {{}, &pcor::serial_communicator(), arguments.memory});
   std::size_t passes = 0;
   options.progress = [&passes](std::size_t, std::size_t) { ++passes; };
 

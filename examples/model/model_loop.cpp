@@ -1,13 +1,13 @@
 // Loads a model file and runs it in a sample loop of 25 Hz: model_loop data/models/c130-psfd-eq18.toml
 #include <cstdio>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/realtime/loop.hpp>
-#include <pcor/words/error.hpp>
 #include <string>
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: model_loop MODEL.toml\n"), 2;
-  const pcor::ModelFile file = pcor::read_model(argv[1]);
+  const pcor::ModelDefinition file = pcor::read_model(argv[1]);
   std::string error;
   auto loop = pcor::Loop::build(file.model, file.roles(), 25.0, &error);
   if (!loop) throw pcor::Error(error);

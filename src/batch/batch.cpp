@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "batch/batch_kernel.hpp"
 
 namespace pcor {
@@ -24,7 +24,7 @@ Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWi
   const auto require = [&](Quantity quantity) {
     if (!chain->derives(quantity)) return;
     throw Error(fmt::format("model '{}': over whole arrays it needs '{}' among them", model.name,
-                            facts_of(quantity).name));
+                            info_of(quantity).name));
   };
   require(Quantity::time);
   for (const Rate& each : rates) require(each.rate);
@@ -65,16 +65,16 @@ Batch::Batch(const Model& model, const std::vector<Quantity>& recorded, CorrectW
   });
 }
 
-std::string Batch::name_of(Quantity quantity) const {
+std::string Batch::to_string(Quantity quantity) const {
   const std::vector<std::string>& extras = chain_.extra_names();
-  if (index(quantity) < quantity_count) return std::string(facts_of(quantity).name);
+  if (index(quantity) < quantity_count) return std::string(info_of(quantity).name);
   return extra_number(quantity) < extras.size() ? extras[extra_number(quantity)] : "no quantity";
 }
 
 bool Batch::finds(Quantity quantity) const {
   return recorded_[index(quantity)] ||
          std::any_of(stages_.begin(), stages_.end(),
-                     [quantity](const StageFacts& stage) { return stage.writes[index(quantity)]; });
+                     [quantity](const StageInfo& stage) { return stage.writes[index(quantity)]; });
 }
 
 void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& outputs, std::size_t samples,
@@ -82,14 +82,14 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
   for (const Quantity needed : chain_.inputs()) {
     const bool given = std::any_of(inputs.begin(), inputs.end(),
                                    [needed](const Input& input) { return input.quantity == needed; });
-    if (!given) throw Error(fmt::format("the values of '{}' are missing", name_of(needed)));
+    if (!given) throw Error(fmt::format("the values of '{}' are missing", to_string(needed)));
   }
   std::bitset<state_capacity> wanted;
   for (const Output& output : outputs) {
     if (!finds(output.quantity)) {
       throw Error(fmt::format(
           "'{}' is not found over whole arrays: it needs what is not recorded, or samples before its own",
-          name_of(output.quantity)));
+          to_string(output.quantity)));
     }
     wanted.set(index(output.quantity));
   }

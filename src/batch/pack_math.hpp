@@ -100,8 +100,9 @@ template <class Arch>
 
 /// (1 + part/whole)^exponent - 1 within a few units in the last place.
 ///
-/// Where all lanes are as in flight, below Mach 0.847, it is two polynomials, as in `pcor::power_less_one`;
-/// that of the exponential goes further here, so that the pressure of a given airspeed is in it.
+/// Where all lanes are as in flight, below Mach 0.847, it is two polynomials, as in
+/// `pcor::power_less_one`; that of the exponential goes further here, so that the pressure of a given
+/// airspeed is in it.
 template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> power_less_one(
     const xsimd::batch<double, Arch>& part, const xsimd::batch<double, Arch>& whole,
@@ -115,7 +116,7 @@ template <class Arch>
   const Register s = part / (whole + whole + part);
   const Register square = s * s;
   const Register y = exponent * s * detail::polynomial(square, pcor::detail::twice_artanh);
-  if (xsimd::all((square <= Register(pcor::detail::greatest_square)) & (y >= Register(0.0)) &
+  if (xsimd::all((square <= Register(pcor::detail::max_square)) & (y >= Register(0.0)) &
                  (y <= Register(0.5)))) {
     return y * detail::polynomial(y, exponential_less_one);
   }

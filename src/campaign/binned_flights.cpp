@@ -27,7 +27,7 @@ std::size_t BinnedFlights::first_count() const {
       reference.begin());
 }
 
-BinnedFlights in_bins(const FlightShare& share, const std::vector<FlightColumns>& flights,
+BinnedFlights in_bins(const FlightPartition& share, const std::vector<FlightColumns>& flights,
                       const std::function<std::vector<double>(std::size_t flight)>& residual_of) {
   BinnedFlights binned;
   binned.bins.resize(flights.size());
@@ -45,7 +45,7 @@ BinnedFlights in_bins(const FlightShare& share, const std::vector<FlightColumns>
   return binned;
 }
 
-std::vector<NoiseModel> noise_of_flights(const FlightShare& share, const BinnedFlights& flights,
+std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const BinnedFlights& flights,
                                          const BinnedFit& fit, const FindNoise& find) {
   std::vector<NoiseModel> noise(flights.bins.size());
   for (std::size_t first = 0; first < noise.size();) {

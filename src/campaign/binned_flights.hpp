@@ -10,7 +10,7 @@
 #include "numerics/binning.hpp"
 #include "numerics/noise_flights.hpp"
 #include "numerics/noise_model.hpp"
-#include "team/flight_share.hpp"
+#include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
 
@@ -28,7 +28,7 @@ struct BinnedFlights {
 };
 
 /// The bins in which a residual of each own flight has values, hPa. @param residual_of gives it
-BinnedFlights in_bins(const FlightShare& share, const std::vector<FlightColumns>& flights,
+BinnedFlights in_bins(const FlightPartition& share, const std::vector<FlightColumns>& flights,
                       const std::function<std::vector<double>(std::size_t flight)>& residual_of);
 
 /// What a noise is found from, in bins.
@@ -47,7 +47,7 @@ using FindNoise =
 
 /// The noise of each flight, each reference having one of its own. What flights share of it is found from a
 /// few of them by `find`; the level of an own flight follows from that and its own residual.
-std::vector<NoiseModel> noise_of_flights(const FlightShare& share, const BinnedFlights& flights,
+std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const BinnedFlights& flights,
                                          const BinnedFit& fit, const FindNoise& find);
 
 /// That of the flights against the first reference as one, with the levels of the own.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/reference.hpp>
 
 namespace pcor::internal {
@@ -28,7 +28,7 @@ struct Candidate {
   /// none. Empty for an effect on the own system.
   std::vector<std::optional<std::size_t>> numbers_in_others{};
   std::string system{};  ///< which other system, where the references have several: "PSFRD+QCFR"; else empty
-  /// The time over which its need is found that it remembers (`EffectFacts::memory`), s.
+  /// The time over which its need is found that it remembers (`EffectInfo::memory`), s.
   double memory = 0.0;
   /// The same on the other system, built alike: what holds the two against each other does not see it.
   bool is_shared = false;
@@ -57,11 +57,11 @@ struct BaseCoefficient {
 /// Candidates, and the models that have them.
 struct CandidateModels {
   /// The model with every candidate besides, and the variables of all roles that these need.
-  ModelFile extended;
+  ModelDefinition extended;
   /// The references, each with what candidates on its own system need.
   References references{};
   /// The model of each reference, with every candidate on its system besides; nothing where it has none.
-  std::vector<std::optional<ModelFile>> others{};
+  std::vector<std::optional<ModelDefinition>> others{};
   std::vector<std::size_t> effects_of_others{};  ///< how many effects the law of each has without candidates
   std::vector<BaseCoefficient> base{};
   /// Where those of each reference's own model begin.

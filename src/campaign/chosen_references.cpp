@@ -7,11 +7,11 @@
 #include <string_view>
 #include <utility>
 
+#include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>
-#include <pcor/words/error.hpp>
+#include "parallel/flight_partition.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "roles/recorded_series.hpp"
-#include "team/flight_share.hpp"
 
 namespace pcor {
 
@@ -19,26 +19,26 @@ using namespace internal;
 
 namespace {
 
-bool names_temperature(const ModelFile& model) {
+bool names_temperature(const ModelDefinition& model) {
   return model.variables.count(Quantity::recovery_temperature) != 0 ||
          model.variables.count(Quantity::ambient_temperature) != 0;
 }
 
 /// Whether a flight has a pair of pressures of which none is of the model itself.
-bool has_other_pair(const Flight& flight, const ModelFile& model, const PressurePair& pair) {
+bool has_other_pair(const Flight& flight, const ModelDefinition& model, const PressurePair& pair) {
   return pair.static_pressure != model.variables.at(Quantity::static_pressure) &&
          pair.dynamic_pressure != model.variables.at(Quantity::dynamic_pressure) &&
          has_values(flight, pair.static_pressure, "hPa") && has_values(flight, pair.dynamic_pressure, "hPa");
 }
 
-std::string why_no_height(const Flight& flight, const ModelFile& model) {
+std::string why_no_height(const Flight& flight, const ModelDefinition& model) {
   if (!names_temperature(model)) return "the model names no temperature";
   if (read_role(flight, model, Quantity::altitude).values.empty()) return "there is no height of GPS";
   if (read_role(flight, model, Quantity::latitude).values.empty()) return "there is no latitude";
   return "";
 }
 
-std::string why_no_wind(const Flight& flight, const ModelFile& model) {
+std::string why_no_wind(const Flight& flight, const ModelDefinition& model) {
   if (!names_temperature(model)) return "the model names no temperature";
   if (read_role(flight, model, Quantity::heading).values.empty()) return "there is no true heading";
   if (read_ground_velocity(flight, model).speed.values.empty()) return "there is no velocity over the ground";
@@ -58,7 +58,7 @@ struct Allowed {
   }
 };
 
-Allowed allowed_by(const Flight& flight, const ModelFile& model) {
+Allowed allowed_by(const Flight& flight, const ModelDefinition& model) {
   constexpr std::string_view filtered_and_late = "PS_A";  // of the avionics
   Allowed allowed;
   allowed.laser = flight.has(model.variables.at(Quantity::lams_airspeed));
@@ -105,7 +105,7 @@ std::vector<std::string> in_order(std::vector<std::string> texts) {
   return texts;
 }
 
-ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
+ChosenReferences read_references(const std::vector<std::string>& texts, const ModelDefinition& model,
                                  const FlightSet& flights) {
   ChosenReferences chosen;
   const auto use = [&](const std::string& text) { chosen.used.push_back(read_reference(text, model)); };

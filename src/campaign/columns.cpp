@@ -36,17 +36,18 @@ struct Evaluation {
 /// One of the systems that a residual is made of, and where its parameters stand among those of the residual:
 /// those of its effects, then one for each place at which candidates add something.
 struct System {
-  ModelFile model{};
+  ModelDefinition model{};
   std::vector<std::size_t> free{};
   std::size_t first_place = 0;
   std::size_t end = 0;  // behind the last place
 
-  const std::vector<Where>& places() const { return model.model.additions; }
+  const std::vector<EffectLocation>& places() const { return model.model.additions; }
 };
 
 /// The evaluations of the candidates of one system.
 std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t reference, bool of_reference,
-                                       const std::vector<Where>& places, const FlightSamples& samples) {
+                                       const std::vector<EffectLocation>& places,
+                                       const FlightSamples& samples) {
   std::vector<Evaluation> evaluations;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
     const Candidate& candidate = set.candidates[c];
@@ -55,7 +56,7 @@ std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t r
         of_reference ? candidate.numbers_in_others[reference] : candidate.number;
     if (!number) continue;
     Evaluation evaluation{*number};
-    const auto place = std::find(places.begin(), places.end(), where_of(candidate.effect));
+    const auto place = std::find(places.begin(), places.end(), location_of(candidate.effect));
     evaluation.place = place - places.begin();
     if (candidate.memory != 0.0) {  // what is found over none the samples have
       evaluation.memory = memory_of(candidate.effect).of;
@@ -115,17 +116,17 @@ std::vector<std::size_t> with_neighbours(const std::vector<std::size_t>& samples
 }
 
 /// The places of the candidates of one system.
-std::vector<Where> places_of(const CandidateModels& set, bool of_reference) {
-  std::vector<Where> places;
+std::vector<EffectLocation> places_of(const CandidateModels& set, bool of_reference) {
+  std::vector<EffectLocation> places;
   for (const Candidate& candidate : set.candidates) {
     if (candidate.is_of_reference() != of_reference) continue;
-    const Where where = where_of(candidate.effect);
-    if (std::find(places.begin(), places.end(), where) == places.end()) places.push_back(where);
+    const EffectLocation location = location_of(candidate.effect);
+    if (std::find(places.begin(), places.end(), location) == places.end()) places.push_back(location);
   }
   return places;
 }
 
-System system_of(ModelFile model, const CandidateModels& set, bool of_reference, std::size_t first) {
+System system_of(ModelDefinition model, const CandidateModels& set, bool of_reference, std::size_t first) {
   System system{std::move(model)};
   system.model.model.additions = places_of(set, of_reference);
   for (const std::size_t parameter : free_parameters(system.model)) system.free.push_back(first + parameter);
@@ -196,10 +197,11 @@ void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluatio
 }
 
 /// The systems of a residual, the own one first.
-std::vector<System> systems_of(const ModelFile& model, const CandidateModels& set, std::size_t reference) {
+std::vector<System> systems_of(const ModelDefinition& model, const CandidateModels& set,
+                               std::size_t reference) {
   std::vector<System> systems{system_of(model, set, false, 0)};
   if (!set.others[reference]) return systems;
-  ModelFile other = *set.others[reference];
+  ModelDefinition other = *set.others[reference];
   other.model.effects.resize(set.effects_of_others[reference]);
   systems.push_back(system_of(std::move(other), set, true, systems.front().end));
   return systems;
@@ -257,7 +259,7 @@ FlightColumns outline_of(const FlightColumns& flight) {
   return outline;
 }
 
-FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended, const ModelFile& model,
+FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended, const ModelDefinition& model,
                            const CandidateModels& set, std::size_t reference, const MaskOptions& mask,
                            double first_part) {
   const std::vector<System> systems = systems_of(model, set, reference);

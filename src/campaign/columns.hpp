@@ -54,7 +54,7 @@ FlightColumns outline_of(const FlightColumns& flight);
 /// @param extended samples that hold what the model, all candidates and the reference read
 /// @param first_part only the first part of the samples is used, 0 to 1
 /// @throws Error if the model cannot be used on the samples.
-FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended, const ModelFile& model,
+FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended, const ModelDefinition& model,
                            const CandidateModels& set, std::size_t reference, const MaskOptions& mask,
                            double first_part);
 

@@ -24,7 +24,7 @@ std::vector<bool> find_flying(const FlightSamples& samples, const MaskOptions& o
   const std::vector<Mask> masks = masks_as_flown(samples, options);
   std::vector<bool> flying(masks.size());
   for (std::size_t i = 0; i < flying.size(); ++i)
-    flying[i] = masks[i] == Mask::none && samples.motion.airspeed[i] >= options.least_airspeed;
+    flying[i] = masks[i] == Mask::none && samples.motion.airspeed[i] >= options.min_airspeed;
   for (const FrozenSpan& span : samples.model.frozen)
     std::fill_n(flying.begin() + static_cast<std::ptrdiff_t>(span.first), span.count, false);
   return flying;
@@ -74,7 +74,7 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
     air.laser->airspeed[i] = true_airspeed(air.mach[i], air.laser->temperature[i], moist_air(humidity[i]));
 }
 
-void find_heights(const Flight& flight, const ModelFile& model, FlightAir& air) {
+void find_heights(const Flight& flight, const ModelDefinition& model, FlightAir& air) {
   RecordedSeries height = read_role(flight, model, Quantity::altitude);
   air.height_variable = height.values.empty() ? height.without_unit : height.variable;
   air.height = std::move(height.values);
@@ -103,7 +103,7 @@ void find_tail_wind(FlightAir& air) {
 
 }  // namespace
 
-FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const ModelFile& model,
+FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const ModelDefinition& model,
                           const MaskOptions& options) {
   const Flight& flight = flights[number];
   const auto laser = model.variables.find(Quantity::lams_airspeed);
@@ -129,7 +129,7 @@ FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const Mo
   return air;
 }
 
-std::string trouble_with_height(const FlightAir& air) {
+std::string height_problem(const FlightAir& air) {
   // A height that the model names and gives a unit to.
   const auto told = [&air](const char* unit) {
     return fmt::format(R"([variables] altitude = "{}" and [units] altitude = "{}" in the model)",
@@ -148,7 +148,7 @@ std::string trouble_with_height(const FlightAir& air) {
     if (air.flying[i]) height[i] = air.geopotential_height[i];
   }
   const LineFit line = ordinary_fit(air.pressure_altitude, height);
-  constexpr double least_range = 300.0;  // m: with less the slope says little
+  constexpr double min_range = 300.0;  // m: with less the slope says little
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   for (std::size_t i = 0; i < air.size(); ++i) {
@@ -156,7 +156,7 @@ std::string trouble_with_height(const FlightAir& air) {
     lowest = std::min(lowest, air.pressure_altitude[i]);
     highest = std::max(highest, air.pressure_altitude[i]);
   }
-  if (!(highest - lowest > least_range)) return "";
+  if (!(highest - lowest > min_range)) return "";
   if (line.slope > 2.9 && line.slope < 3.7) {
     return fmt::format(
         "{} rises {:.2f} times as fast as the pressure altitude: it is in feet, whatever its unit says; {} "

@@ -77,11 +77,11 @@ struct FlightAir {
 /// the flight records it. Heights, positions and angles are those of the model's roles, else of the names
 /// that NCAR's files use.
 /// @throws Error as `read_samples`.
-FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const ModelFile& model,
+FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const ModelDefinition& model,
                           const MaskOptions& options = {});
 
 /// Why the height of a flight is none that goes with its pressure, for example because it is in feet; empty
 /// where it is well. Looks at the samples in the air only.
-std::string trouble_with_height(const FlightAir& air);
+std::string height_problem(const FlightAir& air);
 
 }  // namespace pcor::internal

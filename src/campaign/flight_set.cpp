@@ -10,12 +10,12 @@
 #include <set>
 #include <utility>
 
-#include <pcor/words/error.hpp>
-#include <pcor/words/utc.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/utc.hpp>
 #include "flight/file_state.hpp"
+#include "parallel/flight_partition.hpp"
 #include "residuals/samples_key.hpp"
 #include "roles/aircraft_family.hpp"
-#include "team/flight_share.hpp"
 
 namespace pcor {
 
@@ -23,7 +23,7 @@ using namespace internal;
 
 namespace {
 
-constexpr std::size_t most_open = 16;  // files; HDF5 keeps 5 MB of each
+constexpr std::size_t max_open = 16;  // files; HDF5 keeps 5 MB of each
 
 std::size_t bytes_of(const ModelSamples& samples, std::size_t records) {
   return (samples.columns.size() + samples.moving.size()) * records + samples.along_beam.values.size();
@@ -80,7 +80,7 @@ struct FlightSet::Memory {
 
 struct FlightSet::Entry {
   std::filesystem::path path{};
-  TimeStamp time_stamp = TimeStamp::begin;
+  TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
   std::shared_ptr<const FlightSamples> given{};  // in memory
   std::shared_ptr<Memory> memory{};
   std::optional<FileState> state{};  // as it was first opened
@@ -113,10 +113,10 @@ struct FlightSet::Entry {
       return *flight;
     }
     const FileState now(path);
-    Flight opened(path, time_stamp);
+    Flight opened(path, timestamp_alignment);
     if (!state) state = now;
     require_unchanged();
-    if (others.size() == most_open) {
+    if (others.size() == max_open) {
       others.back()->flight.reset();
       others.pop_back();
     }
@@ -130,20 +130,21 @@ struct FlightSet::Entry {
   }
 };
 
-FlightSet::FlightSet(std::vector<std::shared_ptr<Entry>> entries, FlightShare share, Team& team)
+FlightSet::FlightSet(std::vector<std::shared_ptr<Entry>> entries, FlightPartition share, Communicator& comm)
     : entries_(std::move(entries)),
-      share_(std::make_shared<const FlightShare>(std::move(share))),
-      team_(&team) {}
+      share_(std::make_shared<const FlightPartition>(std::move(share))),
+      comm_(&comm) {}
 
-FlightSet::FlightSet() : FlightSet(std::vector<std::shared_ptr<Entry>>(), FlightShare(0), alone()) {}
+FlightSet::FlightSet()
+    : FlightSet(std::vector<std::shared_ptr<Entry>>(), FlightPartition(0), serial_communicator()) {}
 
 FlightSet::FlightSet(const std::vector<std::filesystem::path>& paths, const FlightSetOptions& options)
-    : FlightSet({}, share_of_flights(*options.team, paths), *options.team) {
+    : FlightSet({}, partition_flights(*options.comm, paths), *options.comm) {
   const auto memory = std::make_shared<Memory>(options.memory);
   for (const std::filesystem::path& path : paths) {
     auto entry = std::make_shared<Entry>();
     entry->path = path;
-    entry->time_stamp = options.time_stamp;
+    entry->timestamp_alignment = options.timestamp_alignment;
     entry->memory = memory;
     entries_.push_back(std::move(entry));
   }
@@ -176,23 +177,25 @@ std::vector<std::filesystem::path> FlightSet::paths() const {
   return paths;
 }
 
-FlightSet FlightSet::only(std::size_t flight) const { return {{entries_[flight]}, FlightShare(1), alone()}; }
+FlightSet FlightSet::only(std::size_t flight) const {
+  return {{entries_[flight]}, FlightPartition(1), serial_communicator()};
+}
 
 FlightSet FlightSet::part(std::size_t first, std::size_t count) const {
   const auto begin = entries_.begin() + static_cast<std::ptrdiff_t>(first);
-  return {{begin, begin + static_cast<std::ptrdiff_t>(count)}, share_->part(first, count), *team_};
+  return {{begin, begin + static_cast<std::ptrdiff_t>(count)}, share_->part(first, count), *comm_};
 }
 
 FlightSet FlightSet::with(const FlightSet& more) const {
   if (more.empty()) return *this;
   std::vector<std::shared_ptr<Entry>> all = entries_;
   all.insert(all.end(), more.entries_.begin(), more.entries_.end());
-  return {std::move(all), share_->with(*more.share_), *team_};
+  return {std::move(all), share_->with(*more.share_), *comm_};
 }
 
 const Flight& FlightSet::operator[](std::size_t flight) const { return entries_[flight]->open(); }
 
-std::shared_ptr<const FlightSamples> FlightSet::samples(std::size_t flight, const ModelFile& model,
+std::shared_ptr<const FlightSamples> FlightSet::samples(std::size_t flight, const ModelDefinition& model,
                                                         const Reference& reference,
                                                         const MaskOptions& mask) const {
   Entry& entry = *entries_[flight];

@@ -72,7 +72,7 @@ struct Air {
   Series pressure, dynamic, temperature, airspeed, gas_constant;
 };
 
-constexpr double least_airspeed = 40.0;  // m/s
+constexpr double min_airspeed = 40.0;  // m/s
 
 Air air_of(const FlightSamples& samples, const ModelOnSamples& law, const double* parameters) {
   const std::size_t size = samples.time.size();
@@ -81,7 +81,7 @@ Air air_of(const FlightSamples& samples, const ModelOnSamples& law, const double
     State<double> state;
     law.air(i, parameters, state);
     const double airspeed = state[Quantity::corrected_airspeed];
-    if (!(airspeed > least_airspeed)) continue;
+    if (!(airspeed > min_airspeed)) continue;
     air.pressure[i] = state[Quantity::corrected_static_pressure];
     air.dynamic[i] = state[Quantity::corrected_dynamic_pressure];
     air.temperature[i] = state[Quantity::ambient_temperature];
@@ -92,8 +92,8 @@ Air air_of(const FlightSamples& samples, const ModelOnSamples& law, const double
 }
 
 // What the model would have read at the airspeed without gusts, in the same static pressure and temperature.
-ModelSamples without_gusts(const FlightSamples& samples, const ModelFile& file, const double* parameters,
-                           const Air& air, const Series& airspeed) {
+ModelSamples without_gusts(const FlightSamples& samples, const ModelDefinition& file,
+                           const double* parameters, const Air& air, const Series& airspeed) {
   ModelSamples calm = samples.model;
   Series& static_pressure = *calm.find(Quantity::static_pressure);
   Series& dynamic_pressure = *calm.find(Quantity::dynamic_pressure);
@@ -196,7 +196,8 @@ Direction2 along_air(double heading, double pitch, double roll, double attack, d
   return {(ahead * sh + right * ch) / length, (ahead * ch - right * sh) / length};
 }
 
-// The angles of a sample. Where pitch or attack is not known, the path of the aircraft is that of its climb.
+// The angles of a sample. Where pitch or attack is not known, the path of the aircraft is that of
+// its climb.
 struct Angles {
   double heading, pitch, roll, attack, sideslip;
   bool has_attack;
@@ -285,8 +286,9 @@ void add_rises(GpsRows& result, const Series& z) {
   }
 }
 
-GpsRows wind_rows(const FlightSamples& samples, const ModelFile& file, const std::vector<std::size_t>& used,
-                  const double* parameters, const std::vector<std::size_t>& wanted) {
+GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
+                  const std::vector<std::size_t>& used, const double* parameters,
+                  const std::vector<std::size_t>& wanted) {
   const ModelOnSamples law(file, samples.model);
   const Air air = air_of(samples, law, parameters);
   const std::size_t size = samples.time.size();
@@ -393,8 +395,9 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelFile& file, const std
   return result;
 }
 
-GpsRows height_rows(const FlightSamples& samples, const ModelFile& file, const std::vector<std::size_t>& used,
-                    const double* parameters, const std::vector<std::size_t>& wanted) {
+GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
+                    const std::vector<std::size_t>& used, const double* parameters,
+                    const std::vector<std::size_t>& wanted) {
   const ModelOnSamples law(file, samples.model);
   const Air air = air_of(samples, law, parameters);
   const std::size_t size = samples.time.size();
@@ -482,7 +485,7 @@ std::optional<GpsKind> gps_kind(const Reference& reference) {
   return std::nullopt;
 }
 
-GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelFile& model,
+GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
                  const std::vector<std::size_t>& wanted) {
   return kind == GpsKind::wind ? wind_rows(samples, model, used, parameters, wanted)

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/samples.hpp>
 #include "numerics/latent_filter.hpp"
@@ -73,7 +73,7 @@ struct GpsRows {
 /// of pressure or GPS in them would be taken for some tenths of a kelvin.
 /// @param used the samples that take part
 /// @param parameters of the model, all of them; `wanted` are those of which the rows have derivatives
-GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelFile& model,
+GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
                  const std::vector<std::size_t>& wanted);
 

@@ -37,7 +37,7 @@ Binning bins_of(const FlightSamples& samples, double window, const std::vector<d
   return {series, samples.time, samples.step, std::max(window, Binning::usual_width)};
 }
 
-LinearRows::LinearRows(Residuals residuals, const ModelFile& model, const Reference& reference,
+LinearRows::LinearRows(Residuals residuals, const ModelDefinition& model, const Reference& reference,
                        const RowsSetup& setup)
     : residuals_(std::move(residuals)),
       window_(reference.window()),
@@ -58,7 +58,7 @@ LinearRows::LinearRows(Residuals residuals, const ModelFile& model, const Refere
 /// recorded samples otherwise, and pressures, temperature and their rates are recorded ones everywhere. The
 /// next step is one kind of inputs for all, predicted from sensors that the residual is not made of: it
 /// belongs here.
-void LinearRows::choose_inputs(const ModelFile& model, const Reference& reference, Inputs inputs) {
+void LinearRows::choose_inputs(const ModelDefinition& model, const Reference& reference, Inputs inputs) {
   if (inputs == Inputs::none) return;
   std::shared_ptr<const FlightSamples> elsewhere = residuals_.at_common_pressures();
   if (!elsewhere && inputs == Inputs::noise_free) {

@@ -43,15 +43,16 @@ Binning bins_of(const FlightSamples& samples, double window, const std::vector<d
 class LinearRows {
  public:
   /// @param residuals of the model and the reference; as they are built, their masks are found or known
-  LinearRows(Residuals residuals, const ModelFile& model, const Reference& reference, const RowsSetup& setup);
+  LinearRows(Residuals residuals, const ModelDefinition& model, const Reference& reference,
+             const RowsSetup& setup);
 
   const Residuals& residuals() const { return residuals_; }
   const FlightSamples& samples() const { return residuals_.samples(); }
   /// The samples at which derivatives are taken.
   const FlightSamples& inputs() const { return derived().samples(); }
 
-  /// Why each sample takes part, or does not. Where derivatives are noise-free and a residual is made of its
-  /// neighbours, all of these have to take part.
+  /// Why each sample takes part, or does not. Where derivatives are noise-free and a residual is
+  /// made of its neighbours, all of these have to take part.
   const std::vector<Mask>& mask() const { return mask_; }
   /// The samples of the first part, and of the wanted regimes.
   const std::vector<std::size_t>& used() const { return used_; }
@@ -84,7 +85,7 @@ class LinearRows {
                         const std::vector<std::size_t>& wanted) const;
 
  private:
-  void choose_inputs(const ModelFile& model, const Reference& reference, Inputs inputs);
+  void choose_inputs(const ModelDefinition& model, const Reference& reference, Inputs inputs);
   void keep_regimes(const std::vector<Regime>& regimes);
   const Residuals& derived() const { return derived_ ? *derived_ : residuals_; }
 

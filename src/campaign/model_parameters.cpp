@@ -10,7 +10,7 @@ std::size_t parameter_count(const Model& model) {
   return count;
 }
 
-std::optional<std::size_t> first_parameter_of(const ModelFile& model, std::string_view effect) {
+std::optional<std::size_t> first_parameter_of(const ModelDefinition& model, std::string_view effect) {
   std::size_t place = 0;
   for (const ModelEffect& each : model.model.effects) {
     if (each.id == effect) return place;
@@ -19,7 +19,7 @@ std::optional<std::size_t> first_parameter_of(const ModelFile& model, std::strin
   return std::nullopt;
 }
 
-std::vector<std::size_t> free_parameters(const ModelFile& model) {
+std::vector<std::size_t> free_parameters(const ModelDefinition& model) {
   std::vector<std::size_t> free;
   std::size_t number = 0;
   for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
@@ -30,8 +30,8 @@ std::vector<std::size_t> free_parameters(const ModelFile& model) {
   return free;
 }
 
-Where where_of(const ModelEffect& effect) {
-  return effect.is_formula() ? effect.where : effect_facts[effect_named(effect.id)].where;
+EffectLocation location_of(const ModelEffect& effect) {
+  return effect.is_formula() ? effect.location : effect_info[effect_named(effect.id)].location;
 }
 
 }  // namespace pcor::internal

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 
 namespace pcor::internal {
 
@@ -13,12 +13,12 @@ namespace pcor::internal {
 std::size_t parameter_count(const Model& model);
 
 /// The place of the first parameter of an effect among those of a model; nothing where the model lacks it.
-std::optional<std::size_t> first_parameter_of(const ModelFile& model, std::string_view effect);
+std::optional<std::size_t> first_parameter_of(const ModelDefinition& model, std::string_view effect);
 
 /// The places among all parameters of a model of those that are fitted.
-std::vector<std::size_t> free_parameters(const ModelFile& model);
+std::vector<std::size_t> free_parameters(const ModelDefinition& model);
 
 /// Where an effect acts.
-Where where_of(const ModelEffect& effect);
+EffectLocation location_of(const ModelEffect& effect);
 
 }  // namespace pcor::internal

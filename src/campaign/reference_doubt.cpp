@@ -21,44 +21,47 @@ void add(std::vector<NamedDoubt>& doubts, const std::vector<SensorDoubt>& more,
 }
 
 /// Doubts of the sensors of the model, of its laser, and of a measured pressure.
-std::vector<NamedDoubt> own_doubts(const ModelFile& model, const Reference& reference) {
+std::vector<NamedDoubt> own_doubts(const ModelDefinition& model, const Reference& reference) {
   std::vector<NamedDoubt> doubts;
   if (reference.reads_laser()) add(doubts, doubts_of(model, laser_calibration));
   // A measured pressure has no model. An error of the static transducer of the model changes the residual by
   // the same amount with the opposite sign. The sizes are those of the catalogue, whatever the model states
   // of its own transducer.
   if (reference.is_static_pressure() && !reference.reads_laser() && reference.model() == nullptr)
-    add(doubts, doubts_of(ModelFile{}, {"psfd-bias", "psfd-gain", "psfd-drift"}), reference.name() + ": ");
+    add(doubts, doubts_of(ModelDefinition{}, {"psfd-bias", "psfd-gain", "psfd-drift"}),
+        reference.name() + ": ");
   if (model.variables.count(Quantity::recovery_temperature) > 0)
     add(doubts, doubts_of(model, thermometer_calibration));
   return doubts;
 }
 
 /// Doubts of a second system, and the uncertainty that its law states, as a zero and a gain.
-std::vector<NamedDoubt> second_doubts(const ModelFile& system, const Reference& reference) {
+std::vector<NamedDoubt> second_doubts(const ModelDefinition& system, const Reference& reference) {
   const std::string prefix = system.model.name + ": ";
   std::vector<NamedDoubt> doubts;
   add(doubts, doubts_of(system, pressure_calibration), prefix);
   if (!reference.sees_static_defect()) return doubts;
-  const auto add_stated = [&](const char* effect, const std::optional<double>& size, const char* name) {
+  const StatedUncertainty& stated = system.uncertainty;
+  const auto state = [&](const char* effect, const std::optional<double>& size, const char* name) {
     if (!(size.value_or(0.0) > 0.0)) return;
-    NamedDoubt& added = doubts.emplace_back();
-    added.doubt = {effect, 0, *size};
-    added.name = prefix + name;
+    NamedDoubt& stated_doubt = doubts.emplace_back();
+    stated_doubt.doubt.effect = effect;
+    stated_doubt.doubt.size = *size;
+    stated_doubt.name = prefix + name;
   };
-  add_stated("psfd-bias", system.uncertainty.static_defect, "static_defect");
-  add_stated("psfd-gain", system.uncertainty.static_defect_ratio, "static_defect_ratio");
+  state("psfd-bias", stated.static_defect, "static_defect");
+  state("psfd-gain", stated.static_defect_ratio, "static_defect_ratio");
   return doubts;
 }
 
-ModelFile with_effects_of(const ModelFile& model, const std::vector<NamedDoubt>& doubts) {
+ModelDefinition with_effects_of(const ModelDefinition& model, const std::vector<NamedDoubt>& doubts) {
   std::vector<SensorDoubt> sensors;
   for (const NamedDoubt& each : doubts) sensors.push_back(each.doubt);
   return with_doubts(model, sensors);
 }
 
 /// @param model has the effect
-std::size_t place_of(const ModelFile& model, const SensorDoubt& doubt) {
+std::size_t place_of(const ModelDefinition& model, const SensorDoubt& doubt) {
   return *first_parameter_of(model, doubt.effect) + doubt.parameter;
 }
 
@@ -77,7 +80,7 @@ std::shared_ptr<const FlightSamples> with_time(const std::shared_ptr<const Fligh
 
 }  // namespace
 
-ReferenceDoubt::ReferenceDoubt(const ModelFile& model, const Reference& reference, bool trusted)
+ReferenceDoubt::ReferenceDoubt(const ModelDefinition& model, const Reference& reference, bool trusted)
     : model_parameters_(parameter_count(model.model)),
       reference_parameters_(reference.model() != nullptr ? parameter_count(reference.model()->model) : 0) {
   if (trusted) return;
@@ -86,7 +89,7 @@ ReferenceDoubt::ReferenceDoubt(const ModelFile& model, const Reference& referenc
   for (const NamedDoubt& each : doubts) places_.push_back(place_of(model_, each.doubt));
   if (reference.model() != nullptr) {
     const std::vector<NamedDoubt> second = second_doubts(*reference.model(), reference);
-    const ModelFile system = with_effects_of(*reference.model(), second);
+    const ModelDefinition system = with_effects_of(*reference.model(), second);
     reference_ = reference.with_model(system);
     for (const NamedDoubt& each : second)
       places_.push_back(parameter_count(model_.model) + place_of(system, each.doubt));

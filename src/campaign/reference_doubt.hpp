@@ -7,7 +7,7 @@
 
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/residuals.hpp>
-#include "laws/sensor_doubt.hpp"
+#include "model_io/sensor_doubt.hpp"
 
 namespace pcor::internal {
 
@@ -20,7 +20,7 @@ namespace pcor::internal {
 class ReferenceDoubt {
  public:
   /// @param trusted the reference counts as exact: there is no doubt
-  ReferenceDoubt(const ModelFile& model, const Reference& reference, bool trusted);
+  ReferenceDoubt(const ModelDefinition& model, const Reference& reference, bool trusted);
 
   /// Like "lams-scale.scale"; of a second system with its name in front. One name is one error, whichever
   /// reference it is seen in.
@@ -37,7 +37,7 @@ class ReferenceDoubt {
  private:
   std::size_t model_parameters_;      // of the model as it came
   std::size_t reference_parameters_;  // of that of the reference
-  ModelFile model_;                   // with the effects of its doubts
+  ModelDefinition model_;             // with the effects of its doubts
   std::shared_ptr<const Reference> reference_;
   std::vector<std::string> names_;
   Eigen::VectorXd sizes_;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/geodesy.hpp>
-#include <pcor/words/utc.hpp>
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -40,10 +40,11 @@ std::vector<double> from_height(const Flown& flown) {
   return residual;
 }
 
-std::optional<Witness> witness_of(const CheckedFlight& flight, const std::vector<Witness>& witnesses) {
-  const auto found =
-      std::find_if(witnesses.begin(), witnesses.end(), [&](Witness witness) { return has(flight, witness); });
-  return found == witnesses.end() ? std::nullopt : std::optional<Witness>(*found);
+std::optional<AngleReference> witness_of(const CheckedFlight& flight,
+                                         const std::vector<AngleReference>& witnesses) {
+  const auto found = std::find_if(witnesses.begin(), witnesses.end(),
+                                  [&](AngleReference witness) { return has(flight, witness); });
+  return found == witnesses.end() ? std::nullopt : std::optional<AngleReference>(*found);
 }
 
 /// What all manoeuvres say together.
@@ -77,7 +78,7 @@ Totals totals_of(const std::vector<AngleSensitivity>& manoeuvres) {
 
 ReportTable table_of(const std::vector<AngleSensitivity>& manoeuvres, const AngleCheck& check) {
   ReportTable table;
-  table.title = fmt::format("Each {}", facts_of(check.regime).name);
+  table.title = fmt::format("Each {}", info_of(check.regime).name);
   table.caption = fmt::format(
       "Slope of the residual against the {}, beside a drift in time, and what it makes from one end of the "
       "swing to the other.",
@@ -90,7 +91,7 @@ ReportTable table_of(const std::vector<AngleSensitivity>& manoeuvres, const Angl
   table.headers.insert(table.headers.end(), {"across, hPa", "scatter, hPa"});
   for (const AngleSensitivity& each : manoeuvres) {
     std::vector<std::string> row{
-        each.flown.where(), std::string(name_of(*witness_of(*each.flown.flight, check.witnesses))),
+        each.flown.location(), std::string(to_string(*witness_of(*each.flown.flight, check.witnesses))),
         fmt::format("{:.1f}", 0.5 * ends_of_sine * each.swing), with_error(each.slope, "", 3)};
     if (with_ratio)
       row.push_back(std::isfinite(each.per_ratio.value) ? with_error(each.per_ratio, "", 1) : "not recorded");
@@ -120,51 +121,51 @@ void add_pictures(const CheckedFlights& flights, const std::vector<AngleSensitiv
     return only_in(flight, all, check.angle_of(flight.air));
   }));
   BinnedPanel binned;
-  binned.title = fmt::format("Residual against the {} in {}s", check.angle, facts_of(check.regime).name);
+  binned.title = fmt::format("Residual against the {} in {}s", check.angle, info_of(check.regime).name);
   binned.caption =
       "The static pressure that the manoeuvre asks for less that of the model. A slope is a term of the law "
       "that is wrong or missing.";
   binned.y = {residual};
   binned.x_choices = {angle};
-  binned.samples_per_independent = 3.0;
+  binned.autocorrelation_time = 3.0;
   result.pictures.emplace_back(std::move(binned));
 }
 
 }  // namespace
 
-std::string_view name_of(Witness witness) {
+std::string_view to_string(AngleReference witness) {
   switch (witness) {
-    case Witness::laser:
+    case AngleReference::laser:
       return "LAMS";
-    case Witness::height:
+    case AngleReference::height:
       return "GPS height";
-    case Witness::second_system:
+    case AngleReference::second_system:
       return "second system";
   }
   return "";
 }
 
-bool has(const CheckedFlight& flight, Witness witness) {
+bool has(const CheckedFlight& flight, AngleReference witness) {
   switch (witness) {
-    case Witness::laser:
+    case AngleReference::laser:
       return flight.air.laser && has_value(flight.air.laser->static_defect);
-    case Witness::height:
+    case AngleReference::height:
       return has_value(flight.air.geopotential_height) && has_value(flight.air.temperature) &&
-             trouble_with_height(flight.air).empty();
-    case Witness::second_system:
+             height_problem(flight.air).empty();
+    case AngleReference::second_system:
       return flight.second && has_value(flight.second->pressure);
   }
   return false;
 }
 
-std::vector<double> residual_of(const Flown& flown, Witness witness) {
+std::vector<double> residual_of(const Flown& flown, AngleReference witness) {
   const CheckedFlight& flight = *flown.flight;
   switch (witness) {
-    case Witness::laser:
+    case AngleReference::laser:
       return difference(flown.of(flight.air.laser->static_defect), flown.of(flight.air.static_defect));
-    case Witness::height:
+    case AngleReference::height:
       return from_height(flown);
-    case Witness::second_system:
+    case AngleReference::second_system:
       return difference(flown.of(flight.second->pressure), flown.of(flight.air.pressure));
   }
   return {};
@@ -174,7 +175,7 @@ Estimated AngleSensitivity::across() const {
   return {ends_of_sine * swing * slope.value, ends_of_sine * swing * slope.error};
 }
 
-AngleSensitivity sensitivity_of(const Flown& flown, Witness witness, const std::vector<double>& angle,
+AngleSensitivity sensitivity_of(const Flown& flown, AngleReference witness, const std::vector<double>& angle,
                                 const std::vector<double>& ratio, bool with_square) {
   AngleSensitivity result;
   result.flown = flown;
@@ -215,7 +216,7 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   std::vector<AngleSensitivity> manoeuvres;
   bool has_witness = false;
   for (const Flown& each : flown) {
-    const std::optional<Witness> witness = witness_of(*each.flight, check.witnesses);
+    const std::optional<AngleReference> witness = witness_of(*each.flight, check.witnesses);
     if (!witness) continue;
     has_witness = true;
     AngleSensitivity one = sensitivity_of(each, *witness, check.angle_of(each.flight->air),
@@ -223,27 +224,27 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
     if (std::isfinite(one.slope.value)) {
       manoeuvres.push_back(std::move(one));
     } else {
-      result.notes.push_back(each.where() + ": too few values in this manoeuvre");
+      result.notes.push_back(each.location() + ": too few values in this manoeuvre");
     }
   }
   if (!has_witness) {
-    const std::string height = trouble_with_height(flown.front().flight->air);
+    const std::string height = height_problem(flown.front().flight->air);
     return not_run(
         check.name,
         fmt::format("a {} was flown, but there is nothing to hold the pressure against: no laser "
                     "(lams_airspeed), no second static system (--reference static:OTHER.toml) and no GPS "
                     "height with a temperature{}",
-                    facts_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
+                    info_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
   }
   if (manoeuvres.empty()) return not_run(check.name, result.notes.front());
   result.name = check.name;
   result.ran = true;
   const Totals totals = totals_of(manoeuvres);
-  const Witness witness = *witness_of(*manoeuvres.front().flown.flight, check.witnesses);
-  std::vector<KeyNumber> numbers{judged(totals.across, size_that_matters, "hPa", "across the swing")};
+  const AngleReference witness = *witness_of(*manoeuvres.front().flown.flight, check.witnesses);
+  std::vector<TestStatistic> numbers{judged(totals.across, size_that_matters, "hPa", "across the swing")};
   result.finding = fmt::format(
       "Over {} {}{} the residual against {} changes by {} of {}, {} from one end of the swing to the other.",
-      manoeuvres.size(), facts_of(check.regime).name, manoeuvres.size() == 1 ? "" : "s", name_of(witness),
+      manoeuvres.size(), info_of(check.regime).name, manoeuvres.size() == 1 ? "" : "s", to_string(witness),
       with_error(totals.slope, "hPa/deg", 3), check.angle, with_error(totals.across, "hPa"));
   if (check.with_square) {
     numbers.push_back(
@@ -252,7 +253,7 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
                                   with_error(totals.bend, "hPa/deg2", 4), with_error(totals.bent, "hPa"));
   }
   decide(std::move(numbers), result);
-  if (witness == Witness::second_system && !manoeuvres.front().flown.flight->second_corrected) {
+  if (witness == AngleReference::second_system && !manoeuvres.front().flown.flight->second_corrected) {
     if (result.verdict == CheckVerdict::inconsistent)
       withhold("the second system is as measured, and a slope may be its own", result);
     result.notes.push_back(

@@ -8,16 +8,16 @@
 namespace pcor::internal {
 
 /// What the model's pressure is held against in a manoeuvre that swings an angle.
-enum class Witness {
+enum class AngleReference {
   laser,         ///< delta-p from LAMS less that of the model
   height,        ///< the pressure that GPS height and temperature ask for, less that of the model
   second_system  ///< the static pressure of the second system less that of the model
 };
 
-std::string_view name_of(Witness witness);
+std::string_view to_string(AngleReference witness);
 
 /// Whether a flight has the witness.
-bool has(const CheckedFlight& flight, Witness witness);
+bool has(const CheckedFlight& flight, AngleReference witness);
 
 /// What a manoeuvre says of an angle.
 struct AngleSensitivity {
@@ -36,7 +36,7 @@ struct AngleSensitivity {
 
 /// Regression of the residual on the angle, with a constant and a drift in time, and with the square of the
 /// angle where `with_square`. NaN where the manoeuvre has too few values. Series are those of the flight.
-AngleSensitivity sensitivity_of(const Flown& flown, Witness witness, const std::vector<double>& angle,
+AngleSensitivity sensitivity_of(const Flown& flown, AngleReference witness, const std::vector<double>& angle,
                                 const std::vector<double>& ratio, bool with_square);
 
 /// p(witness) - p(model) in a manoeuvre, hPa, at its records.
@@ -44,14 +44,14 @@ AngleSensitivity sensitivity_of(const Flown& flown, Witness witness, const std::
 /// Of the height: in air at rest the pressure falls by rho g for each metre, so the pressure of the model
 /// asks for the height -(R_a T/g0) ln(p/p_mean), with means over the manoeuvre, and what the GPS height is
 /// more than that is a pressure of the model that is too high by rho g for each metre.
-std::vector<double> residual_of(const Flown& flown, Witness witness);
+std::vector<double> residual_of(const Flown& flown, AngleReference witness);
 
 /// A check of all manoeuvres of one kind.
 struct AngleCheck {
   std::string name;   ///< of the check
   std::string angle;  ///< for example "angle of attack"
   Regime regime;
-  std::vector<Witness> witnesses;  ///< the one to be preferred first
+  std::vector<AngleReference> witnesses;  ///< the one to be preferred first
   bool with_square = false;
   const std::vector<double>& (*angle_of)(const FlightAir& air);
   const std::vector<double>& (*ratio_of)(const FlightAir& air);

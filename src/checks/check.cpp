@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
+#include "base/phrasing.hpp"
 #include "checks/checks.hpp"
 #include "checks/flown.hpp"
 #include "flight/trouble_with_values.hpp"
+#include "parallel/flight_partition.hpp"
 #include "residuals/packed_residuals.hpp"
 #include "roles/recorded_model.hpp"
-#include "team/flight_share.hpp"
-#include "words/phrasing.hpp"
 
 namespace pcor {
 
@@ -21,7 +21,7 @@ using namespace internal;
 
 namespace {
 
-PressurePair pair_of(const ModelFile& model) {
+PressurePair pair_of(const ModelDefinition& model) {
   return {model.variables.at(Quantity::static_pressure), model.variables.at(Quantity::dynamic_pressure)};
 }
 
@@ -31,11 +31,11 @@ bool same(const PressurePair& a, const PressurePair& b) {
 
 /// Why nothing can be done with the pressures of a model that has its variables in the flight; empty where
 /// something can.
-std::string without_values(const Flight& flight, const ModelFile& model) {
+std::string without_values(const Flight& flight, const ModelDefinition& model) {
   const PressurePair pair = pair_of(model);
   for (const std::string& variable : {pair.static_pressure, pair.dynamic_pressure}) {
     if (!flight.has(variable)) return "";  // for the message that says what may have been meant
-    if (std::string trouble = trouble_with_values(flight, variable); !trouble.empty()) return trouble;
+    if (std::string trouble = value_problem(flight, variable); !trouble.empty()) return trouble;
   }
   return "";
 }
@@ -73,7 +73,7 @@ MeasuredPair measured(std::string name, const FlightAir& air) {
   return {std::move(name), air.measured_static, air.measured_dynamic};
 }
 
-CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelFile& model,
+CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelDefinition& model,
                       const CheckOptions& options) {
   CheckedFlight result;
   result.air = read_flight_air(flights, number, model, options.mask);
@@ -87,7 +87,7 @@ CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelF
                        read_flight_air(flights, number, model_of(*systems.own), options.mask)));
   }
   result.second_corrected = options.second.has_value();
-  std::optional<ModelFile> second = options.second;
+  std::optional<ModelDefinition> second = options.second;
   if (!second && systems.other) second = model_of(*systems.other);
   if (!second) return result;
   if (same(pair_of(*second), of_model)) {
@@ -115,10 +115,10 @@ struct FlightPart {
   }
 };
 
-FlightPart part_of(const FlightSet& flights, std::size_t number, const std::optional<ModelFile>& model,
+FlightPart part_of(const FlightSet& flights, std::size_t number, const std::optional<ModelDefinition>& model,
                    const CheckOptions& options) {
   const Flight& flight = flights[number];
-  const std::optional<ModelFile> its_model = model ? model : recorded_model(flight);
+  const std::optional<ModelDefinition> its_model = model ? model : recorded_model(flight);
   FlightPart part;
   part.unusable = its_model ? without_values(flight, *its_model)
                             : fmt::format(
@@ -158,26 +158,27 @@ Report pictures_of(const CheckedFlights& flights) {
     const std::vector<double>& time = flight.air.time();
     report.time.insert(report.time.end(), time.begin(), time.end());
     for (const Interval& interval : flight.air.samples->intervals)
-      report.intervals.push_back({std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+      report.intervals.push_back({std::string(info_of(interval.regime).name), interval.begin, interval.end});
   }
   return report;
 }
 
 }  // namespace
 
-std::string_view name_of(CheckVerdict verdict) {
+std::string_view to_string(CheckVerdict verdict) {
   switch (verdict) {
     case CheckVerdict::consistent:
       return "consistent";
     case CheckVerdict::inconsistent:
       return "inconsistent";
-    case CheckVerdict::cannot_tell:
+    case CheckVerdict::inconclusive:
       return "cannot tell";
   }
   return "";
 }
 
-Checks check(const FlightSet& flights, const std::optional<ModelFile>& model, const CheckOptions& options) {
+Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& model,
+             const CheckOptions& options) {
   if (flights.empty()) throw Error("nothing to check; give at least one flight");
   flights.require_each_once();
   if (options.second && options.second->variables.count(Quantity::static_pressure) == 0) {

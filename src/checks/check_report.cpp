@@ -9,11 +9,11 @@
 #include <variant>
 #include <vector>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/checks/check.hpp>
-#include <pcor/words/utc.hpp>
+#include "base/phrasing.hpp"
 #include "report/columns.hpp"
 #include "report/shown_flights.hpp"
-#include "words/phrasing.hpp"
 
 namespace pcor {
 
@@ -91,9 +91,9 @@ ReportTable verdicts(const Checks& checks) {
       table.rows.push_back({heading(result.name), "not run", "", "", typeset(sentence(result.reason))});
       continue;
     }
-    const KeyNumber& key = result.key;
+    const TestStatistic& key = result.key;
     table.rows.push_back(
-        {heading(result.name), std::string(name_of(result.verdict)),
+        {heading(result.name), std::string(to_string(result.verdict)),
          fmt::format("{:+.3f} ± {:.3f} {} {}", key.value, key.standard_error, key.unit, key.what),
          fmt::format("{:g} {}", key.matters, key.unit), typeset(sentence(result.finding))});
   }
@@ -112,7 +112,7 @@ DotPanel forest(const Checks& checks) {
   panel.axis = "number / what matters";
   panel.band = "too small to matter";
   for (const CheckResult& result : checks.results) {
-    const KeyNumber& key = result.key;
+    const TestStatistic& key = result.key;
     if (!result.ran || !(key.matters > 0.0) || !std::isfinite(key.value)) continue;
     const bool is_told = std::isfinite(key.standard_error);
     const double error = is_told ? key.standard_error : 0.0;
@@ -158,7 +158,7 @@ std::vector<std::string> summary_of(const Checks& checks) {
   std::vector<std::string> summary{
       fmt::format("Of {} checks {} could run: {} consistent, {} inconsistent, {} cannot tell.",
                   checks.results.size(), ran, count(CheckVerdict::consistent),
-                  count(CheckVerdict::inconsistent), count(CheckVerdict::cannot_tell))};
+                  count(CheckVerdict::inconsistent), count(CheckVerdict::inconclusive))};
   for (const CheckResult& result : checks.results) {
     if (result.ran && result.verdict == CheckVerdict::inconsistent)
       summary.push_back(heading(result.name) + ": " + typeset(sentence(result.finding)));
@@ -180,21 +180,21 @@ Report check_report(const Checks& checks) {
     const std::size_t first = report.flight_starts[i];
     const std::size_t end =
         i + 1 < report.flight_starts.size() ? report.flight_starts[i + 1] : report.time.size();
-    report.facts.emplace_back(
+    report.info.emplace_back(
         "Flight", fmt::format("{}, {} to {} UTC", report.flight_names[i], utc_text(report.time[first]),
                               utc_text(report.time[end - 1], "%H:%M:%S")));
   }
   if (report.flight_names.size() < checks.flights.size())
-    report.facts.emplace_back("All flights", fmt::format("{}", fmt::join(checks.flights, ", ")));
-  report.facts.emplace_back("Program", "pcor " PCOR_VERSION);
-  for (const std::string& note : checks.notes) report.facts.emplace_back("Note", note);
+    report.info.emplace_back("All flights", fmt::format("{}", fmt::join(checks.flights, ", ")));
+  report.info.emplace_back("Program", "pcor " PCOR_VERSION);
+  for (const std::string& note : checks.notes) report.info.emplace_back("Note", note);
   if (DotPanel picture = forest(checks); !picture.rows.empty()) report.items.emplace_back(std::move(picture));
   report.items.emplace_back(verdicts(checks));
   const Shows shows(report.columns);
   for (const CheckResult& result : checks.results) {
     if (!result.ran) continue;
     ReportText text;
-    text.title = fmt::format("{}: {}", heading(result.name), name_of(result.verdict));
+    text.title = fmt::format("{}: {}", heading(result.name), to_string(result.verdict));
     text.paragraphs = {typeset(fmt::format("Decided by this number: {}.", result.decided)),
                        typeset(sentence(result.finding)), "What it cannot see: " + result.cannot_see};
     for (const std::string& note : result.notes) text.paragraphs.push_back(typeset(sentence(note)));

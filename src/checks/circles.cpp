@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 #include "checks/circle_fit.hpp"
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
@@ -15,7 +15,7 @@ namespace {
 constexpr double size_that_matters = 0.3;
 
 /// Less of a turn cannot tell the wind from the airspeed well.
-constexpr double least_turn = 300.0;  // deg
+constexpr double min_turn = 300.0;  // deg
 
 /// Noise of one circle that its samples cannot show, m/s: the wind drifts while the heading goes round once.
 /// A quarter of the change between the legs of a reverse heading: so much less it is in simulated air, for
@@ -49,7 +49,7 @@ ReportTable table_of(const std::vector<Circle>& circles) {
     const CircleFit& fit = circle.fit;
     const double from =
         std::atan2(-fit.east_wind.value, -fit.north_wind.value) / constants::radians_per_degree;
-    table.rows.push_back({circle.flown.where(), fmt::format("{:+.0f}", fit.turned),
+    table.rows.push_back({circle.flown.location(), fmt::format("{:+.0f}", fit.turned),
                           fmt::format("{:.0f}", from < 0.0 ? from + 360.0 : from),
                           fmt::format("{:.1f}", std::hypot(fit.east_wind.value, fit.north_wind.value)),
                           with_error(fit.airspeed_error, ""), with_error(fit.heading_error, ""),
@@ -95,7 +95,7 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Circle>& circ
       "a wind that changed during the circle.";
   binned.y = {"circles left"};
   binned.x_choices = {"circles heading"};
-  binned.samples_per_independent = 5.0;
+  binned.autocorrelation_time = 5.0;
   result.pictures.emplace_back(std::move(binned));
 }
 
@@ -113,10 +113,10 @@ CheckResult check_circles(const CheckedFlights& flights) {
         flown, fit_circle(flown.of(air.airspeed), flown.of(air.samples->motion.heading),
                           flown.of(air.east_speed), flown.of(air.north_speed), flown.time(), flown.step())};
     if (!std::isfinite(circle.fit.airspeed_error.value)) {
-      result.notes.push_back(flown.where() + ": the circle has too few values");
-    } else if (std::abs(circle.fit.turned) < least_turn) {
+      result.notes.push_back(flown.location() + ": the circle has too few values");
+    } else if (std::abs(circle.fit.turned) < min_turn) {
       result.notes.push_back(fmt::format("{}: a turn of {:.0f} deg in use, where {:.0f} are needed",
-                                         flown.where(), std::abs(circle.fit.turned), least_turn));
+                                         flown.location(), std::abs(circle.fit.turned), min_turn));
     } else {
       circles.push_back(std::move(circle));
     }

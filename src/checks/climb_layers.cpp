@@ -7,9 +7,9 @@
 #include <map>
 #include <tuple>
 
+#include <pcor/base/error.hpp>
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/hydrostatic.hpp>
-#include <pcor/words/error.hpp>
 #include "numerics/decompositions.hpp"
 #include "numerics/least_squares.hpp"
 #include "numerics/missing.hpp"
@@ -18,18 +18,18 @@ namespace pcor::internal {
 namespace {
 
 constexpr double usual_height_noise = 1.0;    // m: GPS of 2004, without differential corrections
-constexpr double least_height_noise = 0.15;   // m: differential GPS of today
+constexpr double min_height_noise = 0.15;     // m: differential GPS of today
 constexpr double usual_gradient = 5.0;        // m per 100 km
 constexpr double metres_per_gradient = 1e-5;  // of height per metre of way, of 1 m per 100 km
 constexpr double share_of_flight = 0.8;       // of the variance of the gradient; the rest is of each climb
 constexpr double rate_time = 15.0;            // s before and after a sample
-constexpr double least_step = 2.0;            // m between the GPS height and the pressure, in one sample
-constexpr double largest_level_rate = 0.5;    // m/s
+constexpr double min_step = 2.0;              // m between the GPS height and the pressure, in one sample
+constexpr double max_level_rate = 0.5;        // m/s
 constexpr double piece_time = 300.0;          // s: the time of a layer, about
 constexpr double band = 500.0;                // m: delta-p may err otherwise in the next
-constexpr double least_swing = 2.0;           // m/s of the climb rate, to tell a lag
+constexpr double min_swing = 2.0;             // m/s of the climb rate, to tell a lag
 constexpr double lag_that_matters = 0.5;      // s: 2.5 m in a climb of 5 m/s
-constexpr double least_range = 5.0;           // K of temperature for a line
+constexpr double min_range = 5.0;             // K of temperature for a line
 
 /// The samples where pressure, height, temperature and humidity are known, in flight.
 std::vector<double> usable_heights(const FlightAir& air) {
@@ -50,18 +50,18 @@ double predicted_step(const FlightAir& air, std::size_t i) {
 }
 
 /// The stretches without gaps, missing values and steps of the GPS height.
-std::vector<Stretch> steady_stretches(const FlightAir& air, const std::vector<double>& heights) {
-  const std::vector<Stretch> stretches = stretches_of(heights, air.time(), air.step());
+std::vector<Segment> steady_stretches(const FlightAir& air, const std::vector<double>& heights) {
+  const std::vector<Segment> segments = contiguous_segments(heights, air.time(), air.step());
   std::vector<double> departures(air.size(), nan);
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t i = stretch.first + 1; i < stretch.first + stretch.count; ++i)
+  for (const Segment& segment : segments) {
+    for (std::size_t i = segment.first + 1; i < segment.first + segment.count; ++i)
       departures[i] = heights[i] - heights[i - 1] - predicted_step(air, i);
   }
-  const double limit = std::max(least_step * air.step(), 8.0 * robust_deviation(departures));
-  std::vector<Stretch> steady;
-  for (const Stretch& stretch : stretches) {
-    std::size_t first = stretch.first;
-    const std::size_t end = stretch.first + stretch.count;
+  const double limit = std::max(min_step * air.step(), 8.0 * robust_standard_deviation(departures));
+  std::vector<Segment> steady;
+  for (const Segment& segment : segments) {
+    std::size_t first = segment.first;
+    const std::size_t end = segment.first + segment.count;
     for (std::size_t i = first + 1; i <= end; ++i) {
       if (i < end && !(std::abs(departures[i]) > limit)) continue;
       steady.push_back({first, i - first});
@@ -73,14 +73,14 @@ std::vector<Stretch> steady_stretches(const FlightAir& air, const std::vector<do
 
 /// Vertical speed over half a minute, m/s.
 std::vector<double> climb_rates(const FlightAir& air, const std::vector<double>& heights,
-                                const std::vector<Stretch>& stretches) {
+                                const std::vector<Segment>& segments) {
   std::vector<double> rates(air.size(), nan);
   const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(rate_time / air.step())));
-  for (const Stretch& stretch : stretches) {
-    if (stretch.count < 2) continue;
-    const std::size_t last = stretch.first + stretch.count - 1;
-    for (std::size_t i = stretch.first; i <= last; ++i) {
-      const std::size_t before = std::max(stretch.first + reach, i) - reach;
+  for (const Segment& segment : segments) {
+    if (segment.count < 2) continue;
+    const std::size_t last = segment.first + segment.count - 1;
+    for (std::size_t i = segment.first; i <= last; ++i) {
+      const std::size_t before = std::max(segment.first + reach, i) - reach;
       const std::size_t after = std::min(last, i + reach);
       rates[i] = (heights[after] - heights[before]) / (air.time()[after] - air.time()[before]);
     }
@@ -90,11 +90,11 @@ std::vector<double> climb_rates(const FlightAir& air, const std::vector<double>&
 
 /// The parts of the stretches where `within` holds of every sample.
 template <class Condition>
-std::vector<Stretch> parts_where(const std::vector<Stretch>& stretches, const Condition& within) {
-  std::vector<Stretch> parts;
-  for (const Stretch& stretch : stretches) {
-    std::size_t first = stretch.first;
-    const std::size_t end = stretch.first + stretch.count;
+std::vector<Segment> parts_where(const std::vector<Segment>& segments, const Condition& within) {
+  std::vector<Segment> parts;
+  for (const Segment& segment : segments) {
+    std::size_t first = segment.first;
+    const std::size_t end = segment.first + segment.count;
     for (std::size_t i = first; i <= end; ++i) {
       if (i < end && within(i)) continue;
       if (i > first) parts.push_back({first, i - first});
@@ -142,7 +142,7 @@ Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights,
   piece.freedom = static_cast<double>(samples) - 4.0;
   piece.gradient = fit(1) / way / metres_per_gradient;
   const double swing = columns.col(3).maxCoeff() - columns.col(3).minCoeff();
-  if (swing < least_swing) return piece;
+  if (swing < min_swing) return piece;
   const double variance = piece.squares / piece.freedom * inverse_of(columns.transpose() * columns)(3, 3);
   piece.lag = {fit(3), std::sqrt(variance)};
   return piece;
@@ -150,11 +150,11 @@ Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights,
 
 std::vector<Piece> look_at_pieces(const FlightAir& air, const std::vector<double>& heights,
                                   const std::vector<double>& climb_rate,
-                                  const std::vector<Stretch>& stretches) {
+                                  const std::vector<Segment>& segments) {
   std::vector<Piece> pieces;
   const auto samples = static_cast<std::size_t>(piece_time / air.step());
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t first = stretch.first; first + samples <= stretch.first + stretch.count;
+  for (const Segment& segment : segments) {
+    for (std::size_t first = segment.first; first + samples <= segment.first + segment.count;
          first += samples)
       pieces.push_back(look_at_piece(air, heights, climb_rate, first, samples));
   }
@@ -196,7 +196,7 @@ LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<P
         "there is no stretch of {:.0f} s to tell the error of the GPS height from; it is taken as {} m",
         piece_time, usual_height_noise));
   } else {
-    uncertainty.height_noise = std::max(least_height_noise, std::sqrt(squares / freedom));
+    uncertainty.height_noise = std::max(min_height_noise, std::sqrt(squares / freedom));
     notes.push_back(
         fmt::format("the error of the GPS height is taken as {:.2f} m: so much it wavers about the height of "
                     "the pressure (rms) within {} stretches of {:.0f} s",
@@ -337,8 +337,8 @@ void require(bool well, const char* what) {
 }  // namespace
 
 FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
-  require(options.least_climb_rate > 0.0, "the least climb rate must be above zero");
-  require(options.least_thickness > 0.0 && options.thickness > 0.0, "thicknesses must be above zero");
+  require(options.min_climb_rate > 0.0, "the least climb rate must be above zero");
+  require(options.min_thickness > 0.0 && options.thickness > 0.0, "thicknesses must be above zero");
   require(options.height_noise.value_or(1.0) > 0.0, "the noise of the height must be above zero");
   require(options.pressure_noise >= 0.0 && options.static_bias >= 0.0 && options.static_change >= 0.0 &&
               options.gradient.value_or(0.0) >= 0.0,
@@ -349,26 +349,26 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
   FlightLayers found;
   found.flight = air.samples->name;
   const std::vector<double> heights = usable_heights(air);
-  const std::vector<Stretch> stretches = steady_stretches(air, heights);
-  const std::vector<double> climb_rate = climb_rates(air, heights, stretches);
-  const std::vector<Stretch> level =
-      parts_where(stretches, [&](std::size_t i) { return std::abs(climb_rate[i]) < largest_level_rate; });
-  found.uncertainty = uncertainty_of(options, look_at_pieces(air, heights, climb_rate, stretches),
+  const std::vector<Segment> segments = steady_stretches(air, heights);
+  const std::vector<double> climb_rate = climb_rates(air, heights, segments);
+  const std::vector<Segment> level =
+      parts_where(segments, [&](std::size_t i) { return std::abs(climb_rate[i]) < max_level_rate; });
+  found.uncertainty = uncertainty_of(options, look_at_pieces(air, heights, climb_rate, segments),
                                      look_at_pieces(air, heights, climb_rate, level), found.notes);
-  std::vector<Stretch> climbs;
+  std::vector<Segment> climbs;
   for (const double sign : {1.0, -1.0}) {
-    const std::vector<Stretch> parts = parts_where(
-        stretches, [&](std::size_t i) { return sign * climb_rate[i] > options.least_climb_rate; });
+    const std::vector<Segment> parts =
+        parts_where(segments, [&](std::size_t i) { return sign * climb_rate[i] > options.min_climb_rate; });
     climbs.insert(climbs.end(), parts.begin(), parts.end());
   }
   std::sort(climbs.begin(), climbs.end(),
-            [](const Stretch& a, const Stretch& b) { return a.first < b.first; });
+            [](const Segment& a, const Segment& b) { return a.first < b.first; });
   std::size_t impossible = 0;
   std::size_t number = 0;
-  for (const Stretch& climb : climbs) {
+  for (const Segment& climb : climbs) {
     const std::size_t last = climb.first + climb.count - 1;
     const double thickness = heights[last] - heights[climb.first];
-    if (std::abs(thickness) < options.least_thickness) continue;
+    if (std::abs(thickness) < options.min_thickness) continue;
     const double parts = std::max(1.0, std::round(std::abs(thickness) / options.thickness));
     std::size_t first = climb.first;
     for (double part = 1.0; part <= parts; part += 1.0) {
@@ -426,7 +426,7 @@ LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
   fit.offset = mean;
   fit.offset_error = 1.0 / std::sqrt(weight);
   fit.degrees_of_freedom = fit.layers - 1;
-  if (fit.layers >= 3 && temperatures.maxCoeff() - temperatures.minCoeff() >= least_range) {
+  if (fit.layers >= 3 && temperatures.maxCoeff() - temperatures.minCoeff() >= min_range) {
     fit.centre = ones.dot(whitened(temperatures)) / weight;
     const Eigen::VectorXd tilted = whitened((temperatures.array() - fit.centre).matrix());
     fit.c0 = mean;

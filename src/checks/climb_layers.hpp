@@ -12,9 +12,9 @@ namespace pcor::internal {
 
 /// Which climbs and descents make layers, and how well pressure and height are known.
 struct LayerOptions {
-  double least_climb_rate = 2.0;   ///< m/s up or down, over 30 s
-  double least_thickness = 500.0;  ///< m: a thinner climb says too little
-  double thickness = 1000.0;       ///< m: a longer climb is cut into layers of about this
+  double min_climb_rate = 2.0;   ///< m/s up or down, over 30 s
+  double min_thickness = 500.0;  ///< m: a thinner climb says too little
+  double thickness = 1000.0;     ///< m: a longer climb is cut into layers of about this
 
   /// Rms error of one GPS height, m. Absent: how much the height wavers about that of the pressure within
   /// five minutes of the flight, at least 0.15 m, which is differential GPS of today; 1 m, which is GPS of

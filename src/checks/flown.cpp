@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -24,7 +24,7 @@ std::vector<double> Flown::of(const std::vector<double>& series) const {
 
 double Flown::mean(const std::vector<double>& series) const { return mean_value(of(series)); }
 
-std::string Flown::where() const {
+std::string Flown::location() const {
   return fmt::format("{}, {} to {}", flight->air.samples->name, utc_text(interval.begin),
                      utc_text(interval.end, "%H:%M:%S"));
 }
@@ -101,7 +101,7 @@ std::string missing_for_tail_wind(const CheckedFlights& flights) {
 std::string not_flown(const CheckedFlights& flights, Regime regime) {
   const std::string& aircraft = flights.front().air.samples->aircraft;
   const RegimeCriteria criteria = RegimeCriteria::of(aircraft).value_or(RegimeCriteria::c130());
-  return fmt::format("no {} was found in the flights ({}); --intervals adds one", facts_of(regime).name,
+  return fmt::format("no {} was found in the flights ({}); --intervals adds one", info_of(regime).name,
                      criterion_of(regime, criteria));
 }
 
@@ -116,7 +116,7 @@ ReportColumn column_of(const CheckedFlights& flights, std::string name, std::str
   return column;
 }
 
-std::vector<double> only_where(std::vector<double> series, const std::vector<bool>& used) {
+std::vector<double> masked(std::vector<double> series, const std::vector<bool>& used) {
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (!used[i]) series[i] = nan;
   }
@@ -130,7 +130,7 @@ std::vector<double> only_in(const CheckedFlight& flight, const std::vector<Flown
     if (flown.flight != &flight || series.empty()) continue;
     for (const std::size_t place : flown.places) used[place] = true;
   }
-  return only_where(series, used);
+  return masked(series, used);
 }
 
 const std::vector<double>& attack_of(const FlightAir& air) {

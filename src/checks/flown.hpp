@@ -24,7 +24,7 @@ struct Flown {
   double mean(const std::vector<double>& series) const;  ///< NaN where nothing has a value
   double step() const { return flight->air.step(); }
   /// "rf05.nc, 2011-11-17 22:51:00 to 22:53:00".
-  std::string where() const;
+  std::string location() const;
 };
 
 /// All stretches of all flights in which a regime was flown.
@@ -55,7 +55,7 @@ ReportColumn column_of(const CheckedFlights& flights, std::string name, std::str
                        const std::function<std::vector<double>(const CheckedFlight&)>& series);
 
 /// A series of a flight where it is `used`, NaN elsewhere. One without values stays so.
-std::vector<double> only_where(std::vector<double> series, const std::vector<bool>& used);
+std::vector<double> masked(std::vector<double> series, const std::vector<bool>& used);
 
 /// The series in the stretches of this flight, NaN elsewhere.
 std::vector<double> only_in(const CheckedFlight& flight, const std::vector<Flown>& all,

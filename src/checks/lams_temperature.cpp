@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/numerics/noise.hpp>
-#include <pcor/words/utc.hpp>
 #include "checks/flown.hpp"
 #include "numerics/missing.hpp"
 
@@ -14,12 +14,12 @@ namespace {
 
 /// The smallest difference that matters, K: the typical error of the thermometer (memo, after eq. 22).
 constexpr double size_that_matters = 0.3;
-constexpr double boundary_layer = 1000.0;    // m above the field
-constexpr double altitude_band = 1000.0;     // m
-constexpr std::size_t fewest_in_cloud = 30;  // samples: fewer do not tell their own scatter
-constexpr std::size_t fewest_samples = 60;   // to say something of a part
-constexpr double longest_period = 256.0;     // s
-constexpr double suspect_share = 0.5;        // of the laser's values missing in a cloud: an iced window
+constexpr double boundary_layer = 1000.0;  // m above the field
+constexpr double altitude_band = 1000.0;   // m
+constexpr std::size_t min_in_cloud = 30;   // samples: fewer do not tell their own scatter
+constexpr std::size_t min_samples = 60;    // to say something of a part
+constexpr double max_period = 256.0;       // s
+constexpr double suspect_share = 0.5;      // of the laser's values missing in a cloud: an iced window
 
 /// The difference of all flights, one flight after another.
 struct Differences {
@@ -78,7 +78,7 @@ Differences all_differences(const CheckedFlights& flights) {
 }
 
 template <class Condition>
-std::vector<double> where(const Differences& all, const Condition& condition) {
+std::vector<double> location(const Differences& all, const Condition& condition) {
   std::vector<double> values(all.values.size(), nan);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (condition(i)) values[i] = all.values[i];
@@ -94,7 +94,7 @@ struct Part {
 
 template <class Condition>
 Part part_of(const Differences& all, std::string name, const Condition& condition) {
-  return {std::move(name), mean_of(where(all, condition), all.time, all.step)};
+  return {std::move(name), mean_of(location(all, condition), all.time, all.step)};
 }
 
 ReportTable part_table(const std::vector<Part>& parts) {
@@ -103,7 +103,7 @@ ReportTable part_table(const std::vector<Part>& parts) {
   table.caption = "Errors allow for memory and slow drift of the differences.";
   table.headers = {"where", "samples", "mean, K", "std. error", "scatter, K"};
   for (const Part& part : parts) {
-    if (part.fit.samples < fewest_samples) continue;
+    if (part.fit.samples < min_samples) continue;
     table.rows.push_back(
         {part.name, std::to_string(part.fit.samples), fmt::format("{:+.3f}", part.fit.coefficients[0].value),
          fmt::format("{:.3f}", part.fit.coefficients[0].error), fmt::format("{:.3f}", part.fit.rms)});
@@ -114,16 +114,16 @@ ReportTable part_table(const std::vector<Part>& parts) {
 /// The rms of what changes between neighbouring means of `width` samples, over the square root of two: the
 /// noise of one mean, which is that at periods of about twice the width (Allan's deviation). NaN for fewer
 /// than ten differences.
-double allan_deviation(const std::vector<double>& values, const std::vector<Stretch>& stretches,
+double allan_deviation(const std::vector<double>& values, const std::vector<Segment>& segments,
                        std::size_t width) {
   double squares = 0.0;
   std::size_t count = 0;
-  for (const Stretch& stretch : stretches) {
+  for (const Segment& segment : segments) {
     double before = nan;
-    for (std::size_t first = 0; first + width <= stretch.count; first += width) {
+    for (std::size_t first = 0; first + width <= segment.count; first += width) {
       double mean = 0.0;
       for (std::size_t k = 0; k < width; ++k)
-        mean += values[stretch.first + first + k] / static_cast<double>(width);
+        mean += values[segment.first + first + k] / static_cast<double>(width);
       if (!std::isnan(before)) {
         squares += 0.5 * (mean - before) * (mean - before);
         ++count;
@@ -142,13 +142,13 @@ struct PeriodNoise {
 
 std::vector<PeriodNoise> noise_by_period(const Differences& all) {
   const std::vector<double> low =
-      where(all, [&](std::size_t i) { return all.near_ground[i] && !all.in_cloud[i]; });
+      location(all, [&](std::size_t i) { return all.near_ground[i] && !all.in_cloud[i]; });
   const std::vector<double> high =
-      where(all, [&](std::size_t i) { return !all.near_ground[i] && !all.in_cloud[i]; });
-  const std::vector<Stretch> low_parts = stretches_of(low, all.time, all.step);
-  const std::vector<Stretch> high_parts = stretches_of(high, all.time, all.step);
+      location(all, [&](std::size_t i) { return !all.near_ground[i] && !all.in_cloud[i]; });
+  const std::vector<Segment> low_parts = contiguous_segments(low, all.time, all.step);
+  const std::vector<Segment> high_parts = contiguous_segments(high, all.time, all.step);
   std::vector<PeriodNoise> noise;
-  for (std::size_t width = 1; 2.0 * static_cast<double>(width) * all.step <= longest_period; width *= 2) {
+  for (std::size_t width = 1; 2.0 * static_cast<double>(width) * all.step <= max_period; width *= 2) {
     noise.push_back({2.0 * static_cast<double>(width) * all.step, allan_deviation(low, low_parts, width),
                      allan_deviation(high, high_parts, width)});
   }
@@ -170,7 +170,7 @@ std::size_t look_at_clouds(const FlightAir& air, double outside, ReportTable& ta
       values.push_back(difference[i]);
       times.push_back(air.time()[i]);
     }
-    if (flown < fewest_in_cloud) continue;
+    if (flown < min_in_cloud) continue;
     const auto known = static_cast<double>(
         std::count_if(values.begin(), values.end(), [](double x) { return !std::isnan(x); }));
     const double missing = 1.0 - known / static_cast<double>(flown);
@@ -221,7 +221,7 @@ void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>&
   binned.caption = "ATLAMS less the thermometer: a slope is an error that one of them has and the other not.";
   binned.y = {"lams-temperature difference"};
   binned.x_choices = {"lams-temperature altitude"};
-  binned.samples_per_independent = 10.0;
+  binned.autocorrelation_time = 10.0;
   result.pictures.emplace_back(std::move(binned));
   BarPanel bars;
   bars.title = "Noise of the difference by period";
@@ -260,7 +260,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   const auto clear = [&](std::size_t i) { return !all.in_cloud[i]; };
   const Part outside = part_of(all, "out of cloud", clear);
   const Part inside = part_of(all, "in cloud", [&](std::size_t i) { return all.in_cloud[i]; });
-  if (outside.fit.samples < fewest_samples)
+  if (outside.fit.samples < min_samples)
     return not_run(name, "the laser and the thermometer have less than a minute out of cloud together");
 
   CheckResult result;
@@ -268,9 +268,9 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   result.ran = true;
   const Estimated offset = outside.fit.coefficients[0];
   decide({judged(offset, size_that_matters, "K", "between laser and thermometer")}, result);
-  const std::vector<double> clear_values = where(all, clear);
+  const std::vector<double> clear_values = location(all, clear);
   const double noise =
-      noise_floor(clear_values, stretches_of(clear_values, all.time, all.step), all.step).rms;
+      noise_floor(clear_values, contiguous_segments(clear_values, all.time, all.step), all.step).rms;
   result.finding = fmt::format(
       "Out of cloud the laser's temperature less the thermometer's is {}, with a scatter of {:.2f} K, of "
       "which {:.2f} K is noise",
@@ -280,7 +280,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
                     {"scatter_k", outside.fit.rms},
                     {"noise_k", noise},
                     {"samples", static_cast<double>(outside.fit.samples)}};
-  if (inside.fit.samples >= fewest_samples) {
+  if (inside.fit.samples >= min_samples) {
     const Estimated in_cloud_offset = inside.fit.coefficients[0];
     result.finding += fmt::format("; in cloud it is {}", with_error(in_cloud_offset, "K"));
     result.numbers.emplace_back("cloud_offset_k", in_cloud_offset.value);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 #include "checks/flown.hpp"
 #include "numerics/missing.hpp"
 
@@ -17,19 +17,19 @@ namespace {
 constexpr double size_that_matters = 0.3;
 
 /// A line with more error at 0 degC, K, is not worth telling.
-constexpr double largest_useful_error = 1.0;
+constexpr double max_useful_error = 1.0;
 
 /// Why a flight has no layers; empty where it has.
 std::string trouble_with(const FlightAir& air, const FlightLayers& found) {
   if (air.temperature.empty())
     return "no thermometer is known; a model names it as recovery_temperature or ambient_temperature (-m)";
-  if (std::string trouble = trouble_with_height(air); !trouble.empty()) return trouble;
+  if (std::string trouble = height_problem(air); !trouble.empty()) return trouble;
   if (!found.layers.empty()) return "";
   const LayerOptions options;
   return fmt::format(
       "there is no climb or descent of {:.0f} m at {:.0f} m/s or more without a gap in pressure, temperature "
       "or GPS height",
-      options.least_thickness, options.least_climb_rate);
+      options.min_thickness, options.min_climb_rate);
 }
 
 ReportTable layer_table(const std::vector<FlightLayers>& flights) {
@@ -110,9 +110,9 @@ void add_pictures(const CheckedFlights& flights, const std::vector<FlightLayers>
   column("layers hydrostatic", "T_p, hydrostatic", &Layer::hydrostatic_temperature, constants::ice_point,
          "degC");
   column("layers measured", "T_m, thermometer", &Layer::measured_temperature, constants::ice_point, "degC");
-  result.columns.push_back(column_of(
-      flights, "layers d-value", "D-value", "m",
-      [](const CheckedFlight& flight) { return only_where(flight.air.d_value, flight.air.flying); }));
+  result.columns.push_back(
+      column_of(flights, "layers d-value", "D-value", "m",
+                [](const CheckedFlight& flight) { return masked(flight.air.d_value, flight.air.flying); }));
   TimePanel temperatures;
   temperatures.title = "Temperature of the layers";
   temperatures.caption = "One line over each layer.";
@@ -136,7 +136,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
   std::string trouble;
   for (const CheckedFlight& flight : flights) {
     FlightLayers found;
-    if (!flight.air.temperature.empty() && trouble_with_height(flight.air).empty())
+    if (!flight.air.temperature.empty() && height_problem(flight.air).empty())
       found = find_layers(flight.air);
     found.flight = flight.air.samples->name;
     const std::string reason = trouble_with(flight.air, found);
@@ -154,7 +154,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
 
   result.name = "layers";
   result.ran = true;
-  std::vector<KeyNumber> numbers{
+  std::vector<TestStatistic> numbers{
       judged({fit.offset, fit.offset_error}, size_that_matters, "K", "of the thermometer")};
   result.finding =
       fmt::format("Over {} layer{} the hydrostatic equation asks for {} on the thermometer", fit.layers,
@@ -175,9 +175,10 @@ CheckResult check_layers(const CheckedFlights& flights) {
   } else {
     const double range = warmest - coldest;
     // A range that is not sure leaves open what the mean has said.
-    KeyNumber change = judged({fit.c1 * range, fit.c1_error * range}, size_that_matters, "K",
-                              fmt::format("from {:.0f} to {:.0f} degC, by the slope with temperature",
-                                          coldest - constants::ice_point, warmest - constants::ice_point));
+    TestStatistic change =
+        judged({fit.c1 * range, fit.c1_error * range}, size_that_matters, "K",
+               fmt::format("from {:.0f} to {:.0f} degC, by the slope with temperature",
+                           coldest - constants::ice_point, warmest - constants::ice_point));
     result.numbers = {{"change_over_range_k", change.value},
                       {"change_over_range_stderr_k", change.standard_error}};
     if (change.verdict == CheckVerdict::inconsistent) numbers.push_back(std::move(change));
@@ -185,7 +186,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
     const Estimated at_freezing{fit.correction_at(constants::ice_point),
                                 fit.correction_error_at(constants::ice_point)};
     result.finding +=
-        at_freezing.error > largest_useful_error
+        at_freezing.error > max_useful_error
             ? fmt::format("; how it changes from {:.0f} to {:.0f} degC they leave open ({} for each degree).",
                           coldest - constants::ice_point, warmest - constants::ice_point,
                           with_error(slope, "K", 3))

@@ -43,9 +43,8 @@ double pressure_per_airspeed(double pressure, double mach, double airspeed);
 
 /// The arithmetic of a reverse heading. Both tail winds are ground speed less airspeed: the wind, opposite in
 /// the two legs, cancels in their sum, and what the airspeed is too high by is in it twice, with the other
-/// sign. Where headings are not quite opposite the wind does not quite cancel; the wind as both legs have it
-/// is then taken out. Source: memo,
-/// Tests Using Flight Maneuvers.
+/// sign. Where headings are not quite opposite the wind does not quite cancel; the wind as both legs
+/// have it is then taken out. Source: memo, Tests Using Flight Maneuvers.
 LegPair pair_of(const LegMean& first, const LegMean& second);
 
 }  // namespace pcor::internal

@@ -7,7 +7,7 @@ CheckResult check_pitch(const CheckedFlights& flights) {
   check.name = "pitch";
   check.angle = "angle of attack";
   check.regime = Regime::pitch_manoeuvre;
-  check.witnesses = {Witness::laser, Witness::height, Witness::second_system};
+  check.witnesses = {AngleReference::laser, AngleReference::height, AngleReference::second_system};
   check.angle_of = attack_of;
   check.ratio_of = [](const FlightAir& air) -> const std::vector<double>& { return air.attack_ratio; };
   check.variables = "ATTACK or AKRD; [variables] attack names another";

@@ -91,7 +91,7 @@ std::string note_on_avionics() {
       fastest_of_avionics);
 }
 
-std::vector<KeyNumber> judged_of(const RedundantFit& fit, double size) {
+std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size) {
   return {judged(fit.difference, size, "hPa", "between the systems"),
           judged(fit.across, size, "hPa", "from the least to the greatest pressure, by the slope")};
 }

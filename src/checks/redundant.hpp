@@ -52,7 +52,7 @@ std::vector<bool> comparable(const CheckedFlight& flight);
 std::string note_on_avionics();
 
 /// What is judged of a fit: the difference, and how it changes with the pressure.
-std::vector<KeyNumber> judged_of(const RedundantFit& fit, double size);
+std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size);
 
 /// The numbers of a fit for scripts, those of the interface first.
 void add_numbers(const RedundantFit& fit, CheckResult& result);

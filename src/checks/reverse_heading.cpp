@@ -5,8 +5,8 @@
 #include <map>
 #include <utility>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/physics/constants.hpp>
-#include <pcor/words/utc.hpp>
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
 
@@ -20,13 +20,13 @@ constexpr double size_that_matters = 0.3;
 /// Pilots aim at headings that are opposite to five degrees.
 constexpr double aimed_heading = 5.0;  // deg
 /// Legs that are further from opposite are no reverse heading.
-constexpr double most_heading = 30.0;  // deg
+constexpr double max_heading = 30.0;  // deg
 
 /// How many pairs the assumed change of the wind is worth beside the scatter of those that were flown.
 constexpr double pairs_of_assumption = 2.0;
 
 /// With fewer pairs the error is mostly that of the assumption, and a note says so.
-constexpr std::size_t fewest_for_scatter = 3;
+constexpr std::size_t min_for_scatter = 3;
 
 struct Pair {
   Flown first;
@@ -88,7 +88,7 @@ std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights,
       notes.push_back(
           fmt::format("{}: {} of a pair, where two are needed; give both the same number with "
                       "'pair' in --intervals",
-                      group.front().where(),
+                      group.front().location(),
                       group.size() == 1 ? "a single leg" : std::to_string(group.size()) + " legs"));
     }
   }
@@ -124,7 +124,7 @@ Mean mean_over(const std::vector<Pair>& pairs) {
   mean.from_assumption = std::sqrt(squares) / count;
   const double deviation = pairs.size() > 1 ? standard_deviation(values) : 0.0;
   const double scatter = deviation * deviation * count;
-  mean.from_scatter = pairs.size() < fewest_for_scatter ? std::nan("") : deviation / std::sqrt(count - 1.0);
+  mean.from_scatter = pairs.size() < min_for_scatter ? std::nan("") : deviation / std::sqrt(count - 1.0);
   const double variance =
       (pairs_of_assumption * squares / count + scatter) / (pairs_of_assumption + count - 1.0);
   mean.airspeed.error = std::sqrt(variance / count);
@@ -137,7 +137,7 @@ ReportTable table_of_legs(const std::vector<Pair>& pairs) {
   table.caption = "Tail wind: ground speed along the heading less true airspeed, with its scatter.";
   table.headers = {"leg", "heading, deg", "track, deg", "airspeed, m/s", "tail wind, m/s"};
   const auto add = [&](const Flown& flown, const LegMean& mean) {
-    table.rows.push_back({flown.where(), fmt::format("{:.1f}", mean.heading),
+    table.rows.push_back({flown.location(), fmt::format("{:.1f}", mean.heading),
                           fmt::format("{:.1f}", track_of(flown)), fmt::format("{:.1f}", mean.airspeed),
                           fmt::format("{:+.2f} +- {:.2f}", mean.tail_wind.value, mean.scatter)});
   };
@@ -160,7 +160,7 @@ ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
                    "airspeed, m/s", "delta-p, hPa", "temperature, K"};
   for (const Pair& pair : pairs) {
     const LegPair& result = pair.result;
-    table.rows.push_back({pair.first.where(), with_error(result.sum, ""),
+    table.rows.push_back({pair.first.location(), with_error(result.sum, ""),
                           fmt::format("{:+.2f}", result.heading_share), with_error(result.airspeed_error, ""),
                           with_error(result.pressure_error, ""),
                           with_error(result.temperature_error, "", 1)});
@@ -227,18 +227,19 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
     pair.result = pair_of(pair.means[0], pair.means[1]);
     const double off = std::abs(pair.result.heading_error);
     if (!std::isfinite(pair.result.airspeed_error.value)) {
-      result.notes.push_back(pair.first.where() + ": the tail wind has too few values on a leg of this pair");
-    } else if (off > most_heading) {
+      result.notes.push_back(pair.first.location() +
+                             ": the tail wind has too few values on a leg of this pair");
+    } else if (off > max_heading) {
       result.notes.push_back(
           fmt::format("{}: the headings of this pair are {:.0f} deg from opposite, so it is "
                       "none",
-                      pair.first.where(), off));
+                      pair.first.location(), off));
     } else {
       if (off > aimed_heading)
         result.notes.push_back(
             fmt::format("{}: the headings of this pair are {:.1f} deg from opposite; the "
                         "wind's share of {:+.2f} m/s is taken out, as well as the sideslip allows",
-                        pair.first.where(), off, pair.result.heading_share));
+                        pair.first.location(), off, pair.result.heading_share));
       pairs.push_back(std::move(pair));
     }
   }
@@ -291,11 +292,11 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
         "LAMS would give: it is off by " +
         with_error(laser, "m/s"));
   }
-  if (pairs.size() < fewest_for_scatter)
+  if (pairs.size() < min_for_scatter)
     result.notes.push_back(
         fmt::format("With fewer than {} pairs the error rests on an assumed change of the "
                     "wind of {} m/s between the legs; some 18 pairs reach +-0.2 m/s in the sum",
-                    fewest_for_scatter, change_of_wind));
+                    min_for_scatter, change_of_wind));
   result.tables = {table_of_pairs(pairs), table_of_legs(pairs)};
   add_pictures(flights, pairs, result);
   return result;

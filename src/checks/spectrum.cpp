@@ -19,7 +19,7 @@ namespace {
 /// The largest noise of delta-p that does no harm, hPa: the rms of the memo's fits (eq. 18 and 20).
 constexpr double size_that_matters = 0.3;
 constexpr std::size_t segment_length = 256;  // samples
-constexpr std::size_t fewest_segments = 8;   // for a slope with an error
+constexpr std::size_t min_segments = 8;      // for a slope with an error
 constexpr double flattest_fall = -0.8;       // half of -5/3: nearer to a white floor than to turbulence
 constexpr double margin = 2.0;               // standard errors
 
@@ -31,25 +31,25 @@ struct Source {
 
 std::vector<double> laser_defect(const CheckedFlight& flight) {
   if (!flight.air.laser) return {};
-  return only_where(flight.air.laser->static_defect, flight.air.flying);
+  return masked(flight.air.laser->static_defect, flight.air.flying);
 }
 
 std::vector<double> second_system(const CheckedFlight& flight) {
   if (!flight.second || flight.second->pressure.size() != flight.air.size()) return {};
   std::vector<double> difference = flight.second->pressure;
   for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= flight.air.pressure[i];
-  return only_where(std::move(difference), flight.air.flying);
+  return masked(std::move(difference), flight.air.flying);
 }
 
 /// What D-value is as a pressure: rho g for each metre.
 std::vector<double> d_value_as_pressure(const CheckedFlight& flight) {
   const FlightAir& air = flight.air;
-  if (air.d_value.empty() || air.temperature.empty() || !trouble_with_height(air).empty()) return {};
+  if (air.d_value.empty() || air.temperature.empty() || !height_problem(air).empty()) return {};
   std::vector<double> values(air.size());
   for (std::size_t i = 0; i < air.size(); ++i)
     values[i] = air.d_value[i] * constants::standard_gravity * air.pressure[i] /
                 (air.gas_constant[i] * air.temperature[i]);
-  return only_where(std::move(values), air.flying);
+  return masked(std::move(values), air.flying);
 }
 
 /// Power spectral densities, one for each segment.
@@ -82,9 +82,9 @@ Spectrum spectrum_of(const CheckedFlights& flights, const Source& source) {
   for (const CheckedFlight& flight : flights) {
     const std::vector<double> values = source.series(flight);
     if (values.empty() || flight.air.step() != spectrum.step) continue;
-    for (const Stretch& stretch : stretches_of(values, flight.air.time(), flight.air.step())) {
-      for (std::size_t first = 0; first + segment_length <= stretch.count; first += segment_length / 2)
-        spectrum.periodograms.push_back(periodogram(&values[stretch.first + first], spectrum.step));
+    for (const Segment& segment : contiguous_segments(values, flight.air.time(), flight.air.step())) {
+      for (std::size_t first = 0; first + segment_length <= segment.count; first += segment_length / 2)
+        spectrum.periodograms.push_back(periodogram(&values[segment.first + first], spectrum.step));
     }
   }
   return spectrum;
@@ -190,12 +190,12 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   for (const Source& each : sources) {
     spectrum = spectrum_of(flights, each);
     source = &each;
-    if (spectrum.periodograms.size() >= fewest_segments) break;
+    if (spectrum.periodograms.size() >= min_segments) break;
   }
-  if (spectrum.periodograms.size() < fewest_segments) {
+  if (spectrum.periodograms.size() < min_segments) {
     return not_run(name, fmt::format("no flight has a laser, a second static system or a GPS height over {} "
                                      "stretches of {} samples without a gap, in the air",
-                                     fewest_segments, segment_length));
+                                     min_segments, segment_length));
   }
   const std::vector<Octave> octaves = octaves_of(spectrum);
   const Estimated fall = fall_of(spectrum);

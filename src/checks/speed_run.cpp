@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/geodesy.hpp>
-#include <pcor/words/utc.hpp>
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
 
@@ -20,7 +20,7 @@ constexpr double size_that_matters = 0.3;
 /// of a GPS height, m, at least that of differential GPS. Neither is below the scatter that the line leaves.
 /// Simulated flights show drifts of this size.
 constexpr double drift_of_wind = 0.5 * change_of_wind;
-constexpr double least_drift_of_height = 0.15;
+constexpr double min_drift_of_height = 0.15;
 constexpr double drift_in_scatter = 1.0;
 
 /// How a series goes with the airspeed in a run.
@@ -47,9 +47,9 @@ LeastSquares line_against(const std::vector<double>& x, const std::vector<double
 }
 
 /// @param per_unit what delta-p is off by for one unit of the series, hPa
-/// @param least_drift of the series from end to end that its samples do not show as noise
+/// @param min_drift of the series from end to end that its samples do not show as noise
 Trend trend_of(const std::vector<double>& series, const Flown& flown, double airspeed_range, double per_unit,
-               double least_drift) {
+               double min_drift) {
   const std::vector<double> values = flown.of(series);
   Trend trend;
   trend.scatter = standard_deviation(values);
@@ -58,7 +58,7 @@ Trend trend_of(const std::vector<double>& series, const Flown& flown, double air
   const LeastSquares line = line_against(flown.of(flown.flight->air.airspeed), values, flown);
   trend.slope = line.coefficients[2];
   const double across = airspeed_range * per_unit;
-  const double drift = std::max(least_drift, drift_in_scatter * line.rms);
+  const double drift = std::max(min_drift, drift_in_scatter * line.rms);
   trend.pressure_error = {across * trend.slope.value,
                           std::hypot(across * trend.slope.error, per_unit * drift)};
   return trend;
@@ -73,8 +73,8 @@ Run run_of(const Flown& flown) {
   const double pressure = flown.mean(air.pressure);
   const double weight = pressure / (flown.mean(air.gas_constant) * flown.mean(air.temperature)) *
                         constants::standard_gravity;  // rho g: hPa per m
-  const std::vector<double> d_value = trouble_with_height(air).empty() ? air.d_value : std::vector<double>{};
-  run.height = trend_of(d_value, flown, run.airspeed_range, weight, least_drift_of_height);
+  const std::vector<double> d_value = height_problem(air).empty() ? air.d_value : std::vector<double>{};
+  run.height = trend_of(d_value, flown, run.airspeed_range, weight, min_drift_of_height);
   run.dynamic_slope = line_against(flown.of(air.dynamic), flown.of(d_value), flown).coefficients[2];
   // The tail wind is too low where the airspeed is too high.
   run.wind = trend_of(air.tail_wind, flown, run.airspeed_range,
@@ -112,7 +112,7 @@ ReportTable table_of_heights(const std::vector<Run>& runs) {
                    "delta-p, hPa"};
   for (const Run& run : runs) {
     if (!known(run.height)) continue;
-    table.rows.push_back({run.flown.where(), fmt::format("{:.0f}", run.airspeed_range),
+    table.rows.push_back({run.flown.location(), fmt::format("{:.0f}", run.airspeed_range),
                           fmt::format("{:.1f}", run.height.scatter), fmt::format("{:.1f}", run.height.range),
                           with_error(run.height.slope, "", 3), with_error(run.dynamic_slope, "", 3),
                           with_error(run.height.pressure_error, "")});
@@ -129,7 +129,7 @@ ReportTable table_of_winds(const std::vector<Run>& runs) {
   table.headers = {"run", "airspeed, m/s", "sd, m/s", "range, m/s", "slope, m/s per m/s", "delta-p, hPa"};
   for (const Run& run : runs) {
     if (!known(run.wind)) continue;
-    table.rows.push_back({run.flown.where(), fmt::format("{:.0f}", run.airspeed_range),
+    table.rows.push_back({run.flown.location(), fmt::format("{:.0f}", run.airspeed_range),
                           fmt::format("{:.2f}", run.wind.scatter), fmt::format("{:.2f}", run.wind.range),
                           with_error(run.wind.slope, "", 4), with_error(run.wind.pressure_error, "")});
   }
@@ -161,7 +161,7 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Run>& runs, C
     binned.caption = caption;
     binned.y = {name};
     binned.x_choices = {"speed-run airspeed"};
-    binned.samples_per_independent = 10.0;
+    binned.autocorrelation_time = 10.0;
     result.pictures.emplace_back(std::move(binned));
   };
   panel("speed-run height", "DVALUE less its mean", "m",
@@ -189,7 +189,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   if (runs.empty()) {
     const std::string wind = missing_for_tail_wind(flights);
     return not_run(name, fmt::format("the speed runs have neither a DVALUE ({}) nor a tail wind{}",
-                                     trouble_with_height(flown.front().flight->air),
+                                     height_problem(flown.front().flight->air),
                                      wind.empty() ? "" : " (no flight " + wind + ")"));
   }
   CheckResult result;
@@ -213,7 +213,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
         "to the fast end",
         average(&Run::height, &Trend::scatter), with_error(height, "hPa"));
   } else {
-    result.notes.push_back("DVALUE takes no part: " + trouble_with_height(runs.front().flown.flight->air));
+    result.notes.push_back("DVALUE takes no part: " + height_problem(runs.front().flown.flight->air));
   }
   if (has_wind) {
     result.finding += fmt::format(

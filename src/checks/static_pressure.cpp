@@ -62,12 +62,11 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   if (std::any_of(flights.begin(), flights.end(), with_avionics)) result.notes.push_back(note_on_avionics());
   result.tables.push_back(
       table_of(fit, fmt::format("Static pressure of {} against the model's", first->second_name)));
-  result.columns.push_back(
-      column_of(flights, "static-pressure one", "static pressure of the model", "hPa",
-                [](const CheckedFlight& f) { return only_where(own(f), comparable(f)); }));
-  result.columns.push_back(
-      column_of(flights, "static-pressure two", "static pressure of " + first->second_name, "hPa",
-                [](const CheckedFlight& f) { return only_where(other(f), comparable(f)); }));
+  result.columns.push_back(column_of(flights, "static-pressure one", "static pressure of the model", "hPa",
+                                     [](const CheckedFlight& f) { return masked(own(f), comparable(f)); }));
+  result.columns.push_back(column_of(flights, "static-pressure two",
+                                     "static pressure of " + first->second_name, "hPa",
+                                     [](const CheckedFlight& f) { return masked(other(f), comparable(f)); }));
   PairPanel panel;
   panel.title = first->second_corrected ? "Corrected static pressures of the two systems"
                                         : "Static pressure of the model and of a second system as measured";

@@ -71,7 +71,7 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   result.tables.push_back(table_of(fit, fmt::format("Total pressure of {} against {}", two, one)));
   if (std::any_of(flights.begin(), flights.end(), with_avionics)) result.notes.push_back(note_on_avionics());
   const auto of_used = [](const SeriesOfFlight& series) {
-    return [series](const CheckedFlight& flight) { return only_where(series(flight), comparable(flight)); };
+    return [series](const CheckedFlight& flight) { return masked(series(flight), comparable(flight)); };
   };
   result.columns.push_back(
       column_of(flights, "total-pressure one", "total pressure, " + one, "hPa", of_used(total(0))));

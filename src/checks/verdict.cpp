@@ -13,13 +13,13 @@ constexpr double significant = 3.0;  // standard errors
 constexpr double likely = 2.0;
 
 /// How large a number may be, in units of what matters: where it is inconsistent its error is no excuse.
-double reach_of(const KeyNumber& key) {
+double reach_of(const TestStatistic& key) {
   const double doubt = key.verdict == CheckVerdict::inconsistent ? 0.0 : likely * key.standard_error;
   return (std::abs(key.value) + doubt) / key.matters;
 }
 
 /// How the verdict follows from the number.
-std::string reason_of(const KeyNumber& key) {
+std::string reason_of(const TestStatistic& key) {
   const double magnitude = std::abs(key.value);
   std::string why;
   if (key.verdict == CheckVerdict::inconsistent) {
@@ -44,25 +44,25 @@ CheckVerdict judge(const Estimated& number, double size) {
   const double magnitude = std::abs(number.value);
   if (magnitude > size && magnitude > significant * number.error) return CheckVerdict::inconsistent;
   if (magnitude + likely * number.error <= size) return CheckVerdict::consistent;
-  return CheckVerdict::cannot_tell;
+  return CheckVerdict::inconclusive;
 }
 
 CheckVerdict together(CheckVerdict a, CheckVerdict b) {
-  for (const CheckVerdict worst : {CheckVerdict::inconsistent, CheckVerdict::cannot_tell}) {
+  for (const CheckVerdict worst : {CheckVerdict::inconsistent, CheckVerdict::inconclusive}) {
     if (a == worst || b == worst) return worst;
   }
   return CheckVerdict::consistent;
 }
 
-KeyNumber judged(const Estimated& number, double size, std::string unit, std::string what) {
+TestStatistic judged(const Estimated& number, double size, std::string unit, std::string what) {
   return {number.value, number.error, size, std::move(unit), std::move(what), judge(number, size)};
 }
 
-void decide(std::vector<KeyNumber> numbers, CheckResult& result) {
+void decide(std::vector<TestStatistic> numbers, CheckResult& result) {
   result.verdict = numbers.front().verdict;
-  for (const KeyNumber& number : numbers) result.verdict = together(result.verdict, number.verdict);
-  const KeyNumber* decisive = nullptr;
-  for (const KeyNumber& number : numbers) {
+  for (const TestStatistic& number : numbers) result.verdict = together(result.verdict, number.verdict);
+  const TestStatistic* decisive = nullptr;
+  for (const TestStatistic& number : numbers) {
     if (number.verdict != result.verdict) continue;
     if (decisive == nullptr || reach_of(number) > reach_of(*decisive)) decisive = &number;
   }
@@ -72,7 +72,7 @@ void decide(std::vector<KeyNumber> numbers, CheckResult& result) {
 }
 
 void withhold(const std::string& reason, CheckResult& result) {
-  result.verdict = CheckVerdict::cannot_tell;
+  result.verdict = CheckVerdict::inconclusive;
   result.decided += ", but " + reason;
 }
 

@@ -18,11 +18,11 @@ CheckVerdict judge(const Estimated& number, double size);
 CheckVerdict together(CheckVerdict a, CheckVerdict b);
 
 /// That number judged, with its unit and what it is in words.
-KeyNumber judged(const Estimated& number, double size, std::string unit, std::string what);
+TestStatistic judged(const Estimated& number, double size, std::string unit, std::string what);
 
 /// Gives a check the verdict on some numbers together. The one that decided, of several the one that is
 /// largest against what matters, becomes the key number, and `decided` says how it did.
-void decide(std::vector<KeyNumber> numbers, CheckResult& result);
+void decide(std::vector<TestStatistic> numbers, CheckResult& result);
 
 /// Takes a verdict back to one that cannot be told, whatever the number, because of `reason`.
 void withhold(const std::string& reason, CheckResult& result);

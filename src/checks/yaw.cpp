@@ -7,7 +7,7 @@ CheckResult check_yaw(const CheckedFlights& flights) {
   check.name = "yaw";
   check.angle = "sideslip";
   check.regime = Regime::yaw_manoeuvre;
-  check.witnesses = {Witness::laser, Witness::second_system, Witness::height};
+  check.witnesses = {AngleReference::laser, AngleReference::second_system, AngleReference::height};
   check.with_square = true;
   check.angle_of = sideslip_of;
   check.ratio_of = [](const FlightAir& air) -> const std::vector<double>& { return air.sideslip_ratio; };

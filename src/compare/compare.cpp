@@ -9,19 +9,19 @@
 #include <map>
 #include <optional>
 
+#include <pcor/base/error.hpp>
 #include <pcor/flight/flight_writer.hpp>
-#include <pcor/words/error.hpp>
 
+#include "base/phrasing.hpp"
 #include "campaign/binned_flights.hpp"
 #include "campaign/reference_doubt.hpp"
 #include "numerics/binned_residual.hpp"
 #include "numerics/missing.hpp"
+#include "parallel/flight_partition.hpp"
+#include "parallel/workers.hpp"
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/packed_residuals.hpp"
-#include "team/flight_share.hpp"
-#include "team/workers.hpp"
-#include "words/phrasing.hpp"
 
 namespace pcor {
 
@@ -48,8 +48,8 @@ namespace {
 constexpr double worst_length = 60.0;  // s
 constexpr std::size_t worst_count = 5;
 // hPa2: a reference delta-p that varies less than the rounding of a file leaves nothing to explain.
-constexpr double smallest_variance = 1e-10;
-constexpr std::size_t fewest_in_band = 30;
+constexpr double min_variance = 1e-10;
+constexpr std::size_t min_in_band = 30;
 
 /// Bands of a variable: all samples with the same `floor(value / width)`.
 struct Banding {
@@ -77,7 +77,7 @@ const std::array<Banding, 4> bandings{{
 std::string regimes_text(const RegimeSet& regimes) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < regime_count; ++i) {
-    if (regimes[i]) names.push_back(regime_facts[i].name);
+    if (regimes[i]) names.push_back(regime_info[i].name);
   }
   return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -212,19 +212,19 @@ ModelComparison comparison_of(const std::string& name, const Reference& referenc
   result.worst = std::move(sums.worst);
   const auto count = static_cast<double>(sums.all.samples);
   const double variation = sums.wanted_squares - sums.wanted * sums.wanted / count;
-  const bool varies = reference.is_static_pressure() && variation > count * smallest_variance;
+  const bool varies = reference.is_static_pressure() && variation > count * min_variance;
   result.r_squared = varies ? 1.0 - sums.all.squares / variation : nan;
   if (sums.all.samples > 0)
     result.reference_error = sums.doubt.norm() / static_cast<double>(sums.all.samples);
   const double memory = sums.all.sum_variance / (count * result.all.scatter() * result.all.scatter());
-  result.samples_per_independent = std::isfinite(memory) ? std::max(1.0, memory) : nan;
+  result.autocorrelation_time = std::isfinite(memory) ? std::max(1.0, memory) : nan;
   for (std::size_t r = 0; r < regime_count; ++r) {
     if (sums.regimes[r].samples > 0)
-      result.regimes.push_back({std::string(regime_facts[r].name), sums.regimes[r].statistics()});
+      result.regimes.push_back({std::string(regime_info[r].name), sums.regimes[r].statistics()});
   }
   for (std::size_t b = 0; b < bandings.size(); ++b) {
     for (const auto& [band, part] : sums.bands[b]) {
-      if (part.samples < fewest_in_band) continue;
+      if (part.samples < min_in_band) continue;
       const double from = static_cast<double>(band) * bandings[b].width;
       result.bands.push_back(
           {fmt::format(fmt::runtime(bandings[b].format), bandings[b].name, from, from + bandings[b].width),
@@ -242,7 +242,7 @@ std::vector<double> total_pressure(const ModelSamples& samples) {
 }
 
 /// The noise of a flight is one, whatever the models: where one of them fails quickly, another shows it.
-NoiseFloor lowest_noise(const FlightResiduals& flight) {
+NoiseFloor min_noise(const FlightResiduals& flight) {
   NoiseFloor lowest;
   for (const std::vector<double>& values : flight.values) {
     NoiseFloor noise = noise_of_flight(*flight.samples, values);
@@ -253,7 +253,7 @@ NoiseFloor lowest_noise(const FlightResiduals& flight) {
 
 /// A contender and one of its references.
 struct Pairing {
-  const Contender& contender;
+  const ComparedModel& contender;
   const Reference& reference;
 };
 
@@ -265,9 +265,9 @@ struct Field {
 };
 
 /// The contenders by reference, those with the first reference of the first contender in front.
-std::vector<Field> fields_of(const std::vector<Contender>& contenders) {
+std::vector<Field> fields_of(const std::vector<ComparedModel>& contenders) {
   std::vector<Field> fields;
-  for (const Contender& contender : contenders) {
+  for (const ComparedModel& contender : contenders) {
     std::map<std::string, std::size_t> met;
     for (const std::shared_ptr<const Reference>& reference : contender.references) {
       const std::string name = reference->name();
@@ -290,12 +290,12 @@ FlightResiduals residuals_on(const std::vector<std::shared_ptr<const FlightSampl
   FlightResiduals result;
   for (std::size_t k = 0; k < pairings.size(); ++k) {
     const auto& [contender, reference] = pairings[k];
-    const ModelFile& model = contender.model;
+    const ModelDefinition& model = contender.model;
     const std::shared_ptr<const FlightSamples>& samples = samples_of[k];
     const Residuals residuals(samples, model, reference, options);
     const double* const parameters = residuals.parameters().data();
     result.values.push_back(residuals.values(parameters));
-    result.reference_defects.push_back(residuals.wanted_defect(parameters));
+    result.reference_defects.push_back(residuals.target_defect(parameters));
     result.model_defects.push_back(residuals.quantity(Quantity::static_defect, parameters));
     notes.insert(notes.end(), samples->notes.begin(), samples->notes.end());
     if (!result.samples) {
@@ -316,8 +316,8 @@ FlightResiduals residuals_on(const std::vector<std::shared_ptr<const FlightSampl
     }
   }
   for (std::vector<double>& values : result.values) {
-    result.flaps_out.push_back(only_where(values, result.mask, Mask::flaps));
-    values = only_where(values, result.mask, Mask::none);
+    result.flaps_out.push_back(masked(values, result.mask, Mask::flaps));
+    values = masked(values, result.mask, Mask::none);
   }
   return result;
 }
@@ -346,7 +346,7 @@ FlightPart part_of(FlightResiduals flight, bool with_series, std::vector<SummedR
   part.name = flight.samples->name;
   part.begin = flight.samples->time.front();
   part.intervals = flight.samples->intervals;
-  const NoiseFloor noise = lowest_noise(flight);
+  const NoiseFloor noise = min_noise(flight);
   records.resize(flight.values.size());
   for (std::size_t m = 0; m < flight.values.size(); ++m)
     part.models.push_back(sums_of(flight, m, noise, records[m]));
@@ -384,7 +384,7 @@ std::vector<Entry> thinned_out(const std::vector<Entry>& all, std::size_t every)
 /// Adds to the sums of one model the variances that the noise gives them. Its slow parts are those of
 /// all flights, found from six of them at most, its level that of each.
 /// @param records of own flights, of each model
-void add_variances(std::size_t model, const FlightShare& share,
+void add_variances(std::size_t model, const FlightPartition& share,
                    const std::vector<std::vector<SummedRecords>>& records, std::size_t threads,
                    std::vector<FlightPart>& parts) {
   BinnedFlights flights;
@@ -453,8 +453,8 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
       part.models[m].doubt = doubts[m].columns(samples[m], records[m].parts.front()).colwise().sum();
     return part;
   };
-  const bool keeps_all = flights.size() <= options.most_series;
-  const std::size_t threads = Workers(flights.team(), 0).threads;
+  const bool keeps_all = flights.size() <= options.max_series;
+  const std::size_t threads = Workers(flights.comm(), 0).threads;
   std::vector<std::vector<SummedRecords>> records(flights.size());
   auto parts = flights.share().map<FlightPart>(
       threads,
@@ -492,7 +492,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   if (result.is_static_pressure) result.static_pressure = orthogonal_fit(pressures);
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
   if (keeps_all) return result;
-  const std::vector<std::size_t> shown = to_show(parts, options.most_series);
+  const std::vector<std::size_t> shown = to_show(parts, options.max_series);
   for (FlightPart& part : flights.share().of_entries(shown).of_each_flight<FlightPart>([&](std::size_t k) {
          std::vector<SummedRecords> not_needed;
          return make(read(shown[k]), true, not_needed);
@@ -503,11 +503,11 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
 
 }  // namespace
 
-Comparison compare(const FlightSet& flights, const std::vector<Contender>& contenders,
+Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
                    const CompareOptions& options) {
   if (flights.empty() || contenders.empty())
     throw Error("nothing to compare; give at least one flight and one model");
-  for (const Contender& contender : contenders) first_of(contender.references);
+  for (const ComparedModel& contender : contenders) first_of(contender.references);
   const std::vector<Field> fields = fields_of(contenders);
   flights.require_one_aircraft();
   const auto tell = [&, done = std::size_t{0}]() mutable {
@@ -580,14 +580,14 @@ void write_residuals(const Comparison& comparison, std::size_t number, const Fli
   };
   std::vector<Flag> mask_flags;
   for (std::size_t i = 1; i < mask_count; ++i)
-    mask_flags.push_back({1 << (i - 1), std::string(mask_facts[i].name)});
+    mask_flags.push_back({1 << (i - 1), std::string(mask_info[i].name)});
   std::vector<double> masks;
   for (const Mask mask : residuals.mask)
     masks.push_back(mask == Mask::none ? 0.0 : static_cast<double>(1 << (static_cast<int>(mask) - 1)));
   flags("MASK", "Why a sample takes no part in the comparison", std::move(mask_flags), std::move(masks));
   std::vector<Flag> regime_flags;
   for (std::size_t i = 0; i < regime_count; ++i) {
-    std::string name(regime_facts[i].name);
+    std::string name(regime_info[i].name);
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
     regime_flags.push_back({1 << i, std::move(name)});

@@ -6,19 +6,19 @@
 #include <cmath>
 #include <utility>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
+#include "base/phrasing.hpp"
 #include "numerics/missing.hpp"
 #include "report/present_columns.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
 #include "residuals/wind.hpp"
-#include "words/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
 
 // A regime with fewer samples is not called the one where a model fails most.
-constexpr std::size_t fewest_in_regime = 60;
+constexpr std::size_t min_in_regime = 60;
 // Times the noise: less is hardly a failure.
 constexpr double notable_failure = 1.2;
 
@@ -65,7 +65,7 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
       });
       if (met)
         report_.intervals.push_back(
-            {std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+            {std::string(info_of(interval.regime).name), interval.begin, interval.end});
     }
   }
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
@@ -114,7 +114,7 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
 }
 
 void ComparisonPanels::add_panels() {
-  const double memory = comparison_.models.back().samples_per_independent;
+  const double memory = comparison_.models.back().autocorrelation_time;
   TimePanel time;
   time.title = "Residual in time";
   time.caption =
@@ -138,7 +138,7 @@ void ComparisonPanels::add_panels() {
   binned.y = residuals_;
   binned.axis = "residual";
   binned.x_choices = variables_;
-  binned.samples_per_independent = std::max(1.0, memory);
+  binned.autocorrelation_time = std::max(1.0, memory);
   report_.items.emplace_back(std::move(binned));
   PlanePanel plane;
   plane.title = comparison_.models.size() == 1 ? "Residual over Mach number and pressure"
@@ -236,7 +236,7 @@ void ComparisonPanels::add_tables() {
   for (std::size_t i = 0; i < mask_count; ++i) {
     if (comparison_.masks[i] > 0)
       masks.rows.push_back({std::to_string(comparison_.masks[i]),
-                            i == 0 ? "used" : "not used: " + std::string(mask_facts[i].meaning)});
+                            i == 0 ? "used" : "not used: " + std::string(mask_info[i].meaning)});
   }
   report_.items.emplace_back(std::move(masks));
   for (const ModelComparison& model : comparison_.models) {
@@ -279,7 +279,7 @@ void ComparisonPanels::summarise() {
     report_.summary.push_back(std::move(text));
   const PartStatistics* worst = nullptr;
   for (const PartStatistics& part : last.regimes) {
-    if (part.statistics.samples < fewest_in_regime || !(part.statistics.rms_over_noise() > notable_failure))
+    if (part.statistics.samples < min_in_regime || !(part.statistics.rms_over_noise() > notable_failure))
       continue;
     if (worst == nullptr || fails_more(part.statistics, worst->statistics)) worst = &part;
   }
@@ -289,15 +289,15 @@ void ComparisonPanels::summarise() {
         comparison_.models.size() == 1 ? "It" : "The last", worst->name, worst->statistics.bias,
         worst->statistics.rms, worst->statistics.rms_over_noise()));
   }
-  report_.facts.emplace_back("Reference", comparison_.reference);
+  report_.info.emplace_back("Reference", comparison_.reference);
   for (const FlightResiduals& flight : comparison_.flights) {
     const FlightSamples& samples = *flight.samples;
-    report_.facts.emplace_back("Flight",
-                               fmt::format("{}, {} to {} UTC", samples.name, utc_text(samples.time.front()),
-                                           utc_text(samples.time.back(), "%H:%M:%S")));
+    report_.info.emplace_back("Flight",
+                              fmt::format("{}, {} to {} UTC", samples.name, utc_text(samples.time.front()),
+                                          utc_text(samples.time.back(), "%H:%M:%S")));
   }
-  report_.facts.emplace_back("Program", "pcor " PCOR_VERSION);
-  for (const std::string& note : comparison_.notes) report_.facts.emplace_back("Note", note);
+  report_.info.emplace_back("Program", "pcor " PCOR_VERSION);
+  for (const std::string& note : comparison_.notes) report_.info.emplace_back("Note", note);
 }
 
 }  // namespace pcor::internal

@@ -32,7 +32,7 @@ void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
     Finding& finding = findings[i];
     if (finding.aliases.empty()) continue;
     const std::size_t winner = analysis.result().chosen[i];
-    Rivalry rivalry{now, variance, places_of(analysis.groups()[winner], analysis.base()), {}, {}};
+    SeparationProblem rivalry{now, variance, places_of(analysis.groups()[winner], analysis.base()), {}, {}};
     const Candidate& found = candidates[winner];
     rivalry.size.resize(as_index(found.tested.size()));
     for (std::size_t k = 0; k < found.tested.size(); ++k) {
@@ -57,7 +57,7 @@ void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
     const Plan best = best_plan(regimes, rivalry);
     finding.advice.sentence = text_of(best, finding.id(), finding.effect, rivals);
     if (best.regime == nullptr) continue;
-    finding.advice.manoeuvre = facts_of(best.regime->regime).name;
+    finding.advice.manoeuvre = info_of(best.regime->regime).name;
     finding.advice.duration = best.duration();
     finding.advice.power = best.power;
   }

@@ -11,17 +11,17 @@
 #include "numerics/spikes.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "numerics/whitening.hpp"
-#include "team/workers.hpp"
+#include "parallel/workers.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr int most_rounds = 4;
+constexpr int max_rounds = 4;
 /// For the first noise: whatever might be an effect is taken off, a claim it is not.
 constexpr double generous_threshold = 9.0;
 constexpr std::size_t generous_effects = 6;
 constexpr double stretch_time = 300.0;  // s
-constexpr double least_eigenvalue = 1e-11;
+constexpr double min_eigenvalue = 1e-11;
 
 template <class Value>
 std::vector<Value> part(const std::vector<Value>& all, std::size_t first, std::size_t last) {
@@ -62,8 +62,7 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
   });
   // Slow effects and slow drift contend for the same part of the residuals, so noise is found from both ends:
   // with whatever might be an effect taken off first, and with none. The likelier end counts.
-  const Eigen::VectorXd start =
-      pseudo_solution(normal.leftCols(base_), normal.rightCols(1), least_eigenvalue);
+  const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1), min_eigenvalue);
   const double by_effects = search_from(start, true, explained);
   const bool drifts =
       std::any_of(noise_.begin(), noise_.end(), [](const auto& each) { return each.drifts(); });
@@ -78,7 +77,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous, double
   std::vector<std::size_t> chosen;
   Eigen::VectorXd estimate = start;
   Eigen::MatrixXd covariance;
-  for (int round = generous ? 0 : 1; round < most_rounds; ++round) {
+  for (int round = generous ? 0 : 1; round < max_rounds; ++round) {
     replace_outliers(chosen, estimate);
     if (round == 0)
       find_first_noise(estimate);
@@ -90,7 +89,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous, double
     options.explained = explained;
     if (round == 0) {
       options.threshold = generous_threshold;
-      options.most_effects = generous_effects;
+      options.max_effects = generous_effects;
     }
     result_ = search_->run(options);
     const bool stable = round > 1 && result_.chosen == chosen;
@@ -195,7 +194,7 @@ void Analysis::find_first_noise(const Eigen::VectorXd& estimate) {
 }
 
 void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
-  const std::size_t threads = Workers(share_.team(), 0).threads;
+  const std::size_t threads = Workers(share_.comm(), 0).threads;
   bool is_first = true;
   likelihood_ = 0.0;
   for_each_reference(groups, estimate, [&](const auto& bins, const auto& columns, const auto& residuals) {
@@ -220,8 +219,8 @@ void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const E
 }
 
 void Analysis::find_search() {
-  scores_ =
-      std::make_unique<Scores>(find_scores(share_, binned_.bins, binned_.columns, binned_.residuals, noise_));
+  scores_ = std::make_unique<WhitenedSystem>(
+      find_scores(share_, binned_.bins, binned_.columns, binned_.residuals, noise_));
   white_noise_.assign(binned_.bins.size(), {});
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
     if (share_.owns(f)) white_noise_[f] = scores_->left(f, coefficients_);
@@ -230,7 +229,7 @@ void Analysis::find_search() {
   search_ = std::make_unique<Search>(*scores_, base_, groups_);
 }
 
-void Analysis::take_out_common_noise(Scores& scores) const {
+void Analysis::take_out_common_noise(WhitenedSystem& scores) const {
   if (further_.empty()) return;
   std::vector<Eigen::VectorXd> left = white_noise_;
   for (std::size_t later = flights_.size(); later < binned_.bins.size(); ++later) {
@@ -243,13 +242,13 @@ void Analysis::take_out_common_noise(Scores& scores) const {
   sum_up(scores);
 }
 
-Scores Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) const {
+WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) const {
   std::vector<Eigen::MatrixXd> columns;
   for (std::size_t f = 0; f < more.size(); ++f) {
     Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
     both << binned_.columns[f].leftCols(base_), more[f];
   }
-  Scores scores = find_scores(share_, binned_.bins, columns, binned_.residuals, noise_);
+  WhitenedSystem scores = find_scores(share_, binned_.bins, columns, binned_.residuals, noise_);
   take_out_common_noise(scores);
   return scores;
 }
@@ -302,7 +301,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
       Eigen::MatrixXd normal = rest.topLeftCorner(width - 1, width - 1);
       // In units of the variance of the rows.
       normal.diagonal() += rest(width - 1, width - 1) / rows * precision;
-      estimates.push_back(pseudo_solution(normal, rest.col(width - 1).head(width - 1), least_eigenvalue));
+      estimates.push_back(pseudo_solution(normal, rest.col(width - 1).head(width - 1), min_eigenvalue));
     }
     return estimates;
   };

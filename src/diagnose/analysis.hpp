@@ -8,8 +8,8 @@
 #include "campaign/binned_flights.hpp"
 #include "campaign/columns.hpp"
 #include "diagnose/flight_columns.hpp"
-#include "diagnose/scores.hpp"
 #include "diagnose/search.hpp"
+#include "diagnose/whitened_system.hpp"
 #include "numerics/noise_model.hpp"
 
 namespace pcor::internal {
@@ -41,9 +41,9 @@ class Analysis {
   Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed, double explained = 0.0);
 
   /// Of the flights against the first reference.
-  const FlightShare& share() const { return first_share_; }
+  const FlightPartition& share() const { return first_share_; }
   /// Of all flights, each counted for each reference.
-  const FlightShare& whole_share() const { return share_; }
+  const FlightPartition& whole_share() const { return share_; }
   const std::vector<FlightColumns>& flights() const { return flights_; }
   /// How many flights there are, each counted for each reference.
   std::size_t flight_count() const { return binned_.bins.size(); }
@@ -57,10 +57,10 @@ class Analysis {
   /// Twice the gain in log-likelihood by slow drift against the first reference.
   double drift_gain() const { return drift_gain_; }
   const Search& search() const { return *search_; }
-  const Scores& scores() const { return *scores_; }
+  const WhitenedSystem& scores() const { return *scores_; }
   /// The scores of the base with other columns behind it, instead of the candidates'. @param more in bins, of
   /// each flight against each reference
-  Scores scores_with(const std::vector<Eigen::MatrixXd>& more) const;
+  WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more) const;
   const std::vector<ColumnGroup>& groups() const { return groups_; }
   const SearchResult& result() const { return result_; }
   Eigen::Index base() const { return base_; }
@@ -99,7 +99,7 @@ class Analysis {
   void keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_search();
   /// Out of the rows against further references.
-  void take_out_common_noise(Scores& scores) const;
+  void take_out_common_noise(WhitenedSystem& scores) const;
   FlightColumns& flight(std::size_t number) {
     return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
   }
@@ -111,8 +111,8 @@ class Analysis {
   /// The places of the columns of base and groups.
   std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& groups) const;
 
-  FlightShare share_;
-  FlightShare first_share_;
+  FlightPartition share_;
+  FlightPartition first_share_;
   std::vector<FlightColumns> flights_{};
   std::vector<FlightColumns> further_{};  // against other references
   std::vector<ColumnGroup> groups_;
@@ -127,7 +127,7 @@ class Analysis {
   double likelihood_ = 0.0;
   Eigen::VectorXd coefficients_{};              // of all columns, as the last noise was found with
   std::vector<Eigen::VectorXd> white_noise_{};  // what all that was found leaves of the whitened residuals
-  std::unique_ptr<Scores> scores_{};
+  std::unique_ptr<WhitenedSystem> scores_{};
   std::unique_ptr<Search> search_{};
   SearchResult result_{};
 };

@@ -6,36 +6,36 @@
 #include <optional>
 #include <set>
 
+#include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/error.hpp>
 #include "campaign/model_parameters.hpp"
 #include "flight/trouble_with_values.hpp"
+#include "parallel/flight_partition.hpp"
 #include "residuals/moving_columns.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
-#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 namespace {
 
-bool has_effect(const ModelFile& model, std::string_view id) {
+bool has_effect(const ModelDefinition& model, std::string_view id) {
   const std::vector<ModelEffect>& effects = model.model.effects;
   return std::any_of(effects.begin(), effects.end(), [id](const ModelEffect& e) { return e.id == id; });
 }
 
 /// The aircraft family whose names a model uses on some flights.
-const AircraftFamily& family_of(const ModelFile& file, const FlightSet& flights) {
+const VariableNaming& family_of(const ModelDefinition& file, const FlightSet& flights) {
   if (!file.roles_from.empty()) return family_named(file.roles_from);
   return flights.size() == 0 ? aircraft_families().front() : family_named(flights.outlines().front().family);
 }
 
 /// Names the usual variables of the roles that the model leaves open, where every flight records them in a
 /// unit that fits. The flow angles stay as they are where the model computes them from the radome.
-void name_usual_variables(ModelFile& file, const FlightSet& flights) {
-  const AircraftFamily& family = family_of(file, flights);
+void name_usual_variables(ModelDefinition& file, const FlightSet& flights) {
+  const VariableNaming& family = family_of(file, flights);
   struct Usual {
     Quantity role;
     std::string variable;
@@ -51,7 +51,7 @@ void name_usual_variables(ModelFile& file, const FlightSet& flights) {
   const auto recorded = flights.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
     std::vector<bool> has;
     for (const auto& [role, variable] : usual)
-      has.push_back(has_values(flights[number], variable, std::string(facts_of(role).unit)));
+      has.push_back(has_values(flights[number], variable, std::string(info_of(role).unit)));
     return has;
   });
   std::size_t place = 0;
@@ -65,13 +65,13 @@ void name_usual_variables(ModelFile& file, const FlightSet& flights) {
   }
 }
 
-Candidate candidate_of(const EffectFacts& facts) {
+Candidate candidate_of(const EffectInfo& info) {
   Candidate candidate;
-  candidate.effect = neutral_effect(facts.id);
+  candidate.effect = neutral_effect(info.id);
   candidate.id = candidate.effect.id;
-  candidate.title = std::string(facts.title);
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-    const ParameterFacts& parameter = facts.parameters[i];
+  candidate.title = std::string(info.title);
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+    const ParameterInfo& parameter = info.parameters[i];
     if (parameter.shape) continue;
     candidate.tested.push_back({i,
                                 std::string(parameter.name),
@@ -82,12 +82,12 @@ Candidate candidate_of(const EffectFacts& facts) {
   return candidate;
 }
 
-bool reads_date(const EffectFacts& facts) { return facts.needs[0] == Quantity::date; }
+bool reads_date(const EffectInfo& info) { return info.needs[0] == Quantity::date; }
 
 /// What a shape parameter is tried at: what its facts say, or dates.
-std::vector<double> tried_values(const EffectFacts& facts, const ParameterFacts& shape,
+std::vector<double> tried_values(const EffectInfo& info, const ParameterInfo& shape,
                                  const std::vector<double>& dates) {
-  if (reads_date(facts)) return dates;
+  if (reads_date(info)) return dates;
   return {shape.tried.begin(), std::find(shape.tried.begin(), shape.tried.end(), 0.0)};
 }
 
@@ -95,20 +95,20 @@ std::vector<double> tried_values(const EffectFacts& facts, const ParameterFacts&
 std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector<double>& dates) {
   std::vector<Candidate> variants;
   if (candidate.effect.is_formula()) return variants;
-  const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-    const bool remembers = facts.memory.of != Quantity::count && facts.memory.parameter == i;
-    if (!facts.parameters[i].shape || remembers) continue;
-    for (const double value : tried_values(facts, facts.parameters[i], dates)) {
+  const EffectInfo& info = effect_info[effect_named(candidate.effect.id)];
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+    const bool remembers = info.memory.of != Quantity::count && info.memory.parameter == i;
+    if (!info.parameters[i].shape || remembers) continue;
+    for (const double value : tried_values(info, info.parameters[i], dates)) {
       if (value == candidate.effect.parameters[i]) continue;
       Candidate& variant = variants.emplace_back(candidate);
       variant.effect.parameters[i] = value;
       variant.is_variant = true;
     }
   }
-  for (std::size_t i = 0; i < facts.scaling_count(); ++i) {
+  for (std::size_t i = 0; i < info.scaling_count(); ++i) {
     Candidate& variant = variants.emplace_back(candidate);
-    variant.effect.scaling = facts.scalings[i];
+    variant.effect.scaling = info.scalings[i];
     variant.is_variant = true;
   }
   return variants;
@@ -129,7 +129,7 @@ Candidate candidate_of(const ModelEffect& formula) {
 /// Why a flight has no values of a variable; empty where it has.
 std::string trouble_with(const Flight& flight, const std::string& variable) {
   if (!flight.has(variable)) return fmt::format("{} has no variable {}", flight.path().string(), variable);
-  return trouble_with_values(flight, variable);
+  return value_problem(flight, variable);
 }
 
 /// Of a formula: the variable that some flight lacks; empty where there is none.
@@ -146,20 +146,22 @@ std::string missing_variable(const ModelEffect& effect, const FlightSet& flights
   return "";
 }
 
-bool is_of_laser(Where where) {
-  return where == Where::beam_elevation || where == Where::beam_azimuth || where == Where::beam_speed;
+bool is_of_laser(EffectLocation location) {
+  return location == EffectLocation::beam_elevation || location == EffectLocation::beam_azimuth ||
+         location == EffectLocation::beam_speed;
 }
 
 /// Whether an effect there can be one of the other system as well.
-bool has_a_twin(Where where) {
-  return where == Where::static_transducer || where == Where::dynamic_transducer ||
-         where == Where::static_line || where == Where::total_line || where == Where::static_defect ||
-         where == Where::pitot;
+bool has_a_twin(EffectLocation location) {
+  return location == EffectLocation::static_transducer || location == EffectLocation::dynamic_transducer ||
+         location == EffectLocation::static_line || location == EffectLocation::total_line ||
+         location == EffectLocation::static_defect || location == EffectLocation::pitot;
 }
 
 /// Whether what is wrong there is often wrong on both systems, since tubes and lines are built alike.
-bool is_built_alike(Where where) {
-  return where == Where::static_line || where == Where::total_line || where == Where::pitot;
+bool is_built_alike(EffectLocation location) {
+  return location == EffectLocation::static_line || location == EffectLocation::total_line ||
+         location == EffectLocation::pitot;
 }
 
 /// Puts behind each candidate those that no chain has beside it: in tubes and lines the same on both systems,
@@ -174,23 +176,23 @@ void add_derived_ones(CandidateSet& set, bool two_systems) {
     };
     all.push_back(candidate);
     if (candidate.effect.is_formula()) continue;
-    if (two_systems && is_built_alike(where_of(candidate.effect))) derive().is_shared = true;
-    const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
-    if (facts.memory.of == Quantity::count) continue;
-    const ParameterFacts& over = facts.parameters[facts.memory.parameter];
+    if (two_systems && is_built_alike(location_of(candidate.effect))) derive().is_shared = true;
+    const EffectInfo& info = effect_info[effect_named(candidate.effect.id)];
+    if (info.memory.of == Quantity::count) continue;
+    const ParameterInfo& over = info.parameters[info.memory.parameter];
     for (const double time : over.tried) {
       if (time == 0.0) break;
       Candidate& derived = derive();
       derived.memory = time;
-      if (over.shape) derived.effect.parameters[facts.memory.parameter] = time;
+      if (over.shape) derived.effect.parameters[info.memory.parameter] = time;
     }
   }
   set.candidates = std::move(all);
 }
 
 /// Whether two models are of the same system, with the same coefficients to fit.
-bool is_same(const ModelFile& a, const ModelFile& b) {
-  const auto ids = [](const ModelFile& file) {
+bool is_same(const ModelDefinition& a, const ModelDefinition& b) {
+  const auto ids = [](const ModelDefinition& file) {
     std::vector<std::string> all;
     for (const ModelEffect& effect : file.model.effects) all.push_back(effect.id);
     return all;
@@ -200,35 +202,35 @@ bool is_same(const ModelFile& a, const ModelFile& b) {
 }
 
 /// The system that a model corrects, by its pressures: "PSFRD+QCFR". Two laws of one pair are of one system.
-std::string system_of(const ModelFile& model) {
+std::string system_of(const ModelDefinition& model) {
   return model.variables.at(Quantity::static_pressure) + "+" + model.variables.at(Quantity::dynamic_pressure);
 }
 
 /// How ids name the system of a reference: not at all where there is only one other system.
-std::string name_of_system(const ModelFile& model, const References& references) {
+std::string name_of_system(const ModelDefinition& model, const References& references) {
   const bool several = std::any_of(references.begin(), references.end(), [&model](const auto& each) {
     return each->model() != nullptr && system_of(*each->model()) != system_of(model);
   });
   return several ? system_of(model) : "";
 }
 
-std::vector<BaseCoefficient> base_of(const ModelFile& model) {
+std::vector<BaseCoefficient> base_of(const ModelDefinition& model) {
   std::vector<BaseCoefficient> base;
   for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
     const ModelEffect& effect = model.model.effects[e];
     const std::vector<std::string> names = parameter_names(effect);
-    const EffectFacts* const facts = effect.is_formula() ? nullptr : &effect_facts[effect_named(effect.id)];
+    const EffectInfo* const info = effect.is_formula() ? nullptr : &effect_info[effect_named(effect.id)];
     for (std::size_t p = 0; p < names.size(); ++p) {
       if (model.fit(e, p).fixed) continue;
       base.push_back({effect.id + "." + names[p],
-                      std::string(facts == nullptr ? "" : facts->parameters[p].unit), effect.parameters[p],
-                      model.bounds(e, p), false, facts == nullptr ? 0.0 : facts->parameters[p].typical});
+                      std::string(info == nullptr ? "" : info->parameters[p].unit), effect.parameters[p],
+                      model.bounds(e, p), false, info == nullptr ? 0.0 : info->parameters[p].typical});
     }
   }
   return base;
 }
 
-void fix_all(ModelFile& model) {
+void fix_all(ModelDefinition& model) {
   model.fits.resize(model.model.effects.size());
   for (std::size_t e = 0; e < model.fits.size(); ++e) {
     model.fits[e].resize(parameter_names(model.model.effects[e]).size());
@@ -241,13 +243,13 @@ void fix_all(ModelFile& model) {
 void add_those_of_the_references(CandidateSet& set, const References& references, const FlightSet& flights,
                                  const std::vector<double>& dates, bool trusted) {
   for (std::size_t r = 0; r < references.size(); ++r) {
-    const ModelFile* const model = references[r]->model();
-    std::optional<ModelFile>& other = set.others.emplace_back();
+    const ModelDefinition* const model = references[r]->model();
+    std::optional<ModelDefinition>& other = set.others.emplace_back();
     set.references.push_back(references[r]);
     set.base_of_others.push_back(set.base.size());
     set.effects_of_others.push_back(model == nullptr ? 0 : model->model.effects.size());
     if (model == nullptr) continue;
-    ModelFile law = *model;
+    ModelDefinition law = *model;
     if (trusted) fix_all(law);
     const std::string system = name_of_system(*model, references);
     const auto same = std::find_if(references.begin(), references.begin() + static_cast<std::ptrdiff_t>(r),
@@ -266,10 +268,10 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     other = std::move(law);
     name_usual_variables(*other, flights);
     Chain chain = chain_of(other->model, roles_of(*other, false));
-    for (const EffectFacts& facts : effect_facts) {
-      if (trusted || !has_a_twin(facts.where) || has_effect(*model, facts.id)) continue;
-      Candidate usual = candidate_of(facts);
-      if (reads_date(facts)) {
+    for (const EffectInfo& info : effect_info) {
+      if (trusted || !has_a_twin(info.location) || has_effect(*model, info.id)) continue;
+      Candidate usual = candidate_of(info);
+      if (reads_date(info)) {
         if (dates.empty()) continue;
         usual.effect.parameters[1] = dates.front();
       }
@@ -302,7 +304,7 @@ void add_those_of_the_references(CandidateSet& set, const References& references
 
 }  // namespace
 
-CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
+CandidateSet find_candidates(const ModelDefinition& model, const std::vector<ModelEffect>& formulas,
                              const FlightSet& flights, const References& references,
                              const std::vector<double>& dates, bool trust_reference) {
   CandidateSet set;
@@ -341,27 +343,27 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
     }
     consider(candidate);
   }
-  for (const EffectFacts& facts : effect_facts) {
-    if (has_effect(model, facts.id)) continue;
-    if (trust_reference && is_of_laser(facts.where)) continue;
-    if (facts.where == Where::ambient_temperature) {
+  for (const EffectInfo& info : effect_info) {
+    if (has_effect(model, info.id)) continue;
+    if (trust_reference && is_of_laser(info.location)) continue;
+    if (info.location == EffectLocation::ambient_temperature) {
       set.not_testable.push_back(
-          {std::string(facts.id), std::string(facts.title),
+          {std::string(info.id), std::string(info.title),
            "to the laser it is as temp-offset; the hydrostatic height finds it (pcor temperature)"});
       continue;
     }
-    if (facts.constants == GasConstants::dry && model.model.moist) {
+    if (info.constants == GasConstants::dry && model.model.moist) {
       set.not_testable.push_back(
-          {std::string(facts.id), std::string(facts.title), "the model uses the constants of moist air"});
+          {std::string(info.id), std::string(info.title), "the model uses the constants of moist air"});
       continue;
     }
-    if (facts.constants == GasConstants::moist && !model.model.moist) {
+    if (info.constants == GasConstants::moist && !model.model.moist) {
       set.not_testable.push_back(
-          {std::string(facts.id), std::string(facts.title), "the model uses the constants of dry air"});
+          {std::string(info.id), std::string(info.title), "the model uses the constants of dry air"});
       continue;
     }
-    Candidate candidate = candidate_of(facts);
-    if (reads_date(facts)) {
+    Candidate candidate = candidate_of(info);
+    if (reads_date(info)) {
       if (dates.empty()) {
         set.not_testable.push_back({candidate.effect.id, candidate.title, "it needs flights at two times"});
         continue;

@@ -6,7 +6,7 @@
 
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/diagnose/diagnose.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/reference.hpp>
 #include "campaign/candidate.hpp"
 
@@ -20,7 +20,7 @@ struct CandidateSet : CandidateModels {
 /// The effects of the catalogue that are not in the model, and the formulas. An effect whose inputs some
 /// flight lacks is not testable, and told so. @throws Error if the model cannot be used.
 /// @param dates on which a step is tried, as the role date has them
-CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
+CandidateSet find_candidates(const ModelDefinition& model, const std::vector<ModelEffect>& formulas,
                              const FlightSet& flights, const References& references,
                              const std::vector<double>& dates = {}, bool trust_reference = false);
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
+#include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
-#include <pcor/words/error.hpp>
 #include "diagnose/advice.hpp"
 #include "diagnose/analysis.hpp"
 #include "diagnose/candidates.hpp"
@@ -39,7 +39,7 @@ std::string description_of(const References& references) {
 }
 
 /// What the effects of findings read, on either system; an angle is also read as its differential pressure.
-EffectInputs inputs_of(const std::vector<Finding>& findings, const ModelFile& model) {
+EffectInputs inputs_of(const std::vector<Finding>& findings, const ModelDefinition& model) {
   EffectInputs inputs;
   const auto read = [&](Quantity quantity) {
     inputs.quantities.insert(quantity);
@@ -49,7 +49,7 @@ EffectInputs inputs_of(const std::vector<Finding>& findings, const ModelFile& mo
   for (const Finding& finding : findings) {
     const std::size_t known = effect_named(finding.effect.id);
     if (known == catalogue_size) continue;
-    for (const Quantity need : effect_facts[known].needs) {
+    for (const Quantity need : effect_info[known].needs) {
       if (need == Quantity::count) continue;
       read(need);
       const bool is_attack = need == Quantity::attack || need == Quantity::attack_ratio;
@@ -146,7 +146,7 @@ std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoe
   return own;
 }
 
-double noise_with_findings(const FlightShare& share, const std::vector<FlightDiagnosis>& flights) {
+double noise_with_findings(const FlightPartition& share, const std::vector<FlightDiagnosis>& flights) {
   ResidualSums sums;
   for (const ResidualSums& one : share.of_each_flight<ResidualSums>(
            [&flights](std::size_t f) { return sums_of_flight(*flights[f].samples, flights[f].after); })) {
@@ -175,11 +175,11 @@ GivenStatistics statistics_of(const FlightColumns& flight, double share) {
   const std::vector<std::size_t> first = used_samples(flight.mask, share);
   std::vector<std::size_t> later = used_samples(flight.mask);
   later.erase(later.begin(), later.begin() + static_cast<std::ptrdiff_t>(first.size()));
-  const NoiseFloor noise = noise_of_flight(samples, only_where(flight.exact, flight.mask, Mask::none));
+  const NoiseFloor noise = noise_of_flight(samples, masked(flight.exact, flight.mask, Mask::none));
   const std::vector<double> residual = only_at(flight.exact, first);
   found.used = sums_of_flight(samples, residual, noise);
   found.blocks = means_of_blocks(samples, residual);
-  const std::vector<double> out = only_where(flight.exact, flight.mask, Mask::flaps);
+  const std::vector<double> out = masked(flight.exact, flight.mask, Mask::flaps);
   if (has_value(out)) found.with_flaps = sums_of_flight(samples, out);
   if (later.empty()) return found;
   const std::vector<double> held_out = only_at(flight.exact, later);
@@ -267,7 +267,7 @@ struct SearchedDiagnosis {
 };
 
 /// @param dates on which a step is tried
-SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelFile& model,
+SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
                                  const References& all_references, const DiagnoseOptions& options,
                                  const std::vector<double>& dates) {
   SearchedDiagnosis result;
@@ -284,9 +284,9 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelFile& model,
     diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights took no part",
                                           diagnosis.masks[0] - diagnosis.samples));
   }
-  if (diagnosis.samples < fewest_samples) {
+  if (diagnosis.samples < min_samples) {
     throw Error(fmt::format("{} samples are left to diagnose, and {} are the fewest that tell anything: {}",
-                            diagnosis.samples, fewest_samples, mask_text(diagnosis.masks)));
+                            diagnosis.samples, min_samples, mask_text(diagnosis.masks)));
   }
   const FlapsCandidates flaps = find_flaps_candidates(set, columns);
   drop_untestable(set, columns);
@@ -333,7 +333,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelFile& model,
 
 }  // namespace
 
-std::string_view name_of(Verdict verdict) {
+std::string_view to_string(Verdict verdict) {
   switch (verdict) {
     case Verdict::silent:
       return "silent";
@@ -353,16 +353,16 @@ std::string id_on_other_system(const std::string& system, const std::string& nam
   return "reference:" + (system.empty() ? "" : system + ":") + name;
 }
 
-std::string places_text(const TracedVariable& variable) {
-  const std::string formula = variable.formula.empty()
-                                  ? ""
-                                  : fmt::format("; the formula is written as added to the {} pressure",
-                                                variable.where == Where::pitot ? "total" : "static");
+std::string places_text(const EmpiricalPredictor& variable) {
+  const std::string formula =
+      variable.formula.empty() ? ""
+                               : fmt::format("; the formula is written as added to the {} pressure",
+                                             variable.location == EffectLocation::pitot ? "total" : "static");
   if (variable.places.empty()) return "where it acts is not known" + formula;
-  return fmt::format("it acts at one of these places: {}, since the total pressures of the two systems {}{}",
-                     fmt::join(variable.places, ", "),
-                     variable.where == Where::pitot ? "differ with it, too" : "do not differ with it",
-                     formula);
+  return fmt::format(
+      "it acts at one of these places: {}, since the total pressures of the two systems {}{}",
+      fmt::join(variable.places, ", "),
+      variable.location == EffectLocation::pitot ? "differ with it, too" : "do not differ with it", formula);
 }
 
 std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }
@@ -385,7 +385,7 @@ void judge_held_out(Diagnosis& diagnosis) {
   }
 }
 
-Diagnosis diagnose(const FlightSet& flights, const ModelFile& model, const References& all_references,
+Diagnosis diagnose(const FlightSet& flights, const ModelDefinition& model, const References& all_references,
                    const DiagnoseOptions& options) {
   if (flights.empty()) throw Error("nothing to diagnose; give at least one flight");
   flights.require_each_once();

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
-#include <pcor/words/utc.hpp>
 
 #include "diagnose/finding_page.hpp"
 #include "numerics/cross_spectrum.hpp"
@@ -42,9 +42,9 @@ std::string column_of(Quantity quantity) {
       {Quantity::lams_airspeed, Quantity::true_airspeed},
   };
   for (const auto& [of, shown] : stand_ins) {
-    if (quantity == of) return std::string(facts_of(shown).name);
+    if (quantity == of) return std::string(info_of(shown).name);
   }
-  return std::string(facts_of(quantity).name);
+  return std::string(info_of(quantity).name);
 }
 
 ReportTable variables_table(const Unexplained& unexplained) {
@@ -57,7 +57,7 @@ ReportTable variables_table(const Unexplained& unexplained) {
       "does "
       "as well on these residuals when they are shifted in time, or have signs at random.";
   table.headers = {"variable", "share", "on a line", "slope", "hPa per", "p", "formula", "what"};
-  for (const TracedVariable& variable : unexplained.variables) {
+  for (const EmpiricalPredictor& variable : unexplained.variables) {
     table.rows.push_back({variable.name, percent(variable.r2), percent(variable.linear_r2),
                           with_error(variable.slope, variable.slope_error), variable.unit,
                           probability(variable.p_value), variable.formula, variable.description});
@@ -83,8 +83,8 @@ std::vector<std::string> inputs_of(const ModelEffect& effect) {
       }
     }
   } else if (const std::size_t place = effect_named(effect.id); place < catalogue_size) {
-    for (std::size_t i = 0; i < effect_facts[place].need_count(); ++i)
-      inputs.push_back(column_of(effect_facts[place].needs[i]));
+    for (std::size_t i = 0; i < effect_info[place].need_count(); ++i)
+      inputs.push_back(column_of(effect_info[place].needs[i]));
   }
   std::stable_partition(inputs.begin(), inputs.end(),
                         [](const std::string& name) { return name != pressure; });
@@ -119,7 +119,7 @@ DiagnosisPanels::DiagnosisPanels(const Flights& flights) {
       });
       if (met)
         report_.intervals.push_back(
-            {std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+            {std::string(info_of(interval.regime).name), interval.begin, interval.end});
     }
     used_.push_back(std::move(used));
   }
@@ -147,7 +147,7 @@ void DiagnosisPanels::add_binned(std::string title, std::string caption, std::ve
   panel.caption = std::move(caption);
   panel.y = std::move(y);
   panel.axis = "residual";
-  panel.samples_per_independent = memory_;
+  panel.autocorrelation_time = memory_;
   add(std::move(panel));
 }
 
@@ -192,7 +192,7 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
       "table take the derivatives at no more than some thousand samples, with straight lines between them.";
   panel.residual = residual;
   panel.x_choices = choices({residual}, first);
-  panel.samples_per_independent = memory_;
+  panel.autocorrelation_time = memory_;
   panel.noise = noise;
   add(std::move(panel));
 }
@@ -275,9 +275,9 @@ void DiagnosisPanels::add_table(ReportTable table) {
   if (!table.rows.empty()) add(std::move(table));
 }
 
-void DiagnosisPanels::add_flight_facts() {
+void DiagnosisPanels::add_flight_info() {
   for (const Used& used : used_) {
-    report_.facts.emplace_back(
+    report_.info.emplace_back(
         "Flight", fmt::format("{}, {} to {} UTC", used.samples->name, utc_text(used.samples->time.front()),
                               utc_text(used.samples->time.back(), "%H:%M:%S")));
   }
@@ -305,9 +305,9 @@ void DiagnosisPanels::add_variables(const Flights& flights) {
   });
   for (std::size_t i = 0; i < role_count; ++i) {
     const auto quantity = static_cast<Quantity>(i);
-    if (column_of(quantity) != facts_of(quantity).name) continue;
-    const QuantityFacts& facts = facts_of(quantity);
-    add_variable(std::string(facts.name), std::string(facts.description), std::string(facts.unit), flights,
+    if (column_of(quantity) != info_of(quantity).name) continue;
+    const QuantityInfo& info = info_of(quantity);
+    add_variable(std::string(info.name), std::string(info.description), std::string(info.unit), flights,
                  [quantity](const F& f) {
                    const Series* values = f.samples->model.find(quantity);
                    return values == nullptr ? Series{} : *values;
@@ -315,24 +315,24 @@ void DiagnosisPanels::add_variables(const Flights& flights) {
   }
 }
 
-void add_facts(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelFile& model,
-               const Facts& numbers) {
-  Facts& facts = panels.report().facts;
-  facts.emplace_back("Model", model.model.name);
-  facts.emplace_back("Reference", diagnosis.reference);
-  facts.insert(facts.end(), numbers.begin(), numbers.end());
-  facts.emplace_back("Samples", std::to_string(diagnosis.samples));
+void add_info(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelDefinition& model,
+              const Info& numbers) {
+  Info& info = panels.report().info;
+  info.emplace_back("Model", model.model.name);
+  info.emplace_back("Reference", diagnosis.reference);
+  info.insert(info.end(), numbers.begin(), numbers.end());
+  info.emplace_back("Samples", std::to_string(diagnosis.samples));
   std::vector<std::string> left_out;
   for (std::size_t i = 1; i < mask_count; ++i) {
     if (diagnosis.masks[i] > 0)
-      left_out.push_back(fmt::format("{} {}", diagnosis.masks[i], mask_facts[i].meaning));
+      left_out.push_back(fmt::format("{} {}", diagnosis.masks[i], mask_info[i].meaning));
   }
   std::string text = shown_text(diagnosis.flights_with_records().size(), diagnosis.flights.size());
   if (!text.empty()) panels.report().summary.push_back(std::move(text));
-  if (!left_out.empty()) facts.emplace_back("Not used", fmt::format("{}", fmt::join(left_out, "; ")));
-  panels.add_flight_facts();
-  facts.emplace_back("Program", "pcor " PCOR_VERSION);
-  for (const std::string& note : diagnosis.notes) facts.emplace_back("Note", note);
+  if (!left_out.empty()) info.emplace_back("Not used", fmt::format("{}", fmt::join(left_out, "; ")));
+  panels.add_flight_info();
+  info.emplace_back("Program", "pcor " PCOR_VERSION);
+  for (const std::string& note : diagnosis.notes) info.emplace_back("Note", note);
 }
 
 void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
@@ -353,7 +353,7 @@ void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
   absorbed.caption = "What remains is the part of the effect's variance that the coefficients leave.";
   absorbed.headers = {"effect", "imitated by", "remains", "what"};
   for (const AbsorbedEffect& effect : diagnosis.absorbed) {
-    absorbed.rows.push_back({effect.effect, list_text(effect.by), percent(effect.remaining), effect.title});
+    absorbed.rows.push_back({effect.effect, join_list(effect.by), percent(effect.remaining), effect.title});
   }
   panels.add_table(std::move(absorbed));
   ReportTable not_testable;
@@ -384,7 +384,7 @@ void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const 
 
 void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
   if (diagnosis.unexplained.variables.empty()) return;
-  const TracedVariable& variable = diagnosis.unexplained.variables.front();
+  const EmpiricalPredictor& variable = diagnosis.unexplained.variables.front();
   panels.add_variable(variable_column(variable.name), variable.name, variable.unit, diagnosis.flights,
                       [](const FlightDiagnosis& f) { return f.traced; });
 }

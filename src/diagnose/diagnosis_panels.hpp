@@ -19,7 +19,7 @@ namespace pcor::internal::report {
 
 using Flights = std::vector<FlightDiagnosis>;
 using Series = std::vector<double>;
-using Facts = std::vector<std::pair<std::string, std::string>>;
+using Info = std::vector<std::pair<std::string, std::string>>;
 
 inline constexpr const char* structure_caption =
     "A slope or a bend that is more than the error bars is something that the model does not have.";
@@ -115,16 +115,17 @@ class DiagnosisPanels {
       const Series& values = series(flight);
       if (values.size() != flight.samples->time.size()) continue;
       const double step = flight.samples->step;
-      const NoiseFloor noise = noise_floor(values, stretches_of(values, flight.samples->time, step), step);
+      const NoiseFloor noise =
+          noise_floor(values, contiguous_segments(values, flight.samples->time, step), step);
       const auto count = static_cast<double>(
           std::count_if(values.begin(), values.end(), [](double x) { return std::isfinite(x); }));
       samples += count;
-      independent += count / noise.samples_per_independent;
+      independent += count / noise.autocorrelation_time;
     }
     if (independent > 0.0) memory_ = std::max(1.0, samples / independent);
   }
 
-  void add_flight_facts();
+  void add_flight_info();
 
   /// Of all flights.
   std::vector<ReportBarb> wind() const;
@@ -149,8 +150,8 @@ class DiagnosisPanels {
 };
 
 /// @param numbers what else is said after the model and the reference
-void add_facts(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelFile& model,
-               const Facts& numbers);
+void add_info(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelDefinition& model,
+              const Info& numbers);
 
 /// Upper limits, and what could not be seen or tested.
 void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 
 #include "diagnose/diagnosis_panels.hpp"
 #include "diagnose/finding_page.hpp"
@@ -57,17 +57,17 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
   }
   if (!limits.empty()) {
     report.summary.push_back(
-        fmt::format("Not found, and with 95 % confidence not above: {}.", list_text(limits)));
+        fmt::format("Not found, and with 95 % confidence not above: {}.", join_list(limits)));
   }
   if (!diagnosis.absorbed.empty()) {
     std::vector<std::string> ids;
     for (const AbsorbedEffect& effect : diagnosis.absorbed) ids.push_back(effect.effect);
     report.summary.push_back(
-        "These flights cannot show what the model's own coefficients imitate: " + list_text(ids) + ".");
+        "These flights cannot show what the model's own coefficients imitate: " + join_list(ids) + ".");
   }
 }
 
-Facts numbers_of(const Diagnosis& diagnosis) {
+Info numbers_of(const Diagnosis& diagnosis) {
   return {
       {"Noise", hpa(diagnosis.noise_rms) + " hPa rms"},
       {"Residual, coefficients as given", hpa(diagnosis.rms_given) + " hPa rms"},
@@ -179,7 +179,7 @@ std::string verdict_text(const Diagnosis& diagnosis) {
   std::vector<std::string> ids;
   for (const Finding& finding : diagnosis.findings) ids.push_back(finding.id());
   const std::string effects = ids.size() == 1 ? "An effect is missing: " + diagnosis.findings.front().title
-                                              : "Effects are missing: " + list_text(ids);
+                                              : "Effects are missing: " + join_list(ids);
   switch (diagnosis.verdict) {
     case Verdict::identified:
       return effects;
@@ -206,7 +206,7 @@ std::string estimates_text(const std::vector<Estimate>& estimates) {
             ? fmt::format("{} = {}", e.name, with_unit(with_error(e.value, e.standard_error), e.unit))
             : e.name + " unknown");
   }
-  return list_text(all);
+  return join_list(all);
 }
 
 std::string limits_text(const UpperLimit& limit) {
@@ -217,17 +217,17 @@ std::string limits_text(const UpperLimit& limit) {
       all.push_back(
           fmt::format("|{}| < {}", e.name, with_unit(fmt::format("{:.2g}", limit.limits[i]), e.unit)));
   }
-  return list_text(all);
+  return join_list(all);
 }
 
-Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model, const WhatIf* what_if) {
+Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model, const WhatIf* what_if) {
   using F = FlightDiagnosis;
   DiagnosisPanels panels(diagnosis.flights);
   Report& report = panels.report();
   report.title = verdict_text(diagnosis);
   report.subtitle = fmt::format("Diagnosis of {} against {}", model.model.name, diagnosis.reference);
   summarise(report, diagnosis);
-  add_facts(panels, diagnosis, model, numbers_of(diagnosis));
+  add_info(panels, diagnosis, model, numbers_of(diagnosis));
 
   const bool found = !diagnosis.findings.empty();
   add_traced(panels, diagnosis);

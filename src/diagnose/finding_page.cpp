@@ -9,14 +9,14 @@
 #include <string_view>
 #include <utility>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/catalogue.hpp>
-#include <pcor/words/utc.hpp>
 
 namespace pcor::internal::report {
 namespace {
 
-constexpr std::size_t most_in_a_sentence = 3;
+constexpr std::size_t max_in_a_sentence = 3;
 
 /// What the page says of an effect without any flight.
 struct Law {
@@ -26,17 +26,17 @@ struct Law {
 Law law_of(const ModelEffect& effect) {
   const std::size_t place = effect_named(effect.id);
   if (effect.is_formula() || place == catalogue_size) {
-    return {effect.formula, effect.unit, std::string(facts_of(effect.where).adds_to), "", "", "",
+    return {effect.formula, effect.unit, std::string(info_of(effect.location).adds_to), "", "", "",
             effect.source};
   }
-  const EffectFacts& facts = effect_facts[place];
-  return {std::string(facts.formula),
-          std::string(facts_of(facts.where).unit),
-          std::string(facts_of(facts.where).adds_to),
-          std::string(facts.size),
-          std::string(facts.look_alikes),
-          std::string(facts.manoeuvre),
-          std::string(facts.source)};
+  const EffectInfo& info = effect_info[place];
+  return {std::string(info.formula),
+          std::string(info_of(info.location).unit),
+          std::string(info_of(info.location).adds_to),
+          std::string(info.size),
+          std::string(info.look_alikes),
+          std::string(info.manoeuvre),
+          std::string(info.source)};
 }
 
 std::string times_usual(double ratio) { return ratio_text(ratio) + " times the usual size"; }
@@ -72,12 +72,12 @@ std::string how_sure(const Finding& finding, double threshold) {
     text += finding.events < 1.5 ? " It rests on a single event."
                                  : fmt::format(" It rests on about {:.0f} separate events.", finding.events);
   }
-  std::vector<std::string> stretches;
+  std::vector<std::string> segments;
   for (const Evidence& evidence : finding.evidence) {
-    if (stretches.size() == most_in_a_sentence) break;
-    stretches.push_back(fmt::format("{}, {}", stretch_text(evidence), percent(evidence.share)));
+    if (segments.size() == max_in_a_sentence) break;
+    segments.push_back(fmt::format("{}, {}", stretch_text(evidence), percent(evidence.share)));
   }
-  if (!stretches.empty()) text += fmt::format(" Most of it lies in {}.", fmt::join(stretches, "; "));
+  if (!segments.empty()) text += fmt::format(" Most of it lies in {}.", fmt::join(segments, "; "));
   return text;
 }
 
@@ -102,7 +102,7 @@ std::string rivals(const Finding& finding, const Law& law) {
   if (!finding.aliases.empty()) {
     std::vector<std::string> all;
     for (const Alias& alias : finding.aliases) {
-      if (all.size() < most_in_a_sentence) all.push_back(rival(alias));
+      if (all.size() < max_in_a_sentence) all.push_back(rival(alias));
     }
     text = fmt::format("These flights cannot tell it from {}", fmt::join(all, "; "));
     if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
@@ -183,11 +183,11 @@ std::string finding_summary(const Finding& finding) {
   if (finding.aliases.empty()) return text;
   std::vector<std::string> all;
   for (const Alias& alias : finding.aliases) {
-    if (all.size() < most_in_a_sentence) all.push_back(name_with_id(alias.effect, alias.title));
+    if (all.size() < max_in_a_sentence) all.push_back(name_with_id(alias.effect, alias.title));
   }
   if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
     all.push_back(fmt::format("{} more", more));
-  text += fmt::format(" These flights cannot tell it from {}.", list_text(all));
+  text += fmt::format(" These flights cannot tell it from {}.", join_list(all));
   return finding.advice.sentence.empty() ? text : text + " " + sentence(finding.advice.sentence);
 }
 
@@ -206,7 +206,7 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
   if (unexplained.variables.empty()) {
     all.emplace_back("It goes with no variable of the files that was looked at.");
   } else {
-    const TracedVariable& first = unexplained.variables.front();
+    const EmpiricalPredictor& first = unexplained.variables.front();
     std::string with = fmt::format("It goes with {}, which takes {} of its variance",
                                    name_with_id(first.description, first.name), percent(first.r2));
     if (first.slope_error > 0.0) {
@@ -225,7 +225,7 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
     }
     all.push_back(with);
   }
-  for (const FlightStep& step : unexplained.steps) {
+  for (const FlightOffset& step : unexplained.steps) {
     all.push_back(
         fmt::format("The mean of {} lies {} hPa {} that of the rest of the flights; chance would do as much "
                     "with a probability "
@@ -242,12 +242,12 @@ std::vector<std::string> untested_text(const Unexplained& unexplained) {
     all.push_back(
         fmt::format("Variables that were not tested, because the files say that they are computed from the "
                     "residual's own sensors: {}.",
-                    list_text(unexplained.computed)));
+                    join_list(unexplained.computed)));
   }
   if (!unexplained.shares_noise.empty()) {
     all.push_back(
         fmt::format("Variables that were not tested, because their noise is that of the residual: {}.",
-                    list_text(unexplained.shares_noise)));
+                    join_list(unexplained.shares_noise)));
   }
   return all;
 }

@@ -5,7 +5,7 @@
 
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/report/report.hpp>
-#include "words/phrasing.hpp"
+#include "base/phrasing.hpp"
 
 namespace pcor::internal::report {
 

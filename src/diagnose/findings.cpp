@@ -71,7 +71,7 @@ struct Event {
 /// left. Its sum is the chi2.
 Eigen::VectorXd evidence_of(const Analysis& analysis, std::size_t group,
                             const std::vector<std::size_t>& chosen) {
-  const Scores& scores = analysis.scores();
+  const WhitenedSystem& scores = analysis.scores();
   const std::vector<Eigen::VectorXd> rows = analysis.search().leftover_rows(group, chosen);
   std::vector<std::size_t> others = chosen;
   others.erase(std::find(others.begin(), others.end(), group));
@@ -82,7 +82,7 @@ Eigen::VectorXd evidence_of(const Analysis& analysis, std::size_t group,
 
 std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& evidence) {
   constexpr double minute = 60.0;  // s
-  const Scores& scores = analysis.scores();
+  const WhitenedSystem& scores = analysis.scores();
   // A minute counts as part of an event where it has more than its share.
   const double share = evidence.cwiseMax(0.0).sum() / static_cast<double>(evidence.size());
   std::vector<Event> events;
@@ -201,8 +201,9 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
 /// Whether an effect there is part of the corrected static pressure.
 bool corrects_static_pressure(const Candidate& candidate) {
   if (candidate.is_of_reference()) return false;
-  const Where where = where_of(candidate.effect);
-  return where == Where::static_defect || where == Where::static_line || where == Where::static_transducer;
+  const EffectLocation location = location_of(candidate.effect);
+  return location == EffectLocation::static_defect || location == EffectLocation::static_line ||
+         location == EffectLocation::static_transducer;
 }
 
 /// What base and groups change of the corrected static pressure, beyond the base alone: an estimate of the
@@ -308,12 +309,12 @@ std::string shape_of(const Candidate& candidate) {
   const Scaling& scaling = candidate.effect.scaling;
   if (!scaling.is_none())
     return fmt::format("times p^{} q^{}", scaling.static_pressure, scaling.dynamic_pressure);
-  const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
+  const EffectInfo& info = effect_info[effect_named(candidate.effect.id)];
   std::string text;
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-    if (!facts.parameters[i].shape) continue;
-    const std::string_view unit = facts.parameters[i].unit;
-    text += fmt::format("{}{} = {:g}{}{}", text.empty() ? "" : ", ", facts.parameters[i].name,
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+    if (!info.parameters[i].shape) continue;
+    const std::string_view unit = info.parameters[i].unit;
+    text += fmt::format("{}{} = {:g}{}{}", text.empty() ? "" : ", ", info.parameters[i].name,
                         candidate.effect.parameters[i], unit == "1" ? "" : " ", unit == "1" ? "" : unit);
   }
   return text;
@@ -322,8 +323,8 @@ std::string shape_of(const Candidate& candidate) {
 std::string place_of(const Candidate& candidate) {
   if (candidate.is_of_reference()) return "other-system";
   const std::size_t known = effect_named(candidate.effect.id);
-  return std::string(known < catalogue_size ? pcor::place_of(effect_facts[known])
-                                            : facts_of(candidate.effect.where).place);
+  return std::string(known < catalogue_size ? pcor::place_of(effect_info[known])
+                                            : info_of(candidate.effect.location).place);
 }
 
 /// Family, places, shapes, size and probability of a finding.
@@ -331,7 +332,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
               Finding& finding) {
   const Candidate& own = candidates[winner];
   const std::size_t known = effect_named(own.effect.id);
-  if (known < catalogue_size) finding.family = std::string(effect_facts[known].family);
+  if (known < catalogue_size) finding.family = std::string(effect_info[known].family);
   finding.shape = shape_of(own);
   finding.shape_beyond_model = shape_beyond_model(own);
   finding.places = {place_of(own)};
@@ -384,7 +385,7 @@ std::string regimes_between(const FlightSamples& samples, double begin, double e
     if (interval.begin < end && interval.end > begin) regimes.insert(interval.regime);
   }
   std::vector<std::string_view> names;
-  for (const Regime regime : regimes) names.push_back(facts_of(regime).name);
+  for (const Regime regime : regimes) names.push_back(info_of(regime).name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

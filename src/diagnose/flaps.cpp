@@ -15,13 +15,13 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::string_view flaps_effect = "flaps-gear";
-constexpr std::size_t fewest_with_flaps_out = 60;  // samples
+constexpr std::size_t min_with_flaps_out = 60;  // samples
 
 bool looks_like_flaps(const ModelEffect& effect) {
   if (effect.is_formula()) return false;
-  const auto& facts = effect_facts[effect_named(effect.id)];
-  const auto& flaps = effect_facts[effect_named(flaps_effect)];
-  return facts.look_alikes.find(flaps_effect) != std::string_view::npos ||
+  const auto& info = effect_info[effect_named(effect.id)];
+  const auto& flaps = effect_info[effect_named(flaps_effect)];
+  return info.look_alikes.find(flaps_effect) != std::string_view::npos ||
          flaps.look_alikes.find(effect.id) != std::string_view::npos;
 }
 
@@ -77,7 +77,7 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns
          return flights[f].reference == 0 ? static_cast<std::size_t>(out) : 0U;
        }))
     samples += count;
-  if (samples < fewest_with_flaps_out) return flaps;
+  if (samples < min_with_flaps_out) return flaps;
   std::vector<Wanted> wanted;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
     const Candidate& candidate = set.candidates[c];

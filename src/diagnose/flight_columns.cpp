@@ -8,14 +8,14 @@
 #include <memory>
 #include <utility>
 
+#include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
-#include <pcor/words/error.hpp>
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "parallel/workers.hpp"
 #include "residuals/frozen.hpp"
 #include "residuals/masks.hpp"
-#include "team/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -82,11 +82,11 @@ References usable_references(const References& references, std::vector<std::stri
   return result;
 }
 
-TeamColumns columns_of_entries(const FlightShare& share,
+TeamColumns columns_of_entries(const FlightPartition& share,
                                const std::function<SamplesOfFlight(std::size_t)>& read,
                                const std::function<FlightColumns(std::size_t, SamplesOfFlight)>& make) {
   std::vector<FlightColumns> own(share.flights());
-  TeamColumns columns{share, share.map<FlightColumns>(Workers(share.team(), 0).threads, read,
+  TeamColumns columns{share, share.map<FlightColumns>(Workers(share.comm(), 0).threads, read,
                                                       [&](std::size_t entry, SamplesOfFlight samples) {
                                                         own[entry] = make(entry, std::move(samples));
                                                         return outline_of(own[entry]);
@@ -97,7 +97,7 @@ TeamColumns columns_of_entries(const FlightShare& share,
   return columns;
 }
 
-TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelFile& model,
+TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelDefinition& model,
                                const CandidateSet& set, const DiagnoseOptions& options,
                                std::vector<std::string>& notes) {
   std::vector<std::size_t> file_of_each;
@@ -114,7 +114,7 @@ TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const 
       auto further = std::make_shared<FlightSamples>(*samples);
       further->notes.clear();
       further->reference = set.references[r]->read(files[file], further->time, further->notes);
-      mark_frozen(*further, &FlightSamples::reference, options.mask.least_airspeed);
+      mark_frozen(*further, &FlightSamples::reference, options.mask.min_airspeed);
       samples = std::move(further);
     }
     return samples;
@@ -136,7 +136,7 @@ void leave_out_empty(TeamColumns& columns) {
     const FlightColumns& flight = columns.flights[number];
     const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
     return has_value(flight.given) &&
-           (flight.reference == 0 || used >= static_cast<std::ptrdiff_t>(fewest_samples));
+           (flight.reference == 0 || used >= static_cast<std::ptrdiff_t>(min_samples));
   });
   std::vector<std::size_t> left;
   std::vector<FlightColumns> flights;

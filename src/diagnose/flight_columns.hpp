@@ -13,7 +13,7 @@
 namespace pcor::internal {
 
 /// Fewer samples tell nothing.
-inline constexpr std::size_t fewest_samples = 300;
+inline constexpr std::size_t min_samples = 300;
 
 /// What a flight says of whether a candidate can be tested.
 struct Testability {
@@ -38,7 +38,7 @@ References usable_references(const References& references, std::vector<std::stri
 /// Flights of a team, each against each of its references, those against the first one first. A member has
 /// the columns of its own, and of the others what all know (`outline_of`).
 struct TeamColumns {
-  FlightShare share;
+  FlightPartition share;
   std::vector<FlightColumns> flights{};
 };
 
@@ -46,13 +46,13 @@ using SamplesOfFlight = std::shared_ptr<const FlightSamples>;
 
 /// The columns of entries of a share, in threads.
 /// @param read gives the samples of an own entry @param make gives its columns
-TeamColumns columns_of_entries(const FlightShare& share,
+TeamColumns columns_of_entries(const FlightPartition& share,
                                const std::function<SamplesOfFlight(std::size_t entry)>& read,
                                const std::function<FlightColumns(std::size_t entry, SamplesOfFlight)>& make);
 
 /// The columns of the first `count` flights against each of the set's references.
 /// @param notes get what a user should know of the flights
-TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelFile& model,
+TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelDefinition& model,
                                const CandidateSet& set, const DiagnoseOptions& options,
                                std::vector<std::string>& notes);
 

@@ -10,7 +10,7 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double least_eigenvalue = 1e-9;
+constexpr double min_eigenvalue = 1e-9;
 
 /// What a flight has of the sums over all.
 struct FlightSums {
@@ -58,7 +58,7 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
   const SymmetricEigen own = symmetric_eigen(scale.asDiagonal() * of_model * scale.asDiagonal());
   Eigen::VectorXd root = Eigen::VectorXd::Zero(model);  // of the inverse
   for (Eigen::Index k = 0; k < model; ++k) {
-    if (own.eigenvalues()[k] > least_eigenvalue) root[k] = 1.0 / std::sqrt(own.eigenvalues()[k]);
+    if (own.eigenvalues()[k] > min_eigenvalue) root[k] = 1.0 / std::sqrt(own.eigenvalues()[k]);
   }
   const Eigen::MatrixXd half = root.asDiagonal() * own.eigenvectors().transpose() * scale.asDiagonal();
   const Eigen::VectorXd by_model = half * right_of_model;
@@ -66,7 +66,7 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
   const Eigen::MatrixXd rows_of_model = shared.eigenvectors().transpose() * (half * together);
   // What the inverse has beyond one: where a constant is none of the model's, and where it is.
   const Eigen::VectorXd beyond = shared.eigenvalues().unaryExpr(
-      [](double part) { return 1.0 - part > least_eigenvalue ? 1.0 / (1.0 - part) : -1.0 / part; });
+      [](double part) { return 1.0 - part > min_eigenvalue ? 1.0 / (1.0 - part) : -1.0 / part; });
   const Eigen::VectorXd left = right - (half * together).transpose() * by_model;
   const Eigen::VectorXd solution =
       left + rows_of_model.transpose() * (beyond.asDiagonal() * (rows_of_model * left));
@@ -87,7 +87,7 @@ double normal_square(double student_square, double freedom) {
 }
 
 /// The step of one flight against the others.
-MeanStep step_of(Eigen::Index one, const Means& all) {
+MeanOffset step_of(Eigen::Index one, const Means& all) {
   const Eigen::VectorXd& value = all.value;
   const auto count = static_cast<double>(value.size() - 1);  // of the others
   const double mean = (value.sum() - value[one]) / count;    // of them
@@ -102,7 +102,7 @@ MeanStep step_of(Eigen::Index one, const Means& all) {
     const double by_drift = all.variance.sum() - all.variance[one] - count * variance;
     scatter = std::max(0.0, squares - by_drift) / (count - 1.0) * (1.0 + 1.0 / count);
   }
-  MeanStep step;
+  MeanOffset step;
   step.size = value[one] - mean;
   step.error = std::sqrt(known + scatter);
   double square = step.size * step.size / (known + scatter);
@@ -116,11 +116,11 @@ MeanStep step_of(Eigen::Index one, const Means& all) {
 
 }  // namespace
 
-std::vector<MeanStep> find_mean_steps(const FlightShare& share, const std::vector<Binning>& bins,
-                                      const std::vector<Eigen::MatrixXd>& columns,
-                                      const std::vector<Eigen::VectorXd>& residuals,
-                                      const NoiseModel& noise) {
-  std::vector<MeanStep> steps(bins.size());
+std::vector<MeanOffset> find_mean_offsets(const FlightPartition& share, const std::vector<Binning>& bins,
+                                          const std::vector<Eigen::MatrixXd>& columns,
+                                          const std::vector<Eigen::VectorXd>& residuals,
+                                          const NoiseModel& noise) {
+  std::vector<MeanOffset> steps(bins.size());
   const auto found = share.of_each_flight<FlightSums>([&](std::size_t f) {
     // A model without a column is one with a column of zeros.
     const Eigen::Index model = std::max<Eigen::Index>(columns[f].cols(), 1);

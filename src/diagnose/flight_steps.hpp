@@ -5,12 +5,12 @@
 
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
-#include "team/flight_share.hpp"
+#include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
 
 /// By how much the mean of one flight's residual differs from that of the others.
-struct MeanStep {
+struct MeanOffset {
   double size = 0.0;    ///< hPa; positive where it lies above the others
   double error = 0.0;   ///< hPa; with drift, and with the scatter of the others
   double chance = 1.0;  ///< that the largest step of all flights is as large by drift and scatter alone
@@ -25,8 +25,9 @@ struct MeanStep {
 /// likewise
 /// @return one for each flight; of chance 1 where there is nothing to compare it with. Of two flights the
 /// second alone has one, since both differ by the same.
-std::vector<MeanStep> find_mean_steps(const FlightShare& share, const std::vector<Binning>& bins,
-                                      const std::vector<Eigen::MatrixXd>& columns,
-                                      const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
+std::vector<MeanOffset> find_mean_offsets(const FlightPartition& share, const std::vector<Binning>& bins,
+                                          const std::vector<Eigen::MatrixXd>& columns,
+                                          const std::vector<Eigen::VectorXd>& residuals,
+                                          const NoiseModel& noise);
 
 }  // namespace pcor::internal

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "numerics/triangular_factor.hpp"
-#include "team/symmetric_part.hpp"
+#include "parallel/symmetric_part.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -92,7 +92,7 @@ RegimeSums sums_of(const Eigen::MatrixXd& rows, const FlightInBins& flight) {
 
 }  // namespace
 
-std::vector<FlownRegime> flown_regimes(const Scores& scores,
+std::vector<FlownRegime> flown_regimes(const WhitenedSystem& scores,
                                        const std::function<FlightInBins(std::size_t flight)>& flight) {
   RegimeSums sums = scores.share.sum_of_each_flight<RegimeSums>(
       [&](std::size_t f) { return sums_of(scores.rows[f], flight(f)); });

@@ -7,7 +7,7 @@
 
 #include <pcor/regimes/regimes.hpp>
 #include "campaign/columns.hpp"
-#include "diagnose/scores.hpp"
+#include "diagnose/whitened_system.hpp"
 
 namespace pcor::internal {
 
@@ -29,7 +29,7 @@ struct FlightInBins {
 /// climb or a descent over which another regime lies, such as a turn, count for that regime alone.
 ///
 /// @param flight gives the flight of an entry of the scores
-std::vector<FlownRegime> flown_regimes(const Scores& scores,
+std::vector<FlownRegime> flown_regimes(const WhitenedSystem& scores,
                                        const std::function<FlightInBins(std::size_t flight)>& flight);
 
 }  // namespace pcor::internal

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "team/flight_share.hpp"
+#include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
 
@@ -34,7 +34,7 @@ struct SquareSum {
 /// The root mean square over all flights of one of their series, in which NaN is missing; 0 where there is
 /// nothing. @param series_of gives the values of an own flight
 template <class Series>
-double rms_of(const FlightShare& share, const Series& series_of) {
+double rms_of(const FlightPartition& share, const Series& series_of) {
   return share
       .sum_of_each_flight<SquareSum>([&](std::size_t flight) {
         SquareSum sum;

@@ -19,9 +19,9 @@ namespace {
 
 constexpr double redundant_below = 1e-3;  // of what the base leaves, given others
 /// Of a column's variance the base has to leave more than this: single precision leaves a millionth.
-constexpr double least_left = 1e-6;
+constexpr double min_left = 1e-6;
 constexpr double errors_beyond_bounds = 2.0;
-constexpr double least_share = 0.08;  // of the rms that is explained already, for one more effect
+constexpr double min_share = 0.08;  // of the rms that is explained already, for one more effect
 constexpr double enough_blocks = 12.0;
 constexpr double few_blocks_penalty = 6.0;
 
@@ -33,17 +33,17 @@ struct Tail {
 };
 constexpr std::array<Tail, 4> tails{{{1.0, 0.65}, {0.1, 0.1}, {3.0, 0.2}, {10.0, 0.05}}};
 
-/// `one_degree_equivalent` from a table: draws ask for it thousands of times.
+/// `chi2_one_dof` from a table: draws ask for it thousands of times.
 class EquivalentTable {
  public:
   explicit EquivalentTable(Eigen::Index freedom) : freedom_(static_cast<double>(freedom)) {
     for (std::size_t i = 0; i <= steps; ++i)
-      values_.push_back(one_degree_equivalent(static_cast<double>(i) * width, freedom_));
+      values_.push_back(chi2_one_dof(static_cast<double>(i) * width, freedom_));
   }
   double operator()(double chi2) const {
     const double place = chi2 / width;
     const auto before = static_cast<std::size_t>(place);
-    if (before >= steps) return one_degree_equivalent(chi2, freedom_);
+    if (before >= steps) return chi2_one_dof(chi2, freedom_);
     const double part = place - static_cast<double>(before);
     return values_[before] + part * (values_[before + 1] - values_[before]);
   }
@@ -87,7 +87,7 @@ std::vector<std::size_t> without(std::vector<std::size_t> set, std::size_t value
 
 }  // namespace
 
-Search::Search(const Scores& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups)
+Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups)
     : scores_(&scores), base_(base), groups_(groups) {
   const Eigen::MatrixXd& information = scores.information;
   const Eigen::Index columns = scores.columns();
@@ -125,7 +125,7 @@ Search::Search(const Scores& scores, Eigen::Index base, const std::vector<Column
       Eigen::Index next = 0;
       const double most = left.diagonal().maxCoeff(&next);
       if (told.empty()) remaining_.back() = std::clamp(most, 0.0, 1.0);
-      if (!(most > least_left)) break;
+      if (!(most > min_left)) break;
       told.push_back(next);
       left -= Eigen::MatrixXd(left.col(next) * left.row(next) / most);
       for (const Eigen::Index column : told) left(column, column) = 0.0;
@@ -191,7 +191,7 @@ GroupScore Search::score_in(const Conditional& conditional, std::size_t group) c
   const Eigen::MatrixXd inverse = pseudo_inverse(own, redundant_below);
   const Eigen::VectorXd score = conditional.score.segment(begin, count);
   result.chi2 = score.dot(inverse * score) / conditional.variance;
-  result.equivalent = one_degree_equivalent(result.chi2, result.freedom);
+  result.equivalent = chi2_one_dof(result.chi2, result.freedom);
   const Eigen::VectorXd scale = scale_.segment(base_ + columns.first, columns.count);
   const Eigen::MatrixXd turn = scale.asDiagonal() * turned_[group];
   result.estimate = turn * (inverse * score);
@@ -482,10 +482,10 @@ SearchResult Search::run(const SearchOptions& options) const {
     const double threshold =
         options.threshold ? *options.threshold : threshold_of(conditional, rest, options);
     if (chosen.empty()) result.threshold = threshold;
-    if (winner == groups_.size() || chosen.size() >= options.most_effects || !(best.equivalent > threshold))
+    if (winner == groups_.size() || chosen.size() >= options.max_effects || !(best.equivalent > threshold))
       break;
     if (!options.threshold && !(best.equivalent > level(winner, chosen, threshold))) break;
-    if (best.chi2 < least_share * least_share * (options.explained + explained(chosen))) break;
+    if (best.chi2 < min_share * min_share * (options.explained + explained(chosen))) break;
     chosen.push_back(winner);
     improve(chosen, price);
     if (std::find(seen.begin(), seen.end(), chosen) != seen.end()) break;

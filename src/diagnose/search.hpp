@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
-#include "diagnose/scores.hpp"
+#include <pcor/model_io/model_definition.hpp>
+#include "diagnose/whitened_system.hpp"
 
 namespace pcor::internal {
 
@@ -32,7 +32,7 @@ struct SearchOptions {
   std::size_t draws = 4000;
   double confidence = 0.997;          ///< with which no effect is found where there is none
   std::optional<double> threshold{};  ///< instead of the one by draws, and then without the gates
-  std::size_t most_effects = 4;
+  std::size_t max_effects = 4;
   double explained = 0.0;  ///< chi2 by effects that the base has since an earlier search
   std::uint64_t seed = 1;
 };
@@ -58,7 +58,7 @@ class Search {
  public:
   /// @param scores are kept by address; @param base how many of the scores' columns are the model's own; the
   /// rest are those of the groups
-  Search(const Scores& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups);
+  Search(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups);
 
   /// The part of a group's variance that the base leaves, of its best direction. 0 to 1.
   double remaining(std::size_t group) const { return remaining_[group]; }
@@ -133,7 +133,7 @@ class Search {
   bool is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const;
   bool all_possible(const std::vector<std::size_t>& chosen) const;
 
-  const Scores* scores_;
+  const WhitenedSystem* scores_;
   Eigen::Index base_;
   std::vector<ColumnGroup> groups_;
   Eigen::VectorXd scale_;  // of every column, to unit length

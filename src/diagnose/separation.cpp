@@ -8,15 +8,15 @@
 #include <numeric>
 
 #include <pcor/effects/catalogue.hpp>
+#include "base/phrasing.hpp"
 #include "numerics/decompositions.hpp"
-#include "words/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr double margin = 9.0;  // of chi2, as for aliases
 constexpr double enough_power = 0.95;
-constexpr int most_repeats = 4;
+constexpr int max_repeats = 4;
 constexpr double seconds_per_minute = 60.0;
 
 /// What of an effect, at its estimated size, base and a rival cannot imitate, in units of the noise.
@@ -35,7 +35,7 @@ double distinct(const Eigen::MatrixXd& information, const std::vector<Eigen::Ind
 }
 
 /// The same of the rival that imitates most.
-double least_distinct(const Rivalry& rivalry, const Eigen::MatrixXd& information) {
+double min_distinct(const SeparationProblem& rivalry, const Eigen::MatrixXd& information) {
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<Eigen::Index>& rest : rivalry.rests)
     least = std::min(least, distinct(information, rest, rivalry.own, rivalry.size) / rivalry.variance);
@@ -55,20 +55,20 @@ bool is_better(const Plan& one, const Plan& other) {
 /// For people, e.g. "2 more yaw manoeuvres".
 std::string intervals_text(Regime regime, int count) {
   const bool is_leg = regime == Regime::reverse_heading || regime == Regime::cloud;
-  return fmt::format("{} more {}{}{}", count, facts_of(regime).name, is_leg ? " leg" : "",
+  return fmt::format("{} more {}{}{}", count, info_of(regime).name, is_leg ? " leg" : "",
                      count == 1 ? "" : "s");
 }
 
 }  // namespace
 
-Plan best_plan(const std::vector<FlownRegime>& regimes, const Rivalry& rivalry) {
-  const double now = least_distinct(rivalry, rivalry.information);
+Plan best_plan(const std::vector<FlownRegime>& regimes, const SeparationProblem& rivalry) {
+  const double now = min_distinct(rivalry, rivalry.information);
   Plan best;
   for (const FlownRegime& regime : regimes) {
     Plan plan{&regime};
-    while (plan.repeats < most_repeats && plan.power < enough_power) {
+    while (plan.repeats < max_repeats && plan.power < enough_power) {
       ++plan.repeats;
-      const double then = least_distinct(rivalry, rivalry.information + plan.repeats * regime.information);
+      const double then = min_distinct(rivalry, rivalry.information + plan.repeats * regime.information);
       plan.power = power_of(then);
       plan.gain = (then - now) / plan.duration();
     }
@@ -79,12 +79,12 @@ Plan best_plan(const std::vector<FlownRegime>& regimes, const Rivalry& rivalry) 
 
 std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& effect,
                     const std::vector<std::string>& rivals) {
-  const std::string names = list_text(rivals);
+  const std::string names = join_list(rivals);
   if (plan.regime == nullptr) {
     const std::string general = general_advice(id, effect);
     return fmt::format(
         "none of the regimes flown, repeated up to {} times, would separate {} from {} at the size found{}{}",
-        most_repeats, id, names, general.empty() ? "" : "; ", general);
+        max_repeats, id, names, general.empty() ? "" : "; ", general);
   }
   const bool is_one = plan.repeats == 1;
   return fmt::format("fly {} of {:.1f} min{} as on {}: probability {:.0f} % that {} {} from {}",
@@ -97,11 +97,11 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
 std::string general_advice(const std::string& id, const ModelEffect& effect) {
   const std::size_t place = effect_named(effect.id);
   if (place == catalogue_size) return "";
-  return fmt::format("what separates {} in general: {}", id, effect_facts[place].manoeuvre);
+  return fmt::format("what separates {} in general: {}", id, effect_info[place].manoeuvre);
 }
 
-bool is_separated(const Rivalry& rivalry) {
-  return power_of(least_distinct(rivalry, rivalry.information)) >= enough_power;
+bool is_separated(const SeparationProblem& rivalry) {
+  return power_of(min_distinct(rivalry, rivalry.information)) >= enough_power;
 }
 
 std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base) {

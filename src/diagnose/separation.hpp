@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include "diagnose/flown_regimes.hpp"
 #include "diagnose/search.hpp"
 
 namespace pcor::internal {
 
 /// An effect of an estimated size, and its rivals.
-struct Rivalry {
+struct SeparationProblem {
   Eigen::MatrixXd information;    ///< of base and candidates, as the flights are
   double variance = 1.0;          ///< of the whitened residuals
   std::vector<Eigen::Index> own;  ///< the columns of the effect
@@ -37,7 +37,7 @@ struct Plan {
 /// A rival is separated where chi2 rises by more than 9 with it in the place of the effect. The difference is
 /// normal with mean D and variance 4 D, where D is what of the effect the rival cannot imitate. Repeated
 /// intervals are taken to be like the mean interval of their regime.
-Plan best_plan(const std::vector<FlownRegime>& regimes, const Rivalry& rivalry);
+Plan best_plan(const std::vector<FlownRegime>& regimes, const SeparationProblem& rivalry);
 
 /// What to fly, how long, and how surely it separates the effect from its rivals; of a plan without a regime
 /// what separates the effect in general. @param id of the effect, as that of a finding
@@ -48,7 +48,7 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
 std::string general_advice(const std::string& id, const ModelEffect& effect);
 
 /// Whether the flights separate the effect from its rivals as they are, with a probability of 95 %.
-bool is_separated(const Rivalry& rivalry);
+bool is_separated(const SeparationProblem& rivalry);
 
 /// The columns of a group among those of base and candidates.
 std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base);

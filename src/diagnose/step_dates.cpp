@@ -24,7 +24,7 @@ void add_some(std::vector<double>& tried, std::vector<double>::const_iterator fi
 
 std::vector<double> begins_of(const FlightSet& flights) {
   const UnitConversion to_date =
-      UnitConversion::between("seconds since 1970-01-01", std::string(facts_of(Quantity::date).unit), {});
+      UnitConversion::between("seconds since 1970-01-01", std::string(info_of(Quantity::date).unit), {});
   std::vector<double> begins;
   for (const FlightOutline& file : flights.outlines()) begins.push_back(to_date(file.begin));
   return begins;
@@ -78,7 +78,7 @@ std::vector<double> dates_of(const std::vector<ModelEffect>& effects) {
   std::vector<double> dates;
   for (const ModelEffect& effect : effects) {
     const std::size_t known = effect.is_formula() ? catalogue_size : effect_named(effect.id);
-    if (known == catalogue_size || effect_facts[known].needs[0] != Quantity::date) continue;
+    if (known == catalogue_size || effect_info[known].needs[0] != Quantity::date) continue;
     dates.push_back(effect.parameters[1]);
   }
   put_in_order(dates);

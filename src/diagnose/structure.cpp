@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "diagnose/scores.hpp"
+#include "diagnose/whitened_system.hpp"
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
@@ -15,11 +15,11 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t most_columns = 6;
+constexpr std::size_t max_columns = 6;
 constexpr std::size_t fine_columns = 24;
 constexpr std::size_t bins_per_column = 40;
-constexpr double most_missing = 0.1;
-constexpr double least_left = 1e-3;  // of a direction, by the model
+constexpr double max_missing = 0.1;
+constexpr double min_left = 1e-3;  // of a direction, by the model
 constexpr Eigen::Index draws =
     99;  // of each of the two ways in which residuals lose what goes with variables
 /// Parts of the rms of the drift that may be left when a variable takes its share.
@@ -73,12 +73,12 @@ double chance_among(double value, const Eigen::VectorXd& others) {
 
 bool misses_too_much(const VariableValues& values) {
   const auto missing = static_cast<double>(values.missing());
-  return missing > most_missing * (missing + static_cast<double>(values.count()));
+  return missing > max_missing * (missing + static_cast<double>(values.count()));
 }
 
 }  // namespace
 
-StructureTest::StructureTest(const FlightShare& share, const std::vector<Binning>& bins,
+StructureTest::StructureTest(const FlightPartition& share, const std::vector<Binning>& bins,
                              const std::vector<Eigen::MatrixXd>& columns,
                              const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise,
                              std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside)
@@ -89,7 +89,7 @@ StructureTest::StructureTest(const FlightShare& share, const std::vector<Binning
     Whitened& flights = whitened_.emplace_back();
     NoiseModel left = noise;
     for (double& slow : left.slow) slow *= part;
-    const Scores scores = find_scores(share, bins, columns, residuals, left);
+    const WhitenedSystem scores = find_scores(share, bins, columns, residuals, left);
     rows_ = scores.row_count;
     const Eigen::Index width = scores.columns();
     flights.scale = scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -159,13 +159,13 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
   const VariableValues known = values_of(values);
   if (misses_too_much(known)) return false;
   if (turn > 0.0) return add(name, values, Smooth::periodic(known, turn));
-  const std::size_t most = std::clamp(rows_ / bins_per_column, std::size_t{1}, most_columns);
+  const std::size_t most = std::clamp(rows_ / bins_per_column, std::size_t{1}, max_columns);
   return add(name, values, Smooth::with_knots_at_values(known, most));
 }
 
 bool StructureTest::add_fine(const std::string& name, const std::vector<const double*>& values) {
   const std::size_t most = std::min(rows_ / bins_per_column, fine_columns);
-  if (most <= most_columns) return false;
+  if (most <= max_columns) return false;
   const VariableValues known = values_of(values);
   return !misses_too_much(known) && add(name, values, Smooth::with_even_knots(known, most));
 }
@@ -223,7 +223,7 @@ StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, co
   drawn -= solution.transpose() * flights.model_with_drawn;
 
   Taken taken;
-  if (own(0, 0) > least_left * before[0]) {
+  if (own(0, 0) > min_left * before[0]) {
     taken.line_score = score[0];
     taken.line_information = own(0, 0);
     taken.line = score[0] * score[0] / own(0, 0);
@@ -232,7 +232,7 @@ StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, co
   const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * own * scale.asDiagonal());
   Eigen::MatrixXd turn(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    if (!(solver.eigenvalues()[k] > least_left)) continue;
+    if (!(solver.eigenvalues()[k] > min_left)) continue;
     turn.col(taken.freedom++) =
         scale.asDiagonal() * solver.eigenvectors().col(k) / std::sqrt(solver.eigenvalues()[k]);
   }
@@ -283,11 +283,11 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
   const Eigen::VectorXd by_chance = alone_ - with_drawn.array();
   const double mean = std::max(by_chance.head(draws).mean(), by_chance.tail(draws).mean());
   const double unit = std::max(1.0, mean / structure.freedom);
-  structure.equivalent = one_degree_equivalent(structure.gain / unit, structure.freedom);
+  structure.equivalent = chi2_one_dof(structure.gain / unit, structure.freedom);
   for (Eigen::Index k = 0; k < 2 * draws; ++k) {
     // The equivalent of one degree is never above the value itself.
     if (by_chance[k] / unit <= largest_[k]) continue;
-    largest_[k] = std::max(largest_[k], one_degree_equivalent(by_chance[k] / unit, structure.freedom));
+    largest_[k] = std::max(largest_[k], chi2_one_dof(by_chance[k] / unit, structure.freedom));
   }
   const double strong_freedom = strong_.empty() ? 0.0 : static_cast<double>(strong_.front().cols());
   if (structure.gain - structure.freedom > strong_gain_ - strong_freedom) {
@@ -318,7 +318,7 @@ double StructureTest::chance_of(double equivalent) const {
                   chance_among(equivalent, largest_.tail(draws)));
 }
 
-bool shares_noise(const FlightShare& share, const std::vector<std::vector<double>>& residuals,
+bool shares_noise(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
                   const std::vector<const double*>& values) {
   constexpr std::size_t window = 300;
   constexpr std::size_t fewest = 60;

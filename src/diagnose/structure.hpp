@@ -10,7 +10,7 @@
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
 #include "numerics/whitening.hpp"
-#include "team/flight_share.hpp"
+#include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
 
@@ -45,7 +45,7 @@ class StructureTest {
   /// @param columns of the model, base and chosen effects, in bins; @param residuals likewise
   /// @param noise with all the drift that there is beside the model; @param seed of shifts and signs
   /// @param aside columns of what is taken off the residuals that tell chance; empty for nothing
-  StructureTest(const FlightShare& share, const std::vector<Binning>& bins,
+  StructureTest(const FlightPartition& share, const std::vector<Binning>& bins,
                 const std::vector<Eigen::MatrixXd>& columns, const std::vector<Eigen::VectorXd>& residuals,
                 const NoiseModel& noise, std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {});
 
@@ -109,7 +109,7 @@ class StructureTest {
                                        const Whitened& flights) const;
   double minus_likelihood(const Whitened& flights, double taken) const;
 
-  FlightShare share_;
+  FlightPartition share_;
   const std::vector<Binning>* bins_;
   std::size_t rows_ = 0;              // of all flights
   std::vector<Whitened> whitened_{};  // by how much of the drift is left, all of it first
@@ -124,7 +124,7 @@ class StructureTest {
 /// together everywhere, in and out of manoeuvres. Such a variable was computed from what was measured with
 /// that noise; that structure goes with it says nothing.
 /// @param residuals and @param values of the own flights
-bool shares_noise(const FlightShare& share, const std::vector<std::vector<double>>& residuals,
+bool shares_noise(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
                   const std::vector<const double*>& values);
 
 }  // namespace pcor::internal

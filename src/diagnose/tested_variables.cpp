@@ -8,7 +8,7 @@
 
 #include <pcor/physics/constants.hpp>
 #include "numerics/missing.hpp"
-#include "team/flight_share.hpp"
+#include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -188,8 +188,8 @@ std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& fl
   for (const auto& each : flights.front().quantities) {
     const Quantity quantity = each.first;
     TestedVariable& variable = result.emplace_back();
-    variable.name = std::string(facts_of(quantity).name);
-    variable.unit = std::string(facts_of(quantity).unit);
+    variable.name = std::string(info_of(quantity).name);
+    variable.unit = std::string(info_of(quantity).unit);
     variable.fine = quantity == Quantity::corrected_mach;
     variable.values = held_by(flights, [quantity](const FlightColumns& flight) -> const std::vector<double>& {
       return flight.quantity(quantity);

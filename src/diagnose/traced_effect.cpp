@@ -14,13 +14,13 @@ std::string id_of_trace(const std::string& variable) {
   return id;
 }
 
-ModelEffect effect_of(const TracedVariable& variable, const std::string& flights) {
+ModelEffect effect_of(const EmpiricalPredictor& variable, const std::string& flights) {
   ModelEffect effect;
   effect.id = id_of_trace(variable.name);
   effect.parameter_names = {"k"};
   effect.parameters = {variable.slope};
   effect.formula = variable.formula;
-  effect.where = variable.where;
+  effect.location = variable.location;
   effect.unit = "hPa";
   effect.source = fmt::format("traced in the residuals of {}: {:.0f} % of their variance, p = {:.2g}",
                               flights, 100.0 * variable.r2, variable.p_value);

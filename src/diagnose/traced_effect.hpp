@@ -11,6 +11,6 @@ std::string id_of_trace(const std::string& variable);
 
 /// The formula of a traced variable as an effect with the slope that was found.
 /// @param flights in which it was traced, in words
-ModelEffect effect_of(const TracedVariable& variable, const std::string& flights);
+ModelEffect effect_of(const EmpiricalPredictor& variable, const std::string& flights);
 
 }  // namespace pcor::internal

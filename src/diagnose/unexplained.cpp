@@ -19,17 +19,17 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double chance = 0.01;     // that the best of all variables goes with noise alone
-constexpr double least_gain = 1.1;  // of a line in a variable over effects with a name
-constexpr std::size_t most_variables = 10;
+constexpr double chance = 0.01;   // that the best of all variables goes with noise alone
+constexpr double min_gain = 1.1;  // of a line in a variable over effects with a name
+constexpr std::size_t max_variables = 10;
 /// Twice the gain in log-likelihood by drift. Noise of short memory gains 17 at most in a dozen flights
 /// without drift, since no autoregression describes it wholly.
-constexpr double least_drift_gain = 30.0;
+constexpr double min_drift_gain = 30.0;
 /// Transducers drift by this, hPa rms; what drifts less, or less than the noise, is noise, too.
 constexpr double usual_drift = 0.06;
 
-std::set<std::string> left_out(const FlightSet& files, const ModelFile& model, const Reference& reference,
-                               const DiagnoseOptions& options) {
+std::set<std::string> left_out(const FlightSet& files, const ModelDefinition& model,
+                               const Reference& reference, const DiagnoseOptions& options) {
   std::set<std::string> names(options.not_variables.begin(), options.not_variables.end());
   for (const FlightOutline& file : files.outlines()) names.insert(file.time_variable);
   names.insert({"Time", "time", "time_offset", "base_time"});
@@ -46,7 +46,7 @@ std::set<std::string> left_out(const FlightSet& files, const ModelFile& model, c
 }
 
 /// The variables that the residual is measured with.
-std::set<std::string> sensors_of(const ModelFile& model, const Reference& reference) {
+std::set<std::string> sensors_of(const ModelDefinition& model, const Reference& reference) {
   std::set<std::string> sensors;
   const auto add = [&](Quantity role) {
     const auto found = model.variables.find(role);
@@ -59,8 +59,8 @@ std::set<std::string> sensors_of(const ModelFile& model, const Reference& refere
   return sensors;
 }
 
-TracedVariable traced_of(const Structure& structure, const TestedVariable& tested, double p_value) {
-  TracedVariable variable;
+EmpiricalPredictor traced_of(const Structure& structure, const TestedVariable& tested, double p_value) {
+  EmpiricalPredictor variable;
   variable.name = tested.name;
   variable.unit = tested.unit;
   variable.description = tested.description;
@@ -107,7 +107,7 @@ std::string worst_regime(const Analysis& analysis, const std::vector<std::vector
     const double count = sums(as_index(r), 1);
     if (count < fewest || !(squares / count > worst)) continue;
     worst = squares / count;
-    name = std::string(facts_of(static_cast<Regime>(r)).name);
+    name = std::string(info_of(static_cast<Regime>(r)).name);
   }
   return name;
 }
@@ -141,7 +141,7 @@ std::vector<std::string> computed_variables(const FlightSet& files, const std::s
 
 /// The variables that structure may go with; those that are no causes are named in `found`.
 std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const FlightSet& files,
-                                              const ModelFile& model, const Reference& reference,
+                                              const ModelDefinition& model, const Reference& reference,
                                               const DiagnoseOptions& options,
                                               const std::vector<std::vector<double>>& after,
                                               Unexplained& found) {
@@ -247,11 +247,11 @@ std::size_t reference_count(const Analysis& analysis) {
   return count;
 }
 
-/// Where what goes with variables may act: a cause at the static ports, the laser or the thermometer leaves
-/// the total pressures alone, one at the pitot or at the transducers does not. @param numbers of the
+/// Where what goes with variables may act: a cause at the static ports, the laser or the thermometer
+/// leaves the total pressures alone, one at the pitot or at the transducers does not. @param numbers of the
 /// variables
 void find_places(const Analysis& analysis, const Tested& tested, const std::vector<std::size_t>& numbers,
-                 const References& references, std::vector<TracedVariable>& variables) {
+                 const References& references, std::vector<EmpiricalPredictor>& variables) {
   constexpr double seen = 3.0;           // standard errors
   constexpr double would_be_seen = 6.0;  // of the same slope as against the first reference
   const std::size_t count = reference_count(analysis);
@@ -264,17 +264,17 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
     groups[k].count = 1;
     groups[k].bounds.resize(1);
   }
-  const Scores scores = analysis.scores_with(lines_in(analysis, tested, numbers, as_index(count)));
+  const WhitenedSystem scores = analysis.scores_with(lines_in(analysis, tested, numbers, as_index(count)));
   const Search search(scores, analysis.base(), groups);
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    TracedVariable& variable = variables[k];
+    EmpiricalPredictor& variable = variables[k];
     const GroupScore total = search.score(count * k + blind, {count * k});
     if (total.freedom == 0.0) continue;
     const double error = std::sqrt(total.covariance(0, 0));
     if (std::abs(total.estimate[0]) > seen * error) {
       variable.places = {"pitot", "p-transducer", "q-transducer"};
       if (!references.front()->reads_laser()) variable.places.emplace_back("other-system");
-      variable.where = Where::pitot;
+      variable.location = EffectLocation::pitot;
     } else if (std::abs(variable.slope) > would_be_seen * error) {
       variable.places = {"port", references.front()->reads_laser() ? "laser" : "other-system"};
       if (references.front()->reads_laser()) variable.places.emplace_back("thermometer");
@@ -323,7 +323,8 @@ GroupScore best_line(const Analysis& analysis, const Tested& tested, const Effec
     groups[k].count = as_index(references);
     groups[k].bounds.resize(references);
   }
-  const Scores scores = analysis.scores_with(lines_in(analysis, tested, causes, as_index(references)));
+  const WhitenedSystem scores =
+      analysis.scores_with(lines_in(analysis, tested, causes, as_index(references)));
   const Search search(scores, analysis.base(), groups);
   GroupScore best;
   for (std::size_t k = 0; k < groups.size(); ++k) {
@@ -358,7 +359,7 @@ bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& ch
   // Both in units of the noise that all effects leave.
   line *= search.variance({}) / search.variance(chosen);
   const double margin = 9.0 + 2.0 * choices;
-  return line - best.freedom > least_gain * (together - by_effects) + margin;
+  return line - best.freedom > min_gain * (together - by_effects) + margin;
 }
 
 /// The variables whose structure is beyond chance, each once; their numbers.
@@ -376,7 +377,7 @@ std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& 
   std::set<std::string> named;
   std::vector<std::size_t> numbers;
   for (const std::size_t i : order) {
-    if (result.found.variables.size() == most_variables) break;
+    if (result.found.variables.size() == max_variables) break;
     if (!named.insert(structures[i].name).second) continue;
     result.found.variables.push_back(
         traced_of(structures[i], *tested.variables[i], tested.test.chance_of(structures[i].equivalent)));
@@ -387,23 +388,23 @@ std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& 
   return numbers;
 }
 
-std::vector<FlightStep> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
-  std::vector<FlightStep> steps;
-  const std::vector<MeanStep> found = find_mean_steps(
+std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
+  std::vector<FlightOffset> steps;
+  const std::vector<MeanOffset> found = find_mean_offsets(
       analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise());
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (found[f].chance < chance)
       steps.push_back({analysis.flights()[f].samples->name, found[f].size, found[f].error, found[f].chance});
   }
   std::sort(steps.begin(), steps.end(),
-            [](const FlightStep& a, const FlightStep& b) { return std::abs(a.size) > std::abs(b.size); });
+            [](const FlightOffset& a, const FlightOffset& b) { return std::abs(a.size) > std::abs(b.size); });
   return steps;
 }
 
 }  // namespace
 
 UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet& files,
-                                      const ModelFile& model, const References& references,
+                                      const ModelDefinition& model, const References& references,
                                       const EffectInputs& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms) {
   UnexplainedStructure result;
@@ -428,7 +429,7 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
 
   found.drift_rms = rms_of(analysis.share(), [&](std::size_t f) { return analysis.drift(f, chosen); });
   const bool drifts =
-      analysis.drift_gain() > least_drift_gain && found.drift_rms > std::max(usual_drift, noise_rms);
+      analysis.drift_gain() > min_drift_gain && found.drift_rms > std::max(usual_drift, noise_rms);
   found.steps = steps_between(analysis, chosen);
   found.significant = by_variables < chance || drifts || !found.steps.empty() || result.overrules;
   if (!found.significant) return result;
@@ -447,7 +448,7 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   found.regime = worst_regime(analysis, left, noise_rms);
   found.p_value =
       std::min(shown.p_value(), drifts ? chi_squared_tail(analysis.drift_gain(), slow_times.size()) : 1.0);
-  for (const FlightStep& step : found.steps) found.p_value = std::min(found.p_value, step.p_value);
+  for (const FlightOffset& step : found.steps) found.p_value = std::min(found.p_value, step.p_value);
   return result;
 }
 

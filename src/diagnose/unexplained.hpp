@@ -32,7 +32,7 @@ struct UnexplainedStructure {
 /// @param references in the order of the analysis
 /// @param residual_rms and @param noise_rms after the chosen effects, hPa
 UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet& files,
-                                      const ModelFile& model, const References& references,
+                                      const ModelDefinition& model, const References& references,
                                       const EffectInputs& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms);
 

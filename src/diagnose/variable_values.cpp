@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "team/order_of_all.hpp"
+#include "parallel/distributed_quantile.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -34,7 +34,7 @@ struct ValueSums {
 
 }  // namespace
 
-VariableValues::VariableValues(const FlightShare& share,
+VariableValues::VariableValues(const FlightPartition& share,
                                const std::function<std::vector<double>(std::size_t)>& values_of)
     : share_(share), values_(share.flights()) {
   const auto sums = share.sum_of_each_flight<ValueSums>([&](std::size_t flight) {
@@ -88,7 +88,7 @@ std::vector<double> VariableValues::distinct(std::size_t most) const {
 std::vector<double> VariableValues::quantiles(std::size_t places) const {
   std::vector<double> own;
   for (const std::vector<double>& values : values_) own.insert(own.end(), values.begin(), values.end());
-  return values_at(share_.team(), std::move(own), [places](std::uint64_t count) {
+  return values_at(share_.comm(), std::move(own), [places](std::uint64_t count) {
     std::vector<std::uint64_t> wanted;
     for (std::size_t k = 0; k < places; ++k) {
       const double part = static_cast<double>(k) / static_cast<double>(places - 1);

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "team/flight_share.hpp"
+#include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
 
@@ -13,7 +13,7 @@ namespace pcor::internal {
 class VariableValues {
  public:
   /// @param values_of an own flight, NaN where missing
-  VariableValues(const FlightShare& share,
+  VariableValues(const FlightPartition& share,
                  const std::function<std::vector<double>(std::size_t flight)>& values_of);
 
   std::size_t count() const { return count_; }      ///< of finite values
@@ -30,7 +30,7 @@ class VariableValues {
   std::vector<double> quantiles(std::size_t places) const;
 
  private:
-  FlightShare share_;
+  FlightPartition share_;
   std::vector<std::vector<double>> values_;  // finite ones of own flights
   std::size_t count_ = 0;
   std::size_t missing_ = 0;

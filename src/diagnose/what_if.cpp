@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "campaign/linear_rows.hpp"
 #include "campaign/model_parameters.hpp"
 #include "diagnose/flight_columns.hpp"
@@ -29,7 +29,7 @@ using namespace internal;
 
 namespace {
 
-constexpr std::size_t most_traced = 2;
+constexpr std::size_t max_traced = 2;
 
 /// Whether a candidate is the wanted effect, in its shape.
 bool is_meant(const Candidate& candidate, const WhatIfCandidate& wanted) {
@@ -120,7 +120,8 @@ FlightColumns held_out(FlightColumns all, double used_share) {
 /// The columns of samples that took no part: of the files behind the first, which are fitted, and of the
 /// later parts of fitted flights.
 TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const TeamColumns& columns,
-                             const ModelFile& model, const CandidateSet& set, const WhatIfOptions& options) {
+                             const ModelDefinition& model, const CandidateSet& set,
+                             const WhatIfOptions& options) {
   const MaskOptions& mask = options.diagnose.mask;
   const double share = options.diagnose.training_share;
   std::vector<std::size_t> file_of_each;
@@ -146,11 +147,11 @@ TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const T
 }
 
 /// The residual of a flight with effects at coefficients that are not small: as a refit with them has it.
-ResidualAt residual_with(const ModelFile& model, const CandidateSet& set, const FlightColumns& flight,
+ResidualAt residual_with(const ModelDefinition& model, const CandidateSet& set, const FlightColumns& flight,
                          const std::vector<std::size_t>& groups) {
   const Reference& reference = *set.references[flight.reference];
   if (!reference.is_of_one_sample()) return {};
-  ModelFile with = model;
+  ModelDefinition with = model;
   with.variables = set.extended.variables;
   with.units = set.extended.units;
   // Which parameter of the residual each of the free coefficients is, and its number among all of the panel.
@@ -265,7 +266,7 @@ std::vector<WhatIfSeparation> separations_of(const WhatIfFit& fit, const std::ve
     if (candidates[effect].is_shared) continue;  // its columns are those of another
     const Eigen::VectorXd alone = fit.fitted({effect}).values;
     const std::vector<Eigen::Index> own = columns_of(effect);
-    Rivalry rivalry{fit.information(), fit.variance({effect}), own, alone(own), {}};
+    SeparationProblem rivalry{fit.information(), fit.variance({effect}), own, alone(own), {}};
     for (std::size_t rival = 0; rival < candidates.size(); ++rival) {
       if (rival == effect || candidates[rival].is_shared) continue;
       std::vector<Eigen::Index> rest = fit.own();
@@ -294,7 +295,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   const auto add = [&candidates](WhatIfCandidate candidate) {
     const bool is_new = std::none_of(candidates.begin(), candidates.end(),
                                      [&](const WhatIfCandidate& each) { return each.id == candidate.id; });
-    if (is_new && candidates.size() < most_what_if_effects) candidates.push_back(std::move(candidate));
+    if (is_new && candidates.size() < max_what_if_effects) candidates.push_back(std::move(candidate));
   };
   for (const Finding& finding : diagnosis.findings)
     add({finding.id(), "found", finding.effect, finding.is_alike, finding.id()});
@@ -307,8 +308,8 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   for (const FlightDiagnosis& flight : diagnosis.flights) flights.push_back(flight.name);
   // A variable that no effect explains is as good as found.
   std::size_t traced = 0;
-  for (const TracedVariable& variable : diagnosis.unexplained.variables) {
-    if (variable.formula.empty() || traced == most_traced) continue;
+  for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
+    if (variable.formula.empty() || traced == max_traced) continue;
     const ModelEffect effect = effect_of(variable, fmt::format("{}", fmt::join(flights, ", ")));
     const bool counts = traced++ == 0 && diagnosis.findings.empty();
     add({effect.id, "goes with " + variable.name, effect, false, counts ? effect.id : ""});
@@ -329,7 +330,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   return candidates;
 }
 
-WhatIf what_if(const FlightSet& flights, const ModelFile& model, const References& all_references,
+WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const References& all_references,
                const std::vector<WhatIfCandidate>& wanted, const WhatIfOptions& options) {
   const FlightSet files = flights.with(options.holdout);
   std::vector<std::string> notes;  // the diagnosis tells them

@@ -8,8 +8,8 @@
 
 #include <pcor/numerics/noise.hpp>
 #include "diagnose/analysis.hpp"
-#include "diagnose/scores.hpp"
 #include "diagnose/separation.hpp"
+#include "diagnose/whitened_system.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
@@ -17,8 +17,8 @@
 #include "numerics/robust_weights.hpp"
 #include "numerics/spikes.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "team/median_of_all.hpp"
-#include "team/workers.hpp"
+#include "parallel/distributed_median.hpp"
+#include "parallel/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -26,7 +26,7 @@ namespace {
 // Of noise and coefficients in turn, as in a refit: the noise without slow parts and a loss of which the
 // minimum is unique come first.
 constexpr int rounds = 2;
-constexpr double least_eigenvalue = 1e-11;
+constexpr double min_eigenvalue = 1e-11;
 
 using Places = std::vector<Eigen::Index>;
 
@@ -60,12 +60,13 @@ Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Places& free, Eigen::Ve
   values(free).setZero();
   const Eigen::Index width = values.size();
   const Eigen::VectorXd right = sum.col(width).head(width) - sum.topLeftCorner(width, width) * values;
-  values(free) = pseudo_solution(sum(free, free), right(free), least_eigenvalue);
+  values(free) = pseudo_solution(sum(free, free), right(free), min_eigenvalue);
   return values;
 }
 
 /// What is left of the whitened residuals of own flights, in units of the robust deviation of those of all.
-std::vector<Eigen::VectorXd> in_deviations(const FlightShare& share, const std::vector<Eigen::MatrixXd>& rows,
+std::vector<Eigen::VectorXd> in_deviations(const FlightPartition& share,
+                                           const std::vector<Eigen::MatrixXd>& rows,
                                            const Eigen::VectorXd& values) {
   std::vector<Eigen::VectorXd> left;
   std::vector<double> all;
@@ -76,17 +77,17 @@ std::vector<Eigen::VectorXd> in_deviations(const FlightShare& share, const std::
     all.insert(all.end(), left.back().begin(), left.back().end());
   }
   const double deviation =
-      std::max(deviation_of_median * median_of_absolute_values(share.team(), std::move(all)), 1e-300);
+      std::max(deviation_of_median * median_of_absolute_values(share.comm(), std::move(all)), 1e-300);
   for (Eigen::VectorXd& part : left) part /= deviation;
   return left;
 }
 
 /// Gives the rows the weights of Huber's loss at its minimum, which `values` become.
-void weigh(Scores& scores, const Places& free, Eigen::VectorXd& values) {
-  constexpr int most_steps = 50;
+void weigh(WhitenedSystem& scores, const Places& free, Eigen::VectorXd& values) {
+  constexpr int max_steps = 50;
   constexpr double enough = 1e-3;  // of what the flights leave open
   const std::vector<Eigen::MatrixXd> rows = scores.rows;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     const std::vector<Eigen::VectorXd> ratios = in_deviations(scores.share, rows, values);
     for (std::size_t f = 0; f < rows.size(); ++f)
       scores.rows[f] = ratios[f].unaryExpr(&huber_weight).cwiseSqrt().asDiagonal() * rows[f];
@@ -213,11 +214,11 @@ std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight, const E
 
 void WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust,
                           const std::function<const ResidualAt&(std::size_t)>& residual_of) {
-  const FlightShare& share = flights_.share;
+  const FlightPartition& share = flights_.share;
   const std::vector<FlightColumns>& flights = flights_.flights;
   Eigen::VectorXd values = given_;
-  Scores scores;
-  Scores with_noise;
+  WhitenedSystem scores;
+  WhitenedSystem with_noise;
   std::vector<NoiseModel> noise;
   for (int round = 0; round <= rounds; ++round) {
     binned_ = in_bins(share, flights, [&](std::size_t f) {
@@ -303,7 +304,7 @@ std::vector<NoiseModel> WhatIfFit::weights_after(const Eigen::VectorXd& values,
     }
     const bool is_of_one_sample = !(flights_.flights[first].window > 0.0);
     double deviation =
-        deviation_of_median * median_of_absolute_values(flights_.share.team(), std::move(left));
+        deviation_of_median * median_of_absolute_values(flights_.share.comm(), std::move(left));
     if (!(deviation > 0.0)) deviation = 1.0;
     for (; first < last; ++first) {
       if (!is_of_one_sample) continue;
@@ -320,7 +321,7 @@ std::vector<NoiseModel> WhatIfFit::weights_after(const Eigen::VectorXd& values,
 
 std::vector<NoiseModel> WhatIfFit::noise_after(const Eigen::VectorXd& values, const Places& free,
                                                bool drifts) const {
-  const std::size_t threads = Workers(flights_.share.team(), 0).threads;
+  const std::size_t threads = Workers(flights_.share.comm(), 0).threads;
   return noise_of_flights(
       flights_.share, binned_,
       {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, free); },
@@ -384,7 +385,7 @@ WhatIfFit::Fitted WhatIfFit::fitted(const std::vector<std::size_t>& groups) cons
   const Eigen::MatrixXd normal = with_noise_.products(free, free);
   const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd inverse =
-      pseudo_inverse(Eigen::MatrixXd(scale.asDiagonal() * normal * scale.asDiagonal()), least_eigenvalue);
+      pseudo_inverse(Eigen::MatrixXd(scale.asDiagonal() * normal * scale.asDiagonal()), min_eigenvalue);
   result.errors(free) =
       std::sqrt(variance(groups)) * inverse.diagonal().cwiseMax(0.0).cwiseSqrt().cwiseProduct(scale);
   return result;

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "base/phrasing.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/packed_residuals.hpp"
-#include "words/phrasing.hpp"
 
 namespace pcor {
 
@@ -53,7 +53,7 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
   const FlightSamples& samples = residuals.samples();
   const std::vector<double> before = residuals.values(own_parameters(residuals, task, task.start).data());
   const std::vector<double> after = residuals.values(own_parameters(residuals, task, values).data());
-  const NoiseFloor noise = noise_of_flight(samples, only_where(after, residuals.mask(), Mask::none));
+  const NoiseFloor noise = noise_of_flight(samples, masked(after, residuals.mask(), Mask::none));
   Compared result;
   const auto add = [&](const std::vector<std::size_t>& part, bool held) {
     if (part.empty()) return;

@@ -14,9 +14,9 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t fewest_flights = 8;  // from which on whole flights are left out
-constexpr double parts = 20.0;             // else so many parts of all flights together
-constexpr double shortest_part = 120.0;    // s
+constexpr std::size_t min_flights = 8;  // from which on whole flights are left out
+constexpr double parts = 20.0;          // else so many parts of all flights together
+constexpr double min_part = 120.0;      // s
 
 /// From so many bins on, the influence itself tells its variance and its memory; of fewer it is what normal
 /// innovations have.
@@ -54,7 +54,7 @@ class Blocks {
     });
     double all = 0.0;
     for (const auto& [begin, length] : spans) all += length;
-    length_ = flights.count() >= fewest_flights ? infinity : std::max(all / parts, shortest_part);
+    length_ = flights.count() >= min_flights ? infinity : std::max(all / parts, min_part);
     for (std::size_t f = 0; f < flights.count(); ++f) {
       begin_[f] = spans[f].first;
       count_[f] += static_cast<std::size_t>(spans[f].second / length_);
@@ -142,19 +142,19 @@ Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector
 }
 
 /// What the sums of all references and equations are of.
-struct Scores {
+struct WhitenedSystem {
   const std::vector<std::size_t>& all;  // the parameters of all equations and those that are held
   Eigen::Index fitted;                  // how many of them are of equations
   const Blocks& blocks;
   const Misfit& misfit;
-  const MisfitColumns& misfit_columns;
+  const MisfitBasis& misfit_columns;
   const FitEquations* last;
   std::vector<std::string> doubts;
   std::vector<std::vector<StageScores>> stages;  // of each flight with the first reference
 };
 
 /// Of one reference. @param first of the parameters of the equations among all
-Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index first, Scores& scores) {
+Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index first, WhitenedSystem& scores) {
   const std::vector<std::size_t>& all = scores.all;
   const bool is_first_reference = &flights == equations.flights;
   const Solution& solution = equations.solution;
@@ -172,7 +172,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index fi
     Sums sums;
     sums.blocks.assign(scores.blocks.count(number), nothing);
     sums.covariance = Eigen::MatrixXd::Zero(scores.fitted, scores.fitted);
-    sums.misfit = Eigen::MatrixXd::Zero(own, MisfitColumns::count());
+    sums.misfit = Eigen::MatrixXd::Zero(own, MisfitBasis::count());
     sums.doubt = Eigen::MatrixXd::Zero(own, as_index(scores.doubts.size()));
     if (fit.bins().size() == 0) return sums;
     const Eigen::VectorXd innovations = fit.white_rows(solution.values, loss).rightCols(1);
@@ -196,10 +196,10 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index fi
           joined(is_first_reference ? scores.stages[number] : std::vector<StageScores>(), fit.bins().time(),
                  weighted, scores.fitted);
       if (fit.is_whitened()) {
-        const std::vector<Stretch>& stretches = fit.bins().stretches();
+        const std::vector<Segment>& segments = fit.bins().segments();
         const Autoregression memory = count < enough_bins ? Autoregression{{}, std::sqrt(normal.square)}
-                                                          : autoregression(influence, stretches, infinity);
-        sums.covariance = covariance_of_sums(memory, joint, stretches);
+                                                          : autoregression(influence, segments, infinity);
+        sums.covariance = covariance_of_sums(memory, joint, segments);
       } else {
         sums.covariance = fit.covariance_of_sums(joint);
       }
@@ -225,7 +225,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index fi
   };
   Sums whole;
   whole.covariance = Eigen::MatrixXd::Zero(scores.fitted, scores.fitted);
-  whole.misfit = Eigen::MatrixXd::Zero(own, MisfitColumns::count());
+  whole.misfit = Eigen::MatrixXd::Zero(own, MisfitBasis::count());
   whole.doubt = Eigen::MatrixXd::Zero(own, as_index(scores.doubts.size()));
   for (const Sums& one : flights.of_each(sums_of_flight, solution.values)) {
     whole.add(one);
@@ -235,7 +235,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index fi
 }
 
 /// Of all references together: the innovations of one tell nothing of those of another.
-Sums sums_of(const FitEquations& equations, Eigen::Index first, Scores& scores) {
+Sums sums_of(const FitEquations& equations, Eigen::Index first, WhitenedSystem& scores) {
   Sums whole;
   for (FitFlights* const flights : equations.flights->joint()) {
     const Sums more = sums_of(*flights, equations, first, scores);
@@ -269,7 +269,7 @@ Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
 }  // namespace
 
 FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const std::vector<std::size_t>& held,
-                             const Misfit& misfit, const MisfitColumns& misfit_columns) {
+                             const Misfit& misfit, const MisfitBasis& misfit_columns) {
   const FitEquations& last = equations.back();
   const FitTask& task = last.flights->task();
   std::vector<std::size_t> all;
@@ -285,8 +285,8 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
                                   {Eigen::MatrixXd::Zero(fitted, size), Eigen::VectorXd::Zero(fitted)});
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
-  Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitColumns::count());
-  Scores scores{all, fitted, blocks, misfit, misfit_columns, &last, doubts_of(*last.flights), {}};
+  Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitBasis::count());
+  WhitenedSystem scores{all, fitted, blocks, misfit, misfit_columns, &last, doubts_of(*last.flights), {}};
   scores.stages.resize(last.flights->count());
   Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(scores.doubts.size()));
   Eigen::Index first = 0;

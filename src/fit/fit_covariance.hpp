@@ -51,6 +51,6 @@ struct FitCovariance {
 /// @param equations the last of them of all samples @param held parameters that were not fitted and of which
 ///        the files state an error
 FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const std::vector<std::size_t>& held,
-                             const Misfit& misfit, const MisfitColumns& misfit_columns);
+                             const Misfit& misfit, const MisfitBasis& misfit_columns);
 
 }  // namespace pcor::internal

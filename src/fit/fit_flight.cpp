@@ -23,11 +23,11 @@ struct Alike {
 
 std::vector<Alike> alike_in(const FitTask& task) {
   std::vector<Alike> alike;
-  const ModelFile* const other = task.reference.model();
+  const ModelDefinition* const other = task.reference.model();
   if (other == nullptr) return alike;
   for (const std::string& effect : task.options.alike) {
     const std::vector<double> neutral = neutral_effect(effect).parameters;
-    const auto add = [&](const ModelFile& model, std::size_t first) {
+    const auto add = [&](const ModelDefinition& model, std::size_t first) {
       const std::optional<std::size_t> place = first_parameter_of(model, effect);
       for (std::size_t i = 0; place && i < neutral.size(); ++i)
         alike.push_back({first + *place + i, neutral[i]});
@@ -206,8 +206,8 @@ Eigen::MatrixXd FitFlight::white_rows(const Eigen::VectorXd& parameters, const S
   if (offsets() == 0) return result;
   Eigen::VectorXd innovations = without_offsets(result.rightCols(1), Eigen::VectorXd::Ones(result.rows()));
   for (const ScaledLoss& each : {loss.convex(), loss}) {
-    constexpr int most_rounds = 200;
-    for (int round = 0; round < most_rounds && !loss.is_least_squares(); ++round) {
+    constexpr int max_rounds = 200;
+    for (int round = 0; round < max_rounds && !loss.is_least_squares(); ++round) {
       const Eigen::VectorXd before = innovations;
       innovations = without_offsets(before, each.weights(before));
       if (!((innovations - before).norm() > 1e-12 * innovations.norm())) break;

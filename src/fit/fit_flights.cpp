@@ -9,9 +9,9 @@
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/noise_flights.hpp"
+#include "parallel/digest.hpp"
+#include "parallel/distributed_median.hpp"
 #include "residuals/moving_columns.hpp"
-#include "team/digest.hpp"
-#include "team/median_of_all.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -44,7 +44,7 @@ struct FlightCounts {
 
 Eigen::VectorXd Reduction::lengths() const {
   Eigen::VectorXd squares = factor.leftCols(factor.cols() - 1).colwise().squaredNorm();
-  if (taken_up.size() > 0) squares += taken_up;
+  if (absorbed.size() > 0) squares += absorbed;
   return squares.cwiseSqrt();
 }
 
@@ -89,8 +89,8 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
 
 /// Whether any derivative is not zero, and the bins are enough to find the noise.
 bool FitFlights::sees_parameters() {
-  constexpr std::size_t fewest_bins = 100;
-  if (bins_ < fewest_bins || setup_.wanted.empty()) return false;
+  constexpr std::size_t min_bins = 100;
+  if (bins_ < min_bins || setup_.wanted.empty()) return false;
   const auto largest = of_each([this](std::size_t, FitFlight& fit) {
     const Eigen::MatrixXd rows = fit.rows(setup_.values);
     return rows.rows() > 0 ? rows.leftCols(as_index(setup_.wanted.size())).cwiseAbs().maxCoeff() : 0.0;
@@ -115,7 +115,7 @@ std::vector<FitFlights*> FitFlights::joint() {
   return all;
 }
 
-bool FitFlights::stays_as_prepared() const {
+bool FitFlights::uses_fixed_jacobian() const {
   return has_moving_columns() || keeps_derivatives(task_.reference) || !seeing_.empty();
 }
 
@@ -175,7 +175,7 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
     const Eigen::MatrixXd left = fit.without_offsets(rows, weight);
     if (fit.offsets() > 0) {
       const Eigen::MatrixXd taken = (rows - left).leftCols(fitted);
-      part.taken_up = taken.array().square().matrix().transpose() * weight;
+      part.absorbed = taken.array().square().matrix().transpose() * weight;
     }
     TriangularFactor factor(fitted + 1);
     factor.add(left, weight.cwiseSqrt());
@@ -183,12 +183,12 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
     return part;
   };
   Reduction whole;
-  whole.taken_up = Eigen::VectorXd::Zero(fitted);
+  whole.absorbed = Eigen::VectorXd::Zero(fitted);
   double curvature = 0.0;
   TriangularFactor sum(fitted + 1);
   for (const Reduction& part : of_each(reduced, parameters)) {
     sum.add(part.factor);
-    if (part.taken_up.size() > 0) whole.taken_up += part.taken_up;
+    if (part.absorbed.size() > 0) whole.absorbed += part.absorbed;
     whole.cost += part.cost;
     whole.bins += part.bins;
     if (part.bins > 0) curvature += part.curvature * static_cast<double>(part.bins);
@@ -232,7 +232,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool slow_part
   if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
   prepare(parameters);
   if (shares_noise_) return;
-  const auto some = task_.flights.share().on_each_flight<BinnedRows>(
+  const auto some = task_.flights.share().gather_flights<BinnedRows>(
       [&](std::vector<BinnedRows>& parts) {
         visit_those(
             [this](std::size_t number) {
@@ -270,7 +270,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool slow_part
   std::vector<double> own;
   for (const std::vector<double>& flight : of_each) own.insert(own.end(), flight.begin(), flight.end());
   const double deviation =
-      deviation_of_median * median_of_absolute_values(task_.flights.share().team(), std::move(own));
+      deviation_of_median * median_of_absolute_values(task_.flights.share().comm(), std::move(own));
   if (deviation > 0.0) found->deviation = deviation;
   for (std::size_t number = 0; number < count(); ++number) {
     if (cache_[number]) cache_[number]->set_noise(*found, number);
@@ -297,7 +297,7 @@ double FitFlights::deviation(const Eigen::VectorXd& parameters) {
     for (const Eigen::VectorXd& flight : innovations)
       own.insert(own.end(), flight.data(), flight.data() + flight.size());
   }
-  return deviation_of_median * median_of_absolute_values(task_.flights.share().team(), std::move(own));
+  return deviation_of_median * median_of_absolute_values(task_.flights.share().comm(), std::move(own));
 }
 
 }  // namespace pcor::internal

@@ -110,8 +110,8 @@ class FitFlight {
   Eigen::MatrixXd white_doubts(const ReferenceDoubt& doubt, const Eigen::VectorXd& parameters) const;
 
   /// Weighted columns of one row for each bin: by the root of the samples in a bin over the deviation of the
-  /// reference, as least squares of samples weighs them. Where the reference holds many samples together
-  /// (wind, heights), in units of the noise and without its memory.
+  /// reference, as least squares of samples weighs them. Where the reference holds many samples
+  /// together (wind, heights), in units of the noise and without its memory.
   Eigen::MatrixXd white(const Eigen::MatrixXd& columns) const;
 
   /// Columns in units of the noise and without its memory.
@@ -169,7 +169,7 @@ struct Reduction {
   /// Of white rows (derivatives by wanted parameters, residual), weighted, without what offsets take up.
   Eigen::MatrixXd factor;
   /// Sums of the squares that offsets take up of the same derivatives; empty where there is no offset.
-  Eigen::VectorXd taken_up;
+  Eigen::VectorXd absorbed;
   double cost = 0.0;  ///< half the sum of the loss over the innovations
   /// The curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the bins: by so much the
   /// second derivative of the cost is less than that of the weighted squares.
@@ -182,13 +182,13 @@ struct Reduction {
 
   template <class Archive>
   void save(Archive& archive) const {
-    archive(upper_triangle(factor), taken_up, cost, curvature, bins);
+    archive(upper_triangle(factor), absorbed, cost, curvature, bins);
   }
 
   template <class Archive>
   void load(Archive& archive) {
     std::vector<double> triangle;
-    archive(triangle, taken_up, cost, curvature, bins);
+    archive(triangle, absorbed, cost, curvature, bins);
     factor = from_upper_triangle(triangle);
   }
 };
@@ -215,7 +215,7 @@ class FitFlights {
 
   /// True where something stays until the flights are prepared again: derivatives, or columns that hang on a
   /// coefficient.
-  bool stays_as_prepared() const;
+  bool uses_fixed_jacobian() const;
 
   /// True where columns hang on a coefficient, and a first solution from far off is none yet.
   bool has_moving_columns() const;
@@ -238,7 +238,7 @@ class FitFlights {
   auto of_each(const Make& make, const Eigen::VectorXd& parameters = {}) {
     using Part = std::decay_t<decltype(make(std::size_t{}, std::declval<FitFlight&>()))>;
     static_assert(!std::is_same_v<Part, bool>, "elements of std::vector<bool> share words between threads");
-    return task_.flights.share().on_each_flight<Part>(
+    return task_.flights.share().gather_flights<Part>(
         [&](std::vector<Part>& parts) {
           visit([&](std::size_t number, FitFlight& fit) { parts[number] = make(number, fit); });
         },

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
 
 namespace pcor::internal {
 namespace {
 
-void add_parameters(std::vector<FitParameter>& parameters, const ModelFile& file, const std::string& prefix,
-                    bool fitted) {
+void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition& file,
+                    const std::string& prefix, bool fitted) {
   for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
     const ModelEffect& effect = file.model.effects[e];
     const std::vector<std::string> names = parameter_names(effect);
@@ -26,13 +26,13 @@ void add_parameters(std::vector<FitParameter>& parameters, const ModelFile& file
       parameter.bounds = file.bounds(e, p);
       parameter.fixed = !fitted || file.fit(e, p).fixed;
       if (effect.is_formula()) continue;
-      const EffectFacts& facts = effect_facts[effect_named(effect.id)];
-      parameter.unit = facts.parameters[p].unit;
-      parameter.neutral = facts.parameters[p].neutral;
-      parameter.typical = std::abs(facts.parameters[p].typical);
-      parameter.manoeuvre = facts.manoeuvre;
-      if (facts.memory.of == Quantity::count || facts.memory.parameter != p) continue;
-      const auto& tried = facts.parameters[p].tried;
+      const EffectInfo& info = effect_info[effect_named(effect.id)];
+      parameter.unit = info.parameters[p].unit;
+      parameter.neutral = info.parameters[p].neutral;
+      parameter.typical = std::abs(info.parameters[p].typical);
+      parameter.manoeuvre = info.manoeuvre;
+      if (info.memory.of == Quantity::count || info.memory.parameter != p) continue;
+      const auto& tried = info.parameters[p].tried;
       parameter.tried.assign(tried.begin(), std::find(tried.begin(), tried.end(), 0.0));
       parameter.tried.push_back(parameter.neutral);
     }
@@ -56,7 +56,7 @@ std::vector<std::size_t> places_of(const std::vector<FitParameter>& parameters, 
 
 }  // namespace
 
-std::vector<FitParameter> fit_parameters(const ModelFile& model, const Reference& reference,
+std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Reference& reference,
                                          const RefitOptions& options) {
   std::vector<FitParameter> parameters;
   add_parameters(parameters, model, "", true);

@@ -25,7 +25,7 @@ struct FitParameter {
 
 /// The parameters of the model, then those of a static system that is the reference, as residuals have them.
 /// @throws Error if the options name one that is not there, or bounds leave nothing.
-std::vector<FitParameter> fit_parameters(const ModelFile& model, const Reference& reference,
+std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Reference& reference,
                                          const RefitOptions& options);
 
 /// The places of the parameters that each stage fits, the last one what is left; that may be nothing.

@@ -17,7 +17,7 @@ void FitSums::add(const FitSums& other) {
 FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double deviation) {
   const auto sums_of = [&](std::size_t, FitFlight& fit) {
     // The reference's delta-p by its own file, so that R2 does not grow with a reference that is fitted too.
-    const std::vector<double> wanted = fit.residuals().wanted_defect(flights.task().start.data());
+    const std::vector<double> wanted = fit.residuals().target_defect(flights.task().start.data());
     const std::vector<double> all = fit.residuals().values(values.data());
     std::vector<double> residual;
     for (const std::size_t i : fit.kept()) residual.push_back(all[i]);
@@ -32,7 +32,7 @@ FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double devia
       sums.wanted_squares += defect * defect;
     }
     sums.outliers = fit.outliers(values, tukey_width * deviation);
-    const double bulk = robust_deviation(residual);
+    const double bulk = robust_standard_deviation(residual);
     if (sums.samples > 0) sums.bulk_squares = bulk * bulk * static_cast<double>(sums.samples);
     return sums;
   };

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "fit/fit_parameters.hpp"
-#include "team/flight_share.hpp"
-#include "team/workers.hpp"
+#include "parallel/flight_partition.hpp"
+#include "parallel/workers.hpp"
 
 namespace pcor::internal {
 
 /// What all steps of a fit share.
 struct FitTask {
-  const ModelFile& model;
+  const ModelDefinition& model;
   const Reference& reference;
   const RefitOptions& options;
   const FlightSet& flights;
@@ -27,7 +27,7 @@ struct FitTask {
   bool shares_system = true;
 
   /// Flights at a time, in one process.
-  std::size_t threads() const { return Workers(flights.team(), options.threads).threads; }
+  std::size_t threads() const { return Workers(flights.comm(), options.threads).threads; }
 
   bool uses_prior() const { return options.use_prior || options.fit_reference; }
 };

@@ -5,10 +5,10 @@
 #include <ctime>
 #include <utility>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 #include "fit/lineage.hpp"
-#include "laws/covariance_blocks.hpp"
-#include "laws/sensor_doubt.hpp"
+#include "model_io/covariance_blocks.hpp"
+#include "model_io/sensor_doubt.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -21,7 +21,7 @@ Provenance provenance_of(const RefitResult& fit, Loss loss) {
   add("program", std::string("pcor " PCOR_VERSION));
   add("date", utc_text(static_cast<double>(std::time(nullptr)), "%Y-%m-%dT%H:%M:%SZ"));
   add("reference", fit.reference_text);
-  add("loss", std::string(name_of(loss)));
+  add("loss", std::string(to_string(loss)));
   ProvenanceList flights;
   for (const FlightFit& flight : fit.flights) {
     if (!flight.holdout) flights.emplace_back(flight.flight);
@@ -31,7 +31,7 @@ Provenance provenance_of(const RefitResult& fit, Loss loss) {
   Provenance masks;
   for (std::size_t m = 1; m < mask_count; ++m) {
     if (fit.masks[m] > 0)
-      masks.emplace_back(mask_facts[m].name, ProvenanceValue{static_cast<std::int64_t>(fit.masks[m])});
+      masks.emplace_back(mask_info[m].name, ProvenanceValue{static_cast<std::int64_t>(fit.masks[m])});
   }
   add("samples_not_used", std::move(masks));
   add("rms_hpa", fit.rms);
@@ -46,9 +46,9 @@ bool is_parameter(const std::string& name, const RefitResult& fit) {
 
 }  // namespace
 
-ModelFile fitted_model(const ModelFile& given, std::size_t first, const RefitResult& fit, Loss loss,
-                       const std::string& flights) {
-  ModelFile file = given;
+ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, const RefitResult& fit,
+                             Loss loss, const std::string& flights) {
+  ModelDefinition file = given;
   std::vector<std::string> held;
   std::vector<std::size_t> inside;  // places in the covariance
   Covariance covariance;

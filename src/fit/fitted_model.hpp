@@ -12,7 +12,7 @@ namespace pcor::internal {
 /// temperature, stays.
 /// @param first of the fit's parameters that is one of this file
 /// @param flights what the fitted flights are called
-ModelFile fitted_model(const ModelFile& given, std::size_t first, const RefitResult& fit, Loss loss,
-                       const std::string& flights);
+ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, const RefitResult& fit,
+                             Loss loss, const std::string& flights);
 
 }  // namespace pcor::internal

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "numerics/decompositions.hpp"
 #include "numerics/least_cost.hpp"
 #include "numerics/missing.hpp"
@@ -100,7 +100,7 @@ Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values
   search.set_upper_bounds(upper);
   search.set_maxeval(trials_per_dimension * static_cast<int>(lower.size()));
   search.set_ftol_rel(1e-6);
-  find_least_cost(search, std::ref(trial), start);
+  minimize_objective(search, std::ref(trial), start);
   return trial.best();
 }
 

@@ -20,9 +20,9 @@ namespace pcor::internal {
 namespace {
 
 constexpr double prior_in_typical_sizes = 1.25;
-constexpr double greatest_error = 1.0;     // of delta-p in one direction of the coefficients, hPa
-constexpr double least_information = 3.0;  // of the prior's
-constexpr double block_time = 300.0;       // s
+constexpr double max_error = 1.0;        // of delta-p in one direction of the coefficients, hPa
+constexpr double min_information = 3.0;  // of the prior's
+constexpr double block_time = 300.0;     // s
 
 /// The products of white rows (wanted, nuisances, residual) of some minutes.
 struct Products {
@@ -274,8 +274,8 @@ class GpsSolver {
     for (Eigen::Index k = 0; k < count_; ++k) {
       const double tells = eigen.eigenvalues()[k];
       const double error = error_along(directions.col(k)) / std::sqrt(1.0 + std::max(0.0, tells));
-      (error < greatest_error ? known : unknown).push_back(k);
-      if (error < greatest_error && tells < least_information) weak.push_back(k);
+      (error < max_error ? known : unknown).push_back(k);
+      if (error < max_error && tells < min_information) weak.push_back(k);
     }
     free_ = directions(Eigen::all, known);
     held_ = directions(Eigen::all, unknown);
@@ -324,7 +324,7 @@ class GpsSolver {
     step();
     GpsFit fit;
     fit.values = values_(wanted_);
-    // Scores of the blocks at the solution.
+    // WhitenedSystem of the blocks at the solution.
     Eigen::VectorXd residual_weights(shared() + 1);
     Eigen::VectorXd left = change_;
     left.head(count_).setZero();

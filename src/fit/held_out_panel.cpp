@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "words/phrasing.hpp"
+#include "base/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -23,7 +23,7 @@ constexpr double weak_share = 0.25;
 
 double condition_number(const Reduction& reduction, const FitTask& task,
                         const std::vector<std::size_t>& wanted) {
-  const auto name_of = [&](Eigen::Index k) -> const std::string& {
+  const auto to_string = [&](Eigen::Index k) -> const std::string& {
     return task.parameters[wanted[static_cast<std::size_t>(k)]].name;
   };
   Eigen::MatrixXd scaled = reduction.factor.leftCols(as_index(wanted.size()));
@@ -33,12 +33,12 @@ double condition_number(const Reduction& reduction, const FitTask& task,
     if (!(lengths[k] > 0.0)) {
       throw Error(fmt::format(
           "{} changes nothing on these flights, so it cannot be found; leave it as it is: --fix {}",
-          name_of(k), name_of(k)));
+          to_string(k), to_string(k)));
     }
     if (!(length > lengths[k] / hopeless_condition)) {
       throw Error(fmt::format(
           "--stage: {} cannot be told from the offsets of the intervals; leave it to the last stage",
-          name_of(k)));
+          to_string(k)));
     }
     scaled.col(k) /= length;
   }
@@ -50,7 +50,7 @@ double condition_number(const Reduction& reduction, const FitTask& task,
   const Eigen::VectorXd weak = decomposition.matrixV().col(singular.size() - 1).cwiseAbs();
   std::vector<std::string> names;
   for (Eigen::Index k = 0; k < weak.size(); ++k) {
-    if (weak[k] > 0.1 * weak.maxCoeff()) names.push_back(name_of(k));
+    if (weak[k] > 0.1 * weak.maxCoeff()) names.push_back(to_string(k));
   }
   throw Error(
       fmt::format("{} cannot all be free on these flights: what one does the others undo (condition number "

@@ -5,14 +5,14 @@
 #include <string>
 
 #include <pcor/effects/catalogue.hpp>
-#include <pcor/roles/with_effects.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include "fit/gps_fit.hpp"
 
 namespace pcor {
 
 using namespace internal;
 
-std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelFile& model,
+std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelDefinition& model,
                                        const References& references, const MaskOptions& mask) {
   References gps;
   std::copy_if(references.begin(), references.end(), std::back_inserter(gps),
@@ -22,7 +22,7 @@ std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelFile
   const auto is_constant = [&constant](const ModelEffect& effect) { return effect.id == constant; };
   const auto& effects = model.model.effects;
   const bool has_it = std::any_of(effects.begin(), effects.end(), is_constant);
-  ModelFile with = has_it ? model : with_effects(model, {neutral_effect(constant)});
+  ModelDefinition with = has_it ? model : add_effects(model, {neutral_effect(constant)});
   // GPS alone is asked, not what an earlier fit knows.
   with.covariance = {};
   for (EffectFit& fit : with.fits) {

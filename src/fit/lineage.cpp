@@ -17,7 +17,7 @@ const ProvenanceValue* entry(const Provenance& all, const std::string& key) {
 }
 
 /// A model as an entry of the list.
-Provenance entry_of(const ModelFile& model) {
+Provenance entry_of(const ModelDefinition& model) {
   Provenance all;
   all.emplace_back("name", ProvenanceValue{model.model.name});
   if (const ProvenanceValue* const date = entry(model.provenance, "date")) all.emplace_back("date", *date);
@@ -27,13 +27,14 @@ Provenance entry_of(const ModelFile& model) {
 
 }  // namespace
 
-std::string unfitted_name(const ModelFile& model) {
+std::string unfitted_name(const ModelDefinition& model) {
   const std::string& name = model.model.name;
   if (entry(model.provenance, "program") == nullptr) return name;  // as its author calls it
   return name.substr(0, std::min(name.find(", fitted to "), name.find(", improved on ")));
 }
 
-void descend(ModelFile& made, const ModelFile& from, const std::string& how, const std::string& flights) {
+void descend(ModelDefinition& made, const ModelDefinition& from, const std::string& how,
+             const std::string& flights) {
   ProvenanceList before;
   if (const ProvenanceValue* const earlier = entry(from.provenance, before_key)) {
     if (const auto* const list = std::get_if<ProvenanceList>(earlier)) before = *list;

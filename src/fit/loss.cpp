@@ -10,7 +10,7 @@ namespace {
 
 using Function = std::unique_ptr<ceres::LossFunction>;
 
-struct LossFacts {
+struct LossInfo {
   Loss loss;
   std::string_view name;
   Function (*function)(double deviation);
@@ -18,7 +18,7 @@ struct LossFacts {
 
 // The widths are in robust deviations. Those of Tukey's and Cauchy's loss have 95 % efficiency on normal
 // noise; for Huber's see `huber_width`.
-constexpr std::array<LossFacts, 5> losses{
+constexpr std::array<LossInfo, 5> losses{
     {{Loss::tukey, "tukey",
       [](double d) -> Function { return std::make_unique<ceres::TukeyLoss>(internal::tukey_width * d); }},
      {Loss::huber, "huber",
@@ -29,17 +29,17 @@ constexpr std::array<LossFacts, 5> losses{
       [](double d) -> Function { return std::make_unique<ceres::CauchyLoss>(2.385 * d); }},
      {Loss::none, "none", [](double) -> Function { return nullptr; }}}};
 
-const LossFacts& facts_of(Loss loss) {
-  return *std::find_if(losses.begin(), losses.end(), [loss](const LossFacts& f) { return f.loss == loss; });
+const LossInfo& info_of(Loss loss) {
+  return *std::find_if(losses.begin(), losses.end(), [loss](const LossInfo& f) { return f.loss == loss; });
 }
 
 }  // namespace
 
-std::string_view name_of(Loss loss) { return facts_of(loss).name; }
+std::string_view to_string(Loss loss) { return info_of(loss).name; }
 
 std::optional<Loss> loss_named(std::string_view name) {
-  for (const LossFacts& facts : losses) {
-    if (facts.name == name) return facts.loss;
+  for (const LossInfo& info : losses) {
+    if (info.name == name) return info.loss;
   }
   return std::nullopt;
 }
@@ -47,7 +47,7 @@ std::optional<Loss> loss_named(std::string_view name) {
 namespace internal {
 
 ScaledLoss::ScaledLoss(Loss loss, double deviation)
-    : deviation_(deviation), function_(deviation > 0.0 ? facts_of(loss).function(deviation) : nullptr) {}
+    : deviation_(deviation), function_(deviation > 0.0 ? info_of(loss).function(deviation) : nullptr) {}
 
 Eigen::VectorXd ScaledLoss::weights(const Eigen::VectorXd& residuals) const {
   return residuals.unaryExpr([this](double residual) { return (*this)(residual)[1]; });

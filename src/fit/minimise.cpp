@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor::internal {
 namespace {
@@ -54,15 +54,15 @@ class ReducedCost final : public ceres::CostFunction {
     all.head(size_) = reduction_.factor.col(size_).head(size_);
     // With the curvature of the loss a step is nearly Newton's. Gradient and cost stay as they are; far from
     // the minimum, where the cost leaves no room for it, the weighted squares alone have to do.
-    double stretch = std::sqrt(std::clamp(reduction_.curvature, 0.1, 1.0));
-    if (all.head(size_).squaredNorm() > 2.0 * reduction_.cost * stretch * stretch) stretch = 1.0;
-    all.head(size_) /= stretch;
+    double segment = std::sqrt(std::clamp(reduction_.curvature, 0.1, 1.0));
+    if (all.head(size_).squaredNorm() > 2.0 * reduction_.cost * segment * segment) segment = 1.0;
+    all.head(size_) /= segment;
     const double rest = 2.0 * reduction_.cost - all.head(size_).squaredNorm();
     all[size_] = std::sqrt(std::max(rest, 0.0));
     if (jacobians != nullptr && jacobians[0] != nullptr) {
       Eigen::Map<RowMajor> jacobian(jacobians[0], size_ + 1, size_);
       jacobian.setZero();
-      jacobian.topRows(size_) = stretch * reduction_.factor.topLeftCorner(size_, size_);
+      jacobian.topRows(size_) = segment * reduction_.factor.topLeftCorner(size_, size_);
     }
     return true;
   }

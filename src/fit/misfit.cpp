@@ -16,7 +16,7 @@ constexpr Eigen::Index states = 6;
 constexpr Eigen::Index bumps = 7;  // of each state
 constexpr double width = 0.75;     // of a bump, in deviations of its state
 constexpr double furthest = 3.0;   // deviations
-constexpr std::size_t fewest_bins = 100;
+constexpr std::size_t min_bins = 100;
 
 /// A series over another, of each sample; empty where one of them is not recorded.
 std::vector<double> ratio_of(const std::vector<double>* over, const std::vector<double>* under) {
@@ -87,7 +87,7 @@ struct Products {
 };
 
 /// Products with each other of what the derivatives take up of columns. @param across products of both
-Eigen::MatrixXd taken_up(const Eigen::MatrixXd& information, const Eigen::MatrixXd& across) {
+Eigen::MatrixXd absorbed(const Eigen::MatrixXd& information, const Eigen::MatrixXd& across) {
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * across;
   return scaled.transpose() *
@@ -104,7 +104,7 @@ class Heights {
     const Eigen::MatrixXd& all = products.white;
     const Eigen::Index rest = all.cols() - derivatives;
     const Eigen::MatrixXd across = all.topRightCorner(derivatives, rest);
-    left_ = all.bottomRightCorner(rest, rest) - taken_up(all.topLeftCorner(derivatives, derivatives), across);
+    left_ = all.bottomRightCorner(rest, rest) - absorbed(all.topLeftCorner(derivatives, derivatives), across);
   }
 
   struct Posterior {
@@ -148,11 +148,11 @@ double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& var
 /// Successive substitution ends at the same values from any start nearby, as a search without derivatives
 /// does not.
 Eigen::VectorXd variances_of(const Heights& heights, double rms) {
-  constexpr int most_rounds = 500;
+  constexpr int max_rounds = 500;
   constexpr double most = 5.0;  // of the rms of the residual
   const auto square = [](double size) { return size * size; };
   Eigen::VectorXd variance = Eigen::VectorXd::Constant(states * bumps, square(0.3 * rms));
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     const Heights::Posterior posterior = heights.posterior(variance);
     double change = 0.0;
     for (Eigen::Index s = 0; s < states; ++s) {
@@ -206,7 +206,7 @@ double variance_between(const std::vector<FlightMean>& flights) {
 
 }  // namespace
 
-MisfitColumns::MisfitColumns(FitFlights& flights) {
+MisfitBasis::MisfitBasis(FitFlights& flights) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(states, 3);
   for (const Eigen::MatrixXd& part :
        flights.of_each([](std::size_t, FitFlight& fit) { return moments_of(fit); }))
@@ -219,9 +219,9 @@ MisfitColumns::MisfitColumns(FitFlights& flights) {
   }
 }
 
-Eigen::Index MisfitColumns::count() { return states * bumps; }
+Eigen::Index MisfitBasis::count() { return states * bumps; }
 
-Eigen::MatrixXd MisfitColumns::operator()(const FitFlight& fit) const {
+Eigen::MatrixXd MisfitBasis::operator()(const FitFlight& fit) const {
   const Eigen::MatrixXd values = binned_states(fit);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(values.rows(), count());
   for (Eigen::Index s = 0; s < states; ++s) {
@@ -238,10 +238,10 @@ Eigen::MatrixXd MisfitColumns::operator()(const FitFlight& fit) const {
   return result;
 }
 
-Misfit find_misfit(FitFlights& flights, const MisfitColumns& columns, const Solution& solution) {
+Misfit find_misfit(FitFlights& flights, const MisfitBasis& columns, const Solution& solution) {
   Misfit misfit;
   flights.measure_noise(solution.values, true);
-  if (flights.bins() < fewest_bins || !flights.task().reference.is_of_one_sample()) return misfit;
+  if (flights.bins() < min_bins || !flights.task().reference.is_of_one_sample()) return misfit;
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
     Products sum;
@@ -276,7 +276,7 @@ Misfit find_misfit(FitFlights& flights, const MisfitColumns& columns, const Solu
     const Eigen::Index count = columns.count();
     const Eigen::MatrixXd across = sum.plain.block(0, own, own, count);
     const Eigen::MatrixXd left =
-        sum.plain.block(own, own, count, count) - taken_up(sum.plain.topLeftCorner(own, own), across);
+        sum.plain.block(own, own, count, count) - absorbed(sum.plain.topLeftCorner(own, own), across);
     misfit.left = std::sqrt(
         weight *
         std::max(0.0, (left * (posterior.covariance + posterior.mean * posterior.mean.transpose())).trace()) /

@@ -20,10 +20,10 @@ struct Misfit {
 };
 
 /// The bumps at the bins of flights.
-class MisfitColumns {
+class MisfitBasis {
  public:
   /// Finds mean and deviation of each state over all flights.
-  explicit MisfitColumns(FitFlights& flights);
+  explicit MisfitBasis(FitFlights& flights);
 
   static Eigen::Index count();
   /// One row for each bin.
@@ -36,6 +36,6 @@ class MisfitColumns {
 
 /// Finds misfit and noise of the flights of a fit in turn: each is what the other leaves. The flights have
 /// that noise after that.
-Misfit find_misfit(FitFlights& flights, const MisfitColumns& columns, const Solution& solution);
+Misfit find_misfit(FitFlights& flights, const MisfitBasis& columns, const Solution& solution);
 
 }  // namespace pcor::internal

@@ -7,7 +7,7 @@
 
 namespace pcor::internal {
 
-Eigen::MatrixXd stated_covariance(const ModelFile& model, const Reference& reference) {
+Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference& reference) {
   const std::vector<double> own = uncertainty_of(model).covariance;
   std::vector<double> other;
   if (reference.model() != nullptr) other = uncertainty_of(*reference.model()).covariance;
@@ -43,10 +43,10 @@ Eigen::MatrixXd prior_rows(const FitTask& task, const std::vector<std::size_t>& 
   const Eigen::MatrixXd covariance = task.doubt(places, places);
   // The inverse root, of the correlations: coefficients of one law may differ by powers of ten.
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  constexpr double least_eigenvalue = 1e-10;  // what is nearly certain is not told apart from what is
+  constexpr double min_eigenvalue = 1e-10;  // what is nearly certain is not told apart from what is
   const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * covariance * scale.asDiagonal());
   rows(stated, stated) =
-      solver.eigenvalues().cwiseMax(least_eigenvalue).cwiseSqrt().cwiseInverse().asDiagonal() *
+      solver.eigenvalues().cwiseMax(min_eigenvalue).cwiseSqrt().cwiseInverse().asDiagonal() *
       solver.eigenvectors().transpose() * scale.asDiagonal();
   return rows;
 }

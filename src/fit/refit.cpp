@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "campaign/model_parameters.hpp"
 #include "fit/before_and_after.hpp"
 #include "fit/fit_covariance.hpp"
@@ -54,7 +54,7 @@ bool share_system(const Reference& a, const Reference& b) {
   return a.model()->model.name == b.model()->model.name && a.model()->variables == b.model()->variables;
 }
 
-FitTask task_of(const ModelFile& model, const References& references, const RefitOptions& options,
+FitTask task_of(const ModelDefinition& model, const References& references, const RefitOptions& options,
                 const FlightSet& flights) {
   const Reference& reference = first_of(references);
   FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
@@ -82,13 +82,13 @@ struct Fitted {
   std::unique_ptr<FitFlights> flights{};           // with all samples and all parameters that were fitted
   std::vector<std::unique_ptr<FitFlights>> own{};  // those of each stage, where there are several
   std::vector<FitEquations> equations{};
-  bool stands_still = true;
+  bool has_converged = true;
 };
 
 /// Solves stage after stage, again and again, until no coefficient moves by a hundredth of what the flights
 /// leave open. The noise is that of all samples.
 void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::vector<std::size_t>>& stages) {
-  constexpr int most_rounds = 50;
+  constexpr int max_rounds = 50;
   Solution& solution = fitted.solution;
   for (std::size_t s = 0; s < stages.size(); ++s) {
     const bool last = s + 1 == stages.size();
@@ -97,8 +97,8 @@ void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::v
     fitted.own.push_back(std::make_unique<FitFlights>(task, std::move(setup)));
     fitted.equations.push_back({fitted.own.back().get(), stages[s], {}});
   }
-  fitted.stands_still = false;
-  for (int round = 0; round < most_rounds && !fitted.stands_still; ++round) {
+  fitted.has_converged = false;
+  for (int round = 0; round < max_rounds && !fitted.has_converged; ++round) {
     const Eigen::VectorXd before = solution.values;
     // The noise hardly changes after the first rounds.
     if (round < 2) {
@@ -114,7 +114,7 @@ void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::v
     }
     const Eigen::VectorXd lengths = fitted.flights->reduce(solution.values, {}).lengths();
     const Eigen::VectorXd step = (solution.values - before)(fitted.parameters);
-    fitted.stands_still = lengths.cwiseProduct(step).cwiseAbs().maxCoeff() < 0.01;
+    fitted.has_converged = lengths.cwiseProduct(step).cwiseAbs().maxCoeff() < 0.01;
   }
   // Every stage at the coefficients that all of them found.
   for (FitEquations& each : fitted.equations) {
@@ -149,8 +149,8 @@ Fitted fit_in_stages(const FitTask& task) {
       fit_stages(task.parameters, task.options.stages, task.model.model.name);
   Fitted fitted = at_start(task, stages);
   Solution& solution = fitted.solution;
-  constexpr int most_masks = 3;
-  for (int round = 0; round < most_masks; ++round) {
+  constexpr int max_masks = 3;
+  for (int round = 0; round < max_masks; ++round) {
     fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
     solution = solve(*fitted.flights, std::move(solution));
     // The masks are those of the solution, so that the start does not decide.
@@ -304,7 +304,7 @@ std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task
   if (!is_by_gps(task.reference)) {
     add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,
                               compared.flown));
-    add(error_notes(result, fitted.flights->count(), fitted.stands_still,
+    add(error_notes(result, fitted.flights->count(), fitted.has_converged,
                     task.uses_prior() || !fitted.held.empty()));
   }
   add(compared.notes);
@@ -338,7 +338,7 @@ Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
   return result;
 }
 
-RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const References& references,
+RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, const References& references,
                 const RefitOptions& options) {
   const Reference& reference = first_of(references);
   const FitTask task = task_of(model, references, options, fitted_flights);
@@ -350,7 +350,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   Misfit misfit;
   if (!by_gps_alone) {
     FitFlights& flights = *fitted.flights;
-    const MisfitColumns misfit_columns(flights);
+    const MisfitBasis misfit_columns(flights);
     misfit = find_misfit(flights, misfit_columns, solution);
     // The weights are those of the noise without the misfit from now on.
     fitted.solution.deviation = flights.deviation(solution.values);
@@ -379,7 +379,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
   result.bulk_rms = sums.rms_of(sums.bulk_squares);
   if (covariance.information > 0.0)
-    result.samples_per_independent =
+    result.autocorrelation_time =
         std::max(static_cast<double>(sums.samples) /
                      (sums.bulk_squares / static_cast<double>(sums.samples) * covariance.information),
                  1.0);
@@ -414,7 +414,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
 
 }  // namespace
 
-RefitResult refit(const FlightSet& flights, const ModelFile& model, const References& references,
+RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const References& references,
                   const RefitOptions& options) {
   require_sense(flights, references, options);
   References in_order = references;

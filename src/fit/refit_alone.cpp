@@ -1,8 +1,8 @@
 #include <pcor/fit/refit.hpp>
 
-#include <pcor/words/error.hpp>
-#include "team/flight_share.hpp"
-#include "team/workers.hpp"
+#include <pcor/base/error.hpp>
+#include "parallel/flight_partition.hpp"
+#include "parallel/workers.hpp"
 
 namespace pcor {
 
@@ -15,12 +15,13 @@ void serialize(Archive& archive, FittedParameter& parameter) {
           parameter.stage);
 }
 
-std::vector<std::vector<FittedParameter>> refit_each_alone(const FlightSet& flights, const ModelFile& model,
+std::vector<std::vector<FittedParameter>> refit_per_flight(const FlightSet& flights,
+                                                           const ModelDefinition& model,
                                                            const References& references,
                                                            const RefitOptions& options) {
-  const FlightShare& share = flights.share();
+  const FlightPartition& share = flights.share();
   RefitOptions own = options;
-  own.threads = Workers(flights.team(), options.threads).threads;
+  own.threads = Workers(flights.comm(), options.threads).threads;
   own.holdout = FlightSet();
   own.progress = nullptr;
   std::size_t done = 0;

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "base/phrasing.hpp"
 #include "compare/comparison_panels.hpp"
 #include "fit/coefficient_picture.hpp"
 #include "fit/held_out_panel.hpp"
 #include "fit/lineage.hpp"
-#include "words/phrasing.hpp"
 
 namespace pcor {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "fit/global_search.hpp"
 #include "fit/minimise.hpp"
 #include "fit/prior.hpp"
@@ -19,13 +19,13 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t fewest_free_bins = 15;  // a minute: the deviation of the noise to a fifth
+constexpr std::size_t min_free_bins = 15;  // a minute: the deviation of the noise to a fifth
 
 void require_samples(const FitFlights& flights) {
   const FitSetup& setup = flights.setup();
   if (flights.samples() == 0 && !setup.regimes.empty()) {
     std::vector<std::string_view> names;
-    for (const Regime regime : setup.regimes) names.push_back(facts_of(regime).name);
+    for (const Regime regime : setup.regimes) names.push_back(info_of(regime).name);
     throw Error(
         fmt::format("--stage: the flights have no {}; fit without the stage, or give the intervals in a file "
                     "with --intervals",
@@ -45,7 +45,7 @@ void require_samples(const FitFlights& flights) {
                     flights.samples(), unknown, mask_text(flights.masks())));
   }
   // The noise is found from bins of four seconds; that of a stage is the noise of all samples.
-  const std::size_t fewest = unknown + (flights.shares_noise() ? 1 : fewest_free_bins);
+  const std::size_t fewest = unknown + (flights.shares_noise() ? 1 : min_free_bins);
   const std::size_t bins = flights.bins();
   if (bins < fewest) {
     throw Error(fmt::format(
@@ -96,7 +96,7 @@ class Solver {
         const Eigen::VectorXd before = unknowns_;
         flights_.prepare(solution_.values);
         settles_with(loss == Loss::none ? loss : Loss::huber);
-        if (stands_still(before)) break;
+        if (has_converged(before)) break;
       }
     }
     measure();
@@ -105,17 +105,17 @@ class Solver {
     for (int round = 0; round < rounds && flights_.joint().size() > 1; ++round) {
       const Eigen::VectorXd before = unknowns_;
       settles_with(loss);
-      if (stands_still(before)) break;
+      if (has_converged(before)) break;
       measure();
     }
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns_;
       const bool settled = settles_with(loss);
-      if (!flights_.stays_as_prepared()) {
+      if (!flights_.uses_fixed_jacobian()) {
         if (settled) break;
         continue;
       }
-      if (settled && stands_still(before)) break;
+      if (settled && has_converged(before)) break;
       flights_.prepare(solution_.values);
     }
     find_bounds();
@@ -198,7 +198,7 @@ class Solver {
   Prior prior() const { return {task_.start(wanted_), solution_.deviation * prior_}; }
 
   /// True where no unknown moved by a hundredth of what the flights and the prior leave open.
-  bool stands_still(const Eigen::VectorXd& before) {
+  bool has_converged(const Eigen::VectorXd& before) {
     const Reduction reduction = flights_.reduce(solution_.values, {});
     const Eigen::VectorXd step = unknowns_ - before;
     const double by_flights = (reduction.factor.leftCols(step.size()) * step).norm();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 #include "fit/loss_function.hpp"
 #include "residuals/flight_statistics.hpp"
 
@@ -15,9 +15,9 @@ namespace {
 
 constexpr double larger = 1.02;
 constexpr double larger_elsewhere =
-    1.05;  // by chance a fit of half a flight is worse on the rest by some per cent
-constexpr double longest_chance = 30.0;  // s of outliers in a row; spikes and gusts are shorter
-constexpr double many_outliers = 0.05;   // of all samples
+    1.05;                            // by chance a fit of half a flight is worse on the rest by some per cent
+constexpr double max_chance = 30.0;  // s of outliers in a row; spikes and gusts are shorter
+constexpr double many_outliers = 0.05;  // of all samples
 
 /// Samples in a row that are all on one side of the noise.
 struct Run {
@@ -33,7 +33,7 @@ struct Run {
   }
 };
 
-Run longest_run(const FitFlight& fit, const Eigen::VectorXd& values) {
+Run max_run(const FitFlight& fit, const Eigen::VectorXd& values) {
   const FlightSamples& samples = fit.residuals().samples();
   const std::vector<double> series = only_at(fit.residuals().values(values.data()), fit.kept());
   const NoiseFloor noise = noise_of_flight(samples, series);
@@ -87,11 +87,10 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
                     result.r_squared));
   }
   const std::vector<Run> runs = flights.of_each(
-      [&](std::size_t, FitFlight& fit) { return fit.kept().empty() ? Run{} : longest_run(fit, values); },
-      values);
+      [&](std::size_t, FitFlight& fit) { return fit.kept().empty() ? Run{} : max_run(fit, values); }, values);
   const Run longest = *std::max_element(
       runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.end - a.begin < b.end - b.begin; });
-  if (longest.end - longest.begin >= longest_chance) {
+  if (longest.end - longest.begin >= max_chance) {
     warnings.push_back(fmt::format(
         "{}: from {} to {} {} samples in a row are off by {:+.2f} hPa in the mean, each beyond {:.1f} "
         "deviations of the noise, so they are no outliers: the model lacks what happened there, or a sensor "
@@ -116,14 +115,14 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
   return warnings;
 }
 
-std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool stands_still,
+std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool has_converged,
                                      bool with_doubt) {
   // The jackknife of n parts knows an error to 1/sqrt(2 (n - 1)); four of these either side.
   const double chance = 4.0 / std::sqrt(2.0 * (static_cast<double>(result.jackknife_parts) - 1.0));
   const double too_small = 1.0 + chance;
   const double too_large = 1.0 / too_small;
   std::vector<std::string> notes;
-  if (!stands_still) {
+  if (!has_converged) {
     notes.emplace_back(
         "the stages of the fit did not come to rest: what one finds moves the other again and again; fit the "
         "coefficients together, without stages");

@@ -22,7 +22,7 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
 
 /// In words: where the jackknife does not bear out the stated errors, and stages that do not come to rest.
 /// @param with_doubt errors hold that of a prior, or of coefficients that were held
-std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool stands_still,
+std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool has_converged,
                                      bool with_doubt);
 
 }  // namespace pcor::internal

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cctype>
 
+#include <pcor/base/suggest.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/suggest.hpp>
 
-#include "words/quoting.hpp"
+#include "base/quoting.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -41,8 +41,8 @@ int shared_words(const std::string& role, const std::string& text) {
 
 }  // namespace
 
-Error absent_variable(const std::string& path, const std::vector<VariableInfo>& series,
-                      const std::string& name, const std::string& wanted, const std::string& role) {
+Error missing_variable(const std::string& path, const std::vector<VariableInfo>& series,
+                       const std::string& name, const std::string& wanted, const std::string& role) {
   std::vector<const VariableInfo*> fitting;
   std::vector<std::string> namesakes;
   for (const VariableInfo& each : series) {
@@ -64,13 +64,13 @@ Error absent_variable(const std::string& path, const std::vector<VariableInfo>& 
                     "[variables] of the model",
                     absent, wanted, path)};
 
-  constexpr std::size_t most_named = 6;
+  constexpr std::size_t max_named = 6;
   // What a probe recovers files call total.
   const std::string words = role == "recovery_temperature" ? role + "_total" : role;
   std::stable_sort(fitting.begin(), fitting.end(), [&](const VariableInfo* a, const VariableInfo* b) {
     return shared_words(words, a->long_name) > shared_words(words, b->long_name);
   });
-  const std::size_t others = fitting.size() - std::min(fitting.size(), most_named);
+  const std::size_t others = fitting.size() - std::min(fitting.size(), max_named);
   fitting.resize(fitting.size() - others);
   std::string named;
   for (std::size_t i = 0; i < fitting.size(); ++i) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include <pcor/units/units.hpp>
-#include "words/phrasing.hpp"
+#include "base/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -99,7 +99,7 @@ class CfDescription {
 
   /// Of the names in an attribute, those of variables that are there.
   void keep_known_names(int variable, const char* attribute) const {
-    const std::vector<std::string> names = words_of(output_.text_attribute(variable, attribute));
+    const std::vector<std::string> names = split_words(output_.text_attribute(variable, attribute));
     std::vector<std::string> known;
     for (const std::string& name : names) {
       if (output_.has(name)) known.push_back(name);

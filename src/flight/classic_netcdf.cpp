@@ -31,10 +31,10 @@ class Header {
   std::uint64_t offset() { return number(version_ == 1 ? 4 : 8); }
 
   // How many dimensions (tag 10), variables (11) or attributes (12) follow, each of at least so many bytes.
-  std::uint64_t list_of(std::uint64_t tag, std::uint64_t least_bytes) {
+  std::uint64_t list_of(std::uint64_t tag, std::uint64_t min_bytes) {
     const std::uint64_t found = number(4), length = count();
     require(found == tag || (found == 0 && length == 0));
-    require(length <= left_ / least_bytes);
+    require(length <= left_ / min_bytes);
     return sound_ ? length : 0;
   }
 
@@ -55,8 +55,8 @@ class Header {
   }
 
   void skip_attributes() {
-    constexpr std::uint64_t tag = 12, least_bytes = 12;
-    for (std::uint64_t left = list_of(tag, least_bytes); left > 0 && sound_; --left) {
+    constexpr std::uint64_t tag = 12, min_bytes = 12;
+    for (std::uint64_t left = list_of(tag, min_bytes); left > 0 && sound_; --left) {
       skip_name();
       const std::uint64_t bytes = element_bytes();
       skip(padded(times(bytes, count())));
@@ -103,18 +103,18 @@ std::optional<ClassicLayout> layout_of_classic(const std::filesystem::path& path
   Header header(path);
   const std::uint64_t records = header.count();
 
-  constexpr std::uint64_t dimension_tag = 10, least_dimension_bytes = 8;
+  constexpr std::uint64_t dimension_tag = 10, min_dimension_bytes = 8;
   std::vector<std::uint64_t> lengths;  // of the dimensions; 0 is the unlimited one
-  for (std::uint64_t left = header.list_of(dimension_tag, least_dimension_bytes); left > 0 && header.sound();
+  for (std::uint64_t left = header.list_of(dimension_tag, min_dimension_bytes); left > 0 && header.sound();
        --left) {
     header.skip_name();
     lengths.push_back(header.count());
   }
   header.skip_attributes();
 
-  constexpr std::uint64_t variable_tag = 11, least_variable_bytes = 28;
+  constexpr std::uint64_t variable_tag = 11, min_variable_bytes = 28;
   std::vector<Extent> variables;
-  for (std::uint64_t left = header.list_of(variable_tag, least_variable_bytes); left > 0 && header.sound();
+  for (std::uint64_t left = header.list_of(variable_tag, min_variable_bytes); left > 0 && header.sound();
        --left) {
     Extent variable;
     header.skip_name();

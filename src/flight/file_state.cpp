@@ -4,7 +4,7 @@
 
 #include <tuple>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor::internal {
 namespace {
@@ -16,13 +16,13 @@ std::int64_t nanoseconds(const timespec& time) {
 }  // namespace
 
 FileState::FileState(const std::filesystem::path& path) {
-  struct stat facts {};
-  if (::stat(path.c_str(), &facts) != 0) return;
-  device_ = facts.st_dev;
-  inode_ = facts.st_ino;
-  size_ = facts.st_size;
-  modified_ = nanoseconds(facts.st_mtim);
-  changed_ = nanoseconds(facts.st_ctim);
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return;
+  device_ = info.st_dev;
+  inode_ = info.st_ino;
+  size_ = info.st_size;
+  modified_ = nanoseconds(info.st_mtim);
+  changed_ = nanoseconds(info.st_ctim);
 }
 
 bool FileState::operator==(const FileState& other) const {

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <strings.h>
+#include <pcor/base/error.hpp>
+#include <pcor/base/shell_quote.hpp>
+#include <pcor/base/suggest.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/flight/flight.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/shell_word.hpp>
-#include <pcor/words/suggest.hpp>
-#include <pcor/words/utc.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -18,7 +18,7 @@
 #include <unordered_map>
 
 #include "flight/absent_variable.hpp"
-#include "flight/file_in_hand.hpp"
+#include "flight/current_input.hpp"
 #include "flight/flight_file.hpp"
 #include "flight/status_flags.hpp"
 #include "flight/time_source.hpp"
@@ -31,13 +31,13 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double day = 86400;
-constexpr std::size_t most_gaps_listed = 1000;
+constexpr std::size_t max_gaps_listed = 1000;
 // Writers mark what they have no value of with 1e30, 1e35, 1e300, infinity. Nothing that is measured is as
 // much, in whatever unit.
 constexpr double no_value = 1e30;
-constexpr double most_samples_a_second = 1000, rounding = 1e-3;  // of the times of records
-constexpr std::size_t fewest_doubted = 200'000;    // records of which the size of the file tells nothing
-constexpr std::size_t most_records = 100'000'000;  // more than a day has thousandths of a second
+constexpr double max_samples_a_second = 1000, rounding = 1e-3;  // of the times of records
+constexpr std::size_t min_doubted = 200'000;      // records of which the size of the file tells nothing
+constexpr std::size_t max_records = 100'000'000;  // more than a day has thousandths of a second
 
 /// A variable of the file, and what turns its stored numbers into values.
 struct Variable {
@@ -74,7 +74,7 @@ double packing_number(const FlightFile& file, int variable, const char* attribut
       fmt::format("{}: the attribute {} of {} is \"{}\", which values cannot be unpacked with; "
                   "correct it with ncatted -a {} {}",
                   file.path().string(), attribute, file.variable_name(variable), text,
-                  shell_word(fmt::format("{},{},o,d,NUMBER", attribute, file.variable_name(variable))),
+                  shell_quote(fmt::format("{},{},o,d,NUMBER", attribute, file.variable_name(variable))),
                   shell_path(file.path().string())));
 }
 
@@ -177,7 +177,7 @@ std::vector<RecordBlock> blocks_of(std::size_t records, std::size_t size) {
 
 struct Flight::Implementation {
   std::unique_ptr<FlightFile> file;
-  TimeStamp time_stamp;
+  TimestampAlignment timestamp_alignment;
   TimeSource source;
   std::size_t records;
   TimeAxis axis;
@@ -187,24 +187,24 @@ struct Flight::Implementation {
   std::vector<double> scratch;
   std::vector<double> flags;
 
-  Implementation(std::unique_ptr<FlightFile> opened, TimeStamp stamp)
+  Implementation(std::unique_ptr<FlightFile> opened, TimestampAlignment stamp)
       : file(std::move(opened)),
-        time_stamp(stamp),
+        timestamp_alignment(stamp),
         source(find_time(*file)),
         records(file->dimension_length(source.dimension)) {
     std::error_code code;
     const std::uintmax_t bytes = std::filesystem::file_size(file->path(), code);
-    if (!code && records > fewest_doubted && records > bytes)
+    if (!code && records > min_doubted && records > bytes)
       throw Error(Error::Code::file,
                   fmt::format("{} has {} records in {} bytes, and of a flight at most one record a byte is "
                               "believed: hardly any of them is there; cut it with ncks -d {}",
                               path(), records, bytes,
-                              shell_word(file->dimension_name(source.dimension) + ",FIRST,LAST")));
-    if (records > most_records)
+                              shell_quote(file->dimension_name(source.dimension) + ",FIRST,LAST")));
+    if (records > max_records)
       throw Error(Error::Code::file,
                   fmt::format("{} has {} records, and a flight has at most {}; cut it with ncks -d {}",
-                              path(), records, most_records,
-                              shell_word(file->dimension_name(source.dimension) + ",FIRST,LAST")));
+                              path(), records, max_records,
+                              shell_quote(file->dimension_name(source.dimension) + ",FIRST,LAST")));
     // In files of HDF5 every question how many there are looks at each.
     const int count = file->variable_count();
     for (int id = 0; id < count; ++id) {
@@ -278,11 +278,11 @@ struct Flight::Implementation {
 
   void check_rate(const VariableInfo& info) const {
     const double rate = info.rate / axis.step;
-    if (rate <= most_samples_a_second * (1 + rounding)) return;
+    if (rate <= max_samples_a_second * (1 + rounding)) return;
     throw Error(Error::Code::variable,
                 fmt::format("{}: {} has {:.6g} samples a second, {} in each record of {:.6g} s; flights are "
                             "read with up to {:g} a second: average it, or correct the times of the records",
-                            path(), info.name, rate, info.rate, axis.step, most_samples_a_second));
+                            path(), info.name, rate, info.rate, axis.step, max_samples_a_second));
   }
 
   void check_block(const std::string& name, RecordBlock block) const {
@@ -298,10 +298,10 @@ struct Flight::Implementation {
     file->read(variable.id, block, out);
   }
 
-  static LeftOut clean(const Variable& variable, std::size_t count, double* values) {
+  static RejectedCounts clean(const Variable& variable, std::size_t count, double* values) {
     for (const double marker : variable.missing_values)
       for (std::size_t i = 0; i < count; ++i) values[i] = values[i] == marker ? missing : values[i];
-    LeftOut left_out;
+    RejectedCounts left_out;
     const auto [least, greatest] = variable.valid_range;
     for (std::size_t i = 0; i < count; ++i) {
       const bool is_invalid = values[i] < least || values[i] > greatest;
@@ -313,11 +313,11 @@ struct Flight::Implementation {
     return left_out;
   }
 
-  LeftOut read(Variable& variable, RecordBlock block, double* out) {
+  RejectedCounts read(Variable& variable, RecordBlock block, double* out) {
     if (variable.refusal) throw Error(*variable.refusal);
     read_stored(variable, block, out);
     const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
-    const LeftOut left_out = clean(variable, count, out);
+    const RejectedCounts left_out = clean(variable, count, out);
     for (const StatusFlags& each : variable.flags) leave_out(each, block, count, out);
     return left_out;
   }
@@ -385,7 +385,7 @@ struct Flight::Implementation {
         }
         if (record > 0 && now - before > 1.5 * axis.step) {
           ++axis.gap_count;
-          if (axis.gaps.size() < most_gaps_listed) axis.gaps.push_back({record, before, now});
+          if (axis.gaps.size() < max_gaps_listed) axis.gaps.push_back({record, before, now});
         }
         axis.whole_seconds = axis.whole_seconds && now == std::floor(now);
         before = now;
@@ -398,15 +398,15 @@ struct Flight::Implementation {
           "there with ncks -d {}",
           path(), bad < bad_before ? "runs backwards" : "repeats", first_bad, utc_text(bad),
           utc_text(bad_before), backward, repeated,
-          shell_word(fmt::format("{},0,{}", file->dimension_name(source.dimension), first_bad - 1))));
+          shell_quote(fmt::format("{},0,{}", file->dimension_name(source.dimension), first_bad - 1))));
   }
 };
 
-Flight::Flight(const std::filesystem::path& path, TimeStamp time_stamp)
-    : Flight(open_flight_file(path), time_stamp) {}
-Flight::Flight(std::unique_ptr<FlightFile> file, TimeStamp time_stamp) {
+Flight::Flight(const std::filesystem::path& path, TimestampAlignment timestamp_alignment)
+    : Flight(open_flight_file(path), timestamp_alignment) {}
+Flight::Flight(std::unique_ptr<FlightFile> file, TimestampAlignment timestamp_alignment) {
   const FileInHand in_hand(file->path());
-  implementation_ = std::make_unique<Implementation>(std::move(file), time_stamp);
+  implementation_ = std::make_unique<Implementation>(std::move(file), timestamp_alignment);
 }
 Flight::Flight(Flight&&) noexcept = default;
 Flight& Flight::operator=(Flight&&) noexcept = default;
@@ -417,7 +417,7 @@ const std::filesystem::path& Flight::path() const { return implementation_->file
 std::size_t Flight::records() const { return implementation_->records; }
 std::vector<RecordBlock> Flight::blocks() const { return blocks_of(records(), file().records_at_once()); }
 const TimeAxis& Flight::time() const { return implementation_->axis; }
-TimeStamp Flight::time_stamp() const { return implementation_->time_stamp; }
+TimestampAlignment Flight::timestamp_alignment() const { return implementation_->timestamp_alignment; }
 
 const std::string& Flight::time_variable() const {
   return implementation_->names[static_cast<std::size_t>(implementation_->source.variable)];
@@ -466,7 +466,7 @@ UnitConversion Flight::conversion(const std::string& name, const std::string& wa
       const VariableInfo& info = implementation_->variable(i).info;
       if (info.is_series) series.push_back(info);
     }
-    throw absent_variable(path().string(), series, name, wanted, role);
+    throw missing_variable(path().string(), series, name, wanted, role);
   }
   const std::string& own = variable(name).units;
   if (stated.empty()) return UnitConversion::between(own, wanted, {name, path().string(), role});
@@ -492,10 +492,10 @@ void Flight::require_values(const std::string& name) const {
                           path().string(), name, records()));
 }
 
-LeftOut Flight::read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
-                     double* out) const {
+RejectedCounts Flight::read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
+                            double* out) const {
   Variable& variable = implementation_->find_series(name);
-  LeftOut left_out = implementation_->read(variable, block, out);
+  RejectedCounts left_out = implementation_->read(variable, block, out);
   const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
   for (std::size_t i = 0; i < count; ++i) {
     const double converted = conversion(out[i]);
@@ -505,8 +505,8 @@ LeftOut Flight::read(const std::string& name, RecordBlock block, const UnitConve
   return left_out;
 }
 
-LeftOut Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
-                             const UnitConversion& conversion, double* out) const {
+RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
+                                    const UnitConversion& conversion, double* out) const {
   Variable& variable = implementation_->find_series(name);
   const int own = variable.info.rate;
   if (rate == own) return read(name, block, conversion, out);
@@ -518,7 +518,7 @@ LeftOut Flight::read_at_rate(int rate, const std::string& name, RecordBlock bloc
         path().string(), name, own, rate, implementation_->rates_that_fit(rate)));
   std::vector<double>& values = implementation_->scratch;
   values.resize(block.count * static_cast<std::size_t>(own));
-  LeftOut left_out = implementation_->read(variable, block, values.data());
+  RejectedCounts left_out = implementation_->read(variable, block, values.data());
   for (double& value : values) {
     if (std::isnan(value) || !std::isnan(conversion(value))) continue;
     value = missing;
@@ -549,7 +549,7 @@ void Flight::read_sample_times(RecordBlock block, int rate, double* out) const {
   stamps.resize(block.count);
   read_time_stamps(block, stamps.data());
   const double step = time().step;
-  const double begin = time_stamp() == TimeStamp::begin ? 0 : -step / 2;
+  const double begin = timestamp_alignment() == TimestampAlignment::begin ? 0 : -step / 2;
   for (std::size_t i = 0; i < block.count; ++i)
     for (int k = 0; k < rate; ++k) *out++ = stamps[i] + begin + (k + 0.5) / rate * step;
 }

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <fstream>
 
-#include <pcor/words/error.hpp>
-#include <pcor/words/shell_word.hpp>
-#include "flight/file_in_hand.hpp"
+#include <pcor/base/error.hpp>
+#include <pcor/base/shell_quote.hpp>
+#include "flight/current_input.hpp"
 #include "flight/netcdf_file.hpp"
 
 namespace pcor::internal {
@@ -60,7 +60,7 @@ std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) 
   if (path.extension() == ".gz")
     throw Error(Error::Code::file,
                 fmt::format("{} is compressed; unpack it with gunzip -k {}, and name {}", path.string(),
-                            shell_word(path.string()), (path.parent_path() / path.stem()).string()));
+                            shell_quote(path.string()), (path.parent_path() / path.stem()).string()));
   throw Error(
       Error::Code::file,
       path.string() +

@@ -48,7 +48,7 @@ class FlightFile {
   virtual bool is_numeric(int variable) const = 0;
 
   /// The greatest number that the type of a numeric variable holds.
-  virtual double greatest_number(int variable) const = 0;
+  virtual double max_number(int variable) const = 0;
 
   /// The numbers that stand for missing values of a numeric variable, as `read` gives them.
   virtual std::vector<double> missing_values(int variable) const = 0;

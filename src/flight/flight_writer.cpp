@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
-#include <pcor/words/utc.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <limits>
 #include <optional>
 
-#include <pcor/words/replacement_file.hpp>
+#include <pcor/base/atomic_file.hpp>
 #include "flight/cf_description.hpp"
 #include "flight/netcdf_copy.hpp"
 #include "flight/netcdf_output.hpp"
@@ -72,7 +72,7 @@ struct FlightWriter::Implementation {
   FileDescription description;
   double midnight;
   bool whole_seconds;
-  ReplacementFile replacement;
+  AtomicFile replacement;
   std::optional<NetcdfOutput> file;
   std::optional<NetcdfCopy> copies;  // from an input that is a netCDF file
   std::vector<Series> series;        // from another one
@@ -426,7 +426,7 @@ NewFlight start_of(const Flight& input) {
   const TimeAxis& time = input.time();
   const bool fits_integers =
       time.whole_seconds && time.last - midnight_before(time.first) <= std::numeric_limits<int>::max();
-  return {time.first, fits_integers, netcdf ? netcdf->kind() : FileKind::netcdf4};
+  return {time.first, fits_integers, netcdf ? netcdf->kind() : NetcdfFormat::netcdf4};
 }
 
 }  // namespace

@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
+#include "base/quoting.hpp"
 #include "flight/flight_file.hpp"
 #include "numerics/missing.hpp"
-#include "words/quoting.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -76,7 +76,7 @@ class IcarttFile final : public FlightFile {
   std::string text_attribute(int variable, const std::string& name) const override;
   std::vector<double> number_attribute(int variable, const std::string& name) const override;
   bool is_numeric(int /*variable*/) const override { return true; }
-  double greatest_number(int variable) const override;
+  double max_number(int variable) const override;
   std::vector<double> missing_values(int /*variable*/) const override { return {}; }
   std::array<double, 2> valid_range(int variable) const override;
   void read(int variable, RecordBlock records, double* out) const override;
@@ -151,7 +151,7 @@ class IcarttFile::Reader {
   double number(const std::string& text) const {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != '\0') fail(fmt::format("{} is not a number", in_quotes(text)));
+    if (text.empty() || *end != '\0') fail(fmt::format("{} is not a number", quote(text)));
     return value;
   }
 
@@ -193,7 +193,7 @@ class IcarttFile::Reader {
       if (fields.size() > 3 && !fields[3].empty()) variable.attributes.emplace_back("long_name", fields[3]);
       variable.scale = scales[static_cast<std::size_t>(i)];
       if (!std::isfinite(variable.scale) || variable.scale == 0.0)
-        fail(fmt::format("the scale factor of {} is no number other than 0", in_quotes(variable.name)));
+        fail(fmt::format("the scale factor of {} is no number other than 0", quote(variable.name)));
       variable.missing = {missing[static_cast<std::size_t>(i)]};
     }
   }
@@ -283,7 +283,7 @@ std::vector<double> IcarttFile::number_attribute(int variable, const std::string
   return text.empty() || *end != '\0' ? std::vector<double>() : std::vector<double>{value};
 }
 
-double IcarttFile::greatest_number(int /*variable*/) const { return std::numeric_limits<double>::max(); }
+double IcarttFile::max_number(int /*variable*/) const { return std::numeric_limits<double>::max(); }
 
 std::array<double, 2> IcarttFile::valid_range(int /*variable*/) const { return {-infinity, infinity}; }
 

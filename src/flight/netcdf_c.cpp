@@ -30,13 +30,13 @@ std::string name_by(Function* function, Arguments... arguments) {
 }
 
 constexpr struct {
-  FileKind kind;
+  NetcdfFormat kind;
   int format, mode;
-} kinds[] = {{FileKind::classic, NC_FORMAT_CLASSIC, 0},
-             {FileKind::offset64, NC_FORMAT_64BIT_OFFSET, NC_64BIT_OFFSET},
-             {FileKind::cdf5, NC_FORMAT_CDF5, NC_64BIT_DATA},
-             {FileKind::netcdf4, NC_FORMAT_NETCDF4, NC_NETCDF4},
-             {FileKind::netcdf4_classic, NC_FORMAT_NETCDF4_CLASSIC, NC_NETCDF4 | NC_CLASSIC_MODEL}};
+} kinds[] = {{NetcdfFormat::classic, NC_FORMAT_CLASSIC, 0},
+             {NetcdfFormat::offset64, NC_FORMAT_64BIT_OFFSET, NC_64BIT_OFFSET},
+             {NetcdfFormat::cdf5, NC_FORMAT_CDF5, NC_64BIT_DATA},
+             {NetcdfFormat::netcdf4, NC_FORMAT_NETCDF4, NC_NETCDF4},
+             {NetcdfFormat::netcdf4_classic, NC_FORMAT_NETCDF4_CLASSIC, NC_NETCDF4 | NC_CLASSIC_MODEL}};
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void BufferedFile::open(const std::filesystem::path& path, std::size_t buffer) {
   nullObject = false;
 }
 
-void BufferedFile::create(const std::filesystem::path& path, FileKind kind, std::size_t buffer) {
+void BufferedFile::create(const std::filesystem::path& path, NetcdfFormat kind, std::size_t buffer) {
   int mode = NC_CLOBBER;
   for (const auto& each : kinds)
     if (each.kind == kind) mode |= each.mode;
@@ -64,12 +64,12 @@ void BufferedFile::close_quietly() noexcept {
   nullObject = true;
 }
 
-FileKind BufferedFile::kind() const {
+NetcdfFormat BufferedFile::kind() const {
   int format = 0;
   check(nc_inq_format(myId, &format));
   for (const auto& each : kinds)
     if (each.format == format) return each.kind;
-  return FileKind::netcdf4;
+  return NetcdfFormat::netcdf4;
 }
 
 std::optional<int> find_variable(const netCDF::NcGroup& file, const std::string& name) {
@@ -80,11 +80,11 @@ std::optional<int> find_variable(const netCDF::NcGroup& file, const std::string&
   return number;
 }
 
-std::string name_of(const NcVar& variable) {
+std::string to_string(const NcVar& variable) {
   return name_by(nc_inq_varname, group_of(variable), variable.getId());
 }
 
-std::string name_of(const netCDF::NcDim& dimension) {
+std::string to_string(const netCDF::NcDim& dimension) {
   return name_by(nc_inq_dimname, group_of(dimension), dimension.getId());
 }
 

@@ -21,7 +21,7 @@ class BufferedFile : public netCDF::NcFile {
   void open(const std::filesystem::path& path, std::size_t buffer);
 
   /// Replaces an existing file. NcFile::create takes no size of a buffer.
-  void create(const std::filesystem::path& path, FileKind kind, std::size_t buffer);
+  void create(const std::filesystem::path& path, NetcdfFormat kind, std::size_t buffer);
 
   /// Closes once. After an error of NcFile::close the destructor of NcFile would close the file again.
   void close();
@@ -31,7 +31,7 @@ class BufferedFile : public netCDF::NcFile {
   ~BufferedFile() override { close_quietly(); }
 
   /// How the file is stored. NcFile has no function for it.
-  FileKind kind() const;
+  NetcdfFormat kind() const;
 };
 
 /// The number of a variable; nothing if there is none of that name. NcGroup::getVar lists all variables to
@@ -40,8 +40,8 @@ std::optional<int> find_variable(const netCDF::NcGroup& file, const std::string&
 
 /// Names of any length. The functions of netcdf-cxx4 have room for NC_MAX_NAME bytes, and the library copies
 /// the longer names that HDF5 allows beyond it.
-std::string name_of(const netCDF::NcVar& variable);
-std::string name_of(const netCDF::NcDim& dimension);
+std::string to_string(const netCDF::NcVar& variable);
+std::string to_string(const netCDF::NcDim& dimension);
 std::vector<std::string> attribute_names(const netCDF::NcVar& variable);
 
 /// The type of a variable (an nc_type). NcVar::getType looks for a type that a file defines itself in the

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include <pcor/units/units.hpp>
-#include "flight/file_in_hand.hpp"
+#include "flight/current_input.hpp"
 
 using netCDF::NcDim;
 using netCDF::NcVar;

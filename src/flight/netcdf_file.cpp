@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 #include <strings.h>
 #include <unistd.h>
-#include <pcor/words/shell_word.hpp>
+#include <pcor/base/shell_quote.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -17,8 +17,8 @@
 #include <new>
 #include <string_view>
 
-#include "flight/file_in_hand.hpp"
-#include "words/quoting.hpp"
+#include "base/quoting.hpp"
+#include "flight/current_input.hpp"
 
 using netCDF::NcDim;
 using netCDF::NcVar;
@@ -32,7 +32,7 @@ constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
 constexpr std::size_t page = std::size_t{4} << 10;
 // Of records between these only the pages are moved that hold what is wanted. Longer ones hold so much else
 // that bringing all of it into memory would take longer.
-constexpr std::size_t large_record = std::size_t{32} << 10, longest_brought = std::size_t{1} << 20;
+constexpr std::size_t large_record = std::size_t{32} << 10, max_brought = std::size_t{1} << 20;
 
 struct NumberType {
   int type = NC_NAT;
@@ -102,7 +102,7 @@ bool begins_with(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 bool is_brought(std::size_t record_bytes) {
-  return record_bytes > large_record && record_bytes <= longest_brought;
+  return record_bytes > large_record && record_bytes <= max_brought;
 }
 
 std::string without_trailing_blanks(std::string text) {
@@ -140,8 +140,8 @@ std::size_t elements(const std::vector<std::size_t>& shape) {
 
 std::size_t records_in_buffer(std::size_t record_bytes) {
   // A block does not begin where a buffer does.
-  constexpr std::size_t least = 16, most_bytes = classic_buffer_bytes / 4 * 3;
-  return std::clamp(most_bytes / std::max<std::size_t>(record_bytes, 1), least, records_per_block);
+  constexpr std::size_t least = 16, max_bytes = classic_buffer_bytes / 4 * 3;
+  return std::clamp(max_bytes / std::max<std::size_t>(record_bytes, 1), least, records_per_block);
 }
 
 std::size_t NetcdfFile::records_at_once() const {
@@ -216,7 +216,7 @@ std::string NetcdfFile::allowed(const std::string& name, const char* what) const
       Error::Code::file,
       fmt::format("{}: {} is called {}, and netCDF allows {} bytes for a name; give it a shorter one, "
                   "as h5py can, or fetch the file again from its source",
-                  path_.string(), what, in_quotes(name), NC_MAX_NAME));
+                  path_.string(), what, quote(name), NC_MAX_NAME));
 }
 
 int NetcdfFile::variable_count() const {
@@ -229,7 +229,7 @@ std::optional<int> NetcdfFile::find_variable(const std::string& name) const {
 }
 
 std::string NetcdfFile::variable_name(int number) const {
-  return allowed(attempt("cannot read a variable's name", [&] { return name_of(variable(number)); }),
+  return allowed(attempt("cannot read a variable's name", [&] { return to_string(variable(number)); }),
                  "a variable");
 }
 
@@ -242,7 +242,7 @@ std::vector<int> NetcdfFile::dimensions_of(int number) const {
 }
 
 std::string NetcdfFile::dimension_name(int number) const {
-  return allowed(attempt("cannot read a dimension's name", [&] { return name_of(dimension(number)); }),
+  return allowed(attempt("cannot read a dimension's name", [&] { return to_string(dimension(number)); }),
                  "a dimension");
 }
 
@@ -304,8 +304,7 @@ bool NetcdfFile::is_unsigned(int variable) const {
   const std::string said = text_attribute(variable, "_Unsigned");
   const auto is = [&said](const char* word) { return strcasecmp(said.c_str(), word) == 0; };
   if (!is("true") && !is("false")) {
-    refuse_attribute(variable, "_Unsigned",
-                     fmt::format("is {}, and neither true nor false", in_quotes(said)));
+    refuse_attribute(variable, "_Unsigned", fmt::format("is {}, and neither true nor false", quote(said)));
   }
   return is("true");
 }
@@ -316,7 +315,7 @@ void NetcdfFile::make_unsigned(int variable, double* numbers, std::size_t count)
   for (std::size_t i = 0; i < count; ++i) numbers[i] += numbers[i] < 0 ? type.span : 0;
 }
 
-double NetcdfFile::greatest_number(int variable) const {
+double NetcdfFile::max_number(int variable) const {
   const double span = number_type(type_of(variable)).span;
   if (span == 0) return std::numeric_limits<double>::max();
   return (is_unsigned(variable) ? span : span / 2) - 1;
@@ -354,14 +353,14 @@ void NetcdfFile::refuse_attribute(int variable, const std::string& name, const s
       fmt::format("{}: the attribute {} of {} {}; correct it, or take it away with ncatted -a {} {}, or "
                   "with h5py where that cannot write the file",
                   path_.string(), name, is_global ? "the file" : of, why,
-                  shell_word(fmt::format("{},{},d,,", name, of)), shell_path(path_.string())));
+                  shell_quote(fmt::format("{},{},d,,", name, of)), shell_path(path_.string())));
 }
 
 std::string NetcdfFile::ignored_range(int variable) const {
   for (const RangeAttribute& each : range_attributes) {
     const auto attribute = find_attribute(variable, each.name);
     if (attribute && is_text(*attribute) && stored_numbers(variable, each.name).size() != each.count)
-      return fmt::format("{} = {}", each.name, in_quotes(text_attribute(variable, each.name)));
+      return fmt::format("{} = {}", each.name, quote(text_attribute(variable, each.name)));
   }
   return {};
 }

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "flight/classic_netcdf.hpp"
 #include "flight/file_state.hpp"
 #include "flight/flight_file.hpp"
@@ -29,8 +29,8 @@ class NetcdfFile : public FlightFile {
   explicit NetcdfFile(std::filesystem::path path);
   ~NetcdfFile() override;
 
-  FileKind kind() const { return kind_; }
-  bool is_hdf5() const { return kind_ == FileKind::netcdf4 || kind_ == FileKind::netcdf4_classic; }
+  NetcdfFormat kind() const { return kind_; }
+  bool is_hdf5() const { return kind_ == NetcdfFormat::netcdf4 || kind_ == NetcdfFormat::netcdf4_classic; }
 
   /// A variable by its number. That of `whole_file` has the attributes of the file.
   netCDF::NcVar variable(int number) const { return {file_, number}; }
@@ -77,7 +77,7 @@ class NetcdfFile : public FlightFile {
   std::string text_attribute(int variable, const std::string& name) const override;
   std::vector<double> number_attribute(int variable, const std::string& name) const override;
   bool is_numeric(int variable) const override;
-  double greatest_number(int variable) const override;
+  double max_number(int variable) const override;
   std::vector<double> missing_values(int variable) const override;
   std::array<double, 2> valid_range(int variable) const override;
   std::string ignored_range(int variable) const override;
@@ -85,14 +85,14 @@ class NetcdfFile : public FlightFile {
 
  protected:
   /// A file that is created by `file_`.
-  NetcdfFile(std::filesystem::path path, FileKind kind) : path_(std::move(path)), kind_(kind) {}
+  NetcdfFile(std::filesystem::path path, NetcdfFormat kind) : path_(std::move(path)), kind_(kind) {}
 
   /// The error for a status of the library. @param message without what to do
   virtual Error error_of(int status, const std::string& message) const;
 
   std::filesystem::path path_;
   BufferedFile file_;
-  FileKind kind_ = FileKind::classic;
+  NetcdfFormat kind_ = NetcdfFormat::classic;
 
  private:
   [[noreturn]] void fail(const netCDF::exceptions::NcException& error, std::string_view doing) const;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "words/quoting.hpp"
+#include "base/quoting.hpp"
 
 using netCDF::NcDim;
 using netCDF::NcVar;
@@ -13,7 +13,7 @@ using netCDF::NcVar;
 namespace pcor::internal {
 
 NetcdfOutput::NetcdfOutput(const std::filesystem::path& path, const std::filesystem::path& shown_path,
-                           FileKind kind)
+                           NetcdfFormat kind)
     : NetcdfFile(shown_path, kind) {
   attempt("cannot be created", [&] { file_.create(path, kind, classic_buffer_bytes); });
   attempt("cannot be written", [&] {
@@ -43,7 +43,7 @@ bool NetcdfOutput::has_other_length(const std::string& dimension, std::size_t le
 NcDim NetcdfOutput::dimension_of(const std::string& name, std::size_t length) {
   const NcDim known = file_.getDim(name);
   if (known.isNull())
-    return attempt("cannot have a dimension called " + in_quotes(name),
+    return attempt("cannot have a dimension called " + quote(name),
                    [&] { return file_.addDim(name, length); });
   if (known.getSize() != length)
     throw Error(fmt::format("{}: the dimension {} has two lengths, {} and {}; leave one variable out",
@@ -58,14 +58,14 @@ std::vector<NcDim> NetcdfOutput::dimensions_of_series(std::size_t rate) {
 
 int NetcdfOutput::add_variable(const std::string& name, netCDF::NcType type,
                                const std::vector<NcDim>& dimensions) {
-  const NcVar variable = attempt("cannot have a variable called " + in_quotes(name),
+  const NcVar variable = attempt("cannot have a variable called " + quote(name),
                                  [&] { return file_.addVar(name, type, dimensions); });
   if (!is_hdf5() || dimensions.empty() || dimensions.front() != time_) return variable.getId();
   // A thousand records a chunk, and no more of them in memory than a block needs.
-  constexpr std::size_t most_elements = 1 << 16, most_records = records_per_block / 4, slots = 101;
+  constexpr std::size_t max_elements = 1 << 16, max_records = records_per_block / 4, slots = 101;
   std::vector<std::size_t> chunk{1};
   for (std::size_t i = 1; i < dimensions.size(); ++i) chunk.push_back(dimensions[i].getSize());
-  chunk[0] = std::clamp<std::size_t>(most_elements / elements(chunk), 1, most_records);
+  chunk[0] = std::clamp<std::size_t>(max_elements / elements(chunk), 1, max_records);
   variable.setChunking(NcVar::nc_CHUNKED, chunk);
   variable.setChunkCache(2 * elements(chunk) * type.getSize(), slots, 1);
   return variable.getId();

@@ -14,7 +14,7 @@ namespace pcor::internal {
 class NetcdfOutput final : public NetcdfFile {
  public:
   /// Creates it, over what is there. Messages call it `shown_path`.
-  NetcdfOutput(const std::filesystem::path& path, const std::filesystem::path& shown_path, FileKind kind);
+  NetcdfOutput(const std::filesystem::path& path, const std::filesystem::path& shown_path, NetcdfFormat kind);
 
   const netCDF::NcDim& time() const { return time_; }
   bool has(const std::string& name) const { return find_variable(name).has_value(); }

@@ -3,11 +3,11 @@
 #include <cstddef>
 #include <optional>
 
-#include <pcor/flight/file_in_hand.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/flight/current_input.hpp>
 #include <pcor/flight/flight.hpp>
-#include <pcor/words/error.hpp>
-#include "team/flight_share.hpp"
-#include "team/in_a_copy.hpp"
+#include "parallel/flight_partition.hpp"
+#include "parallel/in_a_copy.hpp"
 
 namespace pcor {
 
@@ -27,10 +27,10 @@ std::string trouble_with(const std::filesystem::path& flight) {
 
 }  // namespace
 
-ReadableFlights readable_flights(const std::vector<std::filesystem::path>& flights, Team& team,
+ReadableFlights readable_flights(const std::vector<std::filesystem::path>& flights, Communicator& comm,
                                  OpenedIn where) {
-  const FlightShare share = share_of_flights(team, flights);
-  const auto troubles = share.on_each_flight<std::string>([&](std::vector<std::string>& all) {
+  const FlightPartition share = partition_flights(comm, flights);
+  const auto troubles = share.gather_flights<std::string>([&](std::vector<std::string>& all) {
     std::vector<std::size_t> own;
     for (std::size_t number = 0; number < flights.size(); ++number) {
       if (share.owns(number)) own.push_back(number);
@@ -40,7 +40,8 @@ ReadableFlights readable_flights(const std::vector<std::filesystem::path>& fligh
       for (std::size_t k = 0; k < own.size(); ++k) all[own[k]] = trouble(k);
       return;
     }
-    const std::vector<std::optional<std::string>> said = in_a_copy(own.size(), most_seconds_in_hand, trouble);
+    const std::vector<std::optional<std::string>> said =
+        in_a_copy(own.size(), max_seconds_per_input, trouble);
     for (std::size_t k = 0; k < own.size(); ++k) {
       all[own[k]] =
           said[k].value_or(flights[own[k]].string() +

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "words/phrasing.hpp"
+#include "base/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -42,7 +42,7 @@ std::vector<int> candidates(const FlightFile& file, int variable) {
   std::vector<std::string> names{file.variable_name(variable) + "_FLAG"};
   const bool is_own_result = !file.text_attribute(FlightFile::whole_file, "pcor_model").empty();
   if (!is_own_result) {
-    for (std::string& name : words_of(file.text_attribute(variable, "ancillary_variables")))
+    for (std::string& name : split_words(file.text_attribute(variable, "ancillary_variables")))
       names.push_back(std::move(name));
   }
   std::vector<int> flags;
@@ -59,9 +59,9 @@ std::vector<int> candidates(const FlightFile& file, int variable) {
 StatusFlags::StatusFlags(const FlightFile& file, int variable, bool is_of_record)
     : variable_(variable),
       is_of_record_(is_of_record),
-      span_(span_of(file.greatest_number(variable))),
+      span_(span_of(file.max_number(variable))),
       missing_(file.missing_values(variable)) {
-  const std::vector<std::string> meanings = words_of(file.text_attribute(variable, "flag_meanings"));
+  const std::vector<std::string> meanings = split_words(file.text_attribute(variable, "flag_meanings"));
   const std::vector<double> values = file.number_attribute(variable, "flag_values");
   const std::vector<double> masks = file.number_attribute(variable, "flag_masks");
   for (std::size_t i = 0; i < meanings.size(); ++i) {

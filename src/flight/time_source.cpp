@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <strings.h>
+#include <pcor/base/error.hpp>
+#include <pcor/base/shell_quote.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/shell_word.hpp>
-#include <pcor/words/utc.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -79,8 +79,8 @@ Counting counting_of(const FlightFile& file, int variable) {
   const std::optional<double> date = flight_date(file);
   const std::string day_of_flight = date ? utc_text(*date, "%Y-%m-%d") : "DAY";
   return {path + ": " + name,
-          "state the unit it is in with ncatted -a " + shell_word("units," + name + ",o,c,") +
-              shell_word("seconds since " + day_of_flight + " 00:00:00 +0000") + " " + shell_path(path) +
+          "state the unit it is in with ncatted -a " + shell_quote("units," + name + ",o,c,") +
+              shell_quote("seconds since " + day_of_flight + " 00:00:00 +0000") + " " + shell_path(path) +
               (date ? "" : ", where DAY is the one that it counts from, as year-month-day"),
           usual_spelling(file.text_attribute(variable, "units")), file.text_attribute(variable, "calendar")};
 }
@@ -119,7 +119,7 @@ bool take(std::string_view& text, char letter) {
 // of 25 hours without a word. How they are to be written is left to it.
 bool is_time_of_day(std::string_view text) {
   constexpr int day_hours = 25;  // 24:00:00
-  constexpr int most_offset = 15;
+  constexpr int max_offset = 15;
   while (!text.empty() && (text.front() == ' ' || text.front() == 'T')) text.remove_prefix(1);
   if (!text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0) {
     if (!take_number(text, day_hours)) return false;
@@ -134,7 +134,7 @@ bool is_time_of_day(std::string_view text) {
   if (!take(text, '+') && !take(text, '-')) {
     if (text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0) return true;
   }
-  if (!take_number(text, most_offset)) return false;
+  if (!take_number(text, max_offset)) return false;
   take(text, ':');
   return text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0 || take_number(text, 60);
 }
@@ -200,8 +200,8 @@ std::optional<double> offset_of_seconds(double first_raw, double start) {
 }
 
 // The most seconds that the variable can count.
-double most_seconds(const FlightFile& file, int variable, const std::optional<UnitConversion>& epoch) {
-  return file.greatest_number(variable) * (epoch ? epoch->scale() : 1);
+double max_seconds(const FlightFile& file, int variable, const std::optional<UnitConversion>& epoch) {
+  return file.max_number(variable) * (epoch ? epoch->scale() : 1);
 }
 
 std::optional<int> find_time_variable(const FlightFile& file) {
@@ -262,11 +262,11 @@ TimeSource find_time(const FlightFile& file) {
   if (epoch && !is_of_aviation(first))
     throw Error(fmt::format("{} counts in \"{}\" and begins with {}, which is the {}; {}", counting.of, units,
                             *raw, utc_text(first), counting.how_to_state));
-  if (most_seconds(file, source.variable, epoch) < day)
+  if (max_seconds(file, source.variable, epoch) < day)
     throw Error(
         fmt::format("{} is stored in integers that go up to {}, too few for the seconds of a day: who "
                     "wrote it may have begun again there; have it written in 32 bits",
-                    counting.of, file.greatest_number(source.variable)));
+                    counting.of, file.max_number(source.variable)));
   if (units_hold) {
     constexpr double week = 7 * day;
     if (epoch->scale() > week)

@@ -1,10 +1,10 @@
 #include "flight/trouble_with_values.hpp"
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor::internal {
 
-std::string trouble_with_values(const Flight& flight, const std::string& variable) {
+std::string value_problem(const Flight& flight, const std::string& variable) {
   try {
     flight.require_values(variable);
   } catch (const Error& error) {

@@ -8,6 +8,6 @@ namespace pcor::internal {
 
 /// Why a variable that a flight has is no series with a value; empty where it is one.
 /// @throws Error if the file is damaged
-std::string trouble_with_values(const Flight& flight, const std::string& variable);
+std::string value_problem(const Flight& flight, const std::string& variable);
 
 }  // namespace pcor::internal

@@ -1,5 +1,5 @@
 #include <pcor/improve/improve.hpp>
-#include <pcor/roles/with_effects.hpp>
+#include <pcor/roles/add_effects.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,16 +11,16 @@
 #include <set>
 #include <utility>
 
+#include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>
-#include <pcor/words/error.hpp>
 #include "diagnose/traced_effect.hpp"
 #include "fit/lineage.hpp"
 #include "improve/improve_loop.hpp"
 #include "improve/model_trials.hpp"
 #include "improve/rival_choice.hpp"
 #include "numerics/missing.hpp"
+#include "parallel/flight_partition.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "team/flight_share.hpp"
 
 namespace pcor {
 
@@ -34,7 +34,7 @@ constexpr double unnamed_limit = 0.99;
 constexpr double fit_limit = 1.005;
 constexpr double surely = 2.0;  // standard deviations
 // Less likely rivals have no say in the correction.
-constexpr double least_probability = 0.01;
+constexpr double min_probability = 0.01;
 // Of the noise: differences of the static pressure below this do not matter.
 constexpr double negligible = 0.05;
 
@@ -69,7 +69,7 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
   candidate.is_sure = finding.gain > surely * finding.gain_error;
   for (const Alias& alias : finding.aliases) {
     candidate.aliases.push_back(alias.effect);
-    if (alias.probability >= least_probability)
+    if (alias.probability >= min_probability)
       candidate.choices.push_back({{alias.correction, alias.held, alias.is_alike}, alias.probability});
   }
   if (verdict == Verdict::partial) {
@@ -84,7 +84,7 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
   return candidate;
 }
 
-Candidate candidate_of(const TracedVariable& variable, const std::string& flights) {
+Candidate candidate_of(const EmpiricalPredictor& variable, const std::string& flights) {
   Candidate candidate;
   candidate.choices = {{{effect_of(variable, flights)}, 1.0}};
   candidate.title = fmt::format("what goes with {}{}", variable.name,
@@ -143,7 +143,7 @@ bool names_other_system(const Alias& alias) { return alias.effect.rfind("referen
 bool is_of_reference(const Finding& finding) {
   return finding.of_reference &&
          std::none_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
-           return alias.probability >= least_probability && !names_other_system(alias);
+           return alias.probability >= min_probability && !names_other_system(alias);
          });
 }
 
@@ -151,14 +151,14 @@ bool is_of_reference(const Finding& finding) {
 bool may_be_of_reference(const Finding& finding) {
   return finding.of_reference ||
          std::any_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
-           return alias.probability >= least_probability && names_other_system(alias);
+           return alias.probability >= min_probability && names_other_system(alias);
          });
 }
 
 /// The climb: the ladder so far, and how it goes on.
 class Climb {
  public:
-  Climb(const ImproveLoop& loop, const ModelFile& model) : loop_(loop), given_{model} {
+  Climb(const ImproveLoop& loop, const ModelDefinition& model) : loop_(loop), given_{model} {
     result_.holdout_is_flights = loop.has_holdout;
     ImproveStep first;
     RefitResult fit = loop.refit(given_);
@@ -198,8 +198,8 @@ class Climb {
     return model;
   }
 
-  /// Where it matters for the static pressure which of a rung's rivals is there, the model gets the one that
-  /// `choose_rival` chooses, or none; the doubt is part of its stated error.
+  /// Where it matters for the static pressure which of a rung's rivals is there, the model gets the
+  /// one that `choose_rival` chooses, or none; the doubt is part of its stated error.
   void choose_among_rivals() {
     std::vector<RungChoice> choices(rungs_.size(), 0);
     ProvenanceList rivals;
@@ -292,8 +292,8 @@ class Climb {
     result_.rms_train = train.rms_after;
     result_.given_rms_holdout = holdout.rms_before;
     result_.rms_holdout = holdout.rms_after;
-    // Where no rival is applied, less is explained than by the best one, which tells whether the loop did
-    // harm.
+    // Where no rival is applied, less is explained than by the best one, which tells whether the
+    // loop did harm.
     result_.worse = why_worse(comparison_of(tried, 0, 3, loop_.has_holdout));
     for (TrialFlight& flight : tried) {
       if (!flight.first_reference) continue;
@@ -324,11 +324,11 @@ class Climb {
       return;
     }
     const std::size_t added = result_.steps.size() - 1;
-    if (added >= loop_.most_steps) {
+    if (added >= loop_.max_steps) {
       result_.why_stopped = fmt::format("{} effects were added, as many as were allowed", added);
       return;
     }
-    candidates.effects.resize(std::min(candidates.effects.size(), loop_.most_steps - added));
+    candidates.effects.resize(std::min(candidates.effects.size(), loop_.max_steps - added));
     std::vector<std::string> refusals;
     for (const Candidate& candidate : candidates.effects) {
       const std::string refusal = refusal_of(candidate);
@@ -352,7 +352,7 @@ class Climb {
         candidates.effects.push_back(candidate_of(finding, now.verdict));
     }
     if (candidates.all || !loop_.trace_variables) return candidates;
-    for (const TracedVariable& variable : now.unexplained.variables) {
+    for (const EmpiricalPredictor& variable : now.unexplained.variables) {
       if (variable.formula.empty() || has(result_.fit.model, id_of_trace(variable.name))) continue;
       candidates.effects.push_back(candidate_of(variable, loop_.flights));
       break;
@@ -418,8 +418,8 @@ class Climb {
                          shown(fitted.rms_after), shown(fitted.rms_before));
     }
     measure(step, fit, model.alike);
-    // Without held-out flights the parts in turn of the diagnosis count. Where the model describes more
-    // samples than before, those with flaps out, both are compared on these.
+    // Without held-out flights the parts in turn of the diagnosis count. Where the model describes
+    // more samples than before, those with flaps out, both are compared on these.
     const bool same_samples = fit.samples == result_.fit.samples;
     const bool in_turn = !loop_.has_holdout && same_samples;
     const Comparison& judged = loop_.has_holdout ? held_out : fitted;
@@ -486,7 +486,7 @@ class Climb {
   const ImproveLoop& loop_;
   Improvement result_;
   TrialModel given_;
-  ModelFile refitted_;
+  ModelDefinition refitted_;
   std::vector<std::string> alike_{};  // effects of the model at the top of the ladder
   TrialModel delivered_{};
   std::vector<std::vector<Choice>> rungs_{};  // what may be each effect that was added, itself first
@@ -507,7 +507,7 @@ std::vector<std::string> common_variables(const FlightSet& flights) {
 }
 
 /// Holds parameters of the last effect, which its flights cannot tell from others.
-void hold(ModelFile& file, const std::vector<std::string>& parameters) {
+void hold(ModelDefinition& file, const std::vector<std::string>& parameters) {
   const std::vector<std::string> names = parameter_names(file.model.effects.back());
   file.fits.resize(file.model.effects.size());
   EffectFit& fit = file.fits.back();
@@ -535,9 +535,9 @@ std::string rivals_text(const ImproveStep& step) {
       step.rival_error);
 }
 
-Improvement ImproveLoop::run(const ModelFile& model) const { return Climb(*this, model).run(); }
+Improvement ImproveLoop::run(const ModelDefinition& model) const { return Climb(*this, model).run(); }
 
-Improvement improve(const FlightSet& flights, const ModelFile& model, const References& references,
+Improvement improve(const FlightSet& flights, const ModelDefinition& model, const References& references,
                     const ImproveOptions& options) {
   const FlightSet all = flights.with(options.refit.holdout);
   const std::vector<std::string> variables = common_variables(all);
@@ -546,7 +546,7 @@ Improvement improve(const FlightSet& flights, const ModelFile& model, const Refe
   const auto tell = [&options](const std::string& what) {
     if (options.progress) options.progress(what);
   };
-  const auto last_of = [&model](const ModelFile& file) {
+  const auto last_of = [&model](const ModelDefinition& file) {
     return file.model.effects.size() == model.model.effects.size() ? std::string("the model as it is")
                                                                    : file.model.effects.back().id;
   };
@@ -585,7 +585,7 @@ Improvement improve(const FlightSet& flights, const ModelFile& model, const Refe
     return diagnosis;
   };
   loop.add = [&](const TrialModel& trial, const AddedEffect& added) {
-    TrialModel extended{with_effects(trial.file, {added.effect}, variables), trial.alike};
+    TrialModel extended{add_effects(trial.file, {added.effect}, variables), trial.alike};
     hold(extended.file, added.held);
     if (added.is_alike) extended.alike.push_back(added.effect.id);
     return extended;
@@ -595,7 +595,7 @@ Improvement improve(const FlightSet& flights, const ModelFile& model, const Refe
   };
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
   loop.trace_variables = options.trace_variables;
-  loop.most_steps = options.most_steps;
+  loop.max_steps = options.max_steps;
   loop.flights = fmt::format("{}", fmt::join(names, ", "));
   Improvement improvement = loop.run(model);
   all.require_unchanged();

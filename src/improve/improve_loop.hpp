@@ -22,12 +22,12 @@ struct ImproveLoop {
   std::function<std::vector<TrialFlight>(const std::vector<TrialModel>& models)> try_models;
   bool has_holdout = false;     ///< the refit tells of samples that are held out
   bool trace_variables = true;  ///< as in `ImproveOptions`
-  std::size_t most_steps = 8;   ///< effects that are added at most
+  std::size_t max_steps = 8;    ///< effects that are added at most
   std::string flights{};        ///< in words, for the source of a traced formula
 
   /// Climbs the ladder of errors from `model`. @throws Error as `refit` and `diagnose` for the model as it
   /// is.
-  Improvement run(const ModelFile& model) const;
+  Improvement run(const ModelDefinition& model) const;
 };
 
 }  // namespace pcor::internal

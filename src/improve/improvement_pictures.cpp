@@ -9,9 +9,9 @@
 #include <vector>
 
 #include <pcor/numerics/noise.hpp>
+#include "base/phrasing.hpp"
 #include "fit/coefficient_picture.hpp"
 #include "numerics/missing.hpp"
-#include "words/phrasing.hpp"
 
 namespace pcor::internal::report {
 namespace {
@@ -24,19 +24,19 @@ double independent_samples(const Improvement& improvement, bool held_out) {
     if (count == 0 || flight.samples == nullptr) continue;
     const double step = flight.samples->step;
     const NoiseFloor noise =
-        noise_floor(flight.best, stretches_of(flight.best, flight.samples->time, step), step);
-    independent += static_cast<double>(count) / noise.samples_per_independent;
+        noise_floor(flight.best, contiguous_segments(flight.best, flight.samples->time, step), step);
+    independent += static_cast<double>(count) / noise.autocorrelation_time;
   }
   return independent;
 }
 
 std::string held_out_series(const Improvement& improvement) {
   if (!improvement.holdout_is_flights) return "not in the fit, five parts in turn";
-  return "held out: " + list_text(held_out_names(improvement));
+  return "held out: " + join_list(held_out_names(improvement));
 }
 
 /// The coefficient that is called so, like "static-qp.a2"; NaN where the model does not have it.
-double value_in(const ModelFile& model, const std::string& name) {
+double value_in(const ModelDefinition& model, const std::string& name) {
   for (const ModelEffect& effect : model.model.effects) {
     const std::vector<std::string> names = parameter_names(effect);
     for (std::size_t i = 0; i < std::min(names.size(), effect.parameters.size()); ++i) {
@@ -97,7 +97,7 @@ DotPanel ladder_picture(const Improvement& improvement) {
   return panel;
 }
 
-std::optional<DotPanel> coefficients_picture(const Improvement& improvement, const ModelFile& start) {
+std::optional<DotPanel> coefficients_picture(const Improvement& improvement, const ModelDefinition& start) {
   std::vector<FittedParameter> parameters = improvement.fit.parameters;
   for (FittedParameter& parameter : parameters) parameter.start = value_in(start, parameter.name);
   return coefficient_picture(parameters, "as it came", "in the best model");

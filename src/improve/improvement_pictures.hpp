@@ -22,7 +22,7 @@ bool delivers_rivals(const Improvement& improvement);
 DotPanel ladder_picture(const Improvement& improvement);
 
 /// The coefficients of the best model beside those of the one to begin with; none where nothing was fitted.
-std::optional<DotPanel> coefficients_picture(const Improvement& improvement, const ModelFile& start);
+std::optional<DotPanel> coefficients_picture(const Improvement& improvement, const ModelDefinition& start);
 
 /// Says at the name of each flight that is held out as a whole that it is.
 void name_held_out(Report& report, const Improvement& improvement);

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
-#include <pcor/words/error.hpp>
 
 #include "diagnose/diagnosis_panels.hpp"
 #include "diagnose/finding_page.hpp"
@@ -59,7 +59,7 @@ void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement)
   if (columns.empty()) return;
   std::string held_out = "Nothing was held out.";
   const std::vector<std::string> names = held_out_names(improvement);
-  if (!names.empty()) held_out = fmt::format("Held out: {}.", list_text(names));
+  if (!names.empty()) held_out = fmt::format("Held out: {}.", join_list(names));
   panels.add_time("The ladder in time", held_out, columns, "residual");
 }
 
@@ -75,7 +75,7 @@ ReportTable ladder_table(const Improvement& improvement) {
                    "what it taught"};
   for (const ImproveStep& step : improvement.steps) {
     table.rows.push_back({rung_name(step), std::to_string(step.terms), cell(step.rms_train, 3),
-                          cell(step.rms_holdout, 3), cell(step.noise_rms, 3), list_text(step.aliases),
+                          cell(step.rms_holdout, 3), cell(step.noise_rms, 3), join_list(step.aliases),
                           sentence(step.learnt)});
   }
   return table;
@@ -94,7 +94,7 @@ void summarise(Report& report, const Improvement& improvement) {
     std::string text = fmt::format("Added: {}; the rms residual goes to {} hPa.",
                                    name_with_id(step.title, step.added), hpa(step.rms_holdout));
     if (!step.aliases.empty())
-      text += fmt::format(" These flights cannot tell it from {}.", list_text(step.aliases));
+      text += fmt::format(" These flights cannot tell it from {}.", join_list(step.aliases));
     report.summary.push_back(std::move(text));
     if (const std::string rivals = rivals_text(step); !rivals.empty())
       report.summary.push_back(sentence("Of " + step.added + ": " + rivals));
@@ -159,7 +159,8 @@ void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size
 
 }  // namespace
 
-Report improvement_report(const Improvement& improvement, const ModelFile& start, const WhatIf* what_if) {
+Report improvement_report(const Improvement& improvement, const ModelDefinition& start,
+                          const WhatIf* what_if) {
   if (improvement.steps.empty()) throw Error("report: the ladder has no rung; improve a model first");
   const std::vector<ImproveStep>& steps = improvement.steps;
   const Diagnosis& top = steps.back().diagnosis;
@@ -171,7 +172,7 @@ Report improvement_report(const Improvement& improvement, const ModelFile& start
                               : fmt::format("{} effects make the model better", added);
   report.subtitle = fmt::format("Improvement of {} against {}", start.model.name, top.reference);
   summarise(report, improvement);
-  add_facts(panels, top, start, {});
+  add_info(panels, top, start, {});
 
   std::vector<std::string> rungs;
   for (std::size_t i = 0; i < steps.size(); ++i) {

@@ -57,7 +57,7 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
   for (WhatIfCandidate& rival : rivals) {
     const bool is_new = std::none_of(candidates.begin(), candidates.end(),
                                      [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });
-    if (is_new && candidates.size() < most_what_if_effects) candidates.push_back(std::move(rival));
+    if (is_new && candidates.size() < max_what_if_effects) candidates.push_back(std::move(rival));
   }
   WhatIf tried = what_if(flights, improvement.refitted, references, candidates, with);
   tried.panel.start = "refitted";

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include <pcor/effects/catalogue.hpp>
-#include <pcor/roles/with_effects.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include "campaign/linear_rows.hpp"
 #include "numerics/missing.hpp"
+#include "parallel/flight_partition.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/packed_residuals.hpp"
-#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 constexpr double surely = 2.0;  // standard deviations
 
 /// Where an effect stands in a model; the number of its effects where it has none of that name.
-std::size_t place_of(const ModelFile& model, const std::string& effect) {
+std::size_t place_of(const ModelDefinition& model, const std::string& effect) {
   const std::vector<ModelEffect>& effects = model.model.effects;
   const auto found = std::find_if(effects.begin(), effects.end(),
                                   [&effect](const ModelEffect& each) { return each.id == effect; });
@@ -29,30 +29,30 @@ std::vector<double> neutral_of(const ModelEffect& effect) {
   std::vector<double> parameters(effect.parameters.size(), 0.0);
   if (effect.is_formula()) return parameters;
   parameters = neutral_effect(effect.id).parameters;
-  const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+  const EffectInfo& info = effect_info[effect_named(effect.id)];
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (facts.parameters[i].shape) parameters[i] = effect.parameters[i];
+    if (info.parameters[i].shape) parameters[i] = effect.parameters[i];
   }
   return parameters;
 }
 
 /// Another system's model with the effects that are alike, with the coefficients that the model has.
-ModelFile with_what_is_alike(ModelFile other, const TrialModel& model,
-                             const std::vector<std::string>& variables) {
+ModelDefinition with_what_is_alike(ModelDefinition other, const TrialModel& model,
+                                   const std::vector<std::string>& variables) {
   for (const std::string& effect : model.alike) {
     const ModelEffect& own = model.file.model.effects[place_of(model.file, effect)];
     const std::size_t place = place_of(other, effect);
     if (place < other.model.effects.size()) {
       other.model.effects[place].parameters = own.parameters;
     } else {
-      other = with_effects(other, {own}, variables);
+      other = add_effects(other, {own}, variables);
     }
   }
   return other;
 }
 
 /// A model without the effects that are alike: they cancel where two systems are held against each other.
-ModelFile without_what_is_alike(ModelFile file, const TrialModel& model) {
+ModelDefinition without_what_is_alike(ModelDefinition file, const TrialModel& model) {
   std::vector<ModelEffect>& effects = file.model.effects;
   for (const std::string& alike : model.alike) {
     const auto place = static_cast<std::ptrdiff_t>(place_of(file, alike));
@@ -67,7 +67,7 @@ struct TrialReference {
   std::vector<std::vector<double>> coefficients;
 };
 
-TrialFlight tried_on(const FlightSet& flights, std::size_t number, const ModelFile& whole,
+TrialFlight tried_on(const FlightSet& flights, std::size_t number, const ModelDefinition& whole,
                      const TrialReference& trial, const RefitOptions& options, bool held_out) {
   TrialFlight flight;
   flight.samples = flights.samples(number, whole, trial.reference, options.mask);
@@ -85,14 +85,14 @@ TrialFlight tried_on(const FlightSet& flights, std::size_t number, const ModelFi
 
 }  // namespace
 
-bool has(const ModelFile& model, const std::string& effect) {
+bool has(const ModelDefinition& model, const std::string& effect) {
   return place_of(model, effect) < model.model.effects.size();
 }
 
-ModelFile union_of(const std::vector<ModelFile>& models) {
-  ModelFile whole = models.front();
+ModelDefinition union_of(const std::vector<ModelDefinition>& models) {
+  ModelDefinition whole = models.front();
   whole.fits.resize(whole.model.effects.size());
-  for (const ModelFile& model : models) {
+  for (const ModelDefinition& model : models) {
     for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
       const ModelEffect& effect = model.model.effects[e];
       if (has(whole, effect.id)) continue;
@@ -105,7 +105,7 @@ ModelFile union_of(const std::vector<ModelFile>& models) {
   return whole;
 }
 
-std::vector<double> coefficients_in(const ModelFile& model, const ModelFile& whole) {
+std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDefinition& whole) {
   std::vector<double> coefficients;
   for (const ModelEffect& effect : whole.model.effects) {
     const std::size_t place = place_of(model, effect.id);
@@ -121,7 +121,7 @@ References with_alike(const References& references, const TrialModel& model,
   if (model.alike.empty()) return references;
   References result;
   for (const std::shared_ptr<const Reference>& reference : references) {
-    const ModelFile* const other = reference->model();
+    const ModelDefinition* const other = reference->model();
     result.push_back(other == nullptr ? reference
                                       : reference->with_model(with_what_is_alike(*other, model, variables)));
   }
@@ -130,15 +130,15 @@ References with_alike(const References& references, const TrialModel& model,
 
 std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<TrialModel>& models,
                                     const References& references, const RefitOptions& options) {
-  std::vector<ModelFile> files;
+  std::vector<ModelDefinition> files;
   for (const TrialModel& model : models) files.push_back(model.file);
-  const ModelFile whole = union_of(files);
+  const ModelDefinition whole = union_of(files);
   std::vector<TrialFlight> tried;
   for (const std::shared_ptr<const Reference>& reference : references) {
     TrialReference trial{*reference, {}};
     for (const TrialModel& model : models) {
       std::vector<double>& all = trial.coefficients.emplace_back();
-      const ModelFile* const other = reference->model();
+      const ModelDefinition* const other = reference->model();
       all = coefficients_in(other == nullptr ? model.file : without_what_is_alike(model.file, model), whole);
       if (other == nullptr) continue;
       const std::vector<double> theirs = coefficients_in(without_what_is_alike(*other, model), *other);

@@ -11,7 +11,7 @@ namespace pcor::internal {
 /// A model, and the effects that the systems which it is held against have alike: an angle of the flow at
 /// which all pitot tubes lose pressure is no difference between them.
 struct TrialModel {
-  ModelFile file;
+  ModelDefinition file;
   std::vector<std::string> alike{};  ///< names of effects of the model
 };
 
@@ -45,14 +45,14 @@ std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<
                                     const References& references, const RefitOptions& options);
 
 /// Whether a model has an effect of that name.
-bool has(const ModelFile& model, const std::string& effect);
+bool has(const ModelDefinition& model, const std::string& effect);
 
 /// A model that has the effects of all models, with the coefficients of the first that has them.
-ModelFile union_of(const std::vector<ModelFile>& models);
+ModelDefinition union_of(const std::vector<ModelDefinition>& models);
 
 /// The coefficients of a model in the order of those of a union that it is part of: of an effect that it does
 /// not have those with which the effect does nothing, in the shape that it has in the union.
-std::vector<double> coefficients_in(const ModelFile& model, const ModelFile& whole);
+std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDefinition& whole);
 
 /// What two models leave on the same samples.
 struct Comparison {

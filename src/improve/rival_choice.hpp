@@ -15,9 +15,9 @@ struct RivalChoice {
 /// Chooses the rival of the least expected squared error of the static pressure,
 ///   sum over k of weight_k <(change_i - change_k)^2>,
 /// among those that no rival calls a harm: the corrected static pressure may not be further from where any
-/// rival has it than without a correction, but for `tolerance`. No correction is a choice, too. Where
-/// the expected error of the first rival is within the tolerance, it stays. Coefficients
-/// of different models are never averaged: a coefficient of one effect may multiply that of another.
+/// rival has it than without a correction, but for `tolerance`. No correction is a choice, too.
+/// Where the expected error of the first rival is within the tolerance, it stays. Coefficients of
+/// different models are never averaged: a coefficient of one effect may multiply that of another.
 ///
 /// @param changes by how much each rival changes the static pressure, hPa, of the same samples, NaN where
 /// missing @param weights probabilities of the rivals, which add up to 1 @param tolerance rms, hPa

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/residuals/residuals.hpp>
-#include <pcor/words/error.hpp>
 #include "campaign/gps_noise.hpp"
 #include "campaign/gps_rows.hpp"
 #include "numerics/missing.hpp"
@@ -34,13 +34,13 @@ double error_about_mean(const Eigen::MatrixXd& defects, const Eigen::MatrixXd& c
 
 }  // namespace
 
-std::optional<GpsDesign> gps_design(const Flight& flight, const ModelFile& model) {
+std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition& model) {
   std::vector<Eigen::Index> with_attack;
   std::vector<Eigen::Index> with_speed;
   std::vector<double> deviations;
   for (const ModelEffect& effect : model.model.effects) {
     if (effect.is_formula()) return std::nullopt;
-    const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+    const EffectInfo& info = effect_info[effect_named(effect.id)];
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
       const Eigen::Index place = as_index(deviations.size());
       const bool by_attack = effect.id == "static-alpha" || effect.id == "static-attack";
@@ -48,7 +48,7 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelFile& model
         with_attack.push_back(place);
       else
         with_speed.push_back(place);
-      deviations.push_back(prior_in_typical_sizes * std::abs(facts.parameters[p].typical));
+      deviations.push_back(prior_in_typical_sizes * std::abs(info.parameters[p].typical));
     }
   }
   const Eigen::Index count = as_index(deviations.size());

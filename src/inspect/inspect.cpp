@@ -8,11 +8,11 @@
 #include <cmath>
 #include <set>
 
+#include <pcor/base/error.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/residuals/reference.hpp>
-#include <pcor/roles/with_roles.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/utc.hpp>
+#include <pcor/roles/resolve_variables.hpp>
 #include "inspect/plausibility.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "roles/recorded_series.hpp"
@@ -78,13 +78,13 @@ std::vector<Quantity> sources_of(Quantity quantity) {
 
 std::vector<std::string> effects_that_need(Quantity role) {
   std::vector<std::string> effects;
-  for (const EffectFacts& facts : effect_facts) {
+  for (const EffectInfo& info : effect_info) {
     bool needs = false;
-    for (std::size_t i = 0; i < facts.need_count(); ++i) {
-      const std::vector<Quantity> sources = sources_of(facts.needs[i]);
+    for (std::size_t i = 0; i < info.need_count(); ++i) {
+      const std::vector<Quantity> sources = sources_of(info.needs[i]);
       needs = needs || std::find(sources.begin(), sources.end(), role) != sources.end();
     }
-    if (needs) effects.emplace_back(facts.id);
+    if (needs) effects.emplace_back(info.id);
   }
   return effects;
 }
@@ -92,8 +92,8 @@ std::vector<std::string> effects_that_need(Quantity role) {
 /// One flight that is looked at.
 class Look {
  public:
-  Look(const std::filesystem::path& path, TimeStamp time_stamp, const std::string& roles)
-      : flight_(path, time_stamp),
+  Look(const std::filesystem::path& path, TimestampAlignment timestamp_alignment, const std::string& roles)
+      : flight_(path, timestamp_alignment),
         roles_(roles),
         family_(roles.empty() ? family_of(flight_) : family_named(roles)) {
     result_.path = path.string();
@@ -108,7 +108,7 @@ class Look {
     look_at_samples();
     if (result_.model) result_.problems = find_problems(flight_, *result_.model);
     state_rounding();
-    result_.laws = laws_of_flight(flight_, laws, result_.notes);
+    result_.laws = model_candidates(flight_, laws, result_.notes);
     result_.corrected_pressure = processed_static_pressure(flight_, family_);
     find_reference();
     return std::move(result_);
@@ -125,7 +125,7 @@ class Look {
     result_.family = family_.name;
     result_.family_title = family_.title;
     if (roles_.empty()) {
-      for (const AircraftFamily* family : families_like(flight_)) result_.alike.push_back(family->name);
+      for (const VariableNaming* family : families_like(flight_)) result_.alike.push_back(family->name);
     } else {
       result_.alike = {family_.name};
     }
@@ -139,7 +139,7 @@ class Look {
 
   /// Of a doubtful flight the first family stands.
   void find_model() {
-    ModelFile model;
+    ModelDefinition model;
     // A file of the user's is found from wherever the model stands.
     model.roles_from =
         roles_.empty() || roles_ == family_.name ? family_.name : std::filesystem::absolute(roles_).string();
@@ -148,7 +148,7 @@ class Look {
         fmt::format("{} as recorded", result_.aircraft.empty() ? family_.title : result_.aircraft);
     std::vector<std::string> notes;
     try {
-      model = with_roles(model, flight_, notes);
+      model = resolve_variables(model, flight_, notes);
     } catch (const Error& error) {
       if (error.code() == Error::Code::file) throw;
       if (!take_pressures_by_evidence(model)) {
@@ -186,13 +186,13 @@ class Look {
   const RoleCandidate* sure_candidate(const std::string& series) const {
     if (!roles_.empty()) return nullptr;  // the user has chosen the names
     // A Mach number of the recording system is made of the pressures, and no independent one.
-    if (series == facts_of(Quantity::mach).name) return nullptr;
+    if (series == info_of(Quantity::mach).name) return nullptr;
     const auto found = evidence_.find(series);
     return found != evidence_.end() && is_sure(found->second) ? &found->second.front() : nullptr;
   }
 
   /// The pair of a file that no aircraft's names fit. What is named is this flight's own.
-  bool take_pressures_by_evidence(ModelFile& model) {
+  bool take_pressures_by_evidence(ModelDefinition& model) {
     if (!roles_.empty()) return false;
     const auto best = [this](const std::string& series) {
       const auto found = evidence_.find(series);
@@ -234,16 +234,16 @@ class Look {
 
   /// Roles that the aircraft's names leave open. A Mach number of the recording system is made of the
   /// pressures.
-  void add_roles_by_evidence(ModelFile& model) {
+  void add_roles_by_evidence(ModelDefinition& model) {
     const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
     const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
     const bool has_humidity = has(Quantity::vapor_pressure) || has(Quantity::dew_point);
     for (std::size_t i = 0; i < role_count; ++i) {
       const auto role = static_cast<Quantity>(i);
-      const std::string name(facts_of(role).name);
+      const std::string name(info_of(role).name);
       const RoleCandidate* const candidate = sure_candidate(name);
       const bool is_known = !result_.alike.empty() && !family_.names_of(name).empty() &&
-                            has_any(family_.names_of(name), std::string(facts_of(role).unit));
+                            has_any(family_.names_of(name), std::string(info_of(role).unit));
       const bool is_chosen =
           has(role) || is_known ||
           (has_temperature &&
@@ -271,7 +271,7 @@ class Look {
     });
   }
 
-  static bool plays_a_role(const ModelFile& model, const std::string& variable) {
+  static bool plays_a_role(const ModelDefinition& model, const std::string& variable) {
     return std::any_of(model.variables.begin(), model.variables.end(),
                        [&](const auto& each) { return each.second == variable; });
   }
@@ -313,7 +313,7 @@ class Look {
   /// sensors, heights. A pressure that was made of the model's own says nothing.
   void find_reference() {
     if (!result_.model) return;
-    const ModelFile& model = *result_.model;
+    const ModelDefinition& model = *result_.model;
     const auto has = [&](Quantity role) { return model.variables.count(role) != 0; };
     constexpr const char* avionics = "PS_A";
     const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) &&
@@ -363,10 +363,10 @@ class Look {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     };
     for (const PressurePair& pair : family_.measured) {
-      if (series == facts_of(Quantity::static_pressure).name) add(pair.static_pressure);
-      if (series == facts_of(Quantity::dynamic_pressure).name) add(pair.dynamic_pressure);
+      if (series == info_of(Quantity::static_pressure).name) add(pair.static_pressure);
+      if (series == info_of(Quantity::dynamic_pressure).name) add(pair.dynamic_pressure);
     }
-    if (series == facts_of(Quantity::recovery_temperature).name) {
+    if (series == info_of(Quantity::recovery_temperature).name) {
       for (const Thermometer& thermometer : family_.thermometers) add(thermometer.variable);
     }
     return names;
@@ -374,11 +374,11 @@ class Look {
 
   void find_roles() {
     for (const std::string& series : names_of_series()) {
-      const QuantityFacts& facts = *series_named(series);
+      const QuantityInfo& info = *series_named(series);
       const std::vector<std::string> names = names_of(series);
       std::vector<std::string> found;
       for (const std::string& name : names) {
-        if (has_values(flight_, name, std::string(facts.unit), family_.unit_of(name))) found.push_back(name);
+        if (has_values(flight_, name, std::string(info.unit), family_.unit_of(name))) found.push_back(name);
       }
       if (const RoleCandidate* const candidate = sure_candidate(series);
           found.empty() && candidate != nullptr) {
@@ -388,7 +388,7 @@ class Look {
           if (each.variable != candidate->variable) result_.roles.back().others.push_back(each.variable);
         }
       } else if (found.empty()) {
-        add_missing(facts, names);
+        add_missing(info, names);
       } else {
         add_role(series, found);
       }
@@ -412,10 +412,9 @@ class Look {
     role.others.assign(found.begin() + 1, found.end());
   }
 
-  void add_missing(const QuantityFacts& facts, const std::vector<std::string>& names) {
-    MissingRole missing{
-        std::string(facts.name), std::string(facts.description), names, cost_of(facts.name), {}};
-    const Quantity role = quantity_named(facts.name);
+  void add_missing(const QuantityInfo& info, const std::vector<std::string>& names) {
+    MissingRole missing{std::string(info.name), std::string(info.description), names, cost_of(info.name), {}};
+    const Quantity role = quantity_named(info.name);
     if (role == Quantity::mach) return;  // laws find it from the pressures
     if (role != Quantity::count) missing.effects = effects_that_need(role);
     if (!missing.cost.empty() || !missing.effects.empty() || !names.empty())
@@ -441,7 +440,7 @@ class Look {
 
   Flight flight_;
   std::string roles_;
-  const AircraftFamily& family_;
+  const VariableNaming& family_;
   std::map<std::string, std::vector<RoleCandidate>> evidence_;
   Inspection result_;
 };
@@ -449,8 +448,8 @@ class Look {
 }  // namespace
 
 Inspection inspect_flight(const std::filesystem::path& path, const std::vector<std::filesystem::path>& laws,
-                          TimeStamp time_stamp, const std::string& roles) {
-  return Look(path, time_stamp, roles).run(laws);
+                          TimestampAlignment timestamp_alignment, const std::string& roles) {
+  return Look(path, timestamp_alignment, roles).run(laws);
 }
 
 }  // namespace pcor

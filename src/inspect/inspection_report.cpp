@@ -8,7 +8,7 @@
 #include <functional>
 #include <utility>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 #include "report/present_columns.hpp"
 #include "report/residual_pictures.hpp"
 #include "residuals/wind.hpp"
@@ -80,18 +80,18 @@ Report inspection_report(const std::vector<Inspection>& flights) {
   Report report;
   report.title = flights.size() == 1 ? "What the flight holds" : "What the flights hold";
   for (const Inspection& flight : flights) {
-    report.facts.emplace_back("Flight", fmt::format("{}, {} to {} UTC, {} records, {} gaps", flight.path,
-                                                    utc_text(flight.time.first), utc_text(flight.time.last),
-                                                    flight.records, flight.time.gap_count));
-    report.facts.emplace_back("Aircraft", flight.aircraft.empty() ? "not said" : flight.aircraft);
-    report.facts.emplace_back("Names of", flight.family_title);
-    for (const std::string& note : flight.notes) report.facts.emplace_back("Note", note);
+    report.info.emplace_back("Flight", fmt::format("{}, {} to {} UTC, {} records, {} gaps", flight.path,
+                                                   utc_text(flight.time.first), utc_text(flight.time.last),
+                                                   flight.records, flight.time.gap_count));
+    report.info.emplace_back("Aircraft", flight.aircraft.empty() ? "not said" : flight.aircraft);
+    report.info.emplace_back("Names of", flight.family_title);
+    for (const std::string& note : flight.notes) report.info.emplace_back("Note", note);
     if (!flight.samples) continue;
     report.flight_starts.push_back(report.time.size());
     report.flight_names.push_back(flight.samples->name);
     report.time.insert(report.time.end(), flight.samples->time.begin(), flight.samples->time.end());
     for (const Interval& interval : flight.intervals)
-      report.intervals.push_back({std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+      report.intervals.push_back({std::string(info_of(interval.regime).name), interval.begin, interval.end});
   }
   if (!report.time.empty()) {
     FlightColumns columns(report, flights);

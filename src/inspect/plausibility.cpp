@@ -9,10 +9,10 @@
 #include <string>
 #include <utility>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
-#include <pcor/words/utc.hpp>
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "roles/jumps.hpp"
@@ -38,7 +38,7 @@ constexpr std::array<std::pair<Quantity, double>, 9> coarse_steps{{{Q::static_pr
 
 class Plausibility {
  public:
-  Plausibility(const Flight& flight, const ModelFile& model)
+  Plausibility(const Flight& flight, const ModelDefinition& model)
       : flight_(flight), model_(model), time_(record_times(flight)) {}
 
   std::vector<Problem> run() {
@@ -126,7 +126,7 @@ class Plausibility {
       if (looks_like_radians)
         add(angle.variable, "angle that goes as far as radians do", most, "degree",
             fmt::format("taken as it is; if it is in radians, {} = \"radian\" in the [units] of the model",
-                        facts_of(role).name));
+                        info_of(role).name));
     }
   }
 
@@ -167,21 +167,21 @@ class Plausibility {
       const RecordedSeries series = read(role);
       const double step = resolution_of(series.values);
       if (step >= 0.999 * coarse)
-        add(series.variable, "recorded in steps", step, std::string(facts_of(role).unit),
+        add(series.variable, "recorded in steps", step, std::string(info_of(role).unit),
             fmt::format("taken as it is; rounding alone is {:.2g} {} rms", rounding_of(step),
-                        facts_of(role).unit));
+                        info_of(role).unit));
     }
   }
 
   const Flight& flight_;
-  const ModelFile& model_;
+  const ModelDefinition& model_;
   std::vector<double> time_;
   std::vector<Problem> problems_;
 };
 
 }  // namespace
 
-std::vector<Problem> find_problems(const Flight& flight, const ModelFile& model) {
+std::vector<Problem> find_problems(const Flight& flight, const ModelDefinition& model) {
   return Plausibility(flight, model).run();
 }
 

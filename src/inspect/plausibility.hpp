@@ -4,13 +4,13 @@
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/inspect/inspect.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 
 namespace pcor::internal {
 
 /// What cannot be right of the series of a model on a flight: pressures against height, airspeed and each
 /// other, the temperature against height, angles in other units, ground speeds against positions, jumps, and
 /// values in coarse steps.
-std::vector<Problem> find_problems(const Flight& flight, const ModelFile& model);
+std::vector<Problem> find_problems(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

@@ -24,9 +24,9 @@ Binning::Binning(const std::vector<double>& residual, const std::vector<double>&
     }
     const auto count = static_cast<double>(members.size());
     if (members.empty() || count < fewest) continue;
-    if (cell != before + 1) stretches_.push_back({time_.size(), 0});
+    if (cell != before + 1) segments_.push_back({time_.size(), 0});
     before = cell;
-    ++stretches_.back().count;
+    ++segments_.back().count;
     for (const std::size_t member : members) {
       record_.push_back(member);
       bin_.push_back(static_cast<Eigen::Index>(time_.size()));

@@ -9,8 +9,8 @@
 namespace cereal {
 
 template <class Archive>
-void serialize(Archive& archive, pcor::Stretch& stretch) {
-  archive(stretch.first, stretch.count);
+void serialize(Archive& archive, pcor::Segment& segment) {
+  archive(segment.first, segment.count);
 }
 
 }  // namespace cereal
@@ -33,7 +33,7 @@ class Binning {
   /// Middles of the bins, s.
   const std::vector<double>& time() const { return time_; }
   /// Bins that follow one another without a gap.
-  const std::vector<Stretch>& stretches() const { return stretches_; }
+  const std::vector<Segment>& segments() const { return segments_; }
 
   /// The means of a column that has one value for each record, over the records that are used.
   template <class Column>
@@ -53,7 +53,7 @@ class Binning {
   /// Without the records: with what is a mean over a bin already, nobody needs them.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(time_, stretches_);
+    archive(time_, segments_);
   }
 
  private:
@@ -61,7 +61,7 @@ class Binning {
   std::vector<Eigen::Index> bin_;
   Eigen::VectorXd count_;
   std::vector<double> time_;
-  std::vector<Stretch> stretches_;
+  std::vector<Segment> segments_;
 };
 
 }  // namespace pcor::internal

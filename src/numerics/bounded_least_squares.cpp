@@ -18,8 +18,8 @@ Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& rows, const Eigen::
   const Eigen::VectorXd low = lower.cwiseProduct(length);
   const Eigen::VectorXd high = upper.cwiseProduct(length);
   std::vector<bool> held(static_cast<std::size_t>(size), false);
-  const Eigen::Index most_rounds = 10 * (size + 1);
-  for (Eigen::Index round = 0; round < most_rounds; ++round) {
+  const Eigen::Index max_rounds = 10 * (size + 1);
+  for (Eigen::Index round = 0; round < max_rounds; ++round) {
     std::vector<Eigen::Index> free;
     for (Eigen::Index k = 0; k < size; ++k) {
       if (!held[static_cast<std::size_t>(k)]) free.push_back(k);

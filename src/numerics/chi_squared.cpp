@@ -13,7 +13,7 @@ double chi_squared_value(double tail, double freedom) {
   return boost::math::quantile(boost::math::complement(boost::math::chi_squared(freedom), tail));
 }
 
-double one_degree_equivalent(double value, double freedom) {
+double chi2_one_dof(double value, double freedom) {
   if (freedom <= 1.0 || !(value > 0.0)) return value;
   // Beyond it tails are too small for a number; there the two differ by a logarithm only.
   constexpr double largest = 600.0;

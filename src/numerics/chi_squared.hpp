@@ -10,6 +10,6 @@ double chi_squared_value(double tail, double freedom);
 
 /// The value that a chi-squared of one degree exceeds as rarely as one of `freedom` degrees exceeds `value`:
 /// so scores of groups of any size can be compared.
-double one_degree_equivalent(double value, double freedom);
+double chi2_one_dof(double value, double freedom);
 
 }  // namespace pcor::internal

@@ -61,10 +61,10 @@ std::vector<Sums> sums_of(const std::vector<double>& first, const std::vector<do
   std::vector<double> both(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) both[i] = a[i] + b[i];
   std::vector<Sums> sums(segment_length / 2 + 1);
-  for (const Stretch& stretch : stretches_of(both, time, step)) {
-    for (std::size_t begin = 0; begin + segment_length <= stretch.count; begin += segment_length / 2) {
-      const WindowedTransform of_a = windowed_transform(&a[stretch.first + begin], segment_length);
-      const WindowedTransform of_b = windowed_transform(&b[stretch.first + begin], segment_length);
+  for (const Segment& segment : contiguous_segments(both, time, step)) {
+    for (std::size_t begin = 0; begin + segment_length <= segment.count; begin += segment_length / 2) {
+      const WindowedTransform of_a = windowed_transform(&a[segment.first + begin], segment_length);
+      const WindowedTransform of_b = windowed_transform(&b[segment.first + begin], segment_length);
       for (std::size_t k = 0; k < sums.size(); ++k) {
         sums[k] += {std::norm(of_a.amplitudes[k]), std::norm(of_b.amplitudes[k]),
                     of_a.amplitudes[k] * std::conj(of_b.amplitudes[k]), 1.0};

@@ -23,7 +23,7 @@ double guarded_cost(const std::vector<double>& x, std::vector<double>&, void* da
 
 }  // namespace
 
-void find_least_cost(nlopt::opt& search, const Cost& cost, std::vector<double>& x) {
+void minimize_objective(nlopt::opt& search, const Cost& cost, std::vector<double>& x) {
   Guarded guarded{cost};
   search.set_min_objective(guarded_cost, &guarded);
   double least = 0.0;

@@ -11,6 +11,6 @@ using Cost = std::function<double(const std::vector<double>&)>;
 
 /// Runs a search from `x` on, and leaves there where it ends: where it cannot go on for rounding too. What
 /// the cost throws ends the search and comes out as it is.
-void find_least_cost(nlopt::opt& search, const Cost& cost, std::vector<double>& x);
+void minimize_objective(nlopt::opt& search, const Cost& cost, std::vector<double>& x);
 
 }  // namespace pcor::internal

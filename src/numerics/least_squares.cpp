@@ -21,10 +21,10 @@ bool takes_part(const std::vector<std::vector<double>>& columns, const std::vect
 /// The series of flights that follow each other: where the time goes back, or on by more than an hour,
 /// another flight begins. What ends each.
 std::vector<std::size_t> ends_of_flights(const std::vector<double>& time) {
-  constexpr double longest_gap = 3600.0;  // s
+  constexpr double max_gap = 3600.0;  // s
   std::vector<std::size_t> ends;
   for (std::size_t i = 1; i <= time.size(); ++i) {
-    const bool goes_on = i < time.size() && time[i] > time[i - 1] && time[i] < time[i - 1] + longest_gap;
+    const bool goes_on = i < time.size() && time[i] > time[i - 1] && time[i] < time[i - 1] + max_gap;
     if (!goes_on) ends.push_back(i);
   }
   return ends;

@@ -21,17 +21,17 @@ struct LeastSquares {
 
 /// Fits y = c_1 x_1 + c_2 x_2 + ... over the samples at which all have a value. The covariance of the
 /// coefficients is (X'X)^-1 X'C X (X'X)^-1 with the covariance C of the noise that the residuals show, memory
-/// and slow drift included (`expected_noise`). Where the time goes back, or on by more than an hour, another
-/// flight begins, whose noise is independent. NaN where the columns are not independent or there are fewer
-/// than three samples more than columns.
+/// and slow drift included (`expected_noise`). Where the time goes back, or on by more than an hour,
+/// another flight begins, whose noise is independent. NaN where the columns are not independent or there are
+/// fewer than three samples more than columns.
 LeastSquares least_squares(const std::vector<std::vector<double>>& columns, const std::vector<double>& y,
                            const std::vector<double>& time, double step);
 
 /// The mean of a series, with its error and its scatter (`rms`): `least_squares` with a column of ones.
 LeastSquares mean_of(const std::vector<double>& values, const std::vector<double>& time, double step);
 
-/// The mean of independent estimates, weighted by their errors. Where they scatter more than their errors
-/// allow, the error is that of the scatter. Estimates that are no numbers are left out; NaN for none.
+/// The mean of independent estimates, weighted by their errors. Where they scatter more than their
+/// errors allow, the error is that of the scatter. Estimates that are no numbers are left out; NaN for none.
 Estimated combined(const std::vector<Estimated>& estimates);
 
 }  // namespace pcor::internal

@@ -43,9 +43,9 @@ double median(std::vector<double> values) {
   keep(values, [](double value) { return !std::isnan(value); });
   if (values.empty()) return nan;
   constexpr std::size_t many = 100;  // of fewer a sample of 31 is no saving
-  constexpr int most_rounds = 50;    // ten million values take about twelve
+  constexpr int max_rounds = 50;     // ten million values take about twelve
   std::size_t rank = values.size() / 2;
-  for (int round = 0; round < most_rounds && values.size() >= many; ++round) {
+  for (int round = 0; round < max_rounds && values.size() >= many; ++round) {
     const double bound = pivot(values, rank);
     std::size_t below = 0;
     std::size_t equal = 0;

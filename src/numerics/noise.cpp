@@ -15,20 +15,20 @@ namespace {
 
 constexpr std::array<std::size_t, 7> lags{1, 2, 4, 8, 16, 32, 64};
 constexpr double plateau_growth = 1.15;
-constexpr std::size_t fewest_differences = 30;
-constexpr std::size_t highest_order = 20;
+constexpr std::size_t min_differences = 30;
+constexpr std::size_t max_order = 20;
 constexpr std::size_t orders_in_vain = 5;
 
 /// The differences over `lag` samples that begin in [first, last) of the series; `every` is the step from one
 /// to the next within a stretch.
-std::vector<double> differences(const std::vector<double>& values, const std::vector<Stretch>& stretches,
+std::vector<double> differences(const std::vector<double>& values, const std::vector<Segment>& segments,
                                 std::size_t lag, std::size_t first, std::size_t last, std::size_t every = 1) {
   std::vector<double> result;
-  for (const Stretch& stretch : stretches) {
-    const std::size_t end = stretch.first + stretch.count;
-    if (stretch.count <= lag) continue;
+  for (const Segment& segment : segments) {
+    const std::size_t end = segment.first + segment.count;
+    if (segment.count <= lag) continue;
     const std::size_t to = std::min(end - lag, last);
-    for (std::size_t i = std::max(stretch.first, first); i < to; i += every)
+    for (std::size_t i = std::max(segment.first, first); i < to; i += every)
       result.push_back(values[i + lag] - values[i]);
   }
   return result;
@@ -37,16 +37,16 @@ std::vector<double> differences(const std::vector<double>& values, const std::ve
 /// The variances of the differences over 1, 2, 4 ... samples, up to the lag at which they level off: the
 /// noise has forgotten itself. NaN where there are too few.
 std::vector<double> difference_variances(const std::vector<double>& values,
-                                         const std::vector<Stretch>& stretches) {
+                                         const std::vector<Segment>& segments) {
   // So many tell the variance to 2 %.
   constexpr std::size_t enough = 8192;
   const std::size_t every = 1 + values.size() / enough;
   std::vector<double> result;
   for (const std::size_t lag : lags) {
-    std::vector<double> change = differences(values, stretches, lag, 0, values.size(), every);
-    // Stretches that are shorter than the lag have none: what there is up to it has to do.
-    if (change.size() < fewest_differences) break;
-    const double deviation = robust_deviation(std::move(change));
+    std::vector<double> change = differences(values, segments, lag, 0, values.size(), every);
+    // Segments that are shorter than the lag have none: what there is up to it has to do.
+    if (change.size() < min_differences) break;
+    const double deviation = robust_standard_deviation(std::move(change));
     result.push_back(deviation * deviation);
     if (result.size() > 1 && !(result.back() > plateau_growth * result[result.size() - 2])) break;
   }
@@ -56,9 +56,9 @@ std::vector<double> difference_variances(const std::vector<double>& values,
 
 }  // namespace
 
-std::vector<Stretch> stretches_of(const std::vector<double>& values, const std::vector<double>& time,
-                                  double step) {
-  std::vector<Stretch> result;
+std::vector<Segment> contiguous_segments(const std::vector<double>& values, const std::vector<double>& time,
+                                         double step) {
+  std::vector<Segment> result;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
     const double since = i > 0 && !std::isnan(values[i - 1]) ? time[i] - time[i - 1] : 0.0;
@@ -69,22 +69,21 @@ std::vector<Stretch> stretches_of(const std::vector<double>& values, const std::
   return result;
 }
 
-double robust_deviation(std::vector<double> values) {
+double robust_standard_deviation(std::vector<double> values) {
   for (double& value : values) value = std::abs(value);
   return deviation_of_median * median(std::move(values));
 }
 
-NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stretch>& stretches,
-                       double step) {
+NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Segment>& segments, double step) {
   NoiseFloor floor;
   floor.local_rms.assign(values.size(), nan);
-  const std::vector<double> whole_variance = difference_variances(values, stretches);
+  const std::vector<double> whole_variance = difference_variances(values, segments);
   const std::size_t plateau = lags[whole_variance.size() - 1];
   const double whole = std::sqrt(0.5 * whole_variance.back());
   floor.rms = whole;
   if (!(whole > 0.0)) {
-    for (const Stretch& stretch : stretches)
-      std::fill_n(floor.local_rms.begin() + static_cast<std::ptrdiff_t>(stretch.first), stretch.count, whole);
+    for (const Segment& segment : segments)
+      std::fill_n(floor.local_rms.begin() + static_cast<std::ptrdiff_t>(segment.first), segment.count, whole);
     return floor;
   }
   const std::size_t block = local_noise_samples(step);
@@ -93,9 +92,10 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
   std::size_t count = 0;
   for (std::size_t first = 0; first < values.size(); first += block) {
     const std::size_t last = std::min(first + block, values.size());
-    std::vector<double> change = differences(values, stretches, plateau, first, last);
+    std::vector<double> change = differences(values, segments, plateau, first, last);
     double here = whole;
-    if (change.size() >= fewest_differences) here = std::sqrt(0.5) * robust_deviation(std::move(change));
+    if (change.size() >= min_differences)
+      here = std::sqrt(0.5) * robust_standard_deviation(std::move(change));
     if (!(here > 0.0)) here = whole;
     const double level = local_noise_level(here, whole);
     for (std::size_t i = first; i < last; ++i) {
@@ -109,7 +109,7 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
   floor.rms = std::sqrt(square_sum / static_cast<double>(count));
 
   // rho_k = 1 - D(k)/D(plateau) at the lags, and straight lines between them.
-  const std::vector<double> variance = difference_variances(normal, stretches);
+  const std::vector<double> variance = difference_variances(normal, segments);
   double before = 1.0;
   double sum = 0.0;
   std::size_t lag_before = 0;
@@ -121,16 +121,16 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
     before = correlation;
     lag_before = lags[i];
   }
-  floor.samples_per_independent = 1.0 + 2.0 * sum;
+  floor.autocorrelation_time = 1.0 + 2.0 * sum;
   return floor;
 }
 
-Autoregression autoregression(const std::vector<double>& values, const std::vector<Stretch>& stretches,
+Autoregression autoregression(const std::vector<double>& values, const std::vector<Segment>& segments,
                               double limit) {
   std::vector<double> kept;
-  for (const Stretch& stretch : stretches)
-    for (std::size_t i = 0; i < stretch.count; ++i) kept.push_back(values[stretch.first + i]);
-  const double bound = limit * robust_deviation(kept);
+  for (const Segment& segment : segments)
+    for (std::size_t i = 0; i < segment.count; ++i) kept.push_back(values[segment.first + i]);
+  const double bound = limit * robust_standard_deviation(kept);
   double power = 0.0;
   for (double& value : kept) {
     if (bound > 0.0) value = std::clamp(value, -bound, bound);
@@ -149,28 +149,28 @@ Autoregression autoregression(const std::vector<double>& values, const std::vect
   std::vector<double> coefficients;
   double best_criterion = count * std::log(power);
   // Ten values for a coefficient: of fewer a process takes up the noise itself.
-  const std::size_t most = std::min(highest_order, kept.size() / 10);
+  const std::size_t most = std::min(max_order, kept.size() / 10);
   for (std::size_t order = 1; order <= most; ++order) {
     double across = 0.0;
     double total = 0.0;
     std::size_t begin = 0;
-    for (const Stretch& stretch : stretches) {
-      for (std::size_t i = begin + order; i < begin + stretch.count; ++i) {
+    for (const Segment& segment : segments) {
+      for (std::size_t i = begin + order; i < begin + segment.count; ++i) {
         across += forward[i] * backward[i - 1];
         total += forward[i] * forward[i] + backward[i - 1] * backward[i - 1];
       }
-      begin += stretch.count;
+      begin += segment.count;
     }
     if (!(total > 0.0)) break;
     const double reflection = 2.0 * across / total;
     begin = 0;
-    for (const Stretch& stretch : stretches) {
-      for (std::size_t i = begin + stretch.count; i-- > begin + order;) {
+    for (const Segment& segment : segments) {
+      for (std::size_t i = begin + segment.count; i-- > begin + order;) {
         const double ahead = forward[i];
         forward[i] = ahead - reflection * backward[i - 1];
         backward[i] = backward[i - 1] - reflection * ahead;
       }
-      begin += stretch.count;
+      begin += segment.count;
     }
     const std::vector<double> lower = coefficients;
     coefficients.push_back(reflection);
@@ -190,7 +190,7 @@ Autoregression autoregression(const std::vector<double>& values, const std::vect
 }
 
 std::vector<double> covariance_of_sums(const Autoregression& noise, const std::vector<const double*>& columns,
-                                       const std::vector<Stretch>& segments) {
+                                       const std::vector<Segment>& segments) {
   // The noise is its innovations put through a recursive filter, so a sum (column . noise) is a sum over the
   // innovations of the column put through the same filter backwards in time. Innovations before the first
   // sample matter as long as the filter remembers.
@@ -201,7 +201,7 @@ std::vector<double> covariance_of_sums(const Autoregression& noise, const std::v
   std::vector<double> matrix(count * count, 0.0);
   std::vector<double> state(count * std::max<std::size_t>(order, 1), 0.0);
   std::vector<double> now(count);
-  for (const Stretch& segment : segments) {
+  for (const Segment& segment : segments) {
     std::fill(state.begin(), state.end(), 0.0);
     std::size_t newest = 0;
     const std::size_t steps = segment.count + (order > 0 ? run_out : 0);

@@ -32,17 +32,17 @@ Eigen::MatrixXd with_memory(const Eigen::MatrixXd& columns, const std::vector<do
 }  // namespace
 
 Eigen::MatrixXd covariance_of_sums(const Autoregression& noise, const Eigen::MatrixXd& columns,
-                                   const std::vector<Stretch>& stretches) {
+                                   const std::vector<Segment>& segments) {
   std::vector<const double*> pointers;
   for (Eigen::Index c = 0; c < columns.cols(); ++c) pointers.push_back(columns.col(c).data());
-  const std::vector<double> sums = pcor::covariance_of_sums(noise, pointers, stretches);
+  const std::vector<double> sums = pcor::covariance_of_sums(noise, pointers, segments);
   return Eigen::Map<const Eigen::MatrixXd>(sums.data(), columns.cols(), columns.cols());
 }
 
 Eigen::MatrixXd noise_covariance(const Eigen::MatrixXd& columns, const Binning& bins, const NoiseModel& noise,
                                  std::size_t flight) {
   const Eigen::MatrixXd fast = noise.level[flight].asDiagonal() * columns;
-  Eigen::MatrixXd covariance = covariance_of_sums({noise.coefficients, 1.0}, fast, bins.stretches());
+  Eigen::MatrixXd covariance = covariance_of_sums({noise.coefficients, 1.0}, fast, bins.segments());
   for (std::size_t k = 0; k < slow_times.size(); ++k) {
     if (noise.slow[k] > 0.0)
       covariance += noise.slow[k] * noise.slow[k] * columns.transpose() *

@@ -11,7 +11,7 @@ namespace pcor::internal {
 
 /// `pcor::covariance_of_sums` of a matrix.
 Eigen::MatrixXd covariance_of_sums(const Autoregression& noise, const Eigen::MatrixXd& columns,
-                                   const std::vector<Stretch>& stretches);
+                                   const std::vector<Segment>& segments);
 
 /// The covariance matrix of sums over the bins of a flight, U' C U, with the covariance C of the noise: the
 /// autoregression at the level of each bin, within stretches, and the slow parts, which go on over gaps.

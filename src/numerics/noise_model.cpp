@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "numerics/decompositions.hpp"
-#include "numerics/in_parallel.hpp"
 #include "numerics/least_cost.hpp"
 #include "numerics/local_noise.hpp"
+#include "numerics/parallel_for.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "numerics/whitening.hpp"
 
@@ -17,9 +17,9 @@ namespace pcor::internal {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr std::size_t most_shapes = 48;
-constexpr double shortest_period = 300.0;  // s
-constexpr std::size_t fewest_innovations = 20;
+constexpr std::size_t max_shapes = 48;
+constexpr double min_period = 300.0;  // s
+constexpr std::size_t min_innovations = 20;
 constexpr double same_time = 1e-6;  // s
 /// Twice the logarithm of the likelihood that a slow part has to be worth.
 constexpr double worth_of_a_part = 2.0;
@@ -35,8 +35,8 @@ DriftShapes drift_shapes(const Binning& bins) {
   if (bins.size() < 2) return shapes;
   const double begin = bins.time().front();
   const double length = bins.time().back() - begin;
-  const auto by_period = static_cast<std::size_t>(2.0 * length / shortest_period);
-  const Eigen::Index count = as_index(std::min({most_shapes, by_period, bins.size() / 15}));
+  const auto by_period = static_cast<std::size_t>(2.0 * length / min_period);
+  const Eigen::Index count = as_index(std::min({max_shapes, by_period, bins.size() / 15}));
   if (count == 0) return shapes;
   const Eigen::Map<const Eigen::ArrayXd> time(bins.time().data(), as_index(bins.size()));
   const Eigen::ArrayXd first = (pi * (time - begin) / length).cos();
@@ -86,8 +86,8 @@ std::vector<NoiseLevel> levels_of(const Eigen::VectorXd& innovations, const Binn
     std::size_t last = first;
     while (last < time.size() && time[last] < time[first] + local_noise_time) ++last;
     double here = noise.common_level;
-    if (last - first >= fewest_innovations)
-      here = robust_deviation({innovations.data() + first, innovations.data() + last});
+    if (last - first >= min_innovations)
+      here = robust_standard_deviation({innovations.data() + first, innovations.data() + last});
     const double level = local_noise_level(here, noise.common_level);
     levels.push_back({time.empty() ? 0.0 : time[first], noise.scale * (level > 0.0 ? level : 1.0)});
     first = last;
@@ -104,12 +104,12 @@ bool NoiseModel::drifts() const {
 NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals) {
   NoiseModel noise;
   std::vector<double> all;
-  std::vector<Stretch> stretches;
+  std::vector<Segment> segments;
   std::vector<Eigen::VectorXd> fast;
   for (std::size_t f = 0; f < bins.size(); ++f) {
     fast.push_back(without_drift(bins[f], residuals[f]));
-    for (const Stretch& stretch : bins[f].stretches())
-      stretches.push_back({all.size() + stretch.first, stretch.count});
+    for (const Segment& segment : bins[f].segments())
+      segments.push_back({all.size() + segment.first, segment.count});
     all.insert(all.end(), fast[f].data(), fast[f].data() + fast[f].size());
     noise.level.emplace_back(Eigen::VectorXd::Ones(fast[f].size()));
   }
@@ -121,14 +121,14 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
       const Eigen::VectorXd ratio = fast[f].cwiseQuotient(noise.level[f]);
       scaled.insert(scaled.end(), ratio.data(), ratio.data() + ratio.size());
     }
-    noise.coefficients = autoregression(scaled, stretches).coefficients;
+    noise.coefficients = autoregression(scaled, segments).coefficients;
     std::vector<Eigen::VectorXd> innovations;
     std::vector<double> whole;
     for (std::size_t f = 0; f < bins.size(); ++f) {
       innovations.push_back(at_one_level(fast[f], bins[f], noise));
       whole.insert(whole.end(), innovations[f].data(), innovations[f].data() + innovations[f].size());
     }
-    noise.common_level = robust_deviation(whole);
+    noise.common_level = robust_standard_deviation(whole);
     for (std::size_t f = 0; f < bins.size(); ++f)
       noise.level[f] = level_of_bins(levels_of(innovations[f], bins[f], noise), bins[f]);
   }
@@ -184,7 +184,7 @@ class RestrictedLikelihood {
 
   Value operator()(const NoiseModel& noise) {
     std::vector<double> determinants(bins_.size());
-    in_parallel(bins_.size(), threads_, [&](std::size_t f) {
+    parallel_for(bins_.size(), threads_, [&](std::size_t f) {
       const Whitening whitening(bins_[f], noise, f);
       white_.middleRows(first_[f], rows_[f].rows()) = whitening(rows_[f]);
       determinants[f] = whitening.log_determinant();
@@ -206,7 +206,8 @@ class RestrictedLikelihood {
                     .log()
                     .sum();
     }
-    const double deviation = robust_deviation({innovation.data(), innovation.data() + innovation.size()});
+    const double deviation =
+        robust_standard_deviation({innovation.data(), innovation.data() + innovation.size()});
     const double limit = 9.0 * deviation * deviation;
     const double squares = innovation.array().square().min(limit).sum() / clipped_variance;
     const auto count = static_cast<double>(count_);
@@ -241,7 +242,7 @@ std::vector<double> least_of(const Cost& cost, std::size_t parts) {
   search.set_initial_step(0.2);
   search.set_xtol_abs(0.03);
   search.set_maxeval(120);
-  find_least_cost(search, cost, sizes);
+  minimize_objective(search, cost, sizes);
   return sizes;
 }
 
@@ -257,7 +258,7 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
     all.insert(all.end(), residuals[f].data(), residuals[f].data() + residuals[f].size());
     if (bins[f].size() > 0) longest = std::max(longest, bins[f].time().back() - bins[f].time().front());
   }
-  const double rms = robust_deviation(all);
+  const double rms = robust_standard_deviation(all);
   if (!(rms > 0.0)) return found;
   RestrictedLikelihood likelihood(bins, columns, residuals, threads);
   const auto with = [&](const std::vector<double>& sizes) {
@@ -324,7 +325,7 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
   NoiseModel noise = find_noise(bins, columns, residuals, threads).model;
   std::vector<double> all;
   for (const Eigen::VectorXd& residual : residuals) all.insert(all.end(), residual.begin(), residual.end());
-  const double rms = robust_deviation(all);
+  const double rms = robust_standard_deviation(all);
   if (rms == 0.0) {  // most are the same: what differs is white
     noise.scale = std::sqrt(std::inner_product(all.begin(), all.end(), all.begin(), 0.0) /
                             static_cast<double>(all.size()));

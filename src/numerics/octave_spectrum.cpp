@@ -10,15 +10,15 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t longest_segment = 1024;  // samples
-constexpr std::size_t shortest_segment = 64;
-constexpr std::size_t fewest_segments = 8;
+constexpr std::size_t max_segment = 1024;  // samples
+constexpr std::size_t min_segment = 64;
+constexpr std::size_t min_segments = 8;
 
-std::vector<std::size_t> segments_of(const std::vector<Stretch>& stretches, std::size_t length) {
+std::vector<std::size_t> segments_of(const std::vector<Segment>& segments, std::size_t length) {
   std::vector<std::size_t> begins;
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t begin = 0; begin + length <= stretch.count; begin += length / 2)
-      begins.push_back(stretch.first + begin);
+  for (const Segment& segment : segments) {
+    for (std::size_t begin = 0; begin + length <= segment.count; begin += length / 2)
+      begins.push_back(segment.first + begin);
   }
   return begins;
 }
@@ -27,13 +27,12 @@ std::vector<std::size_t> segments_of(const std::vector<Stretch>& stretches, std:
 
 OctaveSpectrum octave_spectrum(const std::vector<double>& values, const std::vector<double>& time,
                                double step) {
-  const std::vector<Stretch> stretches = stretches_of(values, time, step);
-  std::size_t length = longest_segment;
-  std::vector<std::size_t> begins = segments_of(stretches, length);
-  while (begins.size() < fewest_segments && length > shortest_segment)
-    begins = segments_of(stretches, length /= 2);
+  const std::vector<Segment> segments = contiguous_segments(values, time, step);
+  std::size_t length = max_segment;
+  std::vector<std::size_t> begins = segments_of(segments, length);
+  while (begins.size() < min_segments && length > min_segment) begins = segments_of(segments, length /= 2);
   OctaveSpectrum spectrum;
-  if (begins.size() < fewest_segments) return spectrum;
+  if (begins.size() < min_segments) return spectrum;
   // The variance at the frequencies k / (length step), both signs together.
   std::vector<double> variance(length / 2 + 1, 0.0);
   const auto count = static_cast<double>(begins.size());

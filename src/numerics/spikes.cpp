@@ -11,7 +11,7 @@ namespace {
 
 constexpr double limit = 4.5;
 constexpr std::size_t fewest = 60;
-constexpr std::size_t most_in_a_row = 3;
+constexpr std::size_t max_in_a_row = 3;
 
 }  // namespace
 
@@ -21,23 +21,23 @@ std::vector<double> without_outliers(const std::vector<double>& residual,
   count = 0;
   std::vector<double> left(residual.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = residual[i] - predicted[i];
-  const std::vector<Stretch> stretches = stretches_of(left, time, step);
-  const std::vector<double> coefficients = autoregression(left, stretches, limit).coefficients;
+  const std::vector<Segment> segments = contiguous_segments(left, time, step);
+  const std::vector<double> coefficients = autoregression(left, segments, limit).coefficients;
   const std::size_t order = coefficients.size();
-  const auto expected = [&](const Stretch& stretch, std::size_t t) {
+  const auto expected = [&](const Segment& segment, std::size_t t) {
     double value = 0.0;
     for (std::size_t k = 0; k < std::min(t, order); ++k)
-      value += coefficients[k] * left[stretch.first + t - 1 - k];
+      value += coefficients[k] * left[segment.first + t - 1 - k];
     return value;
   };
 
   // The level of the innovations, from the series as it is: robust against the outliers in it.
   std::vector<double> innovation(left.size(), std::nan(""));
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t t = 0; t < stretch.count; ++t)
-      innovation[stretch.first + t] = left[stretch.first + t] - expected(stretch, t);
+  for (const Segment& segment : segments) {
+    for (std::size_t t = 0; t < segment.count; ++t)
+      innovation[segment.first + t] = left[segment.first + t] - expected(segment, t);
   }
-  const double common = robust_deviation(innovation);
+  const double common = robust_standard_deviation(innovation);
   std::vector<double> level(left.size(), common);
   const std::size_t block = local_noise_samples(step);
   for (std::size_t first = 0; first < left.size(); first += block) {
@@ -45,21 +45,21 @@ std::vector<double> without_outliers(const std::vector<double>& residual,
     const auto end = innovation.begin() + static_cast<std::ptrdiff_t>(std::min(first + block, left.size()));
     const auto present = std::count_if(begin, end, [](double x) { return !std::isnan(x); });
     if (present < static_cast<std::ptrdiff_t>(fewest)) continue;
-    const double here = robust_deviation({begin, end});
+    const double here = robust_standard_deviation({begin, end});
     std::fill(level.begin() + (begin - innovation.begin()), level.begin() + (end - innovation.begin()), here);
   }
 
   std::vector<double> result = residual;
-  for (const Stretch& stretch : stretches) {
+  for (const Segment& segment : segments) {
     std::size_t in_a_row = 0;
-    for (std::size_t t = order; t < stretch.count; ++t) {
-      const std::size_t i = stretch.first + t;
-      const double foreseen = expected(stretch, t);
+    for (std::size_t t = order; t < segment.count; ++t) {
+      const std::size_t i = segment.first + t;
+      const double foreseen = expected(segment, t);
       if (!(std::abs(left[i] - foreseen) > limit * level[i])) {
         in_a_row = 0;
         continue;
       }
-      if (in_a_row == most_in_a_row) {
+      if (in_a_row == max_in_a_row) {
         // What goes on is no outlier: the residual has moved, and the values before are given back.
         for (std::size_t back = i - in_a_row; back < i; ++back) {
           left[back] = residual[back] - predicted[back];

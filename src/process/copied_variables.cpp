@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "laws/archived_model.hpp"
+#include "model_io/archived_model.hpp"
 #include "roles/usual_variables.hpp"
 
 namespace pcor::internal {
@@ -31,21 +31,21 @@ std::string series_that_is(const Flight& flight, const std::string& standard_nam
   return {};
 }
 
-std::string variable_of(const ModelFile& model, Quantity role) {
+std::string variable_of(const ModelDefinition& model, Quantity role) {
   const auto found = model.variables.find(role);
   return found == model.variables.end() ? std::string() : found->second;
 }
 
 }  // namespace
 
-void name_coordinates(const Flight& flight, const ModelFile& model, FileDescription& description) {
+void name_coordinates(const Flight& flight, const ModelDefinition& model, FileDescription& description) {
   const auto coordinate = [&flight](const char* attribute, const std::string& given, Names usual,
                                     const char* standard_name) {
     usual.insert(usual.begin(), {flight.attribute(attribute), given});
     const std::string named = first_series(flight, usual);
     return named.empty() ? series_that_is(flight, standard_name) : named;
   };
-  const AircraftFamily& family = family_of(model, flight);
+  const VariableNaming& family = family_of(model, flight);
   description.latitude = coordinate("latitude_coordinate", variable_of(model, Quantity::latitude),
                                     usual_variables(family, Quantity::latitude), "latitude");
   description.longitude = coordinate("longitude_coordinate", "", family.names_of("longitude"), "longitude");
@@ -54,8 +54,8 @@ void name_coordinates(const Flight& flight, const ModelFile& model, FileDescript
   if (description.altitude.rfind("PALT", 0) == 0) description.altitude_standard_name = "barometric_altitude";
 }
 
-Names flown_variables(const Flight& flight, const ModelFile& model) {
-  const AircraftFamily& family = family_of(model, flight);
+Names flown_variables(const Flight& flight, const ModelDefinition& model) {
+  const VariableNaming& family = family_of(model, flight);
   Names flown;
   for (const Quantity role : flown_quantities) {
     Names names = role == Quantity::altitude ? usual_heights(family) : usual_variables(family, role);

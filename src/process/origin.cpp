@@ -9,7 +9,7 @@
 namespace pcor::internal {
 namespace {
 
-const char* name_of(UncertaintyPart part) {
+const char* to_string(UncertaintyPart part) {
   switch (part) {
     case UncertaintyPart::total:
       return "total";
@@ -34,12 +34,12 @@ std::string options_text(const ProcessOptions& options) {
                      "; corrected with: {}; time stamp: {}; uncertainty: {}; suffix: '{}'; all variables: "
                      "{}; hydrostatic: {}{}",
                      options.correct_with == CorrectWith::lams ? "LAMS" : "model",
-                     options.time_stamp == TimeStamp::begin ? "begin" : "middle",
-                     name_of(options.uncertainty), options.suffix, yes_or_no(options.copy_all),
+                     options.timestamp_alignment == TimestampAlignment::begin ? "begin" : "middle",
+                     to_string(options.uncertainty), options.suffix, yes_or_no(options.copy_all),
                      yes_or_no(options.hydrostatic), options.keep_frozen ? "; frozen sensors: kept" : "");
 }
 
-std::string coefficients_text(const ModelFile& model) {
+std::string coefficients_text(const ModelDefinition& model) {
   std::string text;
   for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
     const ModelEffect& effect = model.model.effects[e];
@@ -54,7 +54,7 @@ std::string coefficients_text(const ModelFile& model) {
 }
 
 std::vector<std::pair<std::string, std::string>> origin_attributes(const std::filesystem::path& input,
-                                                                   const ModelFile& model,
+                                                                   const ModelDefinition& model,
                                                                    const ProcessOptions& options) {
   const std::string text = write_model(model);
   const std::string chosen = options_text(options);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/process/process.hpp>
 
 namespace pcor::internal {
@@ -20,13 +20,13 @@ std::string options_text(const ProcessOptions& options);
 
 /// The coefficients of a model with their standard errors, where it states them:
 /// "static-qp.a2 = 0.0308 +- 0.0012; ...".
-std::string coefficients_text(const ModelFile& model);
+std::string coefficients_text(const ModelDefinition& model);
 
 /// What an output says of its origin: names and texts of global attributes. The model is there whole, as the
 /// text of its file, so that the result can be found again from the output and the flight alone.
 /// @throws Error if the flight cannot be read, or the model cannot be written.
 std::vector<std::pair<std::string, std::string>> origin_attributes(const std::filesystem::path& input,
-                                                                   const ModelFile& model,
+                                                                   const ModelDefinition& model,
                                                                    const ProcessOptions& options);
 
 }  // namespace pcor::internal

@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include <pcor/base/error.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/physics/air_data.hpp>
@@ -17,11 +19,9 @@
 #include <pcor/realtime/height_step.hpp>
 #include <pcor/realtime/loop.hpp>
 #include <pcor/regimes/regimes.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/utc.hpp>
-#include "laws/archived_model.hpp"
-#include "laws/output_table.hpp"
-#include "laws/sensor_doubt.hpp"
+#include "model_io/archived_model.hpp"
+#include "model_io/output_table.hpp"
+#include "model_io/sensor_doubt.hpp"
 #include "process/copied_variables.hpp"
 #include "process/delay_line.hpp"
 #include "process/origin.hpp"
@@ -39,14 +39,14 @@ namespace {
 /// A variable of the file that the loop reads.
 struct Input : ModelInput {
   std::vector<double> values{};  // of one block
-  LeftOut left_out{};            // of all of them
+  RejectedCounts left_out{};     // of all of them
   std::vector<bool> frozen{};    // records in which the sensor is frozen; empty: none
 };
 
-/// The place of a bit among `quality_facts`.
+/// The place of a bit among `quality_info`.
 constexpr std::size_t flagged_place(Quality bit) {
   std::size_t place = 0;
-  while (quality_facts[place].bit != bit) ++place;
+  while (quality_info[place].bit != bit) ++place;
   return place;
 }
 
@@ -61,8 +61,8 @@ double flying_dynamic_pressure(const std::string& aircraft) {
 /// One flight on its way through the loop.
 class Processing {
  public:
-  Processing(const std::filesystem::path& input, const ModelFile& file, const ProcessOptions& options)
-      : flight_(input, options.time_stamp), given_(file), file_(file), options_(options) {}
+  Processing(const std::filesystem::path& input, const ModelDefinition& file, const ProcessOptions& options)
+      : flight_(input, options.timestamp_alignment), given_(file), file_(file), options_(options) {}
 
   ProcessSummary run(const std::filesystem::path& output);
 
@@ -86,7 +86,7 @@ class Processing {
     return found == file_.variables.end() ? std::string() : found->second;
   }
 
-  std::string name_of(const std::string& standard) const {
+  std::string to_string(const std::string& standard) const {
     return file_.output_name(standard) + options_.suffix;
   }
 
@@ -97,10 +97,10 @@ class Processing {
   void choose_rate();
   ShortestPeriods choose_periods();
   void leave_out_noise(Quantity rate, const SignalBand& band);
-  ModelFile doubted() const;
+  ModelDefinition doubted() const;
   ModelUncertainty uncertainty();
   void note_uncertainty();
-  bool states(std::initializer_list<Where> places, std::initializer_list<Quantity> roles) const;
+  bool states(std::initializer_list<EffectLocation> places, std::initializer_list<Quantity> roles) const;
   FileDescription describe() const;
   void copy_variables(FlightWriter& writer, const FileDescription& description);
   Names dependencies_of(const OutputRow& row) const;
@@ -116,8 +116,8 @@ class Processing {
   std::string temperature_calibration();
 
   Flight flight_;
-  const ModelFile& given_;
-  ModelFile file_;  // as it is applied to this flight
+  const ModelDefinition& given_;
+  ModelDefinition file_;  // as it is applied to this flight
   const ProcessOptions& options_;
   std::vector<Quantity> roles_;
   std::shared_ptr<const Chain> chain_;
@@ -153,7 +153,7 @@ void Processing::choose_roles() {
 
 /// The model, and with it the doubt of its thermometer where uncertainties are found and the model does not
 /// state that of the thermometer: without its main source that of the temperature would be far too small.
-ModelFile Processing::doubted() const {
+ModelDefinition Processing::doubted() const {
   const UncertaintyPart part = options_.uncertainty;
   if (part == UncertaintyPart::none || part == UncertaintyPart::random ||
       variable_of(Quantity::recovery_temperature).empty())
@@ -179,7 +179,7 @@ void Processing::choose_inputs() {
 
 /// What stands still in flight for much longer than its noise lets it.
 void Processing::find_frozen_sensors() {
-  constexpr std::size_t fewest_records = 300;  // that a sensor with one value only is not left
+  constexpr std::size_t min_records = 300;  // that a sensor with one value only is not left
   const auto read = [this](const Input& input) {
     return read_values(flight_, input.variable, input.conversion).values;
   };
@@ -192,14 +192,14 @@ void Processing::find_frozen_sensors() {
   std::vector<double> time;
   for (Input& input : inputs_) {
     const std::vector<double> values = read(input);
-    const std::vector<Stretch> frozen =
-        find_frozen(values, flying, always_varies(input.quantity) && flown >= fewest_records);
+    const std::vector<Segment> frozen =
+        find_frozen(values, flying, always_varies(input.quantity) && flown >= min_records);
     if (frozen.empty()) continue;
     if (time.empty()) time = record_times(flight_);
     summary_.notes.push_back(frozen_text(input.variable, input.quantity, values, time, frozen));
     input.frozen.resize(values.size());
     frozen_.resize(values.size());
-    for (const Stretch& span : frozen) {
+    for (const Segment& span : frozen) {
       for (std::size_t i = span.first; i < span.first + span.count; ++i) input.frozen[i] = frozen_[i] = true;
     }
   }
@@ -239,7 +239,7 @@ ShortestPeriods Processing::choose_periods() {
                                     [of = quantity](const Input& each) { return each.quantity == of; });
     const FastSeries series = read_fast(flight_, *input, flight_.variable(input->variable).rate);
     const SignalBand band = signal_band_of(series, time, flight_.time().step);
-    periods.emplace_back(rate, std::max(RateFilter::usual_period, band.shortest_period));
+    periods.emplace_back(rate, std::max(RateFilter::usual_period, band.min_period));
     leave_out_noise(rate, band);
   }
   return periods;
@@ -251,18 +251,18 @@ void Processing::leave_out_noise(Quantity rate, const SignalBand& band) {
   if (!(band.rate_noise > signal)) return;
   for (ModelEffect& effect : file_.model.effects) {
     if (effect.is_formula()) continue;
-    const EffectFacts& facts = effect_facts[effect_named(effect.id)];
-    const bool reads = std::find(facts.needs.begin(), facts.needs.end(), rate) != facts.needs.end();
+    const EffectInfo& info = effect_info[effect_named(effect.id)];
+    const bool reads = std::find(info.needs.begin(), info.needs.end(), rate) != info.needs.end();
     double& time = effect.parameters[0];
-    if (!reads || time == facts.parameters[0].neutral) continue;
-    const std::string_view unit = facts_of(facts.where).unit;
+    if (!reads || time == info.parameters[0].neutral) continue;
+    const std::string_view unit = info_of(info.location).unit;
     note(
         "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and take an error of "
         "{:.2g} "
         "{} away",
         effect.id, time, std::abs(time) * std::sqrt(band.rate_noise), unit,
         std::abs(time) * std::sqrt(std::max(0.0, signal)), unit);
-    time = facts.parameters[0].neutral;
+    time = info.parameters[0].neutral;
   }
   choose_chain();
 }
@@ -288,11 +288,12 @@ ModelUncertainty Processing::uncertainty() {
 }
 
 /// True where an uncertainty is stated of a coefficient at one of the places, or of one of the roles.
-bool Processing::states(std::initializer_list<Where> places, std::initializer_list<Quantity> roles) const {
+bool Processing::states(std::initializer_list<EffectLocation> places,
+                        std::initializer_list<Quantity> roles) const {
   const std::size_t count = chain_->parameters().size();
   for (std::size_t effect = 0; !uncertainty_.covariance.empty() && effect < chain_->effect_count();
        ++effect) {
-    if (std::find(places.begin(), places.end(), chain_->where_of(effect)) == places.end()) continue;
+    if (std::find(places.begin(), places.end(), chain_->location_of(effect)) == places.end()) continue;
     const std::size_t next =
         effect + 1 < chain_->effect_count() ? chain_->first_parameter_of(effect + 1) : count;
     for (std::size_t i = chain_->first_parameter_of(effect); i < next; ++i) {
@@ -310,11 +311,12 @@ void Processing::note_uncertainty() {
   }
   using Q = Quantity;
   if (uncertainty_.static_defect == 0.0 && uncertainty_.static_defect_ratio == 0.0 &&
-      !states({Where::static_defect}, {})) {
+      !states({EffectLocation::static_defect}, {})) {
     note("the uncertainties are without that of delta-p, of which the model states none");
   }
-  if (!states({Where::static_transducer, Where::static_line}, {Q::static_pressure}) ||
-      !states({Where::dynamic_transducer, Where::static_line, Where::total_line, Where::pitot},
+  if (!states({EffectLocation::static_transducer, EffectLocation::static_line}, {Q::static_pressure}) ||
+      !states({EffectLocation::dynamic_transducer, EffectLocation::static_line, EffectLocation::total_line,
+               EffectLocation::pitot},
               {Q::dynamic_pressure})) {
     note(
         "the uncertainties leave out the pressure transducers, since the model does not state those of both; "
@@ -329,8 +331,9 @@ void Processing::note_uncertainty() {
         "[uncertainty] takes \"{}\"",
         doubt.name(), doubt.size, doubt.name());
   }
-  if (chain_->has_temperature() && !states({Where::temperature, Where::recovery, Where::ambient_temperature},
-                                           {Q::recovery_temperature, Q::ambient_temperature})) {
+  if (chain_->has_temperature() &&
+      !states({EffectLocation::temperature, EffectLocation::recovery, EffectLocation::ambient_temperature},
+              {Q::recovery_temperature, Q::ambient_temperature})) {
     note("the uncertainties of temperature and airspeed leave out the thermometer");
   }
 }
@@ -340,9 +343,9 @@ FileDescription Processing::describe() const {
   description.history = options_.history;
   name_coordinates(flight_, file_, description);
   description.attributes = origin_attributes(flight_.path(), given_, options_);
-  description.attributes.emplace_back("pcor_time_stamp", flight_.time_stamp() == TimeStamp::begin
-                                                             ? "begin of the record"
-                                                             : "middle of the record");
+  description.attributes.emplace_back(
+      "pcor_time_stamp", flight_.timestamp_alignment() == TimestampAlignment::begin ? "begin of the record"
+                                                                                    : "middle of the record");
   if (!summary_.notes.empty())
     description.attributes.emplace_back("pcor_notes", fmt::format("{}", fmt::join(summary_.notes, "; ")));
   return description;
@@ -383,20 +386,20 @@ void Processing::define_outputs(FlightWriter& writer) {
   for (const OutputRow& row : output_table()) {
     if (!is_written(row)) continue;
     const bool is_uncertainty = row.uncertainty_of != Quantity::count;
-    const bool is_temperature = !is_uncertainty && facts_of(row.quantity).unit == "K";
+    const bool is_temperature = !is_uncertainty && info_of(row.quantity).unit == "K";
     OutputVariable variable;
-    variable.name = name_of(row.name);
+    variable.name = to_string(row.name);
     variable.rate = summary_.rate;
-    variable.units = is_temperature ? "degC" : std::string(facts_of(row.quantity).unit);
+    variable.units = is_temperature ? "degC" : std::string(info_of(row.quantity).unit);
     variable.long_name = row.long_name;
     variable.standard_name = row.standard_name;
     variable.category = row.category;
     variable.dependencies = dependencies_of(row);
     for (const OutputRow& other : output_table()) {
       if (other.uncertainty_of == row.quantity && is_written(other))
-        variable.ancillary_variables.push_back(name_of(other.name));
+        variable.ancillary_variables.push_back(to_string(other.name));
     }
-    variable.ancillary_variables.push_back(name_of(std::string(quality_output)));
+    variable.ancillary_variables.push_back(to_string(std::string(quality_output)));
     if (is_uncertainty) {
       variable.dependencies = {output_names_.at(row.uncertainty_of)};
       variable.attributes = {{"coverage_factor", "1"},
@@ -435,13 +438,13 @@ std::string Processing::uncertainty_comment() const {
 
 void Processing::define_flags(FlightWriter& writer) {
   OutputVariable flags;
-  flags.name = name_of(std::string(quality_output));
+  flags.name = to_string(std::string(quality_output));
   flags.rate = summary_.rate;
   flags.long_name = "Quality bits of the pressure correction";
   flags.standard_name = "status_flag";
   flags.category = "Housekeeping";
-  for (const QualityFacts& facts : quality_facts) {
-    flags.flags.push_back({static_cast<int>(facts.bit), std::string(facts.name)});
+  for (const QualityInfo& info : quality_info) {
+    flags.flags.push_back({static_cast<int>(info.bit), std::string(info.name)});
   }
   flags.dependencies = summary_.outputs;
   filtered_->set_flags(define(writer, flags));
@@ -462,9 +465,9 @@ std::size_t Processing::define(FlightWriter& writer, const OutputVariable& varia
 std::string Processing::temperature_calibration() {
   std::vector<double> coefficients(3, 0.0);
   for (const ModelEffect& effect : file_.model.effects) {
-    if (effect.id == effects::TempCalibration::facts().id) {
+    if (effect.id == effects::TempCalibration::info().id) {
       coefficients = effect.parameters;
-    } else if (effect.is_formula() && effect.where == Where::ambient_temperature) {
+    } else if (effect.is_formula() && effect.location == EffectLocation::ambient_temperature) {
       note("the attribute temperature_calibration of HYDSTEP is without the effect {}, a formula", effect.id);
     }
   }
@@ -479,8 +482,8 @@ void Processing::note_sample() {
     if (state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
       ++summary_.in_flight;
       summary_.mean_defect += defect;  // the sum, until the end
-      summary_.least_defect = std::min(summary_.least_defect, defect);
-      summary_.greatest_defect = std::max(summary_.greatest_defect, defect);
+      summary_.min_defect = std::min(summary_.min_defect, defect);
+      summary_.max_defect = std::max(summary_.max_defect, defect);
     }
   }
   QualityFlags quality = loop_->quality();
@@ -488,8 +491,8 @@ void Processing::note_sample() {
   quality.set(!frozen_.empty() && frozen_[record], Quality::sensor_frozen);
   double bits = 0.0;
   if (quality.bits() != 0) {
-    for (std::size_t i = 0; i < quality_facts.size(); ++i) {
-      const Quality bit = quality_facts[i].bit;
+    for (std::size_t i = 0; i < quality_info.size(); ++i) {
+      const Quality bit = quality_info[i].bit;
       if (!quality.has(bit) || bit == Quality::filter_window_incomplete) continue;  // that of another sample
       ++summary_.flagged[i];
       bits += static_cast<double>(bit);
@@ -553,8 +556,8 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   summary_.gaps = flight_.time().gap_count;
   summary_.first_time = flight_.time().first;
   summary_.last_time = flight_.time().last;
-  summary_.least_defect = std::numeric_limits<double>::infinity();
-  summary_.greatest_defect = -std::numeric_limits<double>::infinity();
+  summary_.min_defect = std::numeric_limits<double>::infinity();
+  summary_.max_defect = -std::numeric_limits<double>::infinity();
 
   choose_roles();
   for (std::string& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
@@ -582,7 +585,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   if (summary_.in_flight > 0) {
     summary_.mean_defect /= static_cast<double>(summary_.in_flight);
   } else {
-    summary_.mean_defect = summary_.least_defect = summary_.greatest_defect = missing<double>();
+    summary_.mean_defect = summary_.min_defect = summary_.max_defect = missing<double>();
   }
   for (const Input& input : inputs_) note_left_out(input, input.left_out, summary_.notes);
   if (summary_.corrected == 0) note("no sample could be corrected: see the quality bits");
@@ -591,7 +594,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
 
 }  // namespace
 
-ProcessSummary process_flight(const std::filesystem::path& input, const ModelFile& model,
+ProcessSummary process_flight(const std::filesystem::path& input, const ModelDefinition& model,
                               const std::filesystem::path& output, const ProcessOptions& options) {
   return Processing(input, model, options).run(output);
 }

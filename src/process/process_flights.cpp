@@ -5,8 +5,8 @@
 #include <map>
 #include <system_error>
 
+#include <pcor/base/error.hpp>
 #include <pcor/process/up_to_date.hpp>
-#include <pcor/words/error.hpp>
 
 namespace pcor {
 
@@ -34,14 +34,15 @@ std::map<fs::path, std::string> troubles_with(const std::vector<ProcessTask>& ta
     std::error_code none;
     if (!options.if_stale || !fs::exists(task.output, none)) flights.push_back(task.input);
   }
-  for (const UnreadableFlight& unreadable : readable_flights(flights, alone(), options.opened_in).unreadable)
+  for (const UnreadableFlight& unreadable :
+       readable_flights(flights, serial_communicator(), options.opened_in).unreadable)
     troubles[unreadable.flight] = unreadable.why;
   return troubles;
 }
 
 }  // namespace
 
-std::string_view name_of(FlightState state) {
+std::string_view to_string(FlightState state) {
   switch (state) {
     case FlightState::up_to_date:
       return "up to date";
@@ -75,7 +76,7 @@ std::vector<ProcessTask> tasks_in_folder(const std::vector<fs::path>& flights, c
 }
 
 std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks,
-                                             const ModelOfFlight& model_of,
+                                             const ModelSelector& model_of,
                                              const ProcessFlightsOptions& options) {
   const std::map<fs::path, std::string> troubles = troubles_with(tasks, options);
   std::vector<ProcessedFlight> flights;

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string_view>
 
+#include <pcor/base/atomic_file.hpp>
 #include <pcor/flight/flight.hpp>
-#include <pcor/words/replacement_file.hpp>
 #include "report/present_columns.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
@@ -40,7 +40,7 @@ constexpr const char* own_difference = "own_difference";
 
 /// The static pressure that the flight's own processing corrected, hPa; empty where it has none.
 Series own_static_pressure(const Flight& input) {
-  const AircraftFamily& family = family_of(input);
+  const VariableNaming& family = family_of(input);
   const std::string variable = processed_static_pressure(input, family);
   if (variable.empty()) return {};
   return read_values(input, variable, input.conversion(variable, "hPa", "", family.unit_of(variable))).values;
@@ -138,12 +138,12 @@ ReportTable flights_table(const std::vector<ProcessedFlight>& flights) {
                    "greatest delta-p (hPa)"};
   for (const ProcessedFlight& flight : flights) {
     std::vector<std::string> row{flight.input.filename().string(), flight.model.model.name,
-                                 std::string(name_of(flight.state))};
+                                 std::string(to_string(flight.state))};
     if (flight.state == FlightState::processed) {
       const ProcessSummary& summary = flight.summary;
       for (const std::size_t count : {summary.samples, summary.corrected})
         row.push_back(std::to_string(count));
-      for (const double value : {summary.mean_defect, summary.least_defect, summary.greatest_defect})
+      for (const double value : {summary.mean_defect, summary.min_defect, summary.max_defect})
         row.push_back(hpa(value));
     } else {
       if (!flight.reason.empty()) row.back() += ": " + flight.reason;
@@ -159,12 +159,12 @@ ReportTable flags_table(const std::vector<ProcessedFlight>& flights) {
   table.title = "Quality bits";
   table.caption = "Samples of the flights processed that have each bit of PCORFLAG, flown or on the ground.";
   table.headers = {"quality bit", "meaning", "samples"};
-  for (std::size_t i = 0; i < quality_facts.size(); ++i) {
+  for (std::size_t i = 0; i < quality_info.size(); ++i) {
     std::size_t count = 0;
     for (const ProcessedFlight& flight : flights) count += flight.summary.flagged[i];
     if (count > 0)
       table.rows.push_back(
-          {std::string(quality_facts[i].name), std::string(quality_facts[i].meaning), std::to_string(count)});
+          {std::string(quality_info[i].name), std::string(quality_info[i].meaning), std::to_string(count)});
   }
   return table;
 }
@@ -179,8 +179,8 @@ Report process_report(const std::vector<ProcessedFlight>& flights, const std::st
     if (flight.state != FlightState::unreadable) outputs.add(flight);
     for (const std::string& note : flight.summary.notes) {
       const std::pair<std::string, std::string> fact{"Note", note};
-      if (std::find(report.facts.begin(), report.facts.end(), fact) == report.facts.end())
-        report.facts.push_back(fact);
+      if (std::find(report.info.begin(), report.info.end(), fact) == report.info.end())
+        report.info.push_back(fact);
     }
   }
   outputs.end();

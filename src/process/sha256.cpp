@@ -9,7 +9,7 @@
 #include <new>
 #include <vector>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor::internal {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "flight/flight_file.hpp"
 #include "process/origin.hpp"
 #include "process/sha256.hpp"
@@ -13,7 +13,7 @@ using namespace internal;
 
 namespace fs = std::filesystem;
 
-bool is_up_to_date(const fs::path& output, const fs::path& input, const ModelFile& model,
+bool is_up_to_date(const fs::path& output, const fs::path& input, const ModelDefinition& model,
                    const ProcessOptions& options) {
   std::error_code code;
   if (!fs::is_regular_file(output, code)) return false;

@@ -5,18 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/constants.hpp>
-#include <pcor/words/error.hpp>
 
 #include "regimes/series.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double longest_kept_gap = 300.0;        // s
-constexpr std::size_t longest_interpolation = 5;  // cells
-constexpr double greatest_vertical_speed = 40.0;  // m/s; more is a jump of a height, not a climb
-constexpr double rounding = 1e-6;                 // s, of a time since 1970 in double precision
+constexpr double max_kept_gap = 300.0;        // s
+constexpr std::size_t max_interpolation = 5;  // cells
+constexpr double max_vertical_speed = 40.0;   // m/s; more is a jump of a height, not a climb
+constexpr double rounding = 1e-6;             // s, of a time since 1970 in double precision
 constexpr double radians = 3.14159265358979323846 / 180.0;
 
 // Which cell each sample is in.
@@ -37,8 +37,8 @@ Division divide(const std::vector<double>& time) {
                       i));
     }
     if (i == 0) first_begin = time[0];
-    if (i > 0 && time[i] - time[i - 1] > longest_kept_gap) {
-      first_cell = division.begin.size() + static_cast<std::size_t>(longest_kept_gap);
+    if (i > 0 && time[i] - time[i - 1] > max_kept_gap) {
+      first_cell = division.begin.size() + static_cast<std::size_t>(max_kept_gap);
       while (division.begin.size() < first_cell) division.begin.push_back(division.begin.back() + 1.0);
       first_begin = time[i];
     }
@@ -56,7 +56,7 @@ void interpolate_short_gaps(std::vector<double>& values) {
   std::size_t last = values.size();
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
-    if (last < i && i - last - 1 <= longest_interpolation) {
+    if (last < i && i - last - 1 <= max_interpolation) {
       const double slope = (values[i] - values[last]) / static_cast<double>(i - last);
       for (std::size_t j = last + 1; j < i; ++j)
         values[j] = values[last] + slope * static_cast<double>(j - last);
@@ -140,7 +140,7 @@ Cells cells_of(const FlightMotion& motion) {
   if (!has_value(cells.vertical_speed)) cells.vertical_speed = rate_of_change(cells.altitude, cells.begin);
   if (!has_value(cells.roll)) cells.roll = coordinated_roll(cells);
   for (double& speed : cells.vertical_speed) {
-    if (std::abs(speed) > greatest_vertical_speed) speed = nan;
+    if (std::abs(speed) > max_vertical_speed) speed = nan;
   }
   return cells;
 }

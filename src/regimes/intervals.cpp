@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 
 namespace pcor {
 namespace {

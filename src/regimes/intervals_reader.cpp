@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "words/quoting.hpp"
-#include "words/text_file.hpp"
-#include "words/toml_reader.hpp"
+#include "base/quoting.hpp"
+#include "base/text_file.hpp"
+#include "base/toml_reader.hpp"
 
 namespace pcor {
 
@@ -17,8 +17,8 @@ using namespace internal;
 namespace {
 
 constexpr std::string_view intervals_format = "pcor-intervals/1";
-constexpr double day = 86400.0;               // s
-constexpr double longest_of_day = day / 2.0;  // s between two times of the day; more is a mistake
+constexpr double day = 86400.0;           // s
+constexpr double max_of_day = day / 2.0;  // s between two times of the day; more is a mistake
 constexpr const char* wanted_time =
     "a date and time such as 2011-11-17T20:10:00Z, or a time of the day such as \"20:10:00\"";
 
@@ -27,7 +27,7 @@ std::optional<toml::time> time_of_day(const std::string& text) {
   return moment_in<toml::time>(text.size() == 5 ? text + ":00" : text);
 }
 
-Names names_of_regimes() { return names_of(regime_facts, &RegimeFacts::name); }
+Names names_of_regimes() { return names_of(regime_info, &RegimeInfo::name); }
 
 // Reads a parsed file, and refuses what has no meaning with the place where it stands.
 class Reader final : TomlReader {
@@ -115,7 +115,7 @@ class Reader final : TomlReader {
     const Regime regime = regime_named(name);
     if (regime == Regime::count) {
       fail(node,
-           fmt::format("there is no regime {}; {}", in_quotes(name), instead_of(name, names_of_regimes())));
+           fmt::format("there is no regime {}; {}", quote(name), suggestion_text(name, names_of_regimes())));
     }
     return regime;
   }
@@ -143,7 +143,7 @@ class Reader final : TomlReader {
     }
     if (of_day && span.end != span.begin) {
       const double duration = span.end - span.begin + (span.end < span.begin ? day : 0.0);
-      if (duration > longest_of_day) {
+      if (duration > max_of_day) {
         fail(end_node,
              "'end' is before 'begin', or more than 12 h after it; correct it, or give both with dates");
       }

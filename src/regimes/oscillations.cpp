@@ -11,7 +11,7 @@ namespace {
 struct Band {
   double variance;  // deg2
   double time;      // s
-  std::size_t shortest_period, longest_period;
+  std::size_t min_period, max_period;
   double periodicity;
 };
 
@@ -29,8 +29,8 @@ std::vector<double> product(const std::vector<double>& a, const std::vector<doub
 
 // What remains without changes slower than the band, and quicker ones than a third of its shortest period.
 std::vector<double> in_band(const std::vector<double>& values, const Band& band) {
-  const std::vector<double> trend = smoothed_twice(values, band.longest_period);
-  const std::vector<double> smooth = running_mean(values, band.shortest_period / 3);
+  const std::vector<double> trend = smoothed_twice(values, band.max_period);
+  const std::vector<double> smooth = running_mean(values, band.min_period / 3);
   std::vector<double> result(values.size(), nan);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isnan(values[i])) result[i] = smooth[i] - trend[i];
@@ -41,10 +41,10 @@ std::vector<double> in_band(const std::vector<double>& values, const Band& band)
 // How well each cell's surroundings, three of the longest periods, repeat after the best period of the band:
 // 1 for a pure oscillation, about 0 for turbulence.
 std::vector<double> local_periodicity(const std::vector<double>& values, const Band& band) {
-  const std::size_t window = 3 * band.longest_period;
+  const std::size_t window = 3 * band.max_period;
   const std::vector<double> variance = running_mean(product(values, values), window);
   std::vector<double> best(values.size(), 0.0);
-  for (std::size_t lag = band.shortest_period; lag <= band.longest_period; ++lag) {
+  for (std::size_t lag = band.min_period; lag <= band.max_period; ++lag) {
     const std::vector<double> covariance = running_mean(product(values, values, lag), window);
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (covariance[i] > best[i] * variance[i]) best[i] = covariance[i] / variance[i];
@@ -74,7 +74,7 @@ double vertex(double left, double middle, double right) {
 // The first period at which a run repeats best; 0 if nowhere well enough.
 double period_of(const std::vector<double>& values, Run run, const Band& band) {
   std::vector<double> correlation;
-  for (std::size_t lag = band.shortest_period - 1; lag <= band.longest_period + 1; ++lag) {
+  for (std::size_t lag = band.min_period - 1; lag <= band.max_period + 1; ++lag) {
     correlation.push_back(autocorrelation(values, run, lag));
   }
   std::size_t best = 0;
@@ -83,7 +83,7 @@ double period_of(const std::vector<double>& values, Run run, const Band& band) {
     if (peak && (best == 0 || correlation[i] > correlation[best] + 0.1)) best = i;
   }
   if (best == 0 || correlation[best] < band.periodicity) return 0.0;
-  return static_cast<double>(band.shortest_period - 1 + best) +
+  return static_cast<double>(band.min_period - 1 + best) +
          vertex(correlation[best - 1], correlation[best], correlation[best + 1]);
 }
 
@@ -105,15 +105,15 @@ Run whole_swings(const std::vector<double>& values, Run run, double amplitude, s
 std::vector<Oscillation> find_oscillations(const std::vector<double>& values, const std::vector<bool>& usable,
                                            const Band& band) {
   std::vector<Oscillation> found;
-  const std::vector<double> variance = running_mean(product(values, values), band.longest_period);
+  const std::vector<double> variance = running_mean(product(values, values), band.max_period);
   const std::vector<double> periodicity = local_periodicity(values, band);
   const std::vector<Run> strong = runs_where(values.size(), [&](std::size_t i) {
     return usable[i] && !std::isnan(values[i]) && variance[i] > band.variance &&
            periodicity[i] >= band.periodicity;
   });
-  for (const Run& run : bridged(strong, band.shortest_period)) {
+  for (const Run& run : bridged(strong, band.min_period)) {
     const double amplitude = std::sqrt(2.0 * mean(product(values, values), run));
-    const Run whole = whole_swings(values, run, amplitude, band.longest_period);
+    const Run whole = whole_swings(values, run, amplitude, band.max_period);
     if (whole.length() < cells_in(band.time)) continue;
     const double period = period_of(values, whole, band);
     if (period > 0.0) found.push_back({whole, period, amplitude});
@@ -179,7 +179,7 @@ std::vector<Found> find_yaw_manoeuvres(const Cells& cells, const std::vector<boo
                   cells_in(criteria.yaw_longest_period), criteria.periodicity};
   const std::vector<double> sideslip = in_band(cells.sideslip, band);
   const std::vector<double> heading = in_band(cells.heading, band);
-  const std::vector<double> heading_variance = running_mean(product(heading, heading), band.longest_period);
+  const std::vector<double> heading_variance = running_mean(product(heading, heading), band.max_period);
   std::vector<bool> usable = about_level(cells, flying, criteria);
   for (std::size_t i = 0; i < usable.size(); ++i) {
     if (heading_variance[i] < criteria.yaw_variance / 2.0) usable[i] = false;

@@ -9,19 +9,19 @@ namespace pcor::internal {
 namespace {
 
 // A shorter time above or below the flying speed is noise, s.
-constexpr std::size_t shortest_flight = 30;
+constexpr std::size_t min_flight = 30;
 
 // How far from where the smoothed vertical speed says a phase may begin, s.
 constexpr std::size_t reach = 90;
-constexpr std::size_t shortest_side = 15;
+constexpr std::size_t min_side = 15;
 
 struct PhaseRun {
   Regime phase;
   Run run;
 };
 
-// Which cells are in the air: faster than the flying speed. Where the speed is not known the last known one
-// counts, before the first the next one.
+// Which cells are in the air: faster than the flying speed. Where the speed is not known the last
+// known one counts, before the first the next one.
 std::vector<bool> airborne(const Cells& cells, const RegimeCriteria& criteria) {
   std::vector<bool> flying(cells.count());
   const auto first_known = std::find_if(cells.airspeed.begin(), cells.airspeed.end(),
@@ -34,7 +34,7 @@ std::vector<bool> airborne(const Cells& cells, const RegimeCriteria& criteria) {
   for (const bool state : {true, false}) {
     for (const Run& run : runs_where(flying.size(), [&](std::size_t i) { return flying[i] == state; })) {
       const bool whole_record = run.length() == flying.size();
-      if (run.length() >= shortest_flight || whole_record) continue;
+      if (run.length() >= min_flight || whole_record) continue;
       for (std::size_t i = run.first; i < run.end; ++i) flying[i] = !state;
     }
   }
@@ -119,7 +119,7 @@ void sharpen(std::vector<PhaseRun>& runs, const std::vector<double>& vertical_sp
     const std::size_t boundary = after.first;
     const Run around{boundary - std::min(reach, before.length() / 2),
                      boundary + std::min(reach, after.length() / 2)};
-    before.end = after.first = best_step(vertical_speed, around, shortest_side, boundary);
+    before.end = after.first = best_step(vertical_speed, around, min_side, boundary);
   }
 }
 

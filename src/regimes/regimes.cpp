@@ -31,9 +31,9 @@ void append(std::vector<Found>& all, const std::vector<Found>& more) {
 }  // namespace
 
 Regime regime_named(std::string_view name) {
-  const auto found = std::find_if(regime_facts.begin(), regime_facts.end(),
-                                  [&](const RegimeFacts& facts) { return facts.name == name; });
-  return static_cast<Regime>(found - regime_facts.begin());
+  const auto found = std::find_if(regime_info.begin(), regime_info.end(),
+                                  [&](const RegimeInfo& info) { return info.name == name; });
+  return static_cast<Regime>(found - regime_info.begin());
 }
 
 std::vector<Interval> find_regimes(const FlightMotion& motion, const RegimeCriteria& criteria) {

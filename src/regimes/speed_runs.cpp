@@ -9,8 +9,8 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t smoothing = 10;      // s
-constexpr std::size_t shortest_side = 10;  // s of known acceleration on each side of an end
+constexpr std::size_t smoothing = 10;  // s
+constexpr std::size_t min_side = 10;   // s of known acceleration on each side of an end
 
 // Where the airspeed changes enough, and the height little, over `time` seconds around a cell.
 std::vector<Run> branches(double time, const std::vector<double>& airspeed,
@@ -54,8 +54,8 @@ Run sharpened(Run run, const std::vector<double>& acceleration, const RegimeCrit
   const std::size_t inside = std::min(reach, run.length() / 2);
   const Run at_first{run.first - std::min(run.first, reach), run.first + inside};
   const Run at_end{run.end - inside, std::min(run.end + reach, acceleration.size())};
-  return {best_step(acceleration, at_first, shortest_side, run.first),
-          best_step(acceleration, at_end, shortest_side, run.end)};
+  return {best_step(acceleration, at_first, min_side, run.first),
+          best_step(acceleration, at_end, min_side, run.end)};
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 #include <unistd.h>
+#include <pcor/base/atomic_file.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/shell_quote.hpp>
 #include <pcor/report/figures.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/replacement_file.hpp>
-#include <pcor/words/shell_word.hpp>
 
 #include <algorithm>
 #include <array>
@@ -96,8 +96,8 @@ std::string dumped(const std::string& program, const std::string& html, const st
       "--dump-dom {3} 2> \"$folder/messages\" && exit\n"
       "[ $? -eq 124 ] && echo 'it was not done after two minutes' && exit 1\n"
       "tail -n 1 \"$folder/messages\"; exit 1\n",
-      shell_word(folder.string()), shell_word(program), is_root ? "--no-sandbox" : "",
-      shell_word(file_address(page) + wish));
+      shell_quote(folder.string()), shell_quote(program), is_root ? "--no-sandbox" : "",
+      shell_quote(file_address(page) + wish));
   std::FILE* const pipe = stream ? ::popen(command.c_str(), "r") : nullptr;
   if (pipe == nullptr) {
     std::error_code ignored;
@@ -166,7 +166,7 @@ std::vector<fs::path> earlier_pictures(const fs::path& folder) {
 }
 
 void write_file(const fs::path& path, const std::string& bytes) {
-  ReplacementFile file(path);
+  AtomicFile file(path);
   std::ofstream stream(file.path(), std::ios::binary);
   stream << bytes;
   stream.close();
@@ -181,9 +181,9 @@ void write_file(const fs::path& path, const std::string& bytes) {
 void require_figures(const fs::path& folder) {
   constexpr const char* sign = "drawn";
   const std::string program = browser();
-  OutputsTogether none;
+  OutputTransaction none;
   none.make_folder(folder);
-  const ReplacementFile probe(folder / captions);
+  const AtomicFile probe(folder / captions);
   // Some start and see nothing: one in a container of its own does not read the folder of temporary files.
   if (dumped(program, fmt::format("<!DOCTYPE html><title>figures</title><p>{}", sign), "").find(sign) ==
       std::string::npos)
@@ -202,7 +202,7 @@ std::vector<std::string> write_figures(const Report& report, const fs::path& fol
     if (bytes.empty()) throw Error(fmt::format("figures: {} drew nothing for {}", program, name));
     names.push_back(name);
   }
-  OutputsTogether together;
+  OutputTransaction together;
   together.make_folder(folder);
   for (const fs::path& path : earlier_pictures(folder)) {
     if (std::find(names.begin(), names.end(), path.filename().string()) == names.end()) together.remove(path);

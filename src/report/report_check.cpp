@@ -1,5 +1,5 @@
 #include <fmt/format.h>
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +71,7 @@ struct CheckItem {
 
   void operator()(const BinnedPanel& panel) const {
     if (panel.bins == 0) fail("panel '" + panel.title + "' has no bins; give at least one");
-    if (!(panel.samples_per_independent >= 1.0))
+    if (!(panel.autocorrelation_time >= 1.0))
       fail("panel '" + panel.title +
            "': samples_per_independent is not a number from 1 on; 1 is for independent samples");
     if (panel.x_choices.empty()) fail_empty(panel.title);

@@ -1,5 +1,5 @@
-#include <pcor/words/error.hpp>
-#include <pcor/words/message.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/message.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -165,7 +165,7 @@ json flights(const Report& report) {
 // To what a barb shows.
 double rounded(double speed) { return std::round(10.0 * speed) / 10.0; }
 
-const char* name_of(ReportTone tone) {
+const char* to_string(ReportTone tone) {
   constexpr const char* names[] = {"", "good", "bad", "open"};
   return names[static_cast<std::size_t>(tone)];
 }
@@ -216,7 +216,7 @@ struct ItemJson {
             {"columns", panel.y},
             {"choices", panel.x_choices},
             {"bins", panel.bins},
-            {"samplesPerIndependent", panel.samples_per_independent},
+            {"samplesPerIndependent", panel.autocorrelation_time},
             {"axis", panel.axis}};
   }
   json operator()(const PlanePanel& panel) const {
@@ -270,7 +270,8 @@ struct ItemJson {
     for (const ReportDotRow& row : panel.rows) {
       json dots = json::array();
       for (const ReportDot& dot : row.dots) dots.push_back({{"value", dot.value}, {"error", dot.error}});
-      rows.push_back({{"label", row.label}, {"dots", dots}, {"text", row.text}, {"tone", name_of(row.tone)}});
+      rows.push_back(
+          {{"label", row.label}, {"dots", dots}, {"text", row.text}, {"tone", to_string(row.tone)}});
     }
     json lines = json::array();
     for (const auto& [label, value] : panel.lines) lines.push_back({{"label", label}, {"value", value}});
@@ -317,7 +318,7 @@ struct ItemJson {
               {"own", panel.own},
               {"effects", std::move(effects)},
               {"choices", panel.x_choices},
-              {"samplesPerIndependent", panel.samples_per_independent},
+              {"samplesPerIndependent", panel.autocorrelation_time},
               {"weights", std::move(weights)},
               {"alike", sums_json(panel.alike)},
               {"outliers", sums_json(panel.outliers)},

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
+#include <pcor/base/atomic_file.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/message.hpp>
 #include <pcor/report/report.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/message.hpp>
-#include <pcor/words/replacement_file.hpp>
 
 #include <array>
 #include <cstddef>
@@ -66,11 +66,11 @@ bool is_numeric(const std::string& cell) {
 }
 
 // A cell with more letters may take several lines.
-constexpr std::size_t most_on_a_line = 60;
+constexpr std::size_t max_on_a_line = 60;
 
 std::string table(const ReportTable& table) {
   const auto kind = [](const std::string& cell) {
-    return is_numeric(cell) ? R"( class="number")" : cell.size() > most_on_a_line ? R"( class="words")" : "";
+    return is_numeric(cell) ? R"( class="number")" : cell.size() > max_on_a_line ? R"( class="words")" : "";
   };
   std::string head, body;
   for (std::size_t i = 0; i < table.headers.size(); ++i)
@@ -133,10 +133,10 @@ std::string items(const Report& report) {
   return html;
 }
 
-std::string facts(const std::vector<std::pair<std::string, std::string>>& facts) {
-  if (facts.empty()) return "";
+std::string info(const std::vector<std::pair<std::string, std::string>>& info) {
+  if (info.empty()) return "";
   std::string html = R"(<dl class="facts">)";
-  for (const auto& [name, fact] : facts)
+  for (const auto& [name, fact] : info)
     html += fmt::format("<div>{}{}</div>\n", element("dt", name), element("dd", fact));
   return html + "</dl>\n";
 }
@@ -149,12 +149,12 @@ std::string head(const Report& report) {
     for (const std::string& sentence : report.summary) html += element("li", sentence);
     html += "</ul></section>\n";
   }
-  if (!report.facts.empty()) html += R"(<section aria-label="Facts">)" + facts(report.facts) + "</section>\n";
+  if (!report.info.empty()) html += R"(<section aria-label="Facts">)" + info(report.info) + "</section>\n";
   return html;
 }
 
 std::string foot(const Report& report) {
-  return report.origin.empty() ? "" : "<footer>\n" + facts(report.origin) + "</footer>\n";
+  return report.origin.empty() ? "" : "<footer>\n" + info(report.origin) + "</footer>\n";
 }
 
 // The script as a policy names it, so that the browser runs no other: its SHA-256 in base 64.
@@ -198,7 +198,7 @@ std::string report_html(const Report& report) {
 
 void write_report(const Report& report, const std::filesystem::path& path) {
   const std::string html = report_html(report);
-  ReplacementFile file(path);
+  AtomicFile file(path);
   std::ofstream stream(file.path(), std::ios::binary);
   stream << html;
   stream.close();

@@ -11,11 +11,11 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double longest = 20.0;     // s
-constexpr double least_noise = 0.2;  // hPa: gusts change the defect of a port, too, and by less than 1 hPa
-constexpr double limit = 5.0;        // robust deviations: chance passes it at 6 in 10 million normal samples
-constexpr double margin = 3.0;       // s
-constexpr double beside = 3.0;       // robust deviations, of what belongs to a jump beyond the limit
+constexpr double longest = 20.0;   // s
+constexpr double min_noise = 0.2;  // hPa: gusts change the defect of a port, too, and by less than 1 hPa
+constexpr double limit = 5.0;      // robust deviations: chance passes it at 6 in 10 million normal samples
+constexpr double margin = 3.0;     // s
+constexpr double beside = 3.0;     // robust deviations, of what belongs to a jump beyond the limit
 
 /// By how much each sample departs from the middle of its neighbours; NaN at the ends and beside gaps.
 std::vector<double> departures_of(const std::vector<double>& values, const std::vector<double>& time,
@@ -36,7 +36,7 @@ std::vector<double> jumps_of(const std::vector<double>& values, const std::vecto
   for (std::size_t first = 0; first < jumps.size(); first += block) {
     const auto begin = jumps.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = jumps.begin() + static_cast<std::ptrdiff_t>(std::min(first + block, jumps.size()));
-    const double deviation = std::max(least_noise, robust_deviation({begin, end}));
+    const double deviation = std::max(min_noise, robust_standard_deviation({begin, end}));
     for (auto jump = begin; jump != end; ++jump) *jump /= deviation;
   }
   return jumps;

@@ -14,9 +14,9 @@ namespace {
 
 using Series = std::vector<double>;
 
-constexpr double window = 10.0;            // s: longer than a gust, shorter than a manoeuvre
-constexpr double least_time = 600.0;       // s: sixty windows, in which chance does not reach
-constexpr double least_correlation = 0.5;  // the least of recorded pairs, sideslip and drift, have 0.55
+constexpr double window = 10.0;          // s: longer than a gust, shorter than a manoeuvre
+constexpr double min_time = 600.0;       // s: sixty windows, in which chance does not reach
+constexpr double min_correlation = 0.5;  // the least of recorded pairs, sideslip and drift, have 0.55
 
 /// How much a series rises around each sample in `window`, NaN across gaps; of an angle on the circle.
 Series rise_of(const Series& values, const Series& time, double step, bool is_angle = false) {
@@ -36,14 +36,14 @@ struct Pair {
   Series first;
   std::string_view second_name;
   Series second;
-  double least_rms;       ///< of the second: below it nothing moved
+  double min_rms;         ///< of the second: below it nothing moved
   std::string_view turn;  ///< what turns one of them, in the [units] of a model
 };
 
 class Signs {
  public:
-  Signs(const FlightSamples& samples, double least_airspeed)
-      : samples_(samples), motion_(samples.motion), least_airspeed_(least_airspeed) {}
+  Signs(const FlightSamples& samples, double min_airspeed)
+      : samples_(samples), motion_(samples.motion), min_airspeed_(min_airspeed) {}
 
   std::vector<Pair> pairs() const {
     const Series altitude = rise(motion_.altitude);
@@ -79,7 +79,7 @@ class Signs {
     for (std::size_t i = 0; i < pair.first.size(); ++i) {
       const double x = pair.first[i];
       const double y = pair.second[i];
-      if (!std::isfinite(x + y) || !(motion_.airspeed[i] >= least_airspeed_)) continue;
+      if (!std::isfinite(x + y) || !(motion_.airspeed[i] >= min_airspeed_)) continue;
       count += 1.0;
       a += x;
       b += y;
@@ -87,7 +87,7 @@ class Signs {
       bb += y * y;
       ab += x * y;
     }
-    if (count * samples_.step < least_time || bb < count * pair.least_rms * pair.least_rms) return nan;
+    if (count * samples_.step < min_time || bb < count * pair.min_rms * pair.min_rms) return nan;
     return (ab - a * b / count) / std::sqrt((aa - a * a / count) * (bb - b * b / count));
   }
 
@@ -127,18 +127,18 @@ class Signs {
 
   const FlightSamples& samples_;
   const FlightMotion& motion_;
-  double least_airspeed_;
+  double min_airspeed_;
 };
 
 }  // namespace
 
-std::vector<std::string> contradicting_signs(const FlightSamples& samples, double least_airspeed) {
+std::vector<std::string> contradicting_signs(const FlightSamples& samples, double min_airspeed) {
   std::vector<std::string> contradictions;
   if (samples.motion.airspeed.empty()) return contradictions;
-  const Signs signs(samples, least_airspeed);
+  const Signs signs(samples, min_airspeed);
   for (const Pair& pair : signs.pairs()) {
     const double correlation = signs.correlation(pair);
-    if (!(correlation < -least_correlation)) continue;
+    if (!(correlation < -min_correlation)) continue;
     contradictions.push_back(
         fmt::format("{} and {} contradict each other (correlation {:.2f}): one of them has the other sign; "
                     "turn it in the "

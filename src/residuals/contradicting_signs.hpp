@@ -13,7 +13,7 @@ namespace pcor::internal {
 ///
 /// The pairs are compared over 10 s in the air; they contradict each other where their correlation is below
 /// -0.5 in at least ten minutes in which both moved. A series that is absent contradicts nothing.
-/// @param least_airspeed m/s; slower samples do not count
-std::vector<std::string> contradicting_signs(const FlightSamples& samples, double least_airspeed);
+/// @param min_airspeed m/s; slower samples do not count
+std::vector<std::string> contradicting_signs(const FlightSamples& samples, double min_airspeed);
 
 }  // namespace pcor::internal

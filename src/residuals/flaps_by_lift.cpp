@@ -9,10 +9,10 @@
 #include <cmath>
 #include <string_view>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/lift.hpp>
-#include <pcor/words/utc.hpp>
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
@@ -23,8 +23,8 @@ namespace {
 constexpr double piece_time = 20.0;         // s
 constexpr double time_in = 3600.0;          // s, mean
 constexpr double time_out = 600.0;          // s, mean
-constexpr double least_deficit = 0.12;      // a C-130 of 2004 showed 0.37 and more
-constexpr double greatest_deficit = 0.8;    // and 0.68 at most, before it landed
+constexpr double min_deficit = 0.12;        // a C-130 of 2004 showed 0.37 and more
+constexpr double max_deficit = 0.8;         // and 0.68 at most, before it landed
 constexpr double anywhere_share = 0.001;    // of the pieces with flaps in
 constexpr double anywhere_deficit = 0.3;    // their standard deviation
 constexpr double slope_error = 0.05;        // of the lift away from where the law was fitted
@@ -35,7 +35,7 @@ constexpr double over_speed = 0.05;         // by which pilots pass the limit, s
 constexpr double likely = 0.9;
 constexpr double robust_limit = 4.0;         // deviations
 constexpr double sea_level_density = 1.225;  // kg/m3, standard atmosphere
-constexpr std::size_t fewest_fast = 15;      // pieces
+constexpr std::size_t min_fast = 15;         // pieces
 constexpr int rounds = 10;
 
 struct FlapSpeed {
@@ -79,7 +79,7 @@ double load_factor_at(const FlightSamples& samples, std::size_t i) {
 }
 
 std::vector<Piece> pieces_of(const FlightSamples& samples, const std::vector<double>& angle,
-                             double least_airspeed) {
+                             double min_airspeed) {
   const std::vector<double>& p = *samples.model.find(Quantity::static_pressure);
   const std::vector<double>& q = *samples.model.find(Quantity::dynamic_pressure);
   std::vector<Piece> pieces;
@@ -89,7 +89,7 @@ std::vector<Piece> pieces_of(const FlightSamples& samples, const std::vector<dou
     double dynamic = 0.0;
     while (end < samples.time.size() && samples.time[end] - samples.time[first] < piece_time) {
       const std::size_t i = end++;
-      if (!(samples.motion.airspeed[i] >= least_airspeed) || !(q[i] > 0.0)) continue;
+      if (!(samples.motion.airspeed[i] >= min_airspeed) || !(q[i] > 0.0)) continue;
       const double mach = mach_number(p[i], q[i], dry_air<double>());
       const double lift = load_factor_at(samples, i) / q[i];
       if (!std::isfinite(lift) || !std::isfinite(angle[i])) continue;
@@ -146,7 +146,7 @@ class LiftLaw {
       for (std::size_t i = 0; i < pieces.size(); ++i) {
         if (weights[i] > 0.5) clean.push_back(departure(pieces[i]));
       }
-      deviation_ = robust_deviation(clean);
+      deviation_ = robust_standard_deviation(clean);
       const double variance = deviation_ * deviation_ * pieces_per_independent(clean);
       covariance_ = inverse * variance;
       const double spread = compression_spread * coefficients_[1];
@@ -209,9 +209,9 @@ double evidence_of(const Deficit& deficit, double airspeed, double flap_speed) {
   const auto [value, error] = deficit;
   const double in = (1.0 - anywhere_share) * normal_density(value, error) +
                     anywhere_share * normal_density(value, anywhere_deficit);
-  const double out = (normal_probability((value - least_deficit) / error) -
-                      normal_probability((value - greatest_deficit) / error)) /
-                     (greatest_deficit - least_deficit);
+  const double out = (normal_probability((value - min_deficit) / error) -
+                      normal_probability((value - max_deficit) / error)) /
+                     (max_deficit - min_deficit);
   const double lift = std::clamp(std::log(out) - std::log(in), -most_evidence, most_evidence);
   const double over = std::max(airspeed / flap_speed - 1.0, 0.0) / over_speed;
   return (std::isnan(lift) ? 0.0 : lift) - 0.5 * over * over;
@@ -251,12 +251,12 @@ std::vector<double> probabilities_of_out(const std::vector<Piece>& pieces,
 }  // namespace
 
 std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, const std::vector<double>& angle,
-                                              double least_airspeed) {
-  const std::vector<Piece> pieces = pieces_of(samples, angle, least_airspeed);
+                                              double min_airspeed) {
+  const std::vector<Piece> pieces = pieces_of(samples, angle, min_airspeed);
   const double flap_speed = flap_speed_of(samples.aircraft);
   std::vector<double> weights;
   for (const Piece& piece : pieces) weights.push_back(piece.airspeed > flap_speed ? 1.0 : 0.0);
-  if (std::count(weights.begin(), weights.end(), 1.0) < static_cast<std::ptrdiff_t>(fewest_fast)) return {};
+  if (std::count(weights.begin(), weights.end(), 1.0) < static_cast<std::ptrdiff_t>(min_fast)) return {};
   std::vector<double> out(pieces.size());
   std::vector<Deficit> deficits(pieces.size());
   for (int round = 0; round < rounds; ++round) {
@@ -283,7 +283,7 @@ std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, cons
     for (std::size_t k = pieces[i].first; k < pieces[i].end; ++k) flaps.out[k] = is_out;
   }
   flaps.deficit = where_out.empty() ? 0.0 : median(std::move(where_out));
-  flaps.deviation = robust_deviation(std::move(where_in));
+  flaps.deviation = robust_standard_deviation(std::move(where_in));
   return flaps;
 }
 

@@ -29,9 +29,9 @@ struct FlapsByLift {
 /// Absent where fewer than 15 pieces are faster than that, or the angle does not rise with n/q.
 ///
 /// @param angle of attack, deg, or ADIFR/QCR, which is linear in it; of every sample
-/// @param least_airspeed m/s; slower samples do not count
+/// @param min_airspeed m/s; slower samples do not count
 std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, const std::vector<double>& angle,
-                                              double least_airspeed);
+                                              double min_airspeed);
 
 /// "from 2004-02-18 15:04:42 to 15:13:02 UTC (500 samples)", and so on.
 std::string times_of(const FlapsByLift& flaps, const std::vector<double>& time);

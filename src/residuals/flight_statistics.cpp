@@ -20,7 +20,7 @@ std::vector<double> only_at(const std::vector<double>& values, const std::vector
   return result;
 }
 
-std::vector<double> only_where(const std::vector<double>& values, const std::vector<Mask>& masks, Mask mask) {
+std::vector<double> masked(const std::vector<double>& values, const std::vector<Mask>& masks, Mask mask) {
   std::vector<double> result = values;
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (masks[i] != mask) result[i] = nan;
@@ -29,7 +29,7 @@ std::vector<double> only_where(const std::vector<double>& values, const std::vec
 }
 
 NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<double>& residual) {
-  return noise_floor(residual, stretches_of(residual, samples.time, samples.step), samples.step);
+  return noise_floor(residual, contiguous_segments(residual, samples.time, samples.step), samples.step);
 }
 
 ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
@@ -54,17 +54,17 @@ ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<doub
 ResidualSums flaps_out(const Residuals& residuals, const double* parameters) {
   const std::vector<Mask>& masks = residuals.mask();
   if (std::find(masks.begin(), masks.end(), Mask::flaps) == masks.end()) return {};
-  return sums_of_flight(residuals.samples(), only_where(residuals.values(parameters), masks, Mask::flaps));
+  return sums_of_flight(residuals.samples(), masked(residuals.values(parameters), masks, Mask::flaps));
 }
 
 Gain gain_between(const FlightSamples& samples, const std::vector<double>& before,
                   const std::vector<double>& after, const NoiseFloor& noise, double window) {
-  const double stretch = std::max(60.0, 2.0 * window);  // s
+  const double segment = std::max(60.0, 2.0 * window);  // s
   const double weight = window > samples.step ? samples.step / window : 1.0;
   Gain sum;
   double squares = 0.0;
   for (std::size_t i = 0; i < after.size();) {
-    const double end = samples.time[i] + stretch;
+    const double end = samples.time[i] + segment;
     double gain = 0.0;
     for (; i < after.size() && samples.time[i] < end; ++i) {
       const double deviation = noise.local_rms[i];

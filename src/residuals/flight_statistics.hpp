@@ -18,7 +18,7 @@ namespace pcor::internal {
 std::vector<double> only_at(const std::vector<double>& values, const std::vector<std::size_t>& samples);
 
 /// Values at the samples with one mask, NaN at all others.
-std::vector<double> only_where(const std::vector<double>& values, const std::vector<Mask>& masks, Mask mask);
+std::vector<double> masked(const std::vector<double>& values, const std::vector<Mask>& masks, Mask mask);
 
 /// The noise floor of a flight. @param residual NaN where a sample takes no part
 NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<double>& residual);

@@ -4,14 +4,14 @@
 
 namespace pcor::internal {
 
-void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double least_airspeed) {
+void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double min_airspeed) {
   std::vector<bool> flying;
-  for (const double airspeed : samples.motion.airspeed) flying.push_back(airspeed >= least_airspeed);
+  for (const double airspeed : samples.motion.airspeed) flying.push_back(airspeed >= min_airspeed);
   ModelSamples& read = samples.*part;
   for (const auto& [quantity, variable] : read.variables) {
     const std::vector<double>& values = *read.find(quantity);
-    const std::vector<Stretch> frozen = find_frozen(values, flying, always_varies(quantity));
-    for (const Stretch& span : frozen) read.frozen.push_back({quantity, span.first, span.count});
+    const std::vector<Segment> frozen = find_frozen(values, flying, always_varies(quantity));
+    for (const Segment& span : frozen) read.frozen.push_back({quantity, span.first, span.count});
     if (!frozen.empty())
       samples.notes.push_back(frozen_text(variable, quantity, values, samples.time, frozen));
   }

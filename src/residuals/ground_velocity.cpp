@@ -6,11 +6,11 @@
 
 namespace pcor::internal {
 
-GroundVelocity read_ground_velocity(const Flight& flight, const ModelFile& model) {
+GroundVelocity read_ground_velocity(const Flight& flight, const ModelDefinition& model) {
   GroundVelocity velocity{read_role(flight, model, Quantity::ground_speed),
                           read_role(flight, model, Quantity::ground_track)};
   if (!velocity.speed.values.empty() && !velocity.track.values.empty()) return velocity;
-  const AircraftFamily& family = family_of(model, flight);
+  const VariableNaming& family = family_of(model, flight);
   const RecordedSeries east = read_usual(flight, family, "ground_speed_east");
   const RecordedSeries north = read_usual(flight, family, "ground_speed_north");
   if (east.values.empty() || north.values.empty()) return {};

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pcor/flight/flight.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -14,6 +14,6 @@ struct GroundVelocity {
 };
 
 /// From ground speed and track, by the roles of the model or the usual names; else from the usual components.
-GroundVelocity read_ground_velocity(const Flight& flight, const ModelFile& model);
+GroundVelocity read_ground_velocity(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

@@ -12,12 +12,12 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double least_deviation = 0.1;  // m/s
-constexpr double by_angles = 0.03;       // of the airspeed: a static defect of 6 % of q
-constexpr double most_off = 0.15;        // of the airspeed: a static defect of three tenths of q
+constexpr double min_deviation = 0.1;  // m/s
+constexpr double by_angles = 0.03;     // of the airspeed: a static defect of 6 % of q
+constexpr double max_off = 0.15;       // of the airspeed: a static defect of three tenths of q
 constexpr double scale_of_cauchy = 2.385;
 constexpr int rounds = 20;
-constexpr double least_eigenvalue = 1e-9;
+constexpr double min_eigenvalue = 1e-9;
 constexpr std::size_t fewest = 30;
 constexpr std::size_t beside = 5;  // samples on either side
 
@@ -26,11 +26,12 @@ std::vector<double> departures(const Eigen::MatrixXd& columns, const Eigen::Vect
   Eigen::VectorXd departure = beam - columns.col(0);
   for (int round = 0; round < rounds; ++round) {
     const double scale =
-        scale_of_cauchy * std::max(robust_deviation({departure.begin(), departure.end()}), least_deviation);
+        scale_of_cauchy *
+        std::max(robust_standard_deviation({departure.begin(), departure.end()}), min_deviation);
     const Eigen::VectorXd weight = (1.0 + (departure / scale).array().square()).rsqrt();
     const Eigen::MatrixXd weighted = weight.asDiagonal() * columns;
     const Eigen::VectorXd factor = pseudo_solution(
-        weighted.transpose() * weighted, weighted.transpose() * weight.cwiseProduct(beam), least_eigenvalue);
+        weighted.transpose() * weighted, weighted.transpose() * weight.cwiseProduct(beam), min_eigenvalue);
     departure = beam - columns * factor;
   }
   return {departure.begin(), departure.end()};
@@ -53,7 +54,7 @@ std::vector<std::size_t> with_those_between(const std::vector<std::size_t>& samp
 
 std::vector<std::size_t> find_unlocked(const std::vector<double>& beam, const std::vector<double>& airspeed,
                                        const std::vector<double>& ratio,
-                                       const std::vector<std::size_t>& samples, double most_departure) {
+                                       const std::vector<std::size_t>& samples, double max_departure) {
   if (samples.size() < fewest) return {};
   std::vector<double> factors;
   std::vector<double> ratios;
@@ -66,7 +67,7 @@ std::vector<std::size_t> find_unlocked(const std::vector<double>& beam, const st
   std::vector<bool> is_unlocked(samples.size(), true);
   std::vector<std::size_t> near;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (std::abs(factors[k] / usual - 1.0) < most_off) near.push_back(k);
+    if (std::abs(factors[k] / usual - 1.0) < max_off) near.push_back(k);
   }
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(near.size()), 3);
   Eigen::VectorXd recorded(columns.rows());
@@ -77,10 +78,10 @@ std::vector<std::size_t> find_unlocked(const std::vector<double>& beam, const st
     recorded[row] = beam[i];
   }
   const std::vector<double> departure = departures(columns, recorded);
-  const double deviation = std::max(robust_deviation(departure), least_deviation);
+  const double deviation = std::max(robust_standard_deviation(departure), min_deviation);
   for (std::size_t k = 0; k < near.size(); ++k) {
     is_unlocked[near[k]] =
-        std::abs(departure[k]) > most_departure * deviation + by_angles * airspeed[samples[near[k]]];
+        std::abs(departure[k]) > max_departure * deviation + by_angles * airspeed[samples[near[k]]];
   }
   return with_those_between(samples, is_unlocked);
 }

@@ -15,7 +15,7 @@
 
 namespace pcor {
 
-const std::array<MaskFacts, mask_count> mask_facts{{
+const std::array<MaskInfo, mask_count> mask_info{{
     {"used", "used"},
     {"excluded", "in times that the user excluded"},
     {"missing", "without a value that the model needs"},
@@ -37,7 +37,7 @@ std::string mask_text(const std::array<std::size_t, mask_count>& counts) {
                    [&](std::size_t a, std::size_t b) { return counts[a] > counts[b]; });
   std::vector<std::string> parts;
   for (const std::size_t mask : order) {
-    if (counts[mask] > 0) parts.push_back(fmt::format("{} {}", counts[mask], mask_facts[mask].meaning));
+    if (counts[mask] > 0) parts.push_back(fmt::format("{} {}", counts[mask], mask_info[mask].meaning));
   }
   return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, "; "));
 }
@@ -57,7 +57,7 @@ Mask mask_as_flown(const FlightSamples& samples, std::size_t sample, const Regim
                    const MaskOptions& options) {
   const auto in = [&regimes](Regime regime) { return regimes[static_cast<std::size_t>(regime)]; };
   if (in(Regime::ground)) return Mask::ground;
-  if (airspeed_at(samples, sample) < options.least_airspeed) return Mask::low_speed;
+  if (airspeed_at(samples, sample) < options.min_airspeed) return Mask::low_speed;
   return std::any_of(options.exclude.begin(), options.exclude.end(), in) ? Mask::regime : Mask::none;
 }
 
@@ -131,7 +131,7 @@ void mark_bursts(const MaskedResidual& residual, std::vector<Mask>& masks) {
 
 std::vector<Mask> masks_as_flown(const FlightSamples& samples, const MaskOptions& options) {
   std::vector<Mask> masks = masks_without_flaps(samples, options);
-  mark_flaps(samples, options.most_flaps.value_or(flaps_in), masks);
+  mark_flaps(samples, options.max_flaps.value_or(flaps_in), masks);
   return masks;
 }
 
@@ -149,13 +149,13 @@ std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& 
     if (masks[i] == Mask::none && std::isnan(residual.values[i]))
       masks[i] = residual.reference.why_missing(i);
   }
-  residual.reference.mark_not_believed(masks, samples.motion.airspeed, options);
+  residual.reference.mark_implausible(masks, samples.motion.airspeed, options);
   mark_bursts(residual, masks);
   const std::vector<ModelEffect>& effects = residual.model.model().effects;
   const bool describes_flaps = std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
     return reads_flaps(effect, samples.flaps_variable);
   });
-  mark_flaps(samples, options.most_flaps.value_or(describes_flaps ? infinity : flaps_in), masks);
+  mark_flaps(samples, options.max_flaps.value_or(describes_flaps ? infinity : flaps_in), masks);
   return masks;
 }
 
@@ -167,7 +167,7 @@ bool reads_flaps(const ModelEffect& effect, const std::string& variable) {
         formula->variables().begin(), formula->variables().end(),
         [&](const std::string& name) { return name == variable || quantity_named(name) == Quantity::flaps; });
   }
-  const auto& needs = effect_facts[effect_named(effect.id)].needs;
+  const auto& needs = effect_info[effect_named(effect.id)].needs;
   return std::find(needs.begin(), needs.end(), Quantity::flaps) != needs.end();
 }
 

@@ -6,7 +6,7 @@
 namespace pcor::internal {
 namespace {
 
-std::vector<Quantity> roles_of(const ModelFile& file, const ModelSamples& samples) {
+std::vector<Quantity> roles_of(const ModelDefinition& file, const ModelSamples& samples) {
   std::vector<Quantity> roles;
   std::copy_if(samples.roles.begin(), samples.roles.end(), std::back_inserter(roles),
                [&](Quantity quantity) { return !is_role(quantity) || file.variables.count(quantity) != 0; });
@@ -27,10 +27,10 @@ std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns, con
   return inputs;
 }
 
-ModelOnSamples::ModelOnSamples(const ModelFile& file, const ModelSamples& samples)
+ModelOnSamples::ModelOnSamples(const ModelDefinition& file, const ModelSamples& samples)
     : model_(file.model), batch_(file.model, roles_of(file, samples)) {
   for (const Quantity input : chain().inputs()) columns_.push_back({input, samples.find(input)->data()});
-  for (const MovingColumn& column : samples.moving) {
+  for (const ParameterDependentColumn& column : samples.moving) {
     std::size_t first = 0;
     for (const ModelEffect& effect : model_.effects) {
       if (effect.id == column.effect) moving_.push_back({&column, first + column.parameter});
@@ -65,9 +65,9 @@ std::vector<bool> ModelOnSamples::linear() const {
   for (const ModelEffect& effect : model_.effects) {
     const std::size_t place = effect_named(effect.id);
     const bool is = !has_minimum && !effect.is_formula() && place != catalogue_size &&
-                    effect_facts[place].where == Where::static_defect;
+                    effect_info[place].location == EffectLocation::static_defect;
     for (std::size_t p = 0; p < effect.parameters.size(); ++p)
-      linear.push_back(is && !effect_facts[place].parameters[p].shape);
+      linear.push_back(is && !effect_info[place].parameters[p].shape);
   }
   linear.resize(linear.size() + model_.additions.size(), false);
   return linear;
@@ -95,7 +95,7 @@ double ModelOnSamples::step_of(std::size_t parameter) const {
   std::size_t first = 0;
   for (const ModelEffect& effect : model_.effects) {
     if (parameter < first + effect.parameters.size()) {
-      const double typical = effect_facts[effect_named(effect.id)].parameters[parameter - first].typical;
+      const double typical = effect_info[effect_named(effect.id)].parameters[parameter - first].typical;
       return 0.1 * std::abs(typical);
     }
     first += effect.parameters.size();

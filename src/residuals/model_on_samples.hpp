@@ -25,7 +25,7 @@ class ModelOnSamples {
  public:
   /// Of the roles of the samples those count that the model names: a diagnosis reads more of a flight.
   /// @throws Error if the model cannot be used on the samples.
-  ModelOnSamples(const ModelFile& file, const ModelSamples& samples);
+  ModelOnSamples(const ModelDefinition& file, const ModelSamples& samples);
 
   const Batch& batch() const { return batch_; }
   const Chain& chain() const { return batch_.chain(); }
@@ -102,7 +102,7 @@ class ModelOnSamples {
  private:
   /// A column that hangs on a coefficient, and the place of that among the parameters.
   struct Moving {
-    const MovingColumn* column;
+    const ParameterDependentColumn* column;
     std::size_t parameter;
   };
 

@@ -12,7 +12,7 @@
 namespace pcor::internal {
 Memory memory_of(const ModelEffect& effect) {
   const std::size_t known = effect_named(effect.id);
-  return known < catalogue_size ? effect_facts[known].memory : Memory{};
+  return known < catalogue_size ? effect_info[known].memory : Memory{};
 }
 
 std::vector<double> wetness_of(const std::vector<double>& liquid_water, const std::vector<double>& time,
@@ -26,7 +26,7 @@ std::vector<double> wetness_of(const std::vector<double>& liquid_water, const st
   return values;
 }
 
-std::vector<double> airspeed_along_beam(const ModelFile& model, const ModelSamples& samples,
+std::vector<double> airspeed_along_beam(const ModelDefinition& model, const ModelSamples& samples,
                                         const double* parameters) {
   const ModelOnSamples law(model, samples);
   if (parameters == nullptr) parameters = law.parameters().data();
@@ -43,7 +43,7 @@ std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,
   }
   const FastSeries& speed = samples.along_beam;
   if (speed.values.empty()) return {};
-  return rate_of(speed, time, step, speed.shortest_period, seconds);
+  return rate_of(speed, time, step, speed.min_period, seconds);
 }
 
 void find_moving_columns(const Model& model, const double* parameters, const std::vector<double>& time,
@@ -58,8 +58,9 @@ void find_moving_columns(const Model& model, const double* parameters, const std
     const auto column = std::find_if(samples.columns.begin(), samples.columns.end(),
                                      [&](const auto& each) { return each.first == memory.of; });
     if (column == samples.columns.end()) continue;
-    auto moving = std::find_if(samples.moving.begin(), samples.moving.end(),
-                               [&](const MovingColumn& each) { return each.quantity == memory.of; });
+    auto moving =
+        std::find_if(samples.moving.begin(), samples.moving.end(),
+                     [&](const ParameterDependentColumn& each) { return each.quantity == memory.of; });
     if (moving == samples.moving.end())
       moving = samples.moving.insert(moving, {memory.of, effect.id, memory.parameter, 0.0,
                                               std::vector<double>(column->second.size(), 0.0)});

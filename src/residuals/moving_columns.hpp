@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/samples.hpp>
 #include "residuals/model_on_samples.hpp"
 
@@ -18,10 +18,10 @@ std::vector<double> wetness_of(const std::vector<double>& liquid_water, const st
 
 /// The true airspeed by corrected pressures and temperature, m/s, along the beam of the laser where there is
 /// one, of a model with these coefficients; with its own where none are given.
-std::vector<double> airspeed_along_beam(const ModelFile& model, const ModelSamples& samples,
+std::vector<double> airspeed_along_beam(const ModelDefinition& model, const ModelSamples& samples,
                                         const double* parameters = nullptr);
 
-/// What a model finds over some seconds (`EffectFacts::memory`): the mean rate of the airspeed along the
+/// What a model finds over some seconds (`EffectInfo::memory`): the mean rate of the airspeed along the
 /// beam, m/s2, or the wetness of the thermometer after liquid water. Empty where the samples do not have what
 /// it is found from. @param time of the records, s @param step s
 std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,

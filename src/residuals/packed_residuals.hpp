@@ -5,8 +5,8 @@
 
 #include <pcor/residuals/samples.hpp>
 #include <pcor/residuals/statistics.hpp>
+#include "parallel/packed.hpp"
 #include "residuals/residual_sums.hpp"
-#include "team/packed.hpp"
 
 /// How what is known of flights is packed for the other members of a team.
 namespace cereal {
@@ -34,13 +34,13 @@ void serialize(Archive& archive, pcor::FrozenSpan& span) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, pcor::MovingColumn& column) {
+void serialize(Archive& archive, pcor::ParameterDependentColumn& column) {
   archive(column.quantity, column.effect, column.parameter, column.at, column.slope);
 }
 
 template <class Archive>
 void serialize(Archive& archive, pcor::FastSeries& series) {
-  archive(series.values, series.in_record, series.shortest_period);
+  archive(series.values, series.in_record, series.min_period);
 }
 
 template <class Archive>

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "residuals/references/height.hpp"
 #include "residuals/references/lams.hpp"
 #include "residuals/references/pressure.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 using Pointer = std::shared_ptr<const Reference>;
 
-Pointer read_lams(const std::string&, const ModelFile& model) {
+Pointer read_lams(const std::string&, const ModelDefinition& model) {
   if (model.variables.count(Quantity::lams_airspeed) == 0) {
     throw Error(
         fmt::format("model '{}' has no lams_airspeed; give it its variable in the table [variables], or "
@@ -34,8 +34,8 @@ Pointer read_lams(const std::string&, const ModelFile& model) {
 }
 
 /// A pair of pressures that no law corrects.
-ModelFile bare_pair(const std::string& static_pressure, const std::string& dynamic_pressure) {
-  ModelFile pair;
+ModelDefinition bare_pair(const std::string& static_pressure, const std::string& dynamic_pressure) {
+  ModelDefinition pair;
   pair.model.name = static_pressure + "+" + dynamic_pressure;
   pair.variables = {{Quantity::static_pressure, static_pressure},
                     {Quantity::dynamic_pressure, dynamic_pressure}};
@@ -43,8 +43,8 @@ ModelFile bare_pair(const std::string& static_pressure, const std::string& dynam
 }
 
 /// A second system, whose pressures nobody can guess.
-ModelFile read_system(const std::string& path) {
-  ModelFile system = read_model(path);
+ModelDefinition read_system(const std::string& path) {
+  ModelDefinition system = read_model(path);
   if (system.variables.count(Quantity::static_pressure) == 0) {
     throw Error(
         Error::Code::model,
@@ -56,7 +56,7 @@ ModelFile read_system(const std::string& path) {
 }
 
 /// Of a file, or of two variables with a + between them.
-Pointer read_total_pressure(const std::string& system, const ModelFile&) {
+Pointer read_total_pressure(const std::string& system, const ModelDefinition&) {
   const std::size_t plus = system.find('+');
   const bool is_pair = plus != std::string::npos && !std::filesystem::exists(system);
   return total_pressure_reference(is_pair ? bare_pair(system.substr(0, plus), system.substr(plus + 1))
@@ -68,22 +68,24 @@ struct Form {
   std::string_view form;
   std::string_view argument;  ///< in words; empty: it takes none
   std::string_view meaning;
-  Pointer (*read)(const std::string& argument, const ModelFile& model);
+  Pointer (*read)(const std::string& argument, const ModelDefinition& model);
 };
 
 /// All references.
 constexpr std::array<Form, 6> forms{{
     {"lams", "", "the laser air-motion sensor", read_lams},
     {"static", "OTHER.toml", "a second static system, by its model",
-     [](const std::string& file, const ModelFile&) { return static_system_reference(read_system(file)); }},
+     [](const std::string& file, const ModelDefinition&) {
+       return static_system_reference(read_system(file));
+     }},
     {"pressure", "VARIABLE", "a recorded static pressure",
-     [](const std::string& variable, const ModelFile&) { return pressure_reference(variable); }},
+     [](const std::string& variable, const ModelDefinition&) { return pressure_reference(variable); }},
     {"total", "OTHER.toml", "the total pressure of a second system, by its model, or of STATIC+DYNAMIC",
      read_total_pressure},
     {"height", "", "hydrostatic heights against GPS in climbs",
-     [](const std::string&, const ModelFile& model) { return height_reference(model); }},
+     [](const std::string&, const ModelDefinition& model) { return height_reference(model); }},
     {"wind", "", "ground speeds in turns, reverse headings and speed runs",
-     [](const std::string&, const ModelFile& model) { return wind_reference(model); }},
+     [](const std::string&, const ModelDefinition& model) { return wind_reference(model); }},
 }};
 
 }  // namespace
@@ -97,12 +99,12 @@ const Reference& first_of(const References& references) {
   return *references.front();
 }
 
-void ReferenceOnSamples::mark_not_believed(std::vector<Mask>&, const std::vector<double>&,
-                                           const MaskOptions&) const {}
+void ReferenceOnSamples::mark_implausible(std::vector<Mask>&, const std::vector<double>&,
+                                          const MaskOptions&) const {}
 
 Pointer lams_reference() { return std::make_shared<LamsReference>(); }
 
-Pointer static_system_reference(ModelFile system) {
+Pointer static_system_reference(ModelDefinition system) {
   return std::make_shared<StaticSystemReference>(std::move(system));
 }
 
@@ -110,13 +112,13 @@ Pointer pressure_reference(std::string variable) {
   return std::make_shared<PressureReference>(std::move(variable));
 }
 
-Pointer total_pressure_reference(ModelFile system) {
+Pointer total_pressure_reference(ModelDefinition system) {
   return std::make_shared<TotalPressureReference>(std::move(system));
 }
 
-Pointer height_reference(const ModelFile& model) { return std::make_shared<HeightReference>(model); }
+Pointer height_reference(const ModelDefinition& model) { return std::make_shared<HeightReference>(model); }
 
-Pointer wind_reference(const ModelFile& model) { return std::make_shared<WindReference>(model); }
+Pointer wind_reference(const ModelDefinition& model) { return std::make_shared<WindReference>(model); }
 
 std::string reference_forms() {
   std::string text;
@@ -129,7 +131,7 @@ std::string reference_forms() {
   return text;
 }
 
-Pointer read_reference(const std::string& text, const ModelFile& model) {
+Pointer read_reference(const std::string& text, const ModelDefinition& model) {
   const std::size_t colon = text.find(':');
   const std::string form = text.substr(0, colon);
   const std::string argument = colon == std::string::npos ? "" : text.substr(colon + 1);

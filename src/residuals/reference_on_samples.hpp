@@ -84,8 +84,8 @@ class ReferenceOnSamples {
 
   /// Marks the samples at which it cannot be believed, among those that have a residual and no other mask.
   /// @param airspeed of the pressures, m/s
-  virtual void mark_not_believed(std::vector<Mask>& masks, const std::vector<double>& airspeed,
-                                 const MaskOptions& options) const;
+  virtual void mark_implausible(std::vector<Mask>& masks, const std::vector<double>& airspeed,
+                                const MaskOptions& options) const;
 };
 
 }  // namespace pcor::internal

@@ -58,7 +58,7 @@ struct Residuals::Implementation {
     return sensitivity_;
   }
 
-  Implementation(std::shared_ptr<const FlightSamples> flight, const ModelFile& of,
+  Implementation(std::shared_ptr<const FlightSamples> flight, const ModelDefinition& of,
                  const Reference& held_against)
       : samples(std::move(flight)),
         model(of, samples->model),
@@ -80,13 +80,13 @@ struct Residuals::Implementation {
   mutable std::vector<double> sensitivity_;
 };
 
-Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model,
+Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelDefinition& model,
                      const Reference& reference, const MaskOptions& options)
     : Residuals(std::move(samples), model, reference, std::vector<Mask>()) {
   set_mask(masks_at(parameters().data(), options));
 }
 
-Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model,
+Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelDefinition& model,
                      const Reference& reference, std::vector<Mask> mask)
     : implementation_(std::make_unique<Implementation>(std::move(samples), model, reference)) {
   implementation_->mask = std::move(mask);
@@ -222,7 +222,7 @@ std::shared_ptr<const FlightSamples> Residuals::at_common_pressures() const {
   return result;
 }
 
-std::vector<double> Residuals::wanted_defect(const double* parameters) const {
+std::vector<double> Residuals::target_defect(const double* parameters) const {
   std::vector<double> result = values(parameters);
   const std::vector<double> defect = quantity(Quantity::static_defect, parameters);
   for (std::size_t i = 0; i < result.size(); ++i) result[i] += defect[i];
@@ -238,7 +238,7 @@ std::vector<double> Residuals::quantity(Quantity quantity, const double* paramet
   return result;
 }
 
-std::vector<std::string> residual_parameter_names(const ModelFile& model, const Reference& reference) {
+std::vector<std::string> residual_parameter_names(const ModelDefinition& model, const Reference& reference) {
   std::vector<std::string> names;
   const auto add = [&names](const Model& of, const char* prefix) {
     for (const ModelEffect& effect : of.effects) {

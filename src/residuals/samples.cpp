@@ -10,11 +10,11 @@
 #include <string_view>
 #include <utility>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/realtime/chain.hpp>
 #include <pcor/residuals/reference.hpp>
-#include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
 #include "residuals/contradicting_signs.hpp"
 #include "residuals/flaps_by_lift.hpp"
@@ -66,7 +66,7 @@ constexpr std::array<Loss, 4> losses{{
      "no heading is recorded: circles and reverse headings are found by the ground track alone"},
 }};
 
-FlightMotion read_motion(const Flight& flight, const ModelFile& model, FlightSamples& samples) {
+FlightMotion read_motion(const Flight& flight, const ModelDefinition& model, FlightSamples& samples) {
   std::vector<std::string> by_usual_names;
   const auto take = [&](const std::string_view role, RecordedSeries series) {
     if (!series.variable.empty()) by_usual_names.push_back(fmt::format("{} = {}", role, series.variable));
@@ -75,7 +75,7 @@ FlightMotion read_motion(const Flight& flight, const ModelFile& model, FlightSam
   const auto read = [&](Quantity role) {
     RecordedSeries series = read_role(flight, model, role);
     if (model.variables.count(role) != 0) return std::move(series.values);
-    return take(facts_of(role).name, std::move(series));
+    return take(info_of(role).name, std::move(series));
   };
   FlightMotion motion;
   motion.time = samples.time;
@@ -106,7 +106,8 @@ FlightMotion read_motion(const Flight& flight, const ModelFile& model, FlightSam
 }
 
 /// ADIFR/QCR, else the angle of attack, deg; empty where neither is recorded.
-std::vector<double> read_attack(const Flight& flight, const ModelFile& model, const FlightMotion& motion) {
+std::vector<double> read_attack(const Flight& flight, const ModelDefinition& model,
+                                const FlightMotion& motion) {
   std::vector<double> ratio = read_role(flight, model, Quantity::attack_differential_pressure).values;
   const std::vector<double> qcr = read_role(flight, model, Quantity::radome_dynamic_pressure).values;
   if (ratio.empty() || qcr.empty()) return motion.attack;
@@ -115,14 +116,15 @@ std::vector<double> read_attack(const Flight& flight, const ModelFile& model, co
 }
 
 /// The flaps as recorded, else where the lift says that they are out.
-void read_flaps(const Flight& flight, const ModelFile& model, double least_airspeed, FlightSamples& samples) {
+void read_flaps(const Flight& flight, const ModelDefinition& model, double min_airspeed,
+                FlightSamples& samples) {
   RecordedSeries recorded = read_role(flight, model, Quantity::flaps);
   samples.flaps = std::move(recorded.values);
   samples.flaps_variable = std::move(recorded.variable);
   if (!samples.flaps.empty()) return;
   const std::vector<double> attack = read_attack(flight, model, samples.motion);
   const std::optional<FlapsByLift> lift =
-      attack.empty() ? std::nullopt : find_flaps_by_lift(samples, attack, least_airspeed);
+      attack.empty() ? std::nullopt : find_flaps_by_lift(samples, attack, min_airspeed);
   if (!lift) {
     samples.notes.emplace_back(
         "the flight records no flaps, and its lift does not tell, so an approach with flaps and gear out "
@@ -174,7 +176,7 @@ void note_coarse(const ModelSamples& samples, std::vector<std::string>& notes) {
 
 /// The airspeed along the beam, at the highest rate at which a pressure is recorded. What else a model adds
 /// up from the records, rates of change and the time, is that of the whole record.
-FastSeries read_along_beam(const Flight& flight, const ModelFile& model,
+FastSeries read_along_beam(const Flight& flight, const ModelDefinition& model,
                            const std::vector<ModelInput>& inputs, const ModelSamples& records) {
   int rate = 1;
   for (const ModelInput& input : inputs) {
@@ -206,7 +208,7 @@ std::vector<double>* ModelSamples::find(Quantity quantity) {
   return const_cast<std::vector<double>*>(std::as_const(*this).find(quantity));
 }
 
-ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile& model, bool with_laser,
+ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefinition& model, bool with_laser,
                                           const std::vector<double>& time, std::vector<std::string>& notes) {
   const std::vector<Quantity> roles = roles_of(model, with_laser);
   const Chain chain = chain_of(model.model, roles);
@@ -231,8 +233,8 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
                     fastest / step, step));
   }
   const auto rate = [&](FastSeries& series) {
-    series.shortest_period = signal_band_of(series, time, step).shortest_period;
-    return rate_of(series, time, step, series.shortest_period);
+    series.min_period = signal_band_of(series, time, step).min_period;
+    return rate_of(series, time, step, series.min_period);
   };
   for (const auto& [quantity, its_rate] : rates) {
     if (!chain.derives(its_rate)) continue;
@@ -254,7 +256,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
   return samples;
 }
 
-FlightSamples read_samples(const Flight& flight, const ModelFile& model, const Reference& reference,
+FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, const Reference& reference,
                            const MaskOptions& options) {
   FlightSamples samples;
   samples.name = flight.path().filename().string();
@@ -267,11 +269,11 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
   samples.latitude = read_usual(flight, family_of(model, flight), "latitude").values;
   samples.longitude = read_usual(flight, family_of(model, flight), "longitude").values;
   samples.motion = read_motion(flight, model, samples);
-  for (std::string& note : contradicting_signs(samples, options.least_airspeed))
+  for (std::string& note : contradicting_signs(samples, options.min_airspeed))
     samples.notes.push_back(std::move(note));
-  read_flaps(flight, model, options.least_airspeed, samples);
+  read_flaps(flight, model, options.min_airspeed, samples);
   for (const auto part : {&FlightSamples::model, &FlightSamples::reference})
-    mark_frozen(samples, part, options.least_airspeed);
+    mark_frozen(samples, part, options.min_airspeed);
   const std::optional<RegimeCriteria> criteria = RegimeCriteria::of(samples.aircraft);
   if (!criteria) {
     samples.notes.push_back(

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "parallel/digest.hpp"
 #include "roles/model_inputs.hpp"
-#include "team/digest.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -15,7 +15,7 @@ void add(std::string& text, const RadomeCalibration& radome) {
 
 void add(std::string& text, const ModelEffect& effect, bool with_parameters) {
   text += fmt::format("|{}:{}:{}:{}:{},{}", effect.id, effect.formula, fmt::join(effect.parameter_names, ","),
-                      static_cast<int>(effect.where), effect.scaling.static_pressure,
+                      static_cast<int>(effect.location), effect.scaling.static_pressure,
                       effect.scaling.dynamic_pressure);
   if (with_parameters) text += fmt::format(":{}", fmt::join(effect.parameters, ","));
 }
@@ -33,7 +33,7 @@ std::string text_of(const UserIntervals& intervals) {
 
 }  // namespace
 
-std::string inputs_of(const ModelFile& file, bool with_laser) {
+std::string inputs_of(const ModelDefinition& file, bool with_laser) {
   const Model& model = file.model;
   const Chain chain = chain_of(model, roles_of(file, with_laser));
   std::string text = fmt::format("{}|{}|{}|{}|{}|{}", with_laser, model.aircraft, file.law.valid_from,
@@ -44,18 +44,18 @@ std::string inputs_of(const ModelFile& file, bool with_laser) {
   text += fmt::format("|{},{},{}|{}|{},{},{},{}", model.lams.elevation, model.lams.azimuth,
                       static_cast<int>(model.lams.approach), fmt::join(model.recovery.coefficients, ","),
                       model.policy.taper_below, model.policy.taper_power, model.policy.minimum,
-                      model.policy.least_dynamic_pressure);
+                      model.policy.min_dynamic_pressure);
   add(text, model.attack_radome);
   add(text, model.sideslip_radome);
   const bool with_parameters = chain.derives(Quantity::airspeed_rate) || chain.derives(Quantity::wetness);
   for (const ModelEffect& effect : model.effects) add(text, effect, with_parameters);
-  for (const Where place : model.additions) text += fmt::format("|@{}", static_cast<int>(place));
+  for (const EffectLocation place : model.additions) text += fmt::format("|@{}", static_cast<int>(place));
   return text;
 }
 
-std::uint64_t samples_key(const ModelFile& model, const Reference& reference, const MaskOptions& mask) {
+std::uint64_t samples_key(const ModelDefinition& model, const Reference& reference, const MaskOptions& mask) {
   std::string text = fmt::format("{}\n{}\n{}", inputs_of(model, reference.reads_laser()), reference.inputs(),
-                                 mask.least_airspeed);
+                                 mask.min_airspeed);
   if (mask.intervals) text += "\n" + text_of(*mask.intervals);
   return digest_of(text);
 }

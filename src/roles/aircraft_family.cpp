@@ -9,13 +9,13 @@
 #include <mutex>
 #include <optional>
 
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
-#include "laws/model_names.hpp"
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
+#include "base/text_file.hpp"
+#include "base/toml_reader.hpp"
+#include "model_io/model_names.hpp"
 #include "roles/aircraft_data.hpp"
 #include "roles/usual_variables.hpp"
-#include "words/text_file.hpp"
-#include "words/toml_reader.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -26,7 +26,7 @@ class Reader final : TomlReader {
  public:
   explicit Reader(std::string_view name) : TomlReader(name) {}
 
-  AircraftFamily read(std::string_view text_of_file) {
+  VariableNaming read(std::string_view text_of_file) {
     const toml::table root = parse(text_of_file);
     format_of(root, "aircraft files", format);
     each(root, "",
@@ -114,7 +114,7 @@ class Reader final : TomlReader {
     }
   }
 
-  AircraftFamily family_;
+  VariableNaming family_;
 };
 
 bool contains_word(std::string text, std::string word) {
@@ -127,7 +127,7 @@ bool contains_word(std::string text, std::string word) {
 }
 
 /// How much a flight is like those of a family: 2 for an attribute, 1 for the variables.
-int likeness(const AircraftFamily& family, const Flight& flight) {
+int likeness(const VariableNaming& family, const Flight& flight) {
   const bool by_attribute =
       std::any_of(family.attributes.begin(), family.attributes.end(), [&](const auto& attribute) {
         return contains_word(flight.attribute(attribute.first), attribute.second);
@@ -140,18 +140,18 @@ int likeness(const AircraftFamily& family, const Flight& flight) {
 
 }  // namespace
 
-std::vector<std::string> AircraftFamily::names_of(std::string_view of) const {
+std::vector<std::string> VariableNaming::names_of(std::string_view of) const {
   const auto found = series.find(of);
   return found == series.end() ? std::vector<std::string>() : found->second;
 }
 
-std::string AircraftFamily::unit_of(const std::string& variable) const {
+std::string VariableNaming::unit_of(const std::string& variable) const {
   const auto found = units.find(variable);
   return found == units.end() ? std::string() : found->second;
 }
 
-const std::vector<AircraftFamily>& aircraft_families() {
-  static const std::vector<AircraftFamily> all{
+const std::vector<VariableNaming>& aircraft_families() {
+  static const std::vector<VariableNaming> all{
       parse_family(aircraft::ncar, "ncar.toml"),
       parse_family(aircraft::faam_core, "faam-core.toml"),
       parse_family(aircraft::halo_bahamas, "halo-bahamas.toml"),
@@ -161,10 +161,10 @@ const std::vector<AircraftFamily>& aircraft_families() {
   return all;
 }
 
-std::vector<const AircraftFamily*> families_like(const Flight& flight) {
-  std::vector<const AircraftFamily*> best;
+std::vector<const VariableNaming*> families_like(const Flight& flight) {
+  std::vector<const VariableNaming*> best;
   int most = 1;
-  for (const AircraftFamily& family : aircraft_families()) {
+  for (const VariableNaming& family : aircraft_families()) {
     const int here = likeness(family, flight);
     if (here < most || here == 0) continue;
     if (here > most) best.clear();
@@ -174,14 +174,14 @@ std::vector<const AircraftFamily*> families_like(const Flight& flight) {
   return best;
 }
 
-const AircraftFamily& family_of(const Flight& flight) {
-  const std::vector<const AircraftFamily*> like = families_like(flight);
+const VariableNaming& family_of(const Flight& flight) {
+  const std::vector<const VariableNaming*> like = families_like(flight);
   return like.empty() ? aircraft_families().front() : *like.front();
 }
 
-const AircraftFamily& family_named(const std::string& name) {
+const VariableNaming& family_named(const std::string& name) {
   std::vector<std::string> known;
-  for (const AircraftFamily& family : aircraft_families()) {
+  for (const VariableNaming& family : aircraft_families()) {
     if (family.name == name) return family;
     known.push_back(family.name);
   }
@@ -196,7 +196,7 @@ const AircraftFamily& family_named(const std::string& name) {
   }
   // Those of the user stay for the run of the program, since flights refer to them.
   static std::mutex reading;
-  static std::deque<std::pair<std::string, AircraftFamily>> read;
+  static std::deque<std::pair<std::string, VariableNaming>> read;
   const std::lock_guard lock(reading);
   for (const auto& [path, family] : read) {
     if (path == name) return family;
@@ -204,6 +204,6 @@ const AircraftFamily& family_named(const std::string& name) {
   return read.emplace_back(name, parse_family(text_of_file(name, "an aircraft file"), name)).second;
 }
 
-AircraftFamily parse_family(std::string_view text, std::string_view name) { return Reader(name).read(text); }
+VariableNaming parse_family(std::string_view text, std::string_view name) { return Reader(name).read(text); }
 
 }  // namespace pcor::internal

@@ -27,7 +27,7 @@ struct Thermometer {
 };
 
 /// What files of some aircraft call things: data/aircraft/*.toml, which the library holds.
-struct AircraftFamily {
+struct VariableNaming {
   std::string name;   ///< "faam-core"
   std::string title;  ///< "FAAM BAe-146, core data"
   std::string source;
@@ -54,21 +54,21 @@ struct AircraftFamily {
 };
 
 /// All families, that of NCAR first, whose names also stand for a file that none knows.
-const std::vector<AircraftFamily>& aircraft_families();
+const std::vector<VariableNaming>& aircraft_families();
 
 /// The families whose files are like this one: those of which it has a word in an attribute, and the
 /// variables, rather than those of which it has less. More than one where it is like several; none where it
 /// is like none.
-std::vector<const AircraftFamily*> families_like(const Flight& flight);
+std::vector<const VariableNaming*> families_like(const Flight& flight);
 
 /// The family whose names hold for a flight: the first that it is like, else NCAR's.
-const AircraftFamily& family_of(const Flight& flight);
+const VariableNaming& family_of(const Flight& flight);
 
 /// The family of that name, or in the file whose name ends in ".toml". @throws Error with what may have been
 /// meant if there is none.
-const AircraftFamily& family_named(const std::string& name);
+const VariableNaming& family_named(const std::string& name);
 
 /// Reads the text of a family. @throws Error "name:line:column: what is wrong; what to do"
-AircraftFamily parse_family(std::string_view text, std::string_view name);
+VariableNaming parse_family(std::string_view text, std::string_view name);
 
 }  // namespace pcor::internal

@@ -29,7 +29,7 @@ void each_rate(RateFilter filter, const FastSeries& series, const std::vector<do
 /// The mean square of values, those beyond six robust deviations counted as if they were there.
 double clipped_variance(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
-  const double limit = 6.0 * robust_deviation(values);
+  const double limit = 6.0 * robust_standard_deviation(values);
   double sum = 0.0;
   for (const double value : values) sum += std::min(value * value, limit * limit);
   return sum / static_cast<double>(values.size());
@@ -76,8 +76,8 @@ SignalBand signal_band_of(const FastSeries& series, const std::vector<double>& t
 }
 
 std::vector<double> rate_of(const FastSeries& series, const std::vector<double>& time, double step,
-                            double shortest_period, double seconds) {
-  const RateFilter filter(static_cast<double>(series.in_record) / step, seconds, shortest_period);
+                            double min_period, double seconds) {
+  const RateFilter filter(static_cast<double>(series.in_record) / step, seconds, min_period);
   std::vector<double> sum(time.size(), 0.0);
   std::vector<std::size_t> count(time.size(), 0);
   each_rate(filter, series, time, step, 1, [&](std::size_t sample, double rate) {

@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/realtime/frozen_watch.hpp>
-#include <pcor/words/utc.hpp>
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t fewest_samples = 20;
-constexpr std::size_t fewest_values = 50;  // with fewer a series tells nothing of its noise
+constexpr std::size_t min_samples = 20;
+constexpr std::size_t min_values = 50;  // with fewer a series tells nothing of its noise
 constexpr std::size_t neighbours = 20;
 constexpr std::size_t left_out = 2;
 constexpr double more_than_near = 20.0;
@@ -26,8 +26,8 @@ constexpr std::size_t around = 300;  // samples on either side
 constexpr std::size_t told = 3;
 
 /// The stretches of one value.
-std::vector<Stretch> runs_of(const std::vector<double>& values, const std::vector<bool>& looked_at) {
-  std::vector<Stretch> runs;
+std::vector<Segment> runs_of(const std::vector<double>& values, const std::vector<bool>& looked_at) {
+  std::vector<Segment> runs;
   double last = nan;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double value = looked_at[i] ? values[i] : nan;
@@ -63,17 +63,17 @@ bool is_noisy(const std::vector<double>& values, std::size_t first, std::size_t 
 }
 
 /// Before a run and after it.
-bool is_noisy_around(const std::vector<double>& values, const Stretch& run, double resolution) {
+bool is_noisy_around(const std::vector<double>& values, const Segment& run, double resolution) {
   const std::size_t after = run.first + run.count;
   return is_noisy(values, run.first - std::min(run.first, around), run.first, resolution) &&
          is_noisy(values, after, std::min(after + around, values.size()), resolution);
 }
 
 /// The length of run that the share `part` of the samples does not exceed.
-double usual_length(const std::vector<Stretch>& runs, double part) {
+double usual_length(const std::vector<Segment>& runs, double part) {
   std::vector<std::size_t> lengths;
   std::size_t samples = 0;
-  for (const Stretch& run : runs) {
+  for (const Segment& run : runs) {
     lengths.push_back(run.count);
     samples += run.count;
   }
@@ -87,7 +87,7 @@ double usual_length(const std::vector<Stretch>& runs, double part) {
 }
 
 /// The mean length of the runs around one, but for those that last longest.
-double near_length(const std::vector<Stretch>& runs, std::size_t run) {
+double near_length(const std::vector<Segment>& runs, std::size_t run) {
   std::vector<std::size_t> lengths;
   const std::size_t end = std::min(run + neighbours + 1, runs.size());
   for (std::size_t i = run - std::min(run, neighbours); i < end; ++i) {
@@ -102,18 +102,18 @@ double near_length(const std::vector<Stretch>& runs, std::size_t run) {
 
 }  // namespace
 
-std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
+std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
                                  bool always_varies) {
-  const std::vector<Stretch> runs = runs_of(values, looked_at);
-  const auto same = [&](const Stretch& run) { return values[run.first] == values[runs.front().first]; };
+  const std::vector<Segment> runs = runs_of(values, looked_at);
+  const auto same = [&](const Segment& run) { return values[run.first] == values[runs.front().first]; };
   if (always_varies && !runs.empty() && std::all_of(runs.begin(), runs.end(), same)) return runs;
-  if (runs.size() < fewest_values) return {};
-  const auto is_long = [](const Stretch& run) { return run.count >= fewest_samples; };
+  if (runs.size() < min_values) return {};
+  const auto is_long = [](const Segment& run) { return run.count >= min_samples; };
   if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
   const double resolution = resolution_of(values);
   const double of_half = usual_length(runs, 0.5);
   const double of_most = usual_length(runs, 0.9);
-  std::vector<Stretch> frozen;
+  std::vector<Segment> frozen;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!is_long(runs[i])) continue;
     const auto length = static_cast<double>(runs[i].count);
@@ -130,10 +130,10 @@ bool always_varies(Quantity quantity) {
 }
 
 std::string frozen_text(const std::string& variable, Quantity quantity, const std::vector<double>& values,
-                        const std::vector<double>& time, const std::vector<Stretch>& frozen) {
+                        const std::vector<double>& time, const std::vector<Segment>& frozen) {
   std::vector<std::string> spans;
-  const std::string unit(index(quantity) < quantity_count ? facts_of(quantity).unit : "");
-  for (const Stretch& span : frozen) {
+  const std::string unit(index(quantity) < quantity_count ? info_of(quantity).unit : "");
+  for (const Segment& span : frozen) {
     if (spans.size() == told) break;
     spans.push_back(fmt::format("at {:.6g}{} from {} to {} UTC ({} samples)", values[span.first],
                                 unit.empty() || unit == "1" ? "" : " " + unit, utc_text(time[span.first]),

@@ -20,7 +20,7 @@ namespace pcor::internal {
 ///
 /// @param values NaN where missing @param looked_at the samples that count
 /// @param always_varies one value from beginning to end is frozen, too
-std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
+std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
                                  bool always_varies = false);
 
 /// True for what no flying aircraft leaves at one value: flaps and liquid water may stay where they are.
@@ -28,6 +28,6 @@ bool always_varies(Quantity quantity);
 
 /// "VLAMS is frozen, at 131.2 m/s from 2011-11-18 13:20:05 to 13:21:45 UTC (100 samples)".
 std::string frozen_text(const std::string& variable, Quantity quantity, const std::vector<double>& values,
-                        const std::vector<double>& time, const std::vector<Stretch>& frozen);
+                        const std::vector<double>& time, const std::vector<Segment>& frozen);
 
 }  // namespace pcor::internal

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double longest = 60.0;     // s from a jump to the jump back
-constexpr double least_rate = 20.0;  // m/s: no gust moves an aircraft so, between one second and the next
+constexpr double longest = 60.0;   // s from a jump to the jump back
+constexpr double min_rate = 20.0;  // m/s: no gust moves an aircraft so, between one second and the next
 constexpr double deviations = 8.0;
 constexpr std::size_t around = 7;  // samples on either side
 
@@ -37,7 +37,7 @@ std::vector<Jump> find_jumps(const std::vector<double>& height, const std::vecto
   const std::vector<double> departure = departures(height, time);
   std::vector<double> sizes;
   for (const double each : departure) sizes.push_back(std::abs(each));
-  const double limit = std::max(least_rate, deviations * deviation_of_median * median(sizes));
+  const double limit = std::max(min_rate, deviations * deviation_of_median * median(sizes));
   std::vector<Jump> jumps;
   for (std::size_t i = 1; i < height.size(); ++i) {
     if (!(sizes[i] > limit)) continue;
@@ -48,7 +48,7 @@ std::vector<Jump> find_jumps(const std::vector<double>& height, const std::vecto
       if (!(sizes[j] > limit)) continue;
       sum += departure[j] * (time[j] - time[j - 1]);
       back = j;
-      if (std::abs(sum) < least_rate) break;
+      if (std::abs(sum) < min_rate) break;
     }
     if (back == i) continue;
     Jump jump{i, back - i, 0.0};

@@ -13,8 +13,8 @@ struct Jump {
   double size = 0.0;  ///< the largest departure from a line across
 };
 
-/// Where a height of GPS leaves its path and comes back within a minute: its rate departs from that of the
-/// seconds around by eight of its robust deviations and by more than 20 m/s. @param time s
+/// Where a height of GPS leaves its path and comes back within a minute: its rate departs from that
+/// of the seconds around by eight of its robust deviations and by more than 20 m/s. @param time s
 std::vector<Jump> find_jumps(const std::vector<double>& height, const std::vector<double>& time);
 
 /// Makes them missing.

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
-#include <pcor/words/utc.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
+#include <pcor/base/utc.hpp>
+#include "base/quoting.hpp"
 #include "roles/plausible_pressure.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
-#include "words/quoting.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -24,7 +24,7 @@ bool is_same(const UnitConversion& a, const UnitConversion& b) {
 }
 
 /// The unit that a model states takes the place of the file's, which may be wrong; but so may be the model's.
-void note_other_unit(const VariableInfo& variable, const QuantityFacts& role, const std::string& stated,
+void note_other_unit(const VariableInfo& variable, const QuantityInfo& role, const std::string& stated,
                      std::vector<std::string>& notes) {
   const std::string unit(role.unit);
   if (stated.empty() || !is_known_unit(variable.units) || !is_convertible(stated, unit)) return;
@@ -34,13 +34,13 @@ void note_other_unit(const VariableInfo& variable, const QuantityFacts& role, co
   if (!same) {
     notes.push_back(
         fmt::format("{} is taken as {}, as the model or the aircraft's data state; the file says {}",
-                    variable.name, in_quotes(stated), in_quotes(variable.units)));
+                    variable.name, quote(stated), quote(variable.units)));
   }
 }
 
 }  // namespace
 
-std::vector<Quantity> roles_of(const ModelFile& file, bool with_laser) {
+std::vector<Quantity> roles_of(const ModelDefinition& file, bool with_laser) {
   std::vector<Quantity> roles = file.roles();
   if (!with_laser) roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
   return roles;
@@ -53,18 +53,17 @@ Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
   return std::move(*chain);
 }
 
-std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
+std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, std::vector<std::string>& notes) {
   require_possible_pressure(flight, file);
-  const AircraftFamily& family = family_of(file, flight);
+  const VariableNaming& family = family_of(file, flight);
   const auto conversion_of = [&](Quantity role) {
-    const QuantityFacts& facts = facts_of(role);
+    const QuantityInfo& info = info_of(role);
     const std::string& variable = file.variables.at(role);
     const auto stated = file.units.find(role);
     const std::string unit = stated == file.units.end() ? family.unit_of(variable) : stated->second;
-    if (flight.has(variable)) note_other_unit(flight.variable(variable), facts, unit, notes);
-    return believed(flight.conversion(variable, std::string(facts.unit), std::string(facts.name), unit),
-                    facts);
+    if (flight.has(variable)) note_other_unit(flight.variable(variable), info, unit, notes);
+    return believed(flight.conversion(variable, std::string(info.unit), std::string(info.name), unit), info);
   };
   std::vector<ModelInput> inputs;
   const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,
@@ -116,7 +115,7 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
   return inputs;
 }
 
-void note_left_out(const ModelInput& input, const LeftOut& left_out, std::vector<std::string>& notes) {
+void note_left_out(const ModelInput& input, const RejectedCounts& left_out, std::vector<std::string>& notes) {
   const auto note = [&](std::size_t samples, const std::string& where) {
     if (samples == 0) return;
     notes.push_back(fmt::format("{} {}, and {} taken as missing",
@@ -124,17 +123,17 @@ void note_left_out(const ModelInput& input, const LeftOut& left_out, std::vector
                                              : fmt::format("{} samples of {} lie", samples, input.variable),
                                 where, samples == 1 ? "is" : "are"));
   };
-  const std::string unit = is_role(input.quantity) ? fmt::format(" {}", facts_of(input.quantity).unit) : "";
+  const std::string unit = is_role(input.quantity) ? fmt::format(" {}", info_of(input.quantity).unit) : "";
   note(left_out.impossible, fmt::format("outside {:g} to {:g}{}, which is impossible",
                                         input.conversion.least(), input.conversion.greatest(), unit));
   note(left_out.invalid, "outside the range that the file states as valid");
   note(left_out.enormous, "beyond 1e30, which marks no value");
 }
 
-std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& file) {
+std::vector<std::string> notes_on_law(const Flight& flight, const ModelDefinition& file) {
   std::vector<std::string> notes;
   const std::string day = utc_text(flight.time().first, "%Y-%m-%d");
-  const LawFacts& law = file.law;
+  const LawInfo& law = file.law;
   if (!law.holds_on(day)) {
     const bool early = day < law.valid_from;
     notes.push_back(
@@ -149,7 +148,7 @@ std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& fil
   return notes;
 }
 
-bool is_of_aircraft(const ModelFile& file, const Flight& flight) {
+bool is_of_aircraft(const ModelDefinition& file, const Flight& flight) {
   const std::string& model = file.model.aircraft;
   const std::string aircraft = flight.aircraft();
   if (model.empty() || aircraft.empty()) return false;

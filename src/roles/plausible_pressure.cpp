@@ -8,32 +8,31 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
-#include <pcor/words/error.hpp>
+#include "base/quoting.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "roles/recorded_series.hpp"
-#include "words/quoting.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr std::size_t fewest = 20;  // values that tell
 
-std::string stated_unit(const Flight& flight, const AircraftFamily& family, const std::string& variable) {
+std::string stated_unit(const Flight& flight, const VariableNaming& family, const std::string& variable) {
   const std::string stated = family.unit_of(variable);
   return stated.empty() ? flight.variable(variable).units : stated;
 }
 
 /// Some thousand values from the begin, the middle and the end, in the unit of the role; empty where it
 /// cannot be read.
-std::vector<double> some_values(const Flight& flight, const AircraftFamily& family,
+std::vector<double> some_values(const Flight& flight, const VariableNaming& family,
                                 const std::string& variable, Quantity role) {
   std::vector<double> values;
-  if (!has_values(flight, variable, std::string(facts_of(role).unit), family.unit_of(variable)))
-    return values;
+  if (!has_values(flight, variable, std::string(info_of(role).unit), family.unit_of(variable))) return values;
   const UnitConversion conversion =
-      flight.conversion(variable, std::string(facts_of(role).unit), "", family.unit_of(variable));
+      flight.conversion(variable, std::string(info_of(role).unit), "", family.unit_of(variable));
   const std::vector<RecordBlock> blocks = flight.blocks();
   for (const std::size_t k : std::set<std::size_t>{0, blocks.size() / 2, blocks.size() - 1}) {
     values.resize(values.size() + blocks[k].count);
@@ -76,7 +75,7 @@ std::string unit_that_fits(const std::string& own, double ratio) {
 }
 
 /// A height of GPS; that of the pressure says what the pressure does.
-std::string height_of(const Flight& flight, const ModelFile& model, const AircraftFamily& family) {
+std::string height_of(const Flight& flight, const ModelDefinition& model, const VariableNaming& family) {
   const auto named = model.variables.find(Quantity::altitude);
   if (named != model.variables.end()) return named->second;
   for (const std::string& name : family.names_of("altitude")) {
@@ -87,12 +86,12 @@ std::string height_of(const Flight& flight, const ModelFile& model, const Aircra
 
 }  // namespace
 
-std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelFile& model) {
+std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model) {
   const auto named = model.variables.find(Quantity::static_pressure);
   if (named == model.variables.end() || model.units.count(Quantity::static_pressure) != 0)
     return std::nullopt;
   const std::string& variable = named->second;
-  const AircraftFamily& family = family_of(model, flight);
+  const VariableNaming& family = family_of(model, flight);
   if (!family.unit_of(variable).empty()) return std::nullopt;
   const std::vector<double> pressure = some_values(flight, family, variable, Quantity::static_pressure);
   if (pressure.empty()) return std::nullopt;
@@ -120,7 +119,7 @@ std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, cons
   return std::nullopt;
 }
 
-void require_possible_pressure(const Flight& flight, const ModelFile& model) {
+void require_possible_pressure(const Flight& flight, const ModelDefinition& model) {
   const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight, model);
   // Where no unit fits, the other sensor may be the one that is wrong: inspect lists it.
   if (!wrong || wrong->unit.empty()) return;
@@ -131,9 +130,9 @@ void require_possible_pressure(const Flight& flight, const ModelFile& model) {
       fmt::format(
           "{}: {} in {} is {:.3g} times what {} says{}; state the right unit in the [units] of the model, "
           "static_pressure = {}, or name another variable there; the unit that a model states is believed",
-          flight.path().string(), variable, in_quotes(unit), wrong->ratio, wrong->against,
+          flight.path().string(), variable, quote(unit), wrong->ratio, wrong->against,
           wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
-          wrong->unit.empty() ? in_quotes(unit) : fmt::format("\"{}\"", wrong->unit)));
+          wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
 }
 
 }  // namespace pcor::internal

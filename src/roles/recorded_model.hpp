@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <pcor/flight/flight.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include "roles/usual_variables.hpp"
 
 namespace pcor::internal {
@@ -15,11 +15,11 @@ std::vector<PressurePair> measured_pairs(const Flight& flight);
 /// The model that stands in where none is given: the pressures that the flight's own processing corrected
 /// (PSXC, QCXC), else its reference (PSX, QCX), else the first of the pairs as measured, with its ambient
 /// temperature (ATX), else a recovery temperature with the recovery factor of its thermometer (see
-/// `AircraftFamily::thermometers`). Nothing is added to them. Absent where the flight has no pair with
+/// `VariableNaming::thermometers`). Nothing is added to them. Absent where the flight has no pair with
 /// values.
-std::optional<ModelFile> recorded_model(const Flight& flight);
+std::optional<ModelDefinition> recorded_model(const Flight& flight);
 
 /// A model of a pair as it is measured: nothing is added.
-ModelFile model_of(const PressurePair& pair);
+ModelDefinition model_of(const PressurePair& pair);
 
 }  // namespace pcor::internal

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor::internal {
 namespace {
@@ -12,14 +12,14 @@ namespace {
 /// Makes `variable` the series if none is so far, and it is there, has values and a unit that fits.
 /// @param stated the unit that the model states
 void try_variable(const Flight& flight, const std::string& variable, const std::string& stated,
-                  const QuantityFacts& facts, RecordedSeries& series) {
+                  const QuantityInfo& info, RecordedSeries& series) {
   if (!series.values.empty() || !flight.has(variable) || !flight.variable(variable).is_series) return;
   const std::string own = stated.empty() ? flight.variable(variable).units : stated;
   if (own.empty() && series.without_unit.empty()) series.without_unit = variable;
   try {
     const UnitConversion conversion =
-        UnitConversion::between(own, std::string(facts.unit), {variable, flight.path().string(), ""});
-    std::vector<double> values = read_values(flight, variable, believed(conversion, facts)).values;
+        UnitConversion::between(own, std::string(info.unit), {variable, flight.path().string(), ""});
+    std::vector<double> values = read_values(flight, variable, believed(conversion, info)).values;
     if (std::all_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) return;
     series.variable = variable;
     series.values = std::move(values);
@@ -50,26 +50,26 @@ std::vector<double> record_times(const Flight& flight) {
   return times;
 }
 
-RecordedSeries read_usual(const Flight& flight, const AircraftFamily& family, std::string_view name) {
+RecordedSeries read_usual(const Flight& flight, const VariableNaming& family, std::string_view name) {
   RecordedSeries series;
   for (const std::string& variable : family.names_of(name))
     try_variable(flight, variable, family.unit_of(variable), *series_named(name), series);
   return series;
 }
 
-RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity role) {
-  const QuantityFacts& facts = facts_of(role);
-  const AircraftFamily& family = family_of(model, flight);
+RecordedSeries read_role(const Flight& flight, const ModelDefinition& model, Quantity role) {
+  const QuantityInfo& info = info_of(role);
+  const VariableNaming& family = family_of(model, flight);
   RecordedSeries series;
   const auto given = model.variables.find(role);
   if (given != model.variables.end()) {
     const auto stated = model.units.find(role);
     try_variable(flight, given->second,
-                 stated == model.units.end() ? family.unit_of(given->second) : stated->second, facts, series);
+                 stated == model.units.end() ? family.unit_of(given->second) : stated->second, info, series);
   }
   for (const std::string& name : usual_variables(family, role)) {
     if (given == model.variables.end() || name != given->second)
-      try_variable(flight, name, family.unit_of(name), facts, series);
+      try_variable(flight, name, family.unit_of(name), info, series);
   }
   return series;
 }
@@ -87,8 +87,8 @@ bool has_values(const Flight& flight, const std::string& variable, const std::st
   return true;
 }
 
-std::string processed_static_pressure(const Flight& flight, const AircraftFamily& family) {
-  const std::string unit(facts_of(Quantity::static_pressure).unit);
+std::string processed_static_pressure(const Flight& flight, const VariableNaming& family) {
+  const std::string unit(info_of(Quantity::static_pressure).unit);
   for (const PressurePair& pair : family.processed) {
     if (has_values(flight, pair.static_pressure, unit, family.unit_of(pair.static_pressure)))
       return pair.static_pressure;

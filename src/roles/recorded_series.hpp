@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pcor/flight/flight.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include "roles/usual_variables.hpp"
 
 namespace pcor::internal {
@@ -20,14 +20,14 @@ struct RecordedSeries {
 
 /// The conversion of which nothing comes out that is beyond the limits of a series: the mark of a missing
 /// value that the file does not name, a dead sensor, or another unit.
-inline UnitConversion believed(const UnitConversion& conversion, const QuantityFacts& facts) {
-  return conversion.within(facts.least, facts.most);
+inline UnitConversion believed(const UnitConversion& conversion, const QuantityInfo& info) {
+  return conversion.within(info.least, info.most);
 }
 
 /// The values of a variable.
 struct ReadValues {
   std::vector<double> values{};  ///< NaN where missing
-  LeftOut left_out{};            ///< what is missing though the file does not mark it so
+  RejectedCounts left_out{};     ///< what is missing though the file does not mark it so
 };
 
 /// All values of a variable, converted, at `rate` samples in a record. @throws Error if it is absent.
@@ -39,16 +39,16 @@ std::vector<double> record_times(const Flight& flight);
 
 /// The first of the usual variables of a series that is there, has values and a unit that fits.
 /// @param name of the series (`series_named`)
-RecordedSeries read_usual(const Flight& flight, const AircraftFamily& family, std::string_view name);
+RecordedSeries read_usual(const Flight& flight, const VariableNaming& family, std::string_view name);
 
 /// The series of a role: the model's variable in the unit that the model states, else the usual one.
-RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity role);
+RecordedSeries read_role(const Flight& flight, const ModelDefinition& model, Quantity role);
 
 /// Whether a flight has values of a variable whose unit, the one stated or else its own, fits.
 bool has_values(const Flight& flight, const std::string& variable, const std::string& unit,
                 const std::string& stated = "");
 
 /// The variable of the static pressure that the flight's own processing corrected; empty where it has none.
-std::string processed_static_pressure(const Flight& flight, const AircraftFamily& family);
+std::string processed_static_pressure(const Flight& flight, const VariableNaming& family);
 
 }  // namespace pcor::internal

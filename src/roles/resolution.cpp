@@ -9,7 +9,7 @@ namespace pcor::internal {
 double rounding_of(double step) { return step / std::sqrt(12.0); }
 
 double resolution_of(const std::vector<double>& values) {
-  constexpr std::size_t fewest_values = 10;
+  constexpr std::size_t min_values = 10;
   std::vector<double> sorted;
   std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
                [](double x) { return std::isfinite(x); });
@@ -20,7 +20,7 @@ double resolution_of(const std::vector<double>& values) {
   sorted.erase(
       std::unique(sorted.begin(), sorted.end(), [&](double a, double b) { return b - a <= rounding; }),
       sorted.end());
-  if (sorted.size() < fewest_values) return 0.0;
+  if (sorted.size() < min_values) return 0.0;
   double step = range;
   for (std::size_t i = 1; i < sorted.size(); ++i) step = std::min(step, sorted[i] - sorted[i - 1]);
   for (const double value : sorted) {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "roles/usual_variables.hpp"
@@ -180,13 +180,13 @@ std::string attribute_of(const VariableInfo& info, std::string_view name) {
 
 std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described& variable,
                                           const Signs& sign) {
-  const QuantityFacts& facts = *series_named(sign.series);
+  const QuantityInfo& info = *series_named(sign.series);
   std::vector<std::string> all = variable.name;
   all.insert(all.end(), variable.long_name.begin(), variable.long_name.end());
   for (const std::string& word : split(sign.not_words, ' ')) {
     if (has(all, word)) return std::nullopt;
   }
-  const std::string unit(facts.unit);
+  const std::string unit(info.unit);
   // Of an angle everything converts that has no dimension.
   const bool states_unit = !variable.info.units.empty() && is_known_unit(variable.info.units);
   if (states_unit && !is_convertible(variable.info.units, unit)) return std::nullopt;

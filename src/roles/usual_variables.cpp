@@ -6,7 +6,7 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::array<QuantityFacts, 4> extra_series{{
+constexpr std::array<QuantityInfo, 4> extra_series{{
     {"other_altitude", "m", "altitude of an inertial system or of the pressure, up positive", Quantity::count,
      -5000.0, 100000.0},
     {"longitude", "deg", "longitude, east positive", Quantity::count, -720.0, 720.0},
@@ -28,36 +28,36 @@ void append(std::vector<std::string>& names, const std::vector<std::string>& mor
 
 }  // namespace
 
-const QuantityFacts* series_named(std::string_view name) {
-  for (const QuantityFacts& facts : extra_series) {
-    if (facts.name == name) return &facts;
+const QuantityInfo* series_named(std::string_view name) {
+  for (const QuantityInfo& info : extra_series) {
+    if (info.name == name) return &info;
   }
   const Quantity role = quantity_named(name);
-  return role == Quantity::count || !is_role(role) ? nullptr : &facts_of(role);
+  return role == Quantity::count || !is_role(role) ? nullptr : &info_of(role);
 }
 
 std::vector<std::string> names_of_series() {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < role_count; ++i) names.emplace_back(facts_of(static_cast<Quantity>(i)).name);
-  for (const QuantityFacts& facts : extra_series) names.emplace_back(facts.name);
+  for (std::size_t i = 0; i < role_count; ++i) names.emplace_back(info_of(static_cast<Quantity>(i)).name);
+  for (const QuantityInfo& info : extra_series) names.emplace_back(info.name);
   return names;
 }
 
-const AircraftFamily& family_of(const ModelFile& model, const Flight& flight) {
+const VariableNaming& family_of(const ModelDefinition& model, const Flight& flight) {
   return model.roles_from.empty() ? family_of(flight) : family_named(model.roles_from);
 }
 
-std::vector<std::string> usual_variables(const AircraftFamily& family, Quantity role) {
-  return is_chosen_by_model(role) ? std::vector<std::string>() : family.names_of(facts_of(role).name);
+std::vector<std::string> usual_variables(const VariableNaming& family, Quantity role) {
+  return is_chosen_by_model(role) ? std::vector<std::string>() : family.names_of(info_of(role).name);
 }
 
 std::vector<std::string> usual_variables(Quantity role) {
   std::vector<std::string> names;
-  for (const AircraftFamily& family : aircraft_families()) append(names, usual_variables(family, role));
+  for (const VariableNaming& family : aircraft_families()) append(names, usual_variables(family, role));
   return names;
 }
 
-std::vector<std::string> usual_heights(const AircraftFamily& family) {
+std::vector<std::string> usual_heights(const VariableNaming& family) {
   std::vector<std::string> names = usual_variables(family, Quantity::altitude);
   append(names, family.names_of("other_altitude"));
   return names;

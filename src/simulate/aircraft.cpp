@@ -12,8 +12,8 @@ namespace {
 // HARCO). Wing area, Mach limit, cabin: manufacturer's data. Radomes: NCAR processing algorithms sec. 4.5.
 // Envelope: speeds and heights of research flights (memo, QAtools). Drag, power, fuel flow, flaps: estimates.
 
-AircraftFacts make_c130() {
-  AircraftFacts a;
+AircraftInfo make_c130() {
+  AircraftInfo a;
   a.type = "C-130";
   a.registration = "N130AR";
   a.thermometer = {"TTRR", {0.95, 0.0, 0.0, 0.0}};
@@ -28,11 +28,11 @@ AircraftFacts make_c130() {
   a.fuel_flow = 0.6;
   a.power = 11.0e6;
   a.cabin_differential = 517.0;  // 7.5 psi
-  a.least_speed = 75.0;
-  a.greatest_speed = 155.0;
+  a.min_speed = 75.0;
+  a.max_speed = 155.0;
   a.lift_off_speed = 65.0;
-  a.greatest_mach = 0.62;
-  a.greatest_attack = 12.0;
+  a.max_mach = 0.62;
+  a.max_attack = 12.0;
   a.ceiling = 9000.0;
   a.climb_rate = 5.0;
   a.speed_run_low = 98.0;
@@ -44,8 +44,8 @@ AircraftFacts make_c130() {
   return a;
 }
 
-AircraftFacts make_gv() {
-  AircraftFacts a;
+AircraftInfo make_gv() {
+  AircraftInfo a;
   a.type = "GV";
   a.registration = "N677F";
   a.thermometer = {"TTHR1", {0.985, 0.0, 0.0, 0.0}};
@@ -60,11 +60,11 @@ AircraftFacts make_gv() {
   a.fuel_flow = 0.36;
   a.power = 18.0e6;
   a.cabin_differential = 701.0;  // 10.17 psi
-  a.least_speed = 110.0;
-  a.greatest_speed = 260.0;
+  a.min_speed = 110.0;
+  a.max_speed = 260.0;
   a.lift_off_speed = 75.0;
-  a.greatest_mach = 0.885;
-  a.greatest_attack = 12.0;
+  a.max_mach = 0.885;
+  a.max_attack = 12.0;
   a.ceiling = 15000.0;
   a.climb_rate = 8.0;
   a.speed_run_low = 158.0;
@@ -85,13 +85,13 @@ double Thermometer::recovery_factor(double mach) const {
   return c[0] + logarithm * (c[1] + logarithm * (c[2] + logarithm * c[3]));
 }
 
-const AircraftFacts& facts_of(Scenario::Aircraft aircraft) {
-  static const AircraftFacts c130 = make_c130();
-  static const AircraftFacts gv = make_gv();
+const AircraftInfo& info_of(Scenario::Aircraft aircraft) {
+  static const AircraftInfo c130 = make_c130();
+  static const AircraftInfo gv = make_gv();
   return aircraft == Scenario::Aircraft::c130 ? c130 : gv;
 }
 
-double lift_attack(const AircraftFacts& aircraft, double weight, double load_factor, double dynamic_pressure,
+double lift_attack(const AircraftInfo& aircraft, double weight, double load_factor, double dynamic_pressure,
                    double mach, double flaps) {
   const double lift =
       weight * load_factor * constants::standard_gravity / (dynamic_pressure * aircraft.wing_area);
@@ -99,7 +99,7 @@ double lift_attack(const AircraftFacts& aircraft, double weight, double load_fac
   return zero_lift + lift * std::sqrt(1.0 - mach * mach) / aircraft.lift_slope;
 }
 
-double torque(const AircraftFacts& aircraft, double lift, double dynamic_pressure, double speed,
+double torque(const AircraftInfo& aircraft, double lift, double dynamic_pressure, double speed,
               double energy_rate) {
   const double drag =
       dynamic_pressure * aircraft.wing_area * (aircraft.drag_constant + aircraft.induced_drag * lift * lift);

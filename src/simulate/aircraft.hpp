@@ -27,7 +27,7 @@ struct Thermometer {
 };
 
 /// What is particular to an aircraft. Sources: aircraft.cpp.
-struct AircraftFacts {
+struct AircraftInfo {
   std::string_view type{};
   std::string_view registration{};
   Thermometer thermometer{};         ///< of constant recovery factor, which a scenario may set
@@ -44,24 +44,24 @@ struct AircraftFacts {
   double power = 0.0;               ///< of all engines at 100 %, propellers' losses taken off, W
   double cabin_differential = 0.0;  ///< greatest, hPa
 
-  double least_speed = 0.0;     ///< true airspeed of manoeuvres, m/s
-  double greatest_speed = 0.0;  ///< m/s
+  double min_speed = 0.0;       ///< true airspeed of manoeuvres, m/s
+  double max_speed = 0.0;       ///< m/s
   double lift_off_speed = 0.0;  ///< m/s
-  double greatest_mach = 0.0;
-  double greatest_attack = 0.0;  ///< before the stall, deg
-  double ceiling = 0.0;          ///< m
-  double climb_rate = 0.0;       ///< usual, m/s
-  double speed_run_low = 0.0;    ///< usual, m/s
-  double speed_run_high = 0.0;   ///< usual, m/s
-  double speed_run_rate = 0.0;   ///< usual, m/s2
-  double clear_above = 0.0;      ///< where half of the laser's samples lack aerosol, m
+  double max_mach = 0.0;
+  double max_attack = 0.0;      ///< before the stall, deg
+  double ceiling = 0.0;         ///< m
+  double climb_rate = 0.0;      ///< usual, m/s
+  double speed_run_low = 0.0;   ///< usual, m/s
+  double speed_run_high = 0.0;  ///< usual, m/s
+  double speed_run_rate = 0.0;  ///< usual, m/s2
+  double clear_above = 0.0;     ///< where half of the laser's samples lack aerosol, m
 
   Radome attack{};
   Radome sideslip{};
 };
 
 /// The facts of one of the two aircraft.
-const AircraftFacts& facts_of(Scenario::Aircraft aircraft);
+const AircraftInfo& info_of(Scenario::Aircraft aircraft);
 
 /// The angle of attack, deg, at which the wing carries the weight:
 ///
@@ -69,12 +69,12 @@ const AircraftFacts& facts_of(Scenario::Aircraft aircraft);
 ///
 /// with the Prandtl-Glauert rule for compressibility. `dynamic_pressure` is rho v^2/2 in Pa, `flaps` in
 /// percent, the load factor in units of standard gravity. Domain: M < 1.
-double lift_attack(const AircraftFacts& aircraft, double weight, double load_factor, double dynamic_pressure,
+double lift_attack(const AircraftInfo& aircraft, double weight, double load_factor, double dynamic_pressure,
                    double mach, double flaps);
 
 /// The part of full power, %, that it takes to fly at `speed` m/s with lift coefficient `lift`, while the
 /// aircraft gains `energy_rate` (W) of height and speed; not below 5 (idle) nor above 100.
-double torque(const AircraftFacts& aircraft, double lift, double dynamic_pressure, double speed,
+double torque(const AircraftInfo& aircraft, double lift, double dynamic_pressure, double speed,
               double energy_rate);
 
 }  // namespace pcor::internal::simulate

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <pcor/base/error.hpp>
 #include <pcor/physics/constants.hpp>
-#include <pcor/words/error.hpp>
 
 namespace pcor::internal::simulate {
 namespace {

@@ -198,13 +198,13 @@ void recovery_factor(const Effect& effect, const Truth&, SystemFaults*, Faults& 
 // mass, and below 0.18 nobody has measured.
 void temp_deice_heat(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
   constexpr double flow_scale = 0.269589;  // K/hPa
-  constexpr double least_flow = 0.18;
+  constexpr double min_flow = 0.18;
   constexpr double usual_flow = 0.3;
   const double heat = number(effect, "heat");
   const double power = number(effect, "power");
   add(faults.temperature_error, truth, [&](std::size_t i) {
     const double flow = flow_scale * truth.pressure[i] * truth.mach[i] / truth.temperature[i];
-    return heat * std::pow(std::max(flow, least_flow) / usual_flow, power);
+    return heat * std::pow(std::max(flow, min_flow) / usual_flow, power);
   });
 }
 
@@ -250,25 +250,25 @@ void unknown(const Effect& effect, const Truth& truth, SystemFaults* system, Fau
     const double x = (series[i] - number(effect, "centre")) / number(effect, "scale");
     return number(effect, "strength") * shaped(effect.shape, x);
   };
-  if (effect.where == "static") add(system->static_defect, truth, value);
-  if (effect.where == "total") add(system->total_loss, truth, value);
-  if (effect.where == "lams") add(faults.lams_speed, truth, value);
-  if (effect.where == "temperature") add(faults.temperature_error, truth, value);
+  if (effect.location == "static") add(system->static_defect, truth, value);
+  if (effect.location == "total") add(system->total_loss, truth, value);
+  if (effect.location == "lams") add(faults.lams_speed, truth, value);
+  if (effect.location == "temperature") add(faults.temperature_error, truth, value);
 }
 
 bool acts_on(const Effect& effect, const Scenario::System& system) {
   return effect.on.empty() || effect.on == system.static_pressure || effect.on == system.dynamic_pressure;
 }
 
-bool acts_on_systems(const Effect& effect, const FaultFacts& facts) {
-  if (effect.id == "unknown") return effect.where == "static" || effect.where == "total";
-  return facts.target == Target::system;
+bool acts_on_systems(const Effect& effect, const FaultInfo& info) {
+  if (effect.id == "unknown") return effect.location == "static" || effect.location == "total";
+  return info.target == Target::system;
 }
 
 }  // namespace
 
-const std::vector<FaultFacts>& fault_facts() {
-  static const std::vector<FaultFacts> facts{
+const std::vector<FaultInfo>& fault_info() {
+  static const std::vector<FaultInfo> info{
       {"static-constant", Target::system, {{"a0", "1"}}, add_to_law<&Law::a0>},
       {"static-alpha", Target::system, {{"a1", "1"}}, add_to_law<&Law::a1>},
       {"static-qp", Target::system, {{"a2", "1"}}, add_to_law<&Law::a2>},
@@ -340,20 +340,20 @@ const std::vector<FaultFacts>& fault_facts() {
        {{"strength", "hPa, m/s or K"}, {"centre", "of the variable", 0.0}, {"scale", "of the variable", 1.0}},
        unknown},
   };
-  return facts;
+  return info;
 }
 
-const FaultFacts* find_fault(std::string_view id) {
-  const auto& facts = fault_facts();
+const FaultInfo* find_fault(std::string_view id) {
+  const auto& info = fault_info();
   const auto found =
-      std::find_if(facts.begin(), facts.end(), [id](const FaultFacts& each) { return each.id == id; });
-  return found == facts.end() ? nullptr : &*found;
+      std::find_if(info.begin(), info.end(), [id](const FaultInfo& each) { return each.id == id; });
+  return found == info.end() ? nullptr : &*found;
 }
 
 const Series Truth::*find_series(std::string_view name) {
   if (name == "hidden") return &Truth::hidden;
-  for (const TruthFacts& facts : truth_facts) {
-    if (!name.empty() && (facts.recorded == name || facts.name == name)) return facts.series;
+  for (const TruthInfo& info : truth_info) {
+    if (!name.empty() && (info.recorded == name || info.name == name)) return info.series;
   }
   return nullptr;
 }
@@ -362,13 +362,13 @@ Faults faults_of(const Scenario& scenario, const Truth& truth) {
   Faults faults;
   for (const Scenario::System& system : scenario.systems) faults.systems.emplace_back().law = system.law;
   for (const Effect& effect : scenario.effects) {
-    const FaultFacts& facts = *find_fault(effect.id);
-    if (!acts_on_systems(effect, facts)) {
-      facts.act(effect, truth, nullptr, faults);
+    const FaultInfo& info = *find_fault(effect.id);
+    if (!acts_on_systems(effect, info)) {
+      info.act(effect, truth, nullptr, faults);
       continue;
     }
     for (std::size_t i = 0; i < scenario.systems.size(); ++i) {
-      if (acts_on(effect, scenario.systems[i])) facts.act(effect, truth, &faults.systems[i], faults);
+      if (acts_on(effect, scenario.systems[i])) info.act(effect, truth, &faults.systems[i], faults);
     }
   }
   return faults;

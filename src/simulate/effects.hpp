@@ -54,7 +54,7 @@ struct FaultParameter {
 };
 
 /// An effect that a scenario may have: an id of the catalogue, but physics of its own.
-struct FaultFacts {
+struct FaultInfo {
   std::string_view id;
   Target target;
   std::vector<FaultParameter> parameters;
@@ -62,10 +62,10 @@ struct FaultFacts {
 };
 
 /// Every effect that a scenario may have.
-const std::vector<FaultFacts>& fault_facts();
+const std::vector<FaultInfo>& fault_info();
 
 /// The facts of an effect, or null.
-const FaultFacts* find_fault(std::string_view id);
+const FaultInfo* find_fault(std::string_view id);
 
 /// The series that a scenario calls `name`: by its recorded name, its name as truth, or "hidden"; or null.
 const Series Truth::*find_series(std::string_view name);

@@ -79,7 +79,7 @@ class Plan {
     do {
       Command command = hold(leg.rate);
       command.acceleration = pilot_.towards_speed(held_speed_, 1.0);
-      command.flaps = pilot_.speed() < pilot_.aircraft().least_speed ? leg.flaps : 0.0;
+      command.flaps = pilot_.speed() < pilot_.aircraft().min_speed ? leg.flaps : 0.0;
       pilot_.step(command, leg);
     } while (!arrived());
   }
@@ -165,7 +165,7 @@ class Plan {
     while (pilot_.height() - held_height_ > touch_down) {
       Command command = hold(leg.rate);
       // Slow down in level flight at first: flaps go down when it is slow enough.
-      if (pilot_.speed() < pilot_.aircraft().least_speed + 5.0) command.flaps = leg.flaps;
+      if (pilot_.speed() < pilot_.aircraft().min_speed + 5.0) command.flaps = leg.flaps;
       pilot_.step(command, leg);
     }
     pilot_.set_on_ground(true);
@@ -215,7 +215,7 @@ class Plan {
 
 }  // namespace
 
-void complete(Leg& leg, const AircraftFacts& aircraft) {
+void complete(Leg& leg, const AircraftInfo& aircraft) {
   const auto usual = [](double& number, double value) {
     if (std::isnan(number)) number = value;
   };
@@ -224,7 +224,7 @@ void complete(Leg& leg, const AircraftFacts& aircraft) {
       return usual(leg.duration, 120.0);
     case Kind::take_off:
       usual(leg.altitude, 1000.0);
-      usual(leg.speed, 1.25 * aircraft.least_speed);
+      usual(leg.speed, 1.25 * aircraft.min_speed);
       usual(leg.rate, aircraft.climb_rate);
       return usual(leg.flaps, 50.0);
     case Kind::climb:

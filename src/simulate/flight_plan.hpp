@@ -33,13 +33,13 @@ inline constexpr std::array<LegNumber, 12> leg_numbers{{
 }};
 
 /// A kind of leg: its name in scenarios and the numbers it takes.
-struct LegFacts {
+struct LegInfo {
   Scenario::Leg::Kind kind;
   std::string_view name;
   std::string_view keys;  ///< separated by spaces
 };
 
-inline constexpr std::array<LegFacts, 12> leg_facts{{
+inline constexpr std::array<LegInfo, 12> leg_info{{
     {Scenario::Leg::Kind::ground, "ground", "duration"},
     {Scenario::Leg::Kind::take_off, "take-off", "altitude speed rate flaps"},
     {Scenario::Leg::Kind::climb, "climb", "altitude speed rate"},
@@ -56,7 +56,7 @@ inline constexpr std::array<LegFacts, 12> leg_facts{{
 
 /// Fills the numbers of a leg that are not given with the usual ones of the aircraft. Sizes of manoeuvres:
 /// those of NCAR's calibration flights (QAtools, memo).
-void complete(Scenario::Leg& leg, const AircraftFacts& aircraft);
+void complete(Scenario::Leg& leg, const AircraftInfo& aircraft);
 
 /// The steps of one leg as it was flown: from `first` to before `last`.
 struct LegSteps {

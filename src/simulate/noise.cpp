@@ -21,15 +21,15 @@ std::map<std::string, Scenario::Noise> usual_noise(const Scenario& scenario) {
       {"ENGTRQ", {0.3, 0.0, 0.0, 0.0}},    {"TBAY", {0.05, 0.0, 0.0, 0.0}},
       {"RALT", {0.3, 0.0, 0.0, 0.0}},      {"BLONA", {0.02, 0.0, 0.0, 0.0}},
   };
-  const AircraftFacts& aircraft = facts_of(scenario.aircraft);
+  const AircraftInfo& aircraft = info_of(scenario.aircraft);
   for (const Thermometer& thermometer : {aircraft.thermometer, aircraft.second_thermometer})
     noise[std::string(thermometer.name)] = {0.1, 0.0, 0.0, 0.0};
   for (const Scenario::System& system : scenario.systems) {
     noise[system.static_pressure] = {0.01, 0.0, 0.0, 0.001};
     noise[system.dynamic_pressure] = {0.03, 0.0, 0.0, 0.001};
   }
-  for (const TruthFacts& facts : truth_facts) {
-    if (!facts.recorded.empty()) noise.try_emplace(std::string(facts.recorded));
+  for (const TruthInfo& info : truth_info) {
+    if (!info.recorded.empty()) noise.try_emplace(std::string(info.recorded));
   }
   return noise;
 }

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <pcor/base/error.hpp>
 #include <pcor/physics/constants.hpp>
-#include <pcor/words/error.hpp>
 
 namespace pcor::internal::simulate {
 namespace {
@@ -49,7 +49,7 @@ void follow(double& value, double target, double time) { value += (target - valu
 
 Pilot::Pilot(const Scenario& scenario)
     : scenario_(scenario),
-      aircraft_(facts_of(scenario.aircraft)),
+      aircraft_(info_of(scenario.aircraft)),
       column_(scenario.atmosphere, scenario.latitude),
       gust_along_(scenario.seed, "gust along", false),
       gust_across_(scenario.seed, "gust across", true),
@@ -136,16 +136,16 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   if (on_ground_) {
     const double rotating = std::clamp((speed_ / aircraft_.lift_off_speed - 0.9) / 0.1, 0.0, 1.0);
     attack = rotating > 0.0 ? rotating * attack : 0.0;
-  } else if (attack > aircraft_.greatest_attack) {
+  } else if (attack > aircraft_.max_attack) {
     throw Error(
         fmt::format("{}: at {:.0f} m and {:.0f} m/s the {} stalls (angle of attack {:.1f} deg); fly "
                     "faster, lower or with flaps",
                     leg.place, height_, speed_, aircraft_.type, attack));
-  } else if (steady_mach > aircraft_.greatest_mach) {
+  } else if (steady_mach > aircraft_.max_mach) {
     throw Error(
         fmt::format("{}: at {:.0f} m, {:.0f} m/s is Mach {:.3f}, beyond the limit {} of the {}; fly "
                     "slower or lower",
-                    leg.place, height_, speed_, steady_mach, aircraft_.greatest_mach, aircraft_.type));
+                    leg.place, height_, speed_, steady_mach, aircraft_.max_mach, aircraft_.type));
   }
   const double climb = std::clamp(vertical_speed_ / std::max(speed_, 10.0), -1.0, 1.0);  // sine of the path
   const double per_speed = 1.0 / (radians * std::max(airspeed, 10.0));

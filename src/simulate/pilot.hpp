@@ -46,7 +46,7 @@ class Pilot {
   double flaps() const { return flaps_; }
   double roll() const { return roll_; }
   double height_of_ground() const { return scenario_.atmosphere.ground_height; }
-  const AircraftFacts& aircraft() const { return aircraft_; }
+  const AircraftInfo& aircraft() const { return aircraft_; }
   void set_on_ground(bool on_ground) { on_ground_ = on_ground; }
 
   Truth& truth() { return truth_; }
@@ -65,7 +65,7 @@ class Pilot {
   double liquid_water();
 
   const Scenario& scenario_;
-  const AircraftFacts& aircraft_;
+  const AircraftInfo& aircraft_;
   Column column_;
   Turbulence gust_along_, gust_across_, gust_up_;
   Drift drift_east_, drift_north_, trim_, hidden_;

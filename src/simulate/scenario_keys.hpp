@@ -114,13 +114,13 @@ inline constexpr std::array<LawKey, 10> law_keys{{
 }};
 
 /// What a number of a leg may be.
-inline Domain leg_domain(std::string_view key, Scenario::Leg::Kind kind, const AircraftFacts& aircraft) {
+inline Domain leg_domain(std::string_view key, Scenario::Leg::Kind kind, const AircraftInfo& aircraft) {
   using Kind = Scenario::Leg::Kind;
   const bool slow = kind == Kind::take_off || kind == Kind::landing;
   if (key == "duration") return {1.0, 86400.0, "s"};
   if (key == "altitude") return {-400.0, aircraft.ceiling, "m"};
   if (key == "speed" || key == "low" || key == "high")
-    return {slow ? aircraft.lift_off_speed : aircraft.least_speed, aircraft.greatest_speed, "m/s"};
+    return {slow ? aircraft.lift_off_speed : aircraft.min_speed, aircraft.max_speed, "m/s"};
   if (key == "rate") {
     if (kind == Kind::speed_run) return {0.05, 2.0, "m/s2"};
     return {0.5, 30.0, "m/s"};

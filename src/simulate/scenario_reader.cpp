@@ -5,19 +5,19 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <pcor/base/error.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <pcor/words/error.hpp>
 #include <sstream>
 #include <utility>
 
+#include "base/quoting.hpp"
+#include "base/text_file.hpp"
+#include "base/toml_reader.hpp"
 #include "simulate/aircraft.hpp"
 #include "simulate/effects.hpp"
 #include "simulate/flight_plan.hpp"
 #include "simulate/noise.hpp"
 #include "simulate/scenario_keys.hpp"
-#include "words/quoting.hpp"
-#include "words/text_file.hpp"
-#include "words/toml_reader.hpp"
 
 namespace pcor {
 
@@ -29,9 +29,9 @@ using namespace simulate;
 
 constexpr std::string_view scenario_format = "pcor-scenario/1";
 
-constexpr double least_height = 10.0;  // m above the ground, of a low pass
+constexpr double min_height = 10.0;  // m above the ground, of a low pass
 
-Names words_of(std::string_view text) {
+Names split_words(std::string_view text) {
   std::istringstream stream{std::string(text)};
   return {std::istream_iterator<std::string>(stream), {}};
 }
@@ -65,7 +65,7 @@ class Reader final : TomlReader {
     std::string value = text(entry);
     if (std::find(known.begin(), known.end(), value) == known.end())
       fail(entry,
-           fmt::format("there is no {} {}; {}", entry.key, in_quotes(value), instead_of(value, known)));
+           fmt::format("there is no {} {}; {}", entry.key, quote(value), suggestion_text(value, known)));
     return value;
   }
 
@@ -95,7 +95,7 @@ class Reader final : TomlReader {
     if (format == scenario_format) return;
     fail(entry,
          fmt::format("{} is not the format of a scenario that this program reads; write format = \"{}\"",
-                     in_quotes(format), scenario_format));
+                     quote(format), scenario_format));
   }
 
   void read_root(const toml::table& root) {
@@ -240,8 +240,8 @@ class Reader final : TomlReader {
     for (const Entry& entry : entries_of(table(section))) {
       const auto found = scenario_.noise.find(entry.key);
       if (found == scenario_.noise.end()) {
-        fail(entry.place, fmt::format("no variable {} is recorded; {}", in_quotes(entry.key),
-                                      instead_of(entry.key, recorded())));
+        fail(entry.place, fmt::format("no variable {} is recorded; {}", quote(entry.key),
+                                      suggestion_text(entry.key, recorded())));
       }
       if (entry.node->is_table())
         each(*entry.node->as_table(), "the noise of " + entry.key, numbers(found->second, noise_keys));
@@ -251,57 +251,57 @@ class Reader final : TomlReader {
   }
 
   void read_legs(const Entry& section) {
-    const AircraftFacts& aircraft = facts_of(scenario_.aircraft);
+    const AircraftInfo& aircraft = info_of(scenario_.aircraft);
     bool flying = false;
     double height = scenario_.atmosphere.ground_height;
     tables(section, [&](const toml::table& items, Place place) {
       Scenario::Leg leg;
       leg.place = place_of(place);
-      const LegFacts& facts = leg_kind(items, place);
-      leg.kind = facts.kind;
+      const LegInfo& info = leg_kind(items, place);
+      leg.kind = info.kind;
       std::map<std::string, Entry> given;
       Actions actions{{"kind", [](const Entry&) {}}};
-      for (const std::string& key : words_of(facts.keys)) {
+      for (const std::string& key : split_words(info.keys)) {
         actions.emplace_back(key, [&](const Entry& entry) {
           const auto which = std::find_if(leg_numbers.begin(), leg_numbers.end(),
                                           [&](const LegNumber& each) { return each.key == entry.key; });
           leg.*which->value = number(entry, leg_domain(entry.key, leg.kind, aircraft));
         });
       }
-      each(items, fmt::format("a leg of kind {}", in_quotes(facts.name)), actions);
+      each(items, fmt::format("a leg of kind {}", quote(info.name)), actions);
       complete(leg, aircraft);
-      check_leg(leg, facts, place, flying, height);
+      check_leg(leg, info, place, flying, height);
       scenario_.legs.push_back(leg);
     });
   }
 
-  const LegFacts& leg_kind(const toml::table& items, Place place) const {
+  const LegInfo& leg_kind(const toml::table& items, Place place) const {
     if (const std::optional<Entry> entry = entry_of(items, "kind")) {
-      const std::string kind = one_of(*entry, names_of(leg_facts, &LegFacts::name));
-      return *std::find_if(leg_facts.begin(), leg_facts.end(),
-                           [&](const LegFacts& each) { return each.name == kind; });
+      const std::string kind = one_of(*entry, names_of(leg_info, &LegInfo::name));
+      return *std::find_if(leg_info.begin(), leg_info.end(),
+                           [&](const LegInfo& each) { return each.name == kind; });
     }
     fail(place, "the leg has no kind; add kind = \"level\" or another");
   }
 
   /// What the numbers of a leg say together, and with the legs before it. `height` is what they led to.
-  void check_leg(const Scenario::Leg& leg, const LegFacts& facts, Place place, bool& flying,
+  void check_leg(const Scenario::Leg& leg, const LegInfo& info, Place place, bool& flying,
                  double& height) const {
     using Kind = Scenario::Leg::Kind;
     const bool starts = leg.kind == Kind::take_off || leg.kind == Kind::ground;
     if (starts == flying) {
-      fail(place, flying ? fmt::format("{} in the air; put a landing before it", facts.name)
-                         : fmt::format("{} on the ground; put a take-off before it", facts.name));
+      fail(place, flying ? fmt::format("{} in the air; put a landing before it", info.name)
+                         : fmt::format("{} on the ground; put a take-off before it", info.name));
     }
     if (leg.kind == Kind::take_off) flying = true;
     if (leg.kind == Kind::landing) flying = false;
     const bool changes_height = leg.kind == Kind::climb || leg.kind == Kind::descent;
     if (changes_height && std::isnan(leg.altitude))
-      fail(place, fmt::format("the {} has no altitude; add altitude = ... (m)", facts.name));
+      fail(place, fmt::format("the {} has no altitude; add altitude = ... (m)", info.name));
     if ((changes_height || leg.kind == Kind::take_off) &&
-        leg.altitude < scenario_.atmosphere.ground_height + least_height)
-      fail(place, fmt::format("altitude = {} m is not {} m above the ground; give more", leg.altitude,
-                              least_height));
+        leg.altitude < scenario_.atmosphere.ground_height + min_height)
+      fail(place,
+           fmt::format("altitude = {} m is not {} m above the ground; give more", leg.altitude, min_height));
     if (leg.kind == Kind::climb && leg.altitude <= height)
       fail(place, fmt::format("the climb to {} m begins at {} m; make it a descent", leg.altitude, height));
     if (leg.kind == Kind::descent && leg.altitude >= height)
@@ -310,7 +310,7 @@ class Reader final : TomlReader {
     if (leg.kind == Kind::landing) height = scenario_.atmosphere.ground_height;
     if (std::abs(leg.angle) < 1.0)
       fail(place,
-           fmt::format("angle = {} deg is no {}; give 1 deg or more to either side", leg.angle, facts.name));
+           fmt::format("angle = {} deg is no {}; give 1 deg or more to either side", leg.angle, info.name));
     if (leg.kind == Kind::speed_run && !(leg.low < leg.high))
       fail(place, fmt::format("low = {} m/s is not below high = {} m/s; give low < high", leg.low, leg.high));
   }
@@ -319,27 +319,27 @@ class Reader final : TomlReader {
     tables(section, [this](const toml::table& items, Place place) {
       Scenario::Effect effect;
       effect.place = place_of(place);
-      const FaultFacts& facts = effect_facts(items, place);
-      effect.id = facts.id;
+      const FaultInfo& info = effect_info(items, place);
+      effect.id = info.id;
       Actions actions{{"id", [](const Entry&) {}},
-                      {"on", [&](const Entry& entry) { effect.on = target(entry, facts); }}};
-      for (const FaultParameter& parameter : facts.parameters) {
+                      {"on", [&](const Entry& entry) { effect.on = target(entry, info); }}};
+      for (const FaultParameter& parameter : info.parameters) {
         const std::string key(parameter.key);
         if (!std::isnan(parameter.usual)) effect.parameters[key] = parameter.usual;
         actions.emplace_back(key, [&](const Entry& entry) {
           effect.parameters[entry.key] = number(entry, parameter_domain(entry.key));
         });
       }
-      if (facts.id == "unknown") add_unknown(effect, actions);
-      each(items, fmt::format("the effect {}", in_quotes(facts.id)), actions);
-      for (const FaultParameter& parameter : facts.parameters) {
+      if (info.id == "unknown") add_unknown(effect, actions);
+      each(items, fmt::format("the effect {}", quote(info.id)), actions);
+      for (const FaultParameter& parameter : info.parameters) {
         if (effect.parameters.count(std::string(parameter.key)) == 0)
           fail(place, fmt::format("{} has no {}; add {} = ... ({})", effect.id, parameter.key, parameter.key,
                                   parameter.unit));
       }
-      if (facts.target == Target::variable && effect.on.empty())
+      if (info.target == Target::variable && effect.on.empty())
         fail(place, fmt::format("{} has no variable; add on = \"VLAMS\" or another", effect.id));
-      if (facts.id == "unknown" && (effect.of.empty() || effect.where.empty()))
+      if (info.id == "unknown" && (effect.of.empty() || effect.location.empty()))
         fail(place,
              R"(unknown needs of = "...", the variable that causes it, and where = "static" or another)");
       check_effect(effect, place);
@@ -350,7 +350,7 @@ class Reader final : TomlReader {
   void add_unknown(Scenario::Effect& effect, Actions& actions) const {
     effect.shape = "linear";
     actions.emplace_back("where", [this, &effect](const Entry& entry) {
-      effect.where = one_of(entry, {"static", "total", "lams", "temperature"});
+      effect.location = one_of(entry, {"static", "total", "lams", "temperature"});
     });
     actions.emplace_back("shape", [this, &effect](const Entry& entry) {
       effect.shape = one_of(entry, {"linear", "quadratic", "step", "sine"});
@@ -359,12 +359,12 @@ class Reader final : TomlReader {
       effect.of = text(entry);
       if (find_series(effect.of) != nullptr) return;
       Names known{"hidden"};
-      for (const TruthFacts& facts : truth_facts) {
-        if (!facts.recorded.empty()) known.emplace_back(facts.recorded);
-        if (!facts.name.empty()) known.emplace_back(facts.name);
+      for (const TruthInfo& info : truth_info) {
+        if (!info.recorded.empty()) known.emplace_back(info.recorded);
+        if (!info.name.empty()) known.emplace_back(info.name);
       }
-      fail(entry, fmt::format("no variable {} is simulated; {}", in_quotes(effect.of),
-                              instead_of(effect.of, known)));
+      fail(entry, fmt::format("no variable {} is simulated; {}", quote(effect.of),
+                              suggestion_text(effect.of, known)));
     });
   }
 
@@ -374,32 +374,32 @@ class Reader final : TomlReader {
     if (of_clouds && scenario_.atmosphere.clouds.empty())
       fail(place, fmt::format("{} needs a cloud; add an [[atmosphere.cloud]]", effect.id));
     if (effect.id != "unknown") return;
-    const bool on_systems = effect.where == "static" || effect.where == "total";
+    const bool on_systems = effect.location == "static" || effect.location == "total";
     if (!on_systems && !effect.on.empty())
-      fail(place, fmt::format("what acts on the {} acts on nothing else; remove 'on'", effect.where));
+      fail(place, fmt::format("what acts on the {} acts on nothing else; remove 'on'", effect.location));
     if (effect.parameters.at("scale") == 0.0) fail(place, "scale = 0 is impossible; give another number");
   }
 
-  const FaultFacts& effect_facts(const toml::table& items, Place place) const {
+  const FaultInfo& effect_info(const toml::table& items, Place place) const {
     if (const std::optional<Entry> entry = entry_of(items, "id")) {
       const std::string id = text(*entry);
-      if (const FaultFacts* facts = find_fault(id)) return *facts;
-      fail(*entry, fmt::format("no effect {} can be simulated; {}", in_quotes(id),
-                               instead_of(id, names_of(fault_facts(), &FaultFacts::id))));
+      if (const FaultInfo* info = find_fault(id)) return *info;
+      fail(*entry, fmt::format("no effect {} can be simulated; {}", quote(id),
+                               suggestion_text(id, names_of(fault_info(), &FaultInfo::id))));
     }
     fail(place, "the effect has no id; add id = \"static-lag\" or another");
   }
 
-  std::string target(const Entry& entry, const FaultFacts& facts) const {
+  std::string target(const Entry& entry, const FaultInfo& info) const {
     Names known;
-    if (facts.target == Target::variable) known = recorded();
-    if (facts.target == Target::system || facts.id == "unknown") {
+    if (info.target == Target::variable) known = recorded();
+    if (info.target == Target::system || info.id == "unknown") {
       for (const Scenario::System& system : scenario_.systems) {
         known.push_back(system.static_pressure);
         known.push_back(system.dynamic_pressure);
       }
     }
-    if (known.empty()) fail(entry.place, fmt::format("{} acts on one thing only; remove 'on'", facts.id));
+    if (known.empty()) fail(entry.place, fmt::format("{} acts on one thing only; remove 'on'", info.id));
     return one_of(entry, known);
   }
 

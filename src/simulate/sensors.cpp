@@ -35,7 +35,7 @@ double law_value(const Scenario::Law& law, const PortState& s, double pressure) 
 }
 
 /// What a port's law stands in at a step of the flight, with nothing wrong.
-PortState port_state(const Scenario::System& system, const Truth& truth, const AircraftFacts& aircraft,
+PortState port_state(const Scenario::System& system, const Truth& truth, const AircraftInfo& aircraft,
                      std::size_t i) {
   const double mach = truth.mach[i];
   return {truth.pressure[i],
@@ -73,7 +73,7 @@ double static_defect(const Scenario::Law& law, const PortState& state) {
   return now;
 }
 
-Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftFacts& aircraft) {
+Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftInfo& aircraft) {
   constexpr double tolerance = 1e-12;
   constexpr int most = 30;
   const Scenario::System& system = scenario.systems.front();
@@ -105,7 +105,7 @@ Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftF
 }
 
 PairReading read_pair(const Scenario::System& system, const SystemFaults& faults, const Truth& truth,
-                      const AircraftFacts& aircraft) {
+                      const AircraftInfo& aircraft) {
   const std::size_t steps = truth.size();
   PairReading reading;
   reading.defect.resize(steps);
@@ -132,7 +132,7 @@ PairReading read_pair(const Scenario::System& system, const SystemFaults& faults
   return reading;
 }
 
-RadomeReading read_radome(const Faults& faults, const Truth& truth, const AircraftFacts& aircraft,
+RadomeReading read_radome(const Faults& faults, const Truth& truth, const AircraftInfo& aircraft,
                           const Series& defect) {
   const std::size_t steps = truth.size();
   RadomeReading reading{Series(steps), Series(steps), Series(steps)};
@@ -148,7 +148,7 @@ RadomeReading read_radome(const Faults& faults, const Truth& truth, const Aircra
 }
 
 Series read_lams(const Scenario& scenario, const Faults& faults, const Truth& truth,
-                 const AircraftFacts& aircraft) {
+                 const AircraftInfo& aircraft) {
   constexpr double dissipation_of_mismatch = 1e-4;  // m2/s3
   constexpr double dropout_memory = 3.0;            // s
   constexpr double clearing_depth = 500.0;          // m, over which the aerosol thins out

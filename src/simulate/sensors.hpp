@@ -44,20 +44,20 @@ double static_defect(const Scenario::Law& law, const PortState& state);
 
 /// The Mach number, 1, with which `law` gives the defect that the first system has by its own law: see
 /// `Scenario::Avionics`. It becomes the true one where the laws fade.
-Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftFacts& aircraft);
+Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftInfo& aircraft);
 
 /// Air to ports, lines and transducers of one pair.
 PairReading read_pair(const Scenario::System& system, const SystemFaults& faults, const Truth& truth,
-                      const AircraftFacts& aircraft);
+                      const AircraftInfo& aircraft);
 
 /// The radome's ports; QCR has the static line of the pair whose defect is given.
-RadomeReading read_radome(const Faults& faults, const Truth& truth, const AircraftFacts& aircraft,
+RadomeReading read_radome(const Faults& faults, const Truth& truth, const AircraftInfo& aircraft,
                           const Series& defect);
 
 /// The airspeed along the laser beam, m/s: the product of the vectors of the beam and of the aircraft's
 /// motion through the air, in body axes (x forward, y starboard, z down). NaN where the laser has no signal.
 Series read_lams(const Scenario& scenario, const Faults& faults, const Truth& truth,
-                 const AircraftFacts& aircraft);
+                 const AircraftInfo& aircraft);
 
 /// Recovery temperature, K. What is wrong with the temperature is so with every thermometer.
 Series read_thermometer(const Thermometer& thermometer, const Faults& faults, const Truth& truth);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <pcor/base/error.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/physics/constants.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/utc.hpp>
 #include <tuple>
 #include <utility>
 
@@ -38,7 +38,7 @@ class Recording {
   Recording(const Scenario& scenario, const Truth& truth)
       : scenario_(scenario),
         truth_(truth),
-        aircraft_(facts_of(scenario.aircraft)),
+        aircraft_(info_of(scenario.aircraft)),
         faults_(faults_of(scenario, truth)),
         recorder_(scenario, faults_) {
     record_pressures();
@@ -102,9 +102,9 @@ class Recording {
     const std::vector<double> mach = Recorder::means(truth_.mach, rate);
     std::vector<double> attack(q.size());
     std::vector<double> sideslip(q.size());
-    constexpr double least_flow = 1.0;  // hPa; below it the ports say nothing
+    constexpr double min_flow = 1.0;  // hPa; below it the ports say nothing
     for (std::size_t i = 0; i < q.size(); ++i) {
-      const bool flow = q[i] > least_flow;
+      const bool flow = q[i] > min_flow;
       attack[i] = flow ? aircraft_.attack.angle(up[i] / q[i], mach[i]) : Scenario::by_default;
       sideslip[i] = flow ? aircraft_.sideslip.angle(side[i] / q[i], mach[i]) : Scenario::by_default;
     }
@@ -149,24 +149,24 @@ class Recording {
   }
 
   void record_motion() {
-    for (const TruthFacts& facts : truth_facts) {
-      if (facts.recorded.empty()) continue;
-      Series series = truth_.*facts.series;
-      if (facts.unit == "degC") series = celsius(std::move(series));
+    for (const TruthInfo& info : truth_info) {
+      if (info.recorded.empty()) continue;
+      Series series = truth_.*info.series;
+      if (info.unit == "degC") series = celsius(std::move(series));
       std::vector<double>& values =
-          record(std::string(facts.recorded), std::string(facts.unit), std::string(facts.description),
-                 std::move(series), facts.fast ? scenario_.rate : slow);
-      if (facts.angle) wrap(values);
+          record(std::string(info.recorded), std::string(info.unit), std::string(info.description),
+                 std::move(series), info.fast ? scenario_.rate : slow);
+      if (info.angle) wrap(values);
     }
   }
 
   void write_truth() {
-    for (const TruthFacts& facts : truth_facts) {
-      if (facts.name.empty()) continue;
-      const int rate = facts.fast ? scenario_.rate : slow;
-      Series series = truth_.*facts.series;
-      if (facts.unit == "degC") series = celsius(std::move(series));
-      put(std::string(facts.name), std::string(facts.unit), "truth: " + std::string(facts.description),
+    for (const TruthInfo& info : truth_info) {
+      if (info.name.empty()) continue;
+      const int rate = info.fast ? scenario_.rate : slow;
+      Series series = truth_.*info.series;
+      if (info.unit == "degC") series = celsius(std::move(series));
+      put(std::string(info.name), std::string(info.unit), "truth: " + std::string(info.description),
           Recorder::means(series, rate), rate);
     }
     Series dynamic = truth_.total_pressure;
@@ -186,7 +186,7 @@ class Recording {
 
   const Scenario& scenario_;
   const Truth& truth_;
-  const AircraftFacts& aircraft_;
+  const AircraftInfo& aircraft_;
   Faults faults_;
   Recorder recorder_;
   std::vector<Column> columns_;
@@ -218,7 +218,7 @@ std::vector<double> select(const std::vector<double>& values, const std::vector<
 
 LegFlown describe(const LegSteps& steps, const Truth& truth, double start) {
   LegFlown leg;
-  leg.kind = leg_facts[static_cast<std::size_t>(steps.kind)].name;
+  leg.kind = leg_info[static_cast<std::size_t>(steps.kind)].name;
   leg.first_time = start + time_step * static_cast<double>(steps.first);
   leg.last_time = start + time_step * static_cast<double>(steps.last);
   const auto extremes = [&](const Series& series) {
@@ -227,8 +227,8 @@ LegFlown describe(const LegSteps& steps, const Truth& truth, double start) {
                                            begin + static_cast<std::ptrdiff_t>(steps.last));
     return std::pair{*found.first, *found.second};
   };
-  std::tie(leg.least_speed, leg.greatest_speed) = extremes(truth.airspeed);
-  std::tie(leg.least_attack, leg.greatest_attack) = extremes(truth.attack);
+  std::tie(leg.min_speed, leg.max_speed) = extremes(truth.airspeed);
+  std::tie(leg.min_attack, leg.max_attack) = extremes(truth.attack);
   for (std::size_t i = steps.first; i < steps.last; ++i) {
     leg.altitude += truth.altitude[i];
     leg.pressure += truth.pressure[i];
@@ -251,7 +251,7 @@ FileDescription description_of(const Scenario& scenario, const SimulationSummary
     legs += fmt::format("{}{} {}-{}", legs.empty() ? "" : "; ", leg.kind,
                         utc_text(leg.first_time, "%H:%M:%S"), utc_text(leg.last_time, "%H:%M:%S"));
   }
-  const AircraftFacts& aircraft = facts_of(scenario.aircraft);
+  const AircraftInfo& aircraft = info_of(scenario.aircraft);
   description.attributes = {{"source", "simulation"},
                             {"platform", std::string(aircraft.registration)},
                             {"project", "SIMULATION"},
@@ -275,7 +275,7 @@ SimulationSummary simulate_flight(const Scenario& scenario, const std::filesyste
   const std::vector<std::size_t> kept =
       kept_records(scenario, plan.truth.size() / static_cast<std::size_t>(internal_rate));
   SimulationSummary summary;
-  const AircraftFacts& aircraft = facts_of(scenario.aircraft);
+  const AircraftInfo& aircraft = info_of(scenario.aircraft);
   summary.name = scenario.name;
   summary.aircraft = fmt::format("{} {}", aircraft.type, aircraft.registration);
   summary.seed = scenario.seed;

@@ -51,7 +51,7 @@ struct Truth {
 };
 
 /// A series of the truth and how the file calls it.
-struct TruthFacts {
+struct TruthInfo {
   std::string_view recorded;  ///< as an instrument records it, e.g. "ENGTRQ"; empty if none does
   std::string_view name;      ///< as truth, e.g. "TRUE_PS"; empty if it is not written
   std::string_view unit;      ///< in the file; degC stands for K of the series
@@ -61,7 +61,7 @@ struct TruthFacts {
   bool angle = false;  ///< brought to 0..360 deg
 };
 
-inline constexpr std::array<TruthFacts, 30> truth_facts{{
+inline constexpr std::array<TruthInfo, 30> truth_info{{
     {"", "TRUE_PS", "hPa", "static pressure", &Truth::pressure, true},
     {"", "TRUE_PT", "hPa", "total pressure", &Truth::total_pressure, true},
     {"", "TRUE_AT", "degC", "ambient temperature", &Truth::temperature, true},

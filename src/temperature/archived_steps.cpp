@@ -7,9 +7,9 @@
 #include <limits>
 #include <sstream>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/constants.hpp>
-#include <pcor/words/error.hpp>
-#include "laws/archived_model.hpp"
+#include "model_io/archived_model.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -41,7 +41,7 @@ Coefficients calibration_in(const Flight& flight) {
   return a;
 }
 
-void require_same_model(const Flight& flight, const ModelFile& model) {
+void require_same_model(const Flight& flight, const ModelDefinition& model) {
   const std::string archived = attribute_of(flight, model_attribute);
   if (archived.empty()) refuse_without(flight, "with which model it was made", model_attribute);
   const std::string difference = archived_difference(archived, archived_model(model, CorrectWith::model));
@@ -64,7 +64,7 @@ double uncorrected(double corrected, const Coefficients& a) {
 
 }  // namespace
 
-std::vector<double> archived_steps(const Flight& flight, const ModelFile& model, FlightAir& air) {
+std::vector<double> archived_steps(const Flight& flight, const ModelDefinition& model, FlightAir& air) {
   if (!flight.has(variable)) {
     throw Error(
         fmt::format("{}: there is no {}; write it with pcor process --hydrostatic, or leave out --archived",

@@ -11,6 +11,6 @@ namespace pcor::internal {
 /// ATX has already off the temperature of `air`.
 /// @throws Error if the file was not written so, or with a model whose pressures are others than those of
 /// `model`; the correction of the temperature may be another.
-std::vector<double> archived_steps(const Flight& flight, const ModelFile& model, FlightAir& air);
+std::vector<double> archived_steps(const Flight& flight, const ModelDefinition& model, FlightAir& air);
 
 }  // namespace pcor::internal

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "laws/calibration.hpp"
+#include "model_io/calibration.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -42,7 +42,7 @@ Degrees::Degrees(const std::vector<HeightEquations>& flights, std::size_t most) 
     choice.deviance = all.deviance(n) - all.deviance(0);
     choice.held_out = choice.held_out_error = nan;
     std::vector<double>& gains = gains_.emplace_back();
-    if (flights_ < fewest_for_choice) continue;
+    if (flights_ < min_for_choice) continue;
     for (const HeightEquations& one : flights) {
       HeightEquations others = all;
       others.information -= one.information;
@@ -58,7 +58,7 @@ Degrees::Degrees(const std::vector<HeightEquations>& flights, std::size_t most) 
 
 /// Whether flights without it are foretold better with one more coefficient, by more than chance.
 bool Degrees::is_worthwhile(std::size_t terms) const {
-  if (flights_ < fewest_for_choice)
+  if (flights_ < min_for_choice)
     return choices_[terms - 1].deviance - choices_[terms].deviance > worthwhile_gain;
   std::vector<double> gains(flights_);
   for (std::size_t f = 0; f < flights_; ++f) gains[f] = gains_[terms - 1][f] - gains_[terms][f];

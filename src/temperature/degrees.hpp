@@ -13,7 +13,7 @@ namespace pcor::internal {
 inline constexpr double worthwhile_gain = 9.0;
 
 /// Flights, for errors from their scatter.
-inline constexpr std::size_t fewest_for_choice = 3;
+inline constexpr std::size_t min_for_choice = 3;
 
 /// How well corrections of each degree explain the flights, and those that are held out.
 class Degrees {

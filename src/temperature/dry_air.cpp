@@ -16,12 +16,12 @@ namespace {
 
 constexpr double dry_above = 5000.0;  // m; above it vapour makes less than 0.2 K of virtual temperature
 /// The part of a thickness that vapour makes in the driest air below: 0.03 hPa at 600 hPa.
-constexpr double least_part = 1e-5;
+constexpr double min_part = 1e-5;
 
 constexpr std::array humidities{Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point};
 
 /// [variables] and [humidity] that would make the air moist.
-std::string remedy(const ModelFile& model, const Flight& flight) {
+std::string remedy(const ModelDefinition& model, const Flight& flight) {
   for (const Quantity role : humidities) {
     const auto named = model.variables.find(role);
     if (named == model.variables.end()) continue;
@@ -29,14 +29,14 @@ std::string remedy(const ModelFile& model, const Flight& flight) {
     return fmt::format("{} has no vapour in it: name another humidity in the model's [variables]",
                        named->second);
   }
-  const AircraftFamily& family = family_of(model, flight);
+  const VariableNaming& family = family_of(model, flight);
   for (const Quantity role : humidities) {
-    for (const std::string& variable : family.names_of(facts_of(role).name)) {
-      if (has_values(flight, variable, std::string(facts_of(role).unit), family.unit_of(variable)))
+    for (const std::string& variable : family.names_of(info_of(role).name)) {
+      if (has_values(flight, variable, std::string(info_of(role).unit), family.unit_of(variable)))
         return fmt::format(
             "give the model [variables] {} = \"{}\", which the flight records, and [humidity] "
             "moist = true",
-            facts_of(role).name, variable);
+            info_of(role).name, variable);
     }
   }
   return "name the flight's vapor_pressure, dew_point or frost_point in the model's [variables], and give it "
@@ -45,7 +45,8 @@ std::string remedy(const ModelFile& model, const Flight& flight) {
 
 }  // namespace
 
-std::string trouble_with_dry_air(const HeightRecord& record, const ModelFile& model, const Flight& flight) {
+std::string trouble_with_dry_air(const HeightRecord& record, const ModelDefinition& model,
+                                 const Flight& flight) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   double by_vapor = 0.0;
@@ -54,7 +55,7 @@ std::string trouble_with_dry_air(const HeightRecord& record, const ModelFile& mo
     highest = std::max(highest, block.height);
     by_vapor = std::max(by_vapor, std::abs(block.errors[with_vapor]));
   }
-  if (lowest > dry_above || by_vapor > least_part * (highest - lowest)) return "";
+  if (lowest > dry_above || by_vapor > min_part * (highest - lowest)) return "";
   return fmt::format(
       "{}: it climbs or descends down to {:.0f} m in air that is taken for dry; below {:.0f} m vapour that "
       "is "

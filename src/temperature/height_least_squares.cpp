@@ -12,10 +12,10 @@ namespace {
 
 /// Tells `see` the first and one past the last block of every stretch.
 template <class See>
-void for_each_stretch(const HeightRecord& record, const See& see) {
+void for_each_segment(const HeightRecord& record, const See& see) {
   std::size_t first = 0;
   for (std::size_t i = 1; i <= record.blocks.size(); ++i) {
-    if (i < record.blocks.size() && !record.blocks[i].starts_stretch) continue;
+    if (i < record.blocks.size() && !record.blocks[i].starts_segment) continue;
     see(first, i);
     first = i;
   }
@@ -25,7 +25,7 @@ void for_each_stretch(const HeightRecord& record, const See& see) {
 
 std::vector<double> height_differences(const HeightRecord& record, const std::vector<double>& coefficients) {
   std::vector<double> result(record.blocks.size());
-  for_each_stretch(record, [&](std::size_t first, std::size_t end) {
+  for_each_segment(record, [&](std::size_t first, std::size_t end) {
     double sum = 0.0;
     double count = 0.0;
     for (std::size_t i = first; i < end; ++i) {
@@ -73,7 +73,7 @@ TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& reco
   double squares = 0.0;
   double samples = 0.0;
   for (const HeightRecord& record : records) {
-    for_each_stretch(record, [&](std::size_t first, std::size_t end) {
+    for_each_segment(record, [&](std::size_t first, std::size_t end) {
       Eigen::VectorXd mean = Eigen::VectorXd::Zero(n + 1);
       double count = 0.0;
       const auto row_of = [&](std::size_t i) {

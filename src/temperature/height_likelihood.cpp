@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "numerics/decompositions.hpp"
-#include "numerics/in_parallel.hpp"
 #include "numerics/least_cost.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/parallel_for.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "team/flight_share.hpp"
+#include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -84,7 +84,7 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
       p(slope_east, slope_east) += change;
       p(slope_north, slope_north) += change;
     }
-    if (block.starts_stretch) {
+    if (block.starts_segment) {
       p.row(drift).setZero();
       p.col(drift).setZero();
       p(drift, drift) = unknown_height;
@@ -189,7 +189,7 @@ class AroundLikeliest {
       step[row] = one[i].x[row] - centre_[row];
     }
     // The rise as a quadratic form of these steps, with no curvature that differences made too small.
-    constexpr double least_curvature = 0.05;
+    constexpr double min_curvature = 0.05;
     Eigen::Matrix<double, searched.size(), searched.size()> rises;
     for (std::size_t i = 0; i < searched.size(); ++i) {
       const Eigen::Index row = as_index(i);
@@ -206,7 +206,7 @@ class AroundLikeliest {
     std::array<std::array<Point, 2>, searched.size()> result;
     for (std::size_t i = 0; i < searched.size(); ++i) {
       const Eigen::Index k = as_index(i);
-      const double curvature = std::max(axes.eigenvalues()[k], least_curvature);
+      const double curvature = std::max(axes.eigenvalues()[k], min_curvature);
       const Logarithms axis = step.cwiseProduct(axes.eigenvectors().col(k)) / std::sqrt(curvature);
       result[i] = {rise_by_one(axis, 1.0, 2), rise_by_one(-axis, 1.0, 2)};
     }
@@ -229,10 +229,10 @@ class AroundLikeliest {
 
   /// Along `direction`, where -2 ln L is 1 above its least, to a fifth in `trials`; or at a bound.
   Point rise_by_one(const Logarithms& direction, double reach, int trials) const {
-    constexpr double least_rise = 1e-3;
+    constexpr double min_rise = 1e-3;
     Point point = at(centre_ + reach * direction);
     for (int trial = 1; trial < trials && std::abs(point.rise - 1.0) > 0.2; ++trial) {
-      reach *= std::clamp(1.0 / std::sqrt(std::max(point.rise, least_rise)), 0.25, 4.0);
+      reach *= std::clamp(1.0 / std::sqrt(std::max(point.rise, min_rise)), 0.25, 4.0);
       point = at(centre_ + reach * direction);
     }
     return point;
@@ -348,7 +348,7 @@ HeightEquations height_equations(const HeightRecord& record, const HeightNoise& 
   HeightEquations result;
   result.sizes = prior.errors;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
-    if (block.starts_stretch) return;  // it says what the unknown height is, and nothing else
+    if (block.starts_segment) return;  // it says what the unknown height is, and nothing else
     const double weight = 1.0 / variance;
     const HeightEquations::Vector columns = innovation.tail<unknowns>().transpose();
     result.information.noalias() += weight * columns * columns.transpose();
@@ -365,7 +365,7 @@ std::vector<double> height_innovations(const HeightRecord& record, const HeightN
   std::vector<double> result;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
     const double left = innovation(0) - innovation.tail<unknowns>().dot(all);
-    result.push_back(block.starts_stretch ? nan : left / std::sqrt(variance));
+    result.push_back(block.starts_segment ? nan : left / std::sqrt(variance));
   });
   return result;
 }
@@ -383,9 +383,9 @@ HeightEquations height_equations(const std::vector<HeightRecord>& records, const
                                  const HeightPrior& prior, const Workers& workers) {
   std::vector<std::uint64_t> sizes;
   for (const HeightRecord& record : records) sizes.push_back(record.blocks.size());
-  const FlightShare share(workers.team, sizes);
-  const auto each = share.on_each_flight<HeightEquations>([&](std::vector<HeightEquations>& parts) {
-    in_parallel(records.size(), workers.threads, [&](std::size_t i) {
+  const FlightPartition share(workers.comm, sizes);
+  const auto each = share.gather_flights<HeightEquations>([&](std::vector<HeightEquations>& parts) {
+    parallel_for(records.size(), workers.threads, [&](std::size_t i) {
       if (share.owns(i)) parts[i] = height_equations(records[i], noise, prior);
     });
   });
@@ -437,11 +437,11 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
     search.set_lower_bounds(lower);
     search.set_upper_bounds(upper);
     search.set_initial_step(held == nullptr ? 1.0 : 0.3);
-    // Where the slope of isobars and the walk can hardly be told apart the valley is flat: a small gain of
-    // one trial is no sign of its floor, but trials that are close together are.
+    // Where the slope of isobars and the walk can hardly be told apart the valley is flat: a small
+    // gain of one trial is no sign of its floor, but trials that are close together are.
     search.set_xtol_abs(1e-3);
     search.set_maxeval(1000);
-    find_least_cost(search, deviance, x);
+    minimize_objective(search, deviance, x);
     x = as_logarithms(best.noise);
     if (held != nullptr) break;
   }

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "team/workers.hpp"
+#include "parallel/workers.hpp"
 #include "temperature/height_record.hpp"
 
 namespace pcor::internal {
@@ -122,10 +122,10 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
 ///
 /// where +-k are one standard deviation from the likeliest noise, along the principal axes of -2 ln L over
 /// the logarithms: there it is 1 higher. Each logarithm counts as known to 1.5 beforehand, a factor of 4.5.
-/// Never smaller than C; C itself where not all of it is finite. Where several hours tell the noise, errors
-/// are some 5 % larger than those of C, and as near as 5 % to an integral over all likely noises. After Rue,
-/// Martino & Chopin, J. R. Statist. Soc. B 71 (2009), with points on the axes alone; of the kind of Kenward &
-/// Roger, Biometrics 53 (1997). Some 40 passes over the flights.
+/// Never smaller than C; C itself where not all of it is finite. Where several hours tell the noise,
+/// errors are some 5 % larger than those of C, and as near as 5 % to an integral over all likely noises.
+/// After Rue, Martino & Chopin, J. R. Statist. Soc. B 71 (2009), with points on the axes alone; of the kind
+/// of Kenward & Roger, Biometrics 53 (1997). Some 40 passes over the flights.
 ///
 /// @param likely what `maximise_likelihood` found for the same flights, terms and prior, with none held
 Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, Eigen::Index terms,

@@ -7,18 +7,18 @@
 #include <cmath>
 #include <limits>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/moist_air.hpp>
-#include <pcor/words/error.hpp>
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double least_height_range = 300.0;  // m
-constexpr double kappa = 2.0 / 7.0;           // R/cp of dry air
+constexpr double min_height_range = 300.0;  // m
+constexpr double kappa = 2.0 / 7.0;         // R/cp of dry air
 
 using Powers = std::array<double, calibration_terms>;
 using Errors = std::array<double, height_errors>;
@@ -26,7 +26,7 @@ using Errors = std::array<double, height_errors>;
 /// The integral at a sample that takes part.
 struct Point {
   std::size_t sample = 0;
-  bool starts_stretch = false;
+  bool starts_segment = false;
   double excess = 0.0;  // m
   Powers columns{};
   Errors errors{};
@@ -75,13 +75,13 @@ class Integration {
   /// Takes the integral to sample `i`; starts anew after a gap.
   void advance(std::size_t i) {
     if (!has_value(i)) {
-      if (going_ && air_.time()[i] - air_.time()[last_] > options_.longest_bridge) going_ = false;
+      if (going_ && air_.time()[i] - air_.time()[last_] > options_.max_bridge) going_ = false;
       return;
     }
     if (going_) {
       const double across = air_.time()[i] - air_.time()[last_];
       const double step = step_between(last_, i);
-      if (across > options_.longest_bridge || std::isnan(step)) {
+      if (across > options_.max_bridge || std::isnan(step)) {
         going_ = false;
       } else {
         const double before = air_.temperature[last_] - constants::ice_point;
@@ -113,8 +113,8 @@ class Integration {
     last_ = i;
   }
 
-  /// The part of the static pressure that each error of one unit is. Where no angle is recorded, or none just
-  /// now, it is as it was.
+  /// The part of the static pressure that each error of one unit is. Where no angle is recorded, or
+  /// none just now, it is as it was.
   Errors shares_at(std::size_t i) const {
     const auto known = [](double share, double else_share) { return std::isnan(share) ? else_share : share; };
     return {1.0 / air_.pressure[i], 1.0,
@@ -159,29 +159,29 @@ class Integration {
 
 /// Marks what the GPS does that no air does: a spike is left out, at a step the integral starts anew.
 void mark_steps(std::vector<Point>& points, HeightRecord& record) {
-  constexpr double least_step = 5.0;   // m; smaller ones are part of the noise model
+  constexpr double min_step = 5.0;     // m; smaller ones are part of the noise model
   constexpr double deviations = 10.0;  // robust standard deviations of a change within a second
-  constexpr std::size_t longest_spike = 60;
+  constexpr std::size_t max_spike = 60;
   std::vector<double> changes;
   for (std::size_t i = 1; i < points.size(); ++i) {
-    if (!points[i].starts_stretch) changes.push_back(std::abs(points[i].excess - points[i - 1].excess));
+    if (!points[i].starts_segment) changes.push_back(std::abs(points[i].excess - points[i - 1].excess));
   }
-  const double limit = std::max(least_step, deviations * 1.4826 * median(changes));
+  const double limit = std::max(min_step, deviations * 1.4826 * median(changes));
   std::vector<Point> kept;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Point point = points[i];
-    if (!point.starts_stretch && !kept.empty() && std::abs(point.excess - kept.back().excess) > limit) {
+    if (!point.starts_segment && !kept.empty() && std::abs(point.excess - kept.back().excess) > limit) {
       std::size_t end = i + 1;
-      while (end < points.size() && end - i < longest_spike && !points[end].starts_stretch &&
+      while (end < points.size() && end - i < max_spike && !points[end].starts_segment &&
              std::abs(points[end].excess - kept.back().excess) > limit)
         ++end;
-      const bool comes_back = end < points.size() && end - i < longest_spike && !points[end].starts_stretch;
+      const bool comes_back = end < points.size() && end - i < max_spike && !points[end].starts_segment;
       if (comes_back) {
         record.height_spikes += end - i;
         i = end - 1;
         continue;
       }
-      point.starts_stretch = true;
+      point.starts_segment = true;
       ++record.height_steps;
     }
     kept.push_back(point);
@@ -199,8 +199,8 @@ bool has_ground_velocity(const FlightAir& air, std::size_t i) {
 }
 
 /// The velocity over the ground, to the east and north, m/s; where that is missing, through the air by
-/// airspeed and heading. Where there is no heading at all, and no way over the ground, the airspeed counts as
-/// one to the north.
+/// airspeed and heading. Where there is no heading at all, and no way over the ground, the airspeed
+/// counts as one to the north.
 Eigen::Vector2d velocity(const FlightAir& air, std::size_t i) {
   if (has_ground_velocity(air, i)) return {air.east_speed[i], air.north_speed[i]};
   if (way_known(air) == WayKnown::length) return {0.0, air.airspeed[i]};
@@ -209,7 +209,8 @@ Eigen::Vector2d velocity(const FlightAir& air, std::size_t i) {
   return {air.airspeed[i] * std::sin(heading), air.airspeed[i] * std::cos(heading)};
 }
 
-/// The way from the first sample, m, to the east and north. Where no velocity is known, the last one goes on.
+/// The way from the first sample, m, to the east and north. Where no velocity is known, the last one
+/// goes on.
 struct Way {
   std::vector<double> east;
   std::vector<double> north;
@@ -236,7 +237,7 @@ class BlockMeans {
   void add(const Point& point) {
     const std::size_t i = point.sample;
     if (block_.samples == 0) {
-      block_.starts_stretch = point.starts_stretch;
+      block_.starts_segment = point.starts_segment;
       first_ = i;
     }
     ++block_.samples;
@@ -298,16 +299,16 @@ class BlockMeans {
 };
 
 /// Leaves out what climbs too slowly; what is left of a climb is a stretch.
-void keep_climbs(std::vector<HeightBlock>& blocks, double least_rate) {
-  if (least_rate <= 0.0) return;
+void keep_climbs(std::vector<HeightBlock>& blocks, double min_rate) {
+  if (min_rate <= 0.0) return;
   std::vector<HeightBlock> kept;
   bool left_out = true;
   double direction = 0.0;
   for (HeightBlock block : blocks) {
-    const bool climbs = std::abs(block.climb) >= least_rate;
+    const bool climbs = std::abs(block.climb) >= min_rate;
     if (climbs) {
       const double now = block.climb > 0.0 ? 1.0 : -1.0;
-      block.starts_stretch = block.starts_stretch || left_out || now != direction;
+      block.starts_segment = block.starts_segment || left_out || now != direction;
       direction = now;
       kept.push_back(block);
     }
@@ -318,8 +319,8 @@ void keep_climbs(std::vector<HeightBlock>& blocks, double least_rate) {
 
 void find_climbs(std::vector<HeightBlock>& blocks) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const std::size_t before = blocks[i].starts_stretch || i == 0 ? i : i - 1;
-    const std::size_t after = i + 1 < blocks.size() && !blocks[i + 1].starts_stretch ? i + 1 : i;
+    const std::size_t before = blocks[i].starts_segment || i == 0 ? i : i - 1;
+    const std::size_t after = i + 1 < blocks.size() && !blocks[i + 1].starts_segment ? i + 1 : i;
     if (after == before) continue;
     blocks[i].climb =
         (blocks[after].height - blocks[before].height) / (blocks[after].time - blocks[before].time);
@@ -337,7 +338,7 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
                     "in the table [variables]",
                     name));
   }
-  if (const std::string trouble = trouble_with_height(air); !trouble.empty())
+  if (const std::string trouble = height_problem(air); !trouble.empty())
     throw Error(fmt::format("{}: {}", name, trouble));
 
   HeightRecord record;
@@ -355,37 +356,37 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
   for (const Point& point : points) {
     const bool full = means.samples() > 0 && air.time()[point.sample] - air.time()[means.first()] >=
                                                  options.block - 0.5 * air.step();
-    if (point.starts_stretch || full) finish();
+    if (point.starts_segment || full) finish();
     if (record.way == WayKnown::over_ground && !has_ground_velocity(air, point.sample)) ++record.unknown_ways;
     means.add(point);
   }
   finish();
   find_climbs(record.blocks);
-  keep_climbs(record.blocks, options.least_climb_rate);
+  keep_climbs(record.blocks, options.min_climb_rate);
 
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
-  record.least_temperature = lowest;
-  record.greatest_temperature = highest;
+  record.min_temperature = lowest;
+  record.max_temperature = highest;
   record.has_wind = true;
   for (std::size_t i = 0; i < record.blocks.size(); ++i) {
     HeightBlock& block = record.blocks[i];
-    if (i == 0) block.starts_stretch = true;
-    record.stretches += block.starts_stretch ? 1 : 0;
+    if (i == 0) block.starts_segment = true;
+    record.segments += block.starts_segment ? 1 : 0;
     record.samples += block.samples;
     record.has_wind = record.has_wind && !std::isnan(block.slope_east + block.slope_north);
     lowest = std::min(lowest, block.height);
     highest = std::max(highest, block.height);
-    record.least_temperature = std::min(record.least_temperature, block.temperature);
-    record.greatest_temperature = std::max(record.greatest_temperature, block.temperature);
+    record.min_temperature = std::min(record.min_temperature, block.temperature);
+    record.max_temperature = std::max(record.max_temperature, block.temperature);
   }
-  if (!(highest - lowest >= least_height_range)) {
+  if (!(highest - lowest >= min_height_range)) {
     throw Error(fmt::format(
         "{}: it climbs by {:.0f} m only{}; a fit of temperature needs climbs or descents of {:.0f} m and "
         "more",
         name, record.blocks.empty() ? 0.0 : highest - lowest,
-        options.least_climb_rate > 0.0 ? fmt::format(" at {} m/s or more", options.least_climb_rate) : "",
-        least_height_range));
+        options.min_climb_rate > 0.0 ? fmt::format(" at {} m/s or more", options.min_climb_rate) : "",
+        min_height_range));
   }
   if (record.way == WayKnown::over_ground) {
     const HeightBlock& first = record.blocks.front();

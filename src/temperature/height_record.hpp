@@ -22,7 +22,7 @@ enum HeightError : std::size_t { lasting, with_static, with_dynamic, with_attack
 /// Means over some seconds of a flight: the height by GPS against the integral of the hydrostatic equation
 /// from the start of the stretch.
 struct HeightBlock {
-  bool starts_stretch = false;  ///< the integral starts anew: its height is not known
+  bool starts_segment = false;  ///< the integral starts anew: its height is not known
   double time = 0.0;            ///< middle, s since 1970 UTC
   double length = 0.0;          ///< over which it is the mean, s
   double excess = 0.0;  ///< geopotential height by GPS less the integral with the uncorrected temperature, m
@@ -45,7 +45,7 @@ struct HeightBlock {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(starts_stretch, time, length, excess, columns, east, north, height, pressure, temperature,
+    archive(starts_segment, time, length, excess, columns, east, north, height, pressure, temperature,
             metres_per_hpa, errors, climb, slope_east, slope_north, samples);
   }
 };
@@ -61,7 +61,7 @@ enum class WayKnown {
 struct HeightRecord {
   std::string name;
   std::vector<HeightBlock> blocks;
-  std::size_t stretches = 0;
+  std::size_t segments = 0;
   std::size_t samples = 0;          ///< those that are in blocks
   std::size_t height_steps = 0;     ///< steps of the GPS height, at which the integral starts anew
   std::size_t height_spikes = 0;    ///< samples whose GPS height is left out
@@ -69,10 +69,10 @@ struct HeightRecord {
   std::size_t unknown_ways = 0;     ///< samples without velocity over the ground in a flight that has it
   WayKnown way = WayKnown::over_ground;
   bool has_wind = false;
-  double slope_left = 1.0;         ///< part of the usual slope of isobars that `excess` has in it yet, 0 to 1
-  bool returns = false;            ///< it is known to end within 50 km of where it began
-  double least_temperature = 0.0;  ///< degC
-  double greatest_temperature = 0.0;  ///< degC
+  double slope_left = 1.0;       ///< part of the usual slope of isobars that `excess` has in it yet, 0 to 1
+  bool returns = false;          ///< it is known to end within 50 km of where it began
+  double min_temperature = 0.0;  ///< degC
+  double max_temperature = 0.0;  ///< degC
   /// Rms of the static pressure by one unit of each of its errors, hPa.
   std::array<double, height_errors> rms_of_unit{};
   /// Variance that the model states of delta-p, the mean over the samples, hPa2; nothing where it states
@@ -82,21 +82,21 @@ struct HeightRecord {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(name, blocks, stretches, samples, height_steps, height_spikes, missing_heights, unknown_ways, way,
-            has_wind, slope_left, returns, least_temperature, greatest_temperature, rms_of_unit, law_variance,
+    archive(name, blocks, segments, samples, height_steps, height_spikes, missing_heights, unknown_ways, way,
+            has_wind, slope_left, returns, min_temperature, max_temperature, rms_of_unit, law_variance,
             notes);
   }
 };
 
 struct HeightRecordOptions {
-  double block = 10.0;            ///< s
-  double least_climb_rate = 0.0;  ///< m/s; slower blocks are left out, and each climb is a stretch
+  double block = 10.0;          ///< s
+  double min_climb_rate = 0.0;  ///< m/s; slower blocks are left out, and each climb is a stretch
   /// The temperature is that of a thermometer less the heating by the flow, for which it has to know the Mach
   /// number: where delta-p is too large by a part x of the pressure, that is x R/cp of the temperature too
   /// much, (p/(p + q))^(R/cp) being their ratio where all of the heating is recovered.
   bool recovers = false;
-  bool has_radome = true;        ///< errors with the angle of attack go by the radome ratio, else by degrees
-  double longest_bridge = 10.0;  ///< s without pressure or temperature that the integral crosses in one step
+  bool has_radome = true;    ///< errors with the angle of attack go by the radome ratio, else by degrees
+  double max_bridge = 10.0;  ///< s without pressure or temperature that the integral crosses in one step
 };
 
 /// Integrates the hydrostatic equation along a flight (memo eq. 24 in its exact form, geopotential height),
@@ -104,7 +104,7 @@ struct HeightRecordOptions {
 ///
 /// @param steps if not empty, -(R_a/g0) ln(p_i/p_(i-1)) of every record as `pcor process --hydrostatic` wrote
 ///        it, m/K; else it is found from pressure and humidity
-/// @throws Error if the height is none that goes with the pressure (`trouble_with_height`), the flight has no
+/// @throws Error if the height is none that goes with the pressure (`height_problem`), the flight has no
 /// temperature, or it neither climbs nor descends by 300 m.
 HeightRecord height_record(const FlightAir& air, const std::vector<double>& steps,
                            const HeightRecordOptions& options);

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/temperature/temperature.hpp>
-#include <pcor/words/error.hpp>
 #include "campaign/flight_air.hpp"
 #include "fit/lineage.hpp"
-#include "laws/calibration.hpp"
-#include "team/flight_share.hpp"
+#include "model_io/calibration.hpp"
+#include "parallel/flight_partition.hpp"
 
 namespace pcor {
 
@@ -15,12 +15,12 @@ using namespace internal;
 
 namespace {
 
-constexpr int most_rounds = 12;
+constexpr int max_rounds = 12;
 constexpr double settled_defect = 1e-3;       // hPa
 constexpr double settled_temperature = 1e-3;  // K
 
 /// The rms difference of delta-p of two models over the flights, in the air, hPa.
-double defect_change(const FlightSet& flights, const ModelFile& before, const ModelFile& after,
+double defect_change(const FlightSet& flights, const ModelDefinition& before, const ModelDefinition& after,
                      const TemperatureOptions& options) {
   using SquaresAndCount = std::pair<double, double>;
   double squares = 0.0;
@@ -45,24 +45,24 @@ double defect_change(const FlightSet& flights, const ModelFile& before, const Mo
 
 }  // namespace
 
-CalibrationInTurn calibrate_in_turn(const FlightSet& flights, const ModelFile& model,
-                                    const References& references, const RefitOptions& refit_options,
-                                    const TemperatureOptions& temperature_options) {
+IterativeCalibration calibrate_iteratively(const FlightSet& flights, const ModelDefinition& model,
+                                           const References& references, const RefitOptions& refit_options,
+                                           const TemperatureOptions& temperature_options) {
   if (temperature_options.archived) {
     throw Error(
         "archived flights have their pressures already; to fit pressure and temperature in turn give flights "
         "as recorded");
   }
-  CalibrationInTurn result;
+  IterativeCalibration result;
   TemperatureOptions options = temperature_options;
   std::vector<DegreeChoice> degrees;
   std::vector<std::string> notes_on_degree;
-  ModelFile current = model;
+  ModelDefinition current = model;
   std::vector<double> coefficients;
   for (const ModelEffect& effect : model.model.effects) {
     if (effect.id == calibration_id) coefficients = effect.parameters;
   }
-  while (!result.converged && result.rounds.size() < most_rounds) {
+  while (!result.converged && result.rounds.size() < max_rounds) {
     result.pressure = refit(flights, current, references, refit_options);
     result.temperature = fit_temperature(flights, result.pressure.model, options);
     if (result.rounds.empty()) {

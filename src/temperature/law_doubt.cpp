@@ -45,12 +45,13 @@ std::vector<Eigen::VectorXd> standard_deviations(const std::vector<double>& cova
 }
 
 /// Whether an uncertainty is stated of a coefficient of the law itself, not of a sensor.
-bool states_law(const ModelFile& model, const ModelUncertainty& stated) {
+bool states_law(const ModelDefinition& model, const ModelUncertainty& stated) {
   std::size_t place = 0;
   const auto count = static_cast<std::size_t>(std::lround(std::sqrt(stated.covariance.size())));
   for (const ModelEffect& effect : model.model.effects) {
     for (std::size_t p = 0; p < effect.parameters.size(); ++p, ++place) {
-      if (where_of(effect) == Where::static_defect && stated.covariance[place * count + place] > 0.0)
+      if (location_of(effect) == EffectLocation::static_defect &&
+          stated.covariance[place * count + place] > 0.0)
         return true;
     }
   }
@@ -59,7 +60,7 @@ bool states_law(const ModelFile& model, const ModelUncertainty& stated) {
 
 }  // namespace
 
-std::optional<double> stated_law_variance(const ModelFile& model, const FlightAir& air) {
+std::optional<double> stated_law_variance(const ModelDefinition& model, const FlightAir& air) {
   const ModelUncertainty stated = uncertainty_of(model);
   const bool has_rest = stated.static_defect > 0.0 || stated.static_defect_ratio > 0.0;
   if (!has_rest && !states_law(model, stated)) return std::nullopt;

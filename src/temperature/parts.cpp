@@ -31,7 +31,7 @@ HeightRecord with_climbs_and_descents(const HeightRecord& whole, const HeightEqu
   double descents = 0.0;
   double before = 0.0;
   for (HeightBlock& block : record.blocks) {
-    const double step = block.starts_stretch ? 0.0 : block.columns[0] - before;
+    const double step = block.starts_segment ? 0.0 : block.columns[0] - before;
     before = block.columns[0];
     (step > 0.0 ? climbs : descents) += step;
     block.columns = {climbs, descents, block.columns[1]};

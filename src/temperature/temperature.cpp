@@ -10,22 +10,22 @@
 #include <numeric>
 #include <utility>
 
+#include <pcor/base/error.hpp>
 #include <pcor/effects/humidity_error.hpp>
 #include <pcor/effects/psfd_bias.hpp>
 #include <pcor/effects/static_alpha.hpp>
 #include <pcor/effects/static_attack.hpp>
 #include <pcor/effects/static_qp.hpp>
 #include <pcor/effects/temp_calibration.hpp>
-#include <pcor/words/error.hpp>
 #include "campaign/flight_air.hpp"
-#include "laws/archived_model.hpp"
-#include "laws/calibration.hpp"
+#include "model_io/archived_model.hpp"
+#include "model_io/calibration.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "parallel/flight_partition.hpp"
 #include "roles/recorded_model.hpp"
-#include "team/flight_share.hpp"
 #include "temperature/archived_steps.hpp"
 #include "temperature/degrees.hpp"
 #include "temperature/dry_air.hpp"
@@ -43,7 +43,7 @@ namespace {
 
 /// What is met in practice of an effect with one coefficient.
 template <class Effect>
-constexpr double usual_size = Effect::facts().parameters[0].typical;
+constexpr double usual_size = Effect::info().parameters[0].typical;
 
 constexpr double much_noise = 3.0;  // m, of the GPS height
 constexpr double much_drift = 1.0;  // m in a minute; a usual slope of isobars, 10 m in 100 km, makes 0.7
@@ -77,12 +77,13 @@ struct FlightPart {
 
 class TemperatureCalibration {
  public:
-  TemperatureCalibration(const FlightSet& flights, const ModelFile& model, const TemperatureOptions& options)
+  TemperatureCalibration(const FlightSet& flights, const ModelDefinition& model,
+                         const TemperatureOptions& options)
       : flights_(flights),
         model_(model),
         bare_(without_calibration(model)),
         options_(options),
-        workers_(flights.team(), options.threads) {
+        workers_(flights.comm(), options.threads) {
     prior_.slope = options.slope == IsobarSlope::none ? 0.0 : options.slope_size;
     has_radome_ = model.variables.count(Quantity::attack_differential_pressure) > 0;
   }
@@ -153,14 +154,14 @@ class TemperatureCalibration {
 
   HeightRecord read_record(std::size_t number) const {
     HeightRecordOptions record_options;
-    record_options.least_climb_rate = options_.least_climb_rate;
+    record_options.min_climb_rate = options_.min_climb_rate;
     record_options.has_radome = has_radome_;
     record_options.recovers = model_.variables.count(Quantity::recovery_temperature) > 0;
     FlightAir air;
     std::vector<double> steps;
     if (options_.archived) {
       const Flight& flight = flights_[number];
-      std::optional<ModelFile> recorded = recorded_model(flight);
+      std::optional<ModelDefinition> recorded = recorded_model(flight);
       if (!recorded || recorded->variables.count(Quantity::ambient_temperature) == 0) {
         throw Error(
             fmt::format("{}: --archived needs PSXC, QCXC and ATX as pcor process writes them; leave it out "
@@ -177,7 +178,7 @@ class TemperatureCalibration {
       air = read_flight_air(flights_, number, bare_, options_.mask);
     }
     HeightRecord record = height_record(air, steps, record_options);
-    ModelFile stated = bare_;
+    ModelDefinition stated = bare_;
     if (options_.archived) {  // What the law reads is not archived: only what it leaves is known.
       stated.covariance = {};
       stated.fits.clear();
@@ -202,16 +203,16 @@ class TemperatureCalibration {
     const auto count = static_cast<double>(records_.size());
     const double rms = is_stated ? std::sqrt(variances / count) : model_.law.rms_hpa.value_or(law_default);
     law_error_ = std::hypot(rms, usual_zero);
-    const auto size = [&](HeightError error, const EffectFacts& effect) {
+    const auto size = [&](HeightError error, const EffectInfo& effect) {
       const double usual = effect.parameters[0].typical;
       const bool is_in_law = std::any_of(model_.model.effects.begin(), model_.model.effects.end(),
                                          [&](const ModelEffect& each) { return each.id == effect.id; });
       if (!(squares[error] > 0.0) || !(is_stated || model_.law.rms_hpa || is_in_law)) return usual;
       return std::min(usual, law_error_ / std::sqrt(squares[error] / count));
     };
-    prior_.errors[with_dynamic] = size(with_dynamic, effects::StaticQp::facts());
+    prior_.errors[with_dynamic] = size(with_dynamic, effects::StaticQp::info());
     prior_.errors[with_attack] =
-        size(with_attack, has_radome_ ? effects::StaticAlpha::facts() : effects::StaticAttack::facts());
+        size(with_attack, has_radome_ ? effects::StaticAlpha::info() : effects::StaticAttack::info());
     prior_.errors[with_vapor] = usual_size<effects::HumidityError>;
   }
 
@@ -220,7 +221,7 @@ class TemperatureCalibration {
     std::vector<double> changes;
     for (const HeightRecord& record : records_) {
       for (std::size_t i = 1; i < record.blocks.size(); ++i) {
-        if (!record.blocks[i].starts_stretch)
+        if (!record.blocks[i].starts_segment)
           changes.push_back(std::abs(record.blocks[i].excess - record.blocks[i - 1].excess));
       }
     }
@@ -243,11 +244,11 @@ class TemperatureCalibration {
   std::string impossible() const {
     const Eigen::VectorXd best = likeliest_.equations.best(static_cast<Eigen::Index>(terms_));
     for (std::size_t k = 0; k < terms_; ++k) {
-      const ParameterFacts facts = effects::TempCalibration::facts().parameters[k];
+      const ParameterInfo info = effects::TempCalibration::info().parameters[k];
       const double value = best[static_cast<Eigen::Index>(k)];
-      if (value < facts.lower || value > facts.upper) {
-        return fmt::format("{} = {:.3g} {}, outside [{:g}, {:g}]", facts.name, value, facts.unit, facts.lower,
-                           facts.upper);
+      if (value < info.lower || value > info.upper) {
+        return fmt::format("{} = {:.3g} {}, outside [{:g}, {:g}]", info.name, value, info.unit, info.lower,
+                           info.upper);
       }
     }
     return "";
@@ -330,7 +331,7 @@ class TemperatureCalibration {
 
   std::optional<double> stated_zero() const {
     for (std::size_t e = 0; e < model_.model.effects.size(); ++e) {
-      if (model_.model.effects[e].id == effects::PsfdBias::facts().id) return model_.fit(e, 0).standard_error;
+      if (model_.model.effects[e].id == effects::PsfdBias::info().id) return model_.fit(e, 0).standard_error;
     }
     return std::nullopt;
   }
@@ -375,7 +376,7 @@ class TemperatureCalibration {
     for (const HeightRecord& record : records_) {
       for (const HeightBlock& block : record.blocks) {
         const double pressure = block.errors[error] / block.metres_per_hpa;
-        if (block.starts_stretch) least = greatest = pressure;
+        if (block.starts_segment) least = greatest = pressure;
         least = std::min(least, pressure);
         greatest = std::max(greatest, pressure);
         range = std::max(range, greatest - least);
@@ -389,8 +390,8 @@ class TemperatureCalibration {
     const Eigen::Index n = as_index(terms_);
     const Eigen::Index at = as_index(calibration_terms + error);
     LawError found;
-    found.effect = Effect::facts().id;
-    found.parameter = Effect::facts().parameters[0].name;
+    found.effect = Effect::info().id;
+    found.parameter = Effect::info().parameters[0].name;
     // A pressure that is too high needs a correction that is lower.
     found.change = -likeliest_.equations.best_unknowns(n)[at];
     found.standard_error = std::sqrt(likeliest_.equations.covariance_of_unknowns(n)(at, at));
@@ -406,8 +407,8 @@ class TemperatureCalibration {
     result_.humidity_error = std::sqrt(likeliest_.equations.covariance_of_unknowns(n)(at, at));
   }
 
-  /// Where -2 ln L, with the noise and the other coefficients at their best, is 1 above its least, below and
-  /// above; and the variance that the likelihood cannot see.
+  /// Where -2 ln L, with the noise and the other coefficients at their best, is 1 above its least,
+  /// below and above; and the variance that the likelihood cannot see.
   std::array<double, 2> profile_interval(Eigen::Index term, double error, double unseen) const {
     const double best = result_.likelihood.coefficients[static_cast<std::size_t>(term)];
     const auto deviance_at = [&](double value) {
@@ -457,8 +458,8 @@ class TemperatureCalibration {
     double coldest = std::numeric_limits<double>::infinity();
     double warmest = -coldest;
     for (const HeightRecord& record : records_) {
-      coldest = std::min(coldest, record.least_temperature);
-      warmest = std::max(warmest, record.greatest_temperature);
+      coldest = std::min(coldest, record.min_temperature);
+      warmest = std::max(warmest, record.max_temperature);
     }
     constexpr int steps = 4;
     for (int i = 0; i <= steps; ++i) {
@@ -486,9 +487,9 @@ class TemperatureCalibration {
     for (FlightHeights& flight : result_.flights) {
       if (!flight.left_out.empty()) continue;
       flight.samples = record->samples;
-      flight.stretches = record->stretches;
-      flight.least_temperature = record->least_temperature;
-      flight.greatest_temperature = record->greatest_temperature;
+      flight.segments = record->segments;
+      flight.min_temperature = record->min_temperature;
+      flight.max_temperature = record->max_temperature;
       for (const HeightBlock& block : record->blocks) {
         flight.time.push_back(block.time);
         flight.height.push_back(block.height);
@@ -629,7 +630,7 @@ class TemperatureCalibration {
     compare_with_none();
     write_warnings();
     if (!result_.worse.empty()) notes.push_back(result_.worse);
-    if (!options_.degree && records_.size() < fewest_for_choice) {
+    if (!options_.degree && records_.size() < min_for_choice) {
       result_.notes_on_degree.push_back(
           fmt::format("with {} flight{} none can be held out: the degree is chosen by what these flights "
                       "gain (more than {:.0f} in -2 ln L for a coefficient); --degree sets it",
@@ -702,7 +703,7 @@ class TemperatureCalibration {
     Provenance temperature;
     temperature.emplace_back("program", ProvenanceValue{std::string("pcor " PCOR_VERSION)});
     temperature.emplace_back("method", ProvenanceValue{std::string("likelihood of heights by GPS")});
-    temperature.emplace_back("slope_of_isobars", ProvenanceValue{std::string(name_of(options_.slope))});
+    temperature.emplace_back("slope_of_isobars", ProvenanceValue{std::string(to_string(options_.slope))});
     ProvenanceList flights;
     for (const FlightHeights& flight : result_.flights) {
       if (flight.left_out.empty()) flights.emplace_back(ProvenanceValue{flight.flight});
@@ -720,8 +721,8 @@ class TemperatureCalibration {
   }
 
   const FlightSet& flights_;
-  const ModelFile& model_;
-  ModelFile bare_;  // without a correction of the temperature
+  const ModelDefinition& model_;
+  ModelDefinition bare_;  // without a correction of the temperature
   const TemperatureOptions& options_;
   Workers workers_;
   bool has_radome_ = false;
@@ -737,7 +738,7 @@ class TemperatureCalibration {
 
 }  // namespace
 
-std::string_view name_of(IsobarSlope slope) {
+std::string_view to_string(IsobarSlope slope) {
   return std::find_if(slope_names.begin(), slope_names.end(),
                       [slope](const auto& each) { return each.first == slope; })
       ->second;
@@ -750,7 +751,7 @@ std::optional<IsobarSlope> isobar_slope_named(std::string_view name) {
   return std::nullopt;
 }
 
-TemperatureResult fit_temperature(const FlightSet& flights, const ModelFile& model,
+TemperatureResult fit_temperature(const FlightSet& flights, const ModelDefinition& model,
                                   const TemperatureOptions& options) {
   if (flights.empty()) throw Error("nothing to fit the temperature to; give at least one flight");
   constexpr int most = static_cast<int>(calibration_terms) - 1;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/temperature/temperature.hpp>
-#include <pcor/words/utc.hpp>
+#include "base/phrasing.hpp"
 #include "report/shown_flights.hpp"
-#include "words/phrasing.hpp"
 
 namespace pcor {
 
@@ -78,8 +78,8 @@ ReportTable flight_table(const TemperatureResult& result) {
       continue;
     }
     table.rows.push_back(
-        {flight.flight, std::to_string(flight.samples), std::to_string(flight.stretches),
-         fmt::format("{:.1f}", flight.least_temperature), fmt::format("{:.1f}", flight.greatest_temperature),
+        {flight.flight, std::to_string(flight.samples), std::to_string(flight.segments),
+         fmt::format("{:.1f}", flight.min_temperature), fmt::format("{:.1f}", flight.max_temperature),
          fmt::format("{:.2f}", flight.rms_before), fmt::format("{:.2f}", flight.rms_after), ""});
   }
   return table;
@@ -181,7 +181,7 @@ Report temperature_report(const TemperatureResult& result) {
                                        with_error(middle.correction, middle.standard_error, "±")));
   for (const std::string& warning : result.warnings) report.summary.push_back("Warning: " + warning + ".");
   for (const std::string& note : result.notes) report.summary.push_back("Note: " + note + ".");
-  report.facts = {
+  report.info = {
       {"Samples", std::to_string(result.samples)},
       {"Noise of the GPS height", fmt::format("{:.2f} m in a sample, {:.2f} m correlated over {:.0f} s",
                                               result.gps_noise, result.gps_wander, result.gps_wander_time)},

@@ -1,6 +1,6 @@
 #include <udunits2.h>
+#include <pcor/base/error.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/error.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "words/quoting.hpp"
+#include "base/quoting.hpp"
 
 namespace pcor {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/realtime/loop.hpp>
-#include <pcor/words/error.hpp>
 #include "batch/batch_kernel.hpp"
 
 using namespace pcor::internal;
@@ -144,7 +144,7 @@ void expect_equal(const Arrays& found, const Arrays& expected, double iteration 
       const double mach = expected.at(Quantity::corrected_mach)[i];
       const double allowed =
           rounding(quantity, values[i], mach) + iteration * std::max(1.0, std::abs(values[i]));
-      ASSERT_NEAR(value, values[i], allowed) << facts_of(quantity).name << " of sample " << i;
+      ASSERT_NEAR(value, values[i], allowed) << info_of(quantity).name << " of sample " << i;
     }
   }
 }
@@ -382,10 +382,10 @@ TEST(Batch, FindsEveryQuantityForItselfOrRefusesIt) {
         continue;
       }
       run();
-      EXPECT_GT(values_in(values), count / 2) << facts_of(quantity).name;
+      EXPECT_GT(values_in(values), count / 2) << info_of(quantity).name;
       if (together.count(quantity) == 0) continue;
       EXPECT_THAT(values, testing::Pointwise(testing::NanSensitiveDoubleEq(), together.at(quantity)))
-          << facts_of(quantity).name;
+          << info_of(quantity).name;
     }
   }
 }
@@ -395,7 +395,7 @@ TEST(Batch, RefusesWhatIsNotRecordedOrNeedsEarlierSamples) {
   for (const Quantity quantity :
        {Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::height_step,
         Quantity::filtered_lams_temperature, Quantity::roll}) {
-    EXPECT_FALSE(batch.finds(quantity)) << facts_of(quantity).name;
+    EXPECT_FALSE(batch.finds(quantity)) << info_of(quantity).name;
   }
 }
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/campaign/chosen_references.hpp>
 #include <pcor/residuals/reference.hpp>
-#include <pcor/words/error.hpp>
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 #include "support/short_flight.hpp"
 
 using pcor::ChosenReferences;
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::Quantity;
 using pcor::test::laser_model;
 using pcor::test::short_flight;
@@ -39,7 +39,7 @@ TEST(ChosenReferences, WithoutANameAreAllThatModelAndFlightAllow) {
 }
 
 TEST(ChosenReferences, SayWhyOneIsNotAmongThem) {
-  ModelFile model = laser_model();
+  ModelDefinition model = laser_model();
   model.variables.erase(Quantity::recovery_temperature);
   model.variables.erase(Quantity::ambient_temperature);
   const ChosenReferences chosen = pcor::read_references({}, model, {short_flight()});
@@ -50,7 +50,7 @@ TEST(ChosenReferences, SayWhyOneIsNotAmongThem) {
 
 TEST(ChosenReferences, WithoutALaserAreLeftToTheUser) {
   // The others see changes of the static pressure, or nothing of it.
-  ModelFile model = laser_model();
+  ModelDefinition model = laser_model();
   model.variables.erase(Quantity::lams_airspeed);
   EXPECT_THROW(pcor::read_references({}, model, {short_flight()}), pcor::Error);
 }

@@ -22,8 +22,8 @@
 using namespace pcor::internal;
 
 using pcor::FlightSamples;
+using pcor::ModelDefinition;
 using pcor::ModelEffect;
-using pcor::ModelFile;
 using pcor::Quantity;
 using pcor::Residuals;
 using pcor::internal::Candidate;
@@ -124,12 +124,12 @@ ModelEffect formula() {
   effect.formula = "k * sin(roll / 10) + c * attack * mach";
   effect.parameter_names = {"k", "c"};
   effect.parameters = {0.0, 0.0};
-  effect.where = pcor::Where::total_line;
+  effect.location = pcor::EffectLocation::total_line;
   return effect;
 }
 
 struct Made {
-  ModelFile model = laser_model();
+  ModelDefinition model = laser_model();
   std::shared_ptr<const pcor::Reference> reference;
   CandidateSet set;
   std::shared_ptr<const FlightSamples> samples;
@@ -154,8 +154,8 @@ std::shared_ptr<const FlightSamples> without_laser_noise(const Made& made) {
   return samples;
 }
 
-std::vector<double> residual_of(const std::shared_ptr<const FlightSamples>& samples, const ModelFile& model,
-                                const std::vector<double>& parameters,
+std::vector<double> residual_of(const std::shared_ptr<const FlightSamples>& samples,
+                                const ModelDefinition& model, const std::vector<double>& parameters,
                                 const pcor::Reference& reference = *pcor::lams_reference()) {
   const Residuals residuals(samples, model, reference);
   std::vector<std::size_t> all(samples->time.size());
@@ -173,7 +173,7 @@ std::set<std::string> expect_differences(const Made& made,
   EXPECT_GT(made.set.candidates.size(), 35U);
   Eigen::Index column = 0;
   for (const Candidate& candidate : made.set.candidates) {
-    ModelFile with = made.model;
+    ModelDefinition with = made.model;
     with.model.effects.push_back(candidate.effect);
     with.fits.clear();
     for (const auto& [role, variable] : made.set.extended.variables) with.variables[role] = variable;

@@ -1,8 +1,8 @@
 #include <pcor/campaign/flight_set.hpp>
 
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <pcor/words/error.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "support/made_samples.hpp"
 #include "support/netcdf_file.hpp"
+#include "support/synthetic_samples.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fs = std::filesystem;
@@ -145,21 +145,23 @@ TEST_F(FlightSets, RefuseFlightsOfTwoAircraft) {
 TEST_F(FlightSets, KeepSamplesForEachSetOfRoles) {
   const fs::path path = directory / "short.nc";
   simulate_flight(read_scenario(scenarios / "c130-short.toml"), path);
-  ModelFile model = read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  ModelDefinition model = read_model(scenarios / "models" / "c130-psfd-eq18.toml");
   const FlightSet flights{path};
   const MaskOptions mask;
-  const auto samples = [&](const ModelFile& of) { return flights.samples(0, of, *lams_reference(), mask); };
+  const auto samples = [&](const ModelDefinition& of) {
+    return flights.samples(0, of, *lams_reference(), mask);
+  };
   const auto first = samples(model);
   model.model.effects.front().parameters.front() += 0.001;
   EXPECT_EQ(samples(model), first) << "coefficients change no column";
-  ModelFile other = model;
+  ModelDefinition other = model;
   other.variables.erase(Quantity::vapor_pressure);
   EXPECT_NE(samples(other), first);
   MaskOptions fast = mask;
-  fast.least_airspeed = 90.0;
+  fast.min_airspeed = 90.0;
   EXPECT_NE(flights.samples(0, model, *lams_reference(), fast), first);
   EXPECT_NE(flights.samples(0, model, *pressure_reference("PS_A"), mask), first);
-  const FlightSet forgetful({path}, {TimeStamp::begin, &alone(), 0});
+  const FlightSet forgetful({path}, {TimestampAlignment::begin, &serial_communicator(), 0});
   EXPECT_NE(forgetful.samples(0, model, *lams_reference(), mask),
             forgetful.samples(0, model, *lams_reference(), mask));
 }
@@ -167,7 +169,7 @@ TEST_F(FlightSets, KeepSamplesForEachSetOfRoles) {
 TEST_F(FlightSets, GiveMemoryOfSamplesThatNobodyUses) {
   made::Plan plan;
   plan.defect = made::equation_18;
-  const FlightSet flights({made::shared(plan)}, {TimeStamp::begin, &alone(), 1000});
+  const FlightSet flights({made::shared(plan)}, {TimestampAlignment::begin, &serial_communicator(), 1000});
   EXPECT_TRUE(flights.reserve(600));
   EXPECT_FALSE(flights.reserve(600));
   flights.release(600);

@@ -17,7 +17,7 @@ using namespace pcor::internal;
 
 using pcor::FlightSamples;
 using pcor::Mask;
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::Quantity;
 using pcor::Reference;
 using pcor::test::laser_model;
@@ -25,27 +25,27 @@ using pcor::test::short_flight;
 
 namespace {
 
-std::shared_ptr<FlightSamples> samples_of(const ModelFile& model, const Reference& reference) {
+std::shared_ptr<FlightSamples> samples_of(const ModelDefinition& model, const Reference& reference) {
   return std::make_shared<FlightSamples>(read_samples(pcor::Flight(short_flight()), model, reference));
 }
 
 /// The laser's model with an effect that is not at the static ports, in which nothing is linear.
-ModelFile curved_model() {
-  ModelFile model = laser_model();
+ModelDefinition curved_model() {
+  ModelDefinition model = laser_model();
   model.model.effects.push_back(pcor::neutral_effect("temp-offset"));
   return model;
 }
 
 /// The second pair of pressures, with the law of the first.
-std::shared_ptr<const Reference> second_system(const ModelFile& own) {
-  ModelFile other = own;
+std::shared_ptr<const Reference> second_system(const ModelDefinition& own) {
+  ModelDefinition other = own;
   other.model.name = "second";
   other.variables[Quantity::static_pressure] = "PSFRD";
   other.variables[Quantity::dynamic_pressure] = "QCFR";
   return pcor::static_system_reference(other);
 }
 
-LinearRows rows_of(const std::shared_ptr<const FlightSamples>& samples, const ModelFile& model,
+LinearRows rows_of(const std::shared_ptr<const FlightSamples>& samples, const ModelDefinition& model,
                    const Reference& reference, const RowsSetup& setup) {
   return {pcor::Residuals(samples, model, reference), model, reference, setup};
 }
@@ -85,7 +85,7 @@ void expect_differences(const LinearRows& rows) {
 }  // namespace
 
 TEST(LinearRows, DerivativesAreDifferencesOfResiduals) {
-  for (const ModelFile& model : {laser_model(), curved_model()}) {
+  for (const ModelDefinition& model : {laser_model(), curved_model()}) {
     const auto reference = pcor::lams_reference();
     const LinearRows rows =
         rows_of(samples_of(model, *reference), model, *reference, {Inputs::recorded, free_parameters(model)});
@@ -96,7 +96,7 @@ TEST(LinearRows, DerivativesAreDifferencesOfResiduals) {
 
 // Of what two systems have in common their difference knows nothing, not even by noise.
 TEST(LinearRows, OfTwoSystemsAreExactlyOppositeAtCommonPressures) {
-  const ModelFile model = laser_model();
+  const ModelDefinition model = laser_model();
   const auto reference = second_system(model);
   const LinearRows rows =
       rows_of(samples_of(model, *reference), model, *reference, {Inputs::recorded, free_parameters(model)});
@@ -113,7 +113,7 @@ TEST(LinearRows, OfTwoSystemsAreExactlyOppositeAtCommonPressures) {
 }
 
 TEST(LinearRows, MeansAreThoseOfTheSamplesInEachBin) {
-  const ModelFile model = curved_model();
+  const ModelDefinition model = curved_model();
   const auto reference = pcor::lams_reference();
   const LinearRows rows =
       rows_of(samples_of(model, *reference), model, *reference, {Inputs::recorded, free_parameters(model)});
@@ -139,7 +139,7 @@ TEST(LinearRows, MeansAreThoseOfTheSamplesInEachBin) {
 }
 
 TEST(LinearRows, OfEachSampleSayWhetherItIsUsedOrWhyNot) {
-  const ModelFile model = laser_model();
+  const ModelDefinition model = laser_model();
   const auto reference = pcor::lams_reference();
   const auto samples = samples_of(model, *reference);
   samples->flaps.assign(samples->time.size(), 0.0);
@@ -164,7 +164,7 @@ TEST(LinearRows, OfEachSampleSayWhetherItIsUsedOrWhyNot) {
 }
 
 TEST(LinearRows, OfAStageAreInItsIntervals) {
-  const ModelFile model = laser_model();
+  const ModelDefinition model = laser_model();
   const auto reference = pcor::lams_reference();
   const auto samples = samples_of(model, *reference);
   const double begin = samples->time.front();
@@ -191,7 +191,7 @@ TEST(LinearRows, OfAStageAreInItsIntervals) {
 
 // With masks that are known residuals and derivatives are the same.
 TEST(LinearRows, DoNotHangOnHowTheMasksAreKnown) {
-  const ModelFile model = curved_model();
+  const ModelDefinition model = curved_model();
   const auto reference = pcor::lams_reference();
   const auto samples = samples_of(model, *reference);
   const RowsSetup setup{Inputs::noise_free, free_parameters(model)};

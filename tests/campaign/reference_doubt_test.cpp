@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "support/made_samples.hpp"
+#include "support/synthetic_samples.hpp"
 
 namespace {
 
@@ -17,7 +17,7 @@ TEST(ReferenceDoubt, OfAMeasuredPressureIsItsZeroItsGainAndItsDrift) {
   made::Plan plan;
   plan.defect = made::equation_18;
   const auto flight = made::shared(plan);
-  const pcor::ModelFile model = made::model({"static-constant", "static-qp"});
+  const pcor::ModelDefinition model = made::model({"static-constant", "static-qp"});
   const auto reference = made::pressure_reference().front();
   const ReferenceDoubt doubt(model, *reference, false);
   EXPECT_THAT(doubt.names(), ElementsAre("pressure:PS_A: psfd-bias.offset", "pressure:PS_A: psfd-gain.gain",
@@ -36,12 +36,12 @@ TEST(ReferenceDoubt, OfAMeasuredPressureIsItsZeroItsGainAndItsDrift) {
 }
 
 TEST(ReferenceDoubt, OfATrustedReferenceIsEmpty) {
-  const pcor::ModelFile model = made::model({"static-constant"});
+  const pcor::ModelDefinition model = made::model({"static-constant"});
   EXPECT_THAT(ReferenceDoubt(model, *made::pressure_reference().front(), true).names(), IsEmpty());
 }
 
 TEST(ReferenceDoubt, OfASecondSystemHoldsWhatItsLawStates) {
-  pcor::ModelFile second = made::model({"static-constant"});
+  pcor::ModelDefinition second = made::model({"static-constant"});
   second.variables[pcor::Quantity::static_pressure] = "PSFRD";
   second.uncertainty.static_defect = 0.24;
   second.uncertainty.sensors["psfd-drift.per_hour"] = 0.0;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <pcor/words/error.hpp>
 #include "campaign/flight_air.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -60,9 +60,11 @@ const std::string manoeuvres = leg("pitch") + leg("level", "duration = 60") + le
                                leg("reverse-heading", "speed = 118") + leg("circle") +
                                leg("level", "duration = 60") + leg("circle", "angle = -360");
 
-ModelFile first_model() { return read_model(PCOR_SOURCE_DIR "/data/scenarios/models/c130-psfd-eq18.toml"); }
+ModelDefinition first_model() {
+  return read_model(PCOR_SOURCE_DIR "/data/scenarios/models/c130-psfd-eq18.toml");
+}
 
-ModelFile second_model() { return read_model(PCOR_SOURCE_DIR "/data/models/c130-psfrd-eq18.toml"); }
+ModelDefinition second_model() { return read_model(PCOR_SOURCE_DIR "/data/models/c130-psfrd-eq18.toml"); }
 
 class CheckTest : public testing::Test {
  protected:
@@ -103,7 +105,7 @@ Checks with_both(const std::vector<fs::path>& flights) {
 }
 
 /// By how much the model's airspeed is above the truth in the air, m/s.
-double true_airspeed_error(const fs::path& path, const ModelFile& model) {
+double true_airspeed_error(const fs::path& path, const ModelDefinition& model) {
   const Flight flight(path);
   const FlightAir air = read_flight_air({path}, 0, model);
   std::vector<double> truth(flight.records());
@@ -314,7 +316,7 @@ TEST_F(CheckTest, PitchAndYawSeeATermThatIsWrong) {
 }
 
 TEST_F(CheckTest, SpeedRunSeesATermThatGoesWithTheSpeed) {
-  ModelFile model = first_model();
+  ModelDefinition model = first_model();
   for (ModelEffect& effect : model.model.effects) {
     if (effect.id == "static-qp") effect.parameters[0] = 0.0;
   }

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <pcor/words/error.hpp>
 #include "support/temporary_directory.hpp"
 
 using namespace pcor::internal;
@@ -228,7 +228,7 @@ TEST(Layers, NeedAClimbThatIsFastAndThick) {
   EXPECT_THAT(find_layers(made(climb(1000.0, 1400.0, 5.0))).layers, IsEmpty());
   EXPECT_THAT(find_layers(made(std::vector<double>(600, 2000.0))).layers, IsEmpty());
   LayerOptions slow;
-  slow.least_climb_rate = 1.0;
+  slow.min_climb_rate = 1.0;
   EXPECT_THAT(find_layers(made(climb(1000.0, 3000.0, 1.5)), slow).layers, SizeIs(2));
 }
 
@@ -422,7 +422,7 @@ TEST(LayersOfARealFlight, HaveErrorsForTheGpsOfItsTime) {
   if (folder == nullptr) GTEST_SKIP() << "PCOR_FLIGHTS does not name a folder of flights";
   const auto path = std::filesystem::path(folder) / "GOTEX-rf06-C130-2004.nc";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-  ModelFile model;
+  ModelDefinition model;
   model.model.name = "as recorded";
   model.variables = {{Quantity::static_pressure, "PSXC"},
                      {Quantity::dynamic_pressure, "QCXC"},

@@ -48,7 +48,7 @@ duration = 5400
 )" + more;
   const test::TemporaryDirectory directory;
   simulate_flight(parse_scenario(text, "laser.toml"), directory / "flight.nc");
-  ModelFile model = read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
+  ModelDefinition model = read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
   if (!with_laser) model.variables.erase(Quantity::lams_airspeed);
   CheckedFlights flights(1);
   flights[0].air = read_flight_air({directory / "flight.nc"}, 0, model);

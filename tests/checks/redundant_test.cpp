@@ -47,7 +47,7 @@ void expect_right(const Nuisance& nuisance, const std::string& what) {
     const RedundantFit fit = fit_of(two_systems(static_cast<unsigned>(s), nuisance));
     difference += std::pow(fit.difference.value / fit.difference.error, 2) / static_cast<double>(seeds);
     slope += std::pow(fit.across.value / fit.across.error, 2) / static_cast<double>(seeds);
-    for (const pcor::KeyNumber& number : judged_of(fit, size_that_matters))
+    for (const pcor::TestStatistic& number : judged_of(fit, size_that_matters))
       if (number.verdict == pcor::CheckVerdict::inconsistent) ++inconsistent;
   }
   std::cout << what << ": rms of the scores of difference and slope " << std::sqrt(difference) << ", "

@@ -12,18 +12,18 @@ namespace {
 
 TEST(Verdict, WeighsSizeAndError) {
   EXPECT_EQ(judge({0.05, 0.1}, 0.3), CheckVerdict::consistent);
-  EXPECT_EQ(judge({0.2, 0.1}, 0.3), CheckVerdict::cannot_tell);     // what matters is one error away
+  EXPECT_EQ(judge({0.2, 0.1}, 0.3), CheckVerdict::inconclusive);    // what matters is one error away
   EXPECT_EQ(judge({-0.29, 0.001}, 0.3), CheckVerdict::consistent);  // certain, but too small to matter
   EXPECT_EQ(judge({-0.5, 0.1}, 0.3), CheckVerdict::inconsistent);
-  EXPECT_EQ(judge({0.5, 0.2}, 0.3), CheckVerdict::cannot_tell);  // large, but not three errors
-  EXPECT_EQ(judge({0.0, 0.4}, 0.3), CheckVerdict::cannot_tell);  // the noise hides what would matter
-  EXPECT_EQ(judge({std::nan(""), 0.1}, 0.3), CheckVerdict::cannot_tell);
+  EXPECT_EQ(judge({0.5, 0.2}, 0.3), CheckVerdict::inconclusive);  // large, but not three errors
+  EXPECT_EQ(judge({0.0, 0.4}, 0.3), CheckVerdict::inconclusive);  // the noise hides what would matter
+  EXPECT_EQ(judge({std::nan(""), 0.1}, 0.3), CheckVerdict::inconclusive);
 }
 
 TEST(Verdict, OneThatIsInconsistentIsEnough) {
   EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
-  EXPECT_EQ(together(CheckVerdict::cannot_tell, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
-  EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::cannot_tell), CheckVerdict::cannot_tell);
+  EXPECT_EQ(together(CheckVerdict::inconclusive, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
+  EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::inconclusive), CheckVerdict::inconclusive);
   EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::consistent), CheckVerdict::consistent);
 }
 
@@ -37,7 +37,7 @@ TEST(Verdict, SaysWhichNumberDecided) {
             "+2.800 +- 0.900 K by the slope is beyond the 0.3 K that matter and beyond three standard "
             "errors, 2.700");
   ASSERT_EQ(result.judged.size(), 2U);
-  EXPECT_EQ(result.judged[0].verdict, CheckVerdict::cannot_tell);
+  EXPECT_EQ(result.judged[0].verdict, CheckVerdict::inconclusive);
 
   decide({judged({0.01, 0.02}, 0.3, "hPa", "one"), judged({0.0, 0.1}, 0.3, "hPa", "other")}, result);
   EXPECT_EQ(result.key.what, "other");  // it may be 0.2 hPa, the first one 0.05 hPa
@@ -46,7 +46,7 @@ TEST(Verdict, SaysWhichNumberDecided) {
 
   decide({judged({0.5, 0.1}, 0.3, "hPa", "between")}, result);
   withhold("the other one is as measured", result);
-  EXPECT_EQ(result.verdict, CheckVerdict::cannot_tell);
+  EXPECT_EQ(result.verdict, CheckVerdict::inconclusive);
   EXPECT_NE(result.decided.find(", but the other one is as measured"), std::string::npos);
 }
 

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/compare/compare.hpp>
 #include <pcor/compare/comparison_report.hpp>
 #include <pcor/fit/refit.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <pcor/words/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,11 @@
 #include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
 
+using pcor::ComparedModel;
 using pcor::CompareOptions;
 using pcor::Comparison;
-using pcor::Contender;
 using pcor::Mask;
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using testing::HasSubstr;
 
 namespace {
@@ -38,13 +38,13 @@ const fs::path& flight_file() {
   return path;
 }
 
-Contender laser_contender(double added_to_a0 = 0.0) {
-  ModelFile model = pcor::read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
+ComparedModel laser_contender(double added_to_a0 = 0.0) {
+  ModelDefinition model = pcor::read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
   model.model.effects[0].parameters[0] += added_to_a0;
   return {added_to_a0 == 0.0 ? "true law" : "shifted law", model, {pcor::lams_reference()}};
 }
 
-Contender pair_contender() {
+ComparedModel pair_contender() {
   return {"pair",
           pcor::read_model(data / "models" / "c130-psfd-eq18.toml"),
           {pcor::static_system_reference(pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"))}};
@@ -65,7 +65,7 @@ TEST(Compare, OfTheTrueLawLeavesTheNoise) {
   // The floor is robust, the rms is not, and turbulence has bursts: 10 % or so between them.
   EXPECT_NEAR(model.all.rms_over_noise(), 1.1, 0.15);
   EXPECT_LT(std::abs(model.all.bias), 4.0 * model.all.bias_error);
-  EXPECT_GT(model.samples_per_independent, 2.0) << "the air ahead is not the pitot's for seconds";
+  EXPECT_GT(model.autocorrelation_time, 2.0) << "the air ahead is not the pitot's for seconds";
 }
 
 TEST(Compare, ShowsAShiftAsABias) {
@@ -85,12 +85,12 @@ TEST(Compare, ShowsAShiftAsABias) {
 }
 
 TEST(Compare, StatesHowMuchTheCalibrationOfTheLaserMayShiftTheBias) {
-  Contender given = laser_contender();
+  ComparedModel given = laser_contender();
   given.model.uncertainty.sensors = {{"lams-elevation.dtheta1", 0.0},
                                      {"lams-azimuth.dtheta2", 0.0},
                                      {"temp-offset.offset", 0.0},
                                      {"recovery-factor.da", 0.0}};
-  Contender scaled = given;
+  ComparedModel scaled = given;
   scaled.name = "laser scale 0.2 % off";
   scaled.model.model.effects.push_back(pcor::neutral_effect("lams-scale"));
   scaled.model.model.effects.back().parameters = {0.002};  // the usual doubt
@@ -132,7 +132,7 @@ TEST(Compare, FindsBothSpeedRunsWhateverTheSeed) {
 
 TEST(Compare, GivesEveryModelItsOwnReference) {
   // Models of two systems side by side: each has the R2 that it has alone.
-  Contender other = laser_contender();
+  ComparedModel other = laser_contender();
   other.model = pcor::read_model(data / "models" / "c130-psfrd-eq18.toml");
   for (const auto& [role, variable] : laser_contender().model.variables)
     other.model.variables.emplace(role, variable);
@@ -144,9 +144,9 @@ TEST(Compare, GivesEveryModelItsOwnReference) {
 
 TEST(Compare, PairsReferencesByName) {
   const auto reference = [](const char* text) { return pcor::read_reference(text, laser_contender().model); };
-  Contender first = laser_contender();
+  ComparedModel first = laser_contender();
   first.references = {pcor::lams_reference(), reference("total:PSFRD+QCFR"), reference("pressure:PS_A")};
-  Contender second = laser_contender(1e-3);
+  ComparedModel second = laser_contender(1e-3);
   second.references = {reference("pressure:PS_A"), pcor::lams_reference(), reference("pressure:TRUE_PS")};
   const Comparison result = pcor::compare({flight_file()}, {first, second});
   const auto told = [](const Comparison& comparison) {
@@ -206,7 +206,7 @@ TEST(Compare, KeepsTheRecordsOfSomeFlightsAndTheNumbersOfAll) {
     scenario.start += 86400.0 * seed;
     pcor::simulate_flight(scenario, flights.back());
   }
-  const std::vector<Contender> contenders{laser_contender(), pair_contender()};
+  const std::vector<ComparedModel> contenders{laser_contender(), pair_contender()};
   const Comparison whole = pcor::compare(flights, contenders);
   ASSERT_EQ(whole.flights.size(), flights.size());
   // Half of those that are kept are the worst.
@@ -216,7 +216,7 @@ TEST(Compare, KeepsTheRecordsOfSomeFlightsAndTheNumbersOfAll) {
     if (of_flights[f].statistics.rms > of_flights[worst].statistics.rms) worst = f;
   }
   CompareOptions options;
-  options.most_series = 2;
+  options.max_series = 2;
   const auto expect_the_same = [&](const Comparison& some) {
     ASSERT_EQ(some.flights.size(), 2U);
     ASSERT_EQ(some.further.size(), 1U);
@@ -242,17 +242,17 @@ TEST(Compare, KeepsTheRecordsOfSomeFlightsAndTheNumbersOfAll) {
   };
   expect_the_same(pcor::compare(flights, contenders, options));
   testing::internal::CaptureStderr();  // in further threads HDF5 tells what netCDF asks it for in vain
-  pcor::test::run_as_team(
+  pcor::test::run_with_communicator(
       3,
-      [&](pcor::Team& team) {
-        expect_the_same(pcor::compare({flights, {{}, &team}}, contenders, options));
+      [&](pcor::Communicator& comm) {
+        expect_the_same(pcor::compare({flights, {{}, &comm}}, contenders, options));
       },
       true);
   testing::internal::GetCapturedStderr();
 }
 
 TEST(Compare, RefusesWhatCannotBeCompared) {
-  const auto message_of = [](const std::vector<fs::path>& flights, const Contender& contender,
+  const auto message_of = [](const std::vector<fs::path>& flights, const ComparedModel& contender,
                              const CompareOptions& options = {}) -> std::string {
     try {
       pcor::compare(flights, {contender}, options);
@@ -262,10 +262,10 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
     return "";
   };
   CompareOptions fast;
-  fast.mask.least_airspeed = 500.0;
+  fast.mask.min_airspeed = 500.0;
   EXPECT_THAT(message_of({flight_file()}, laser_contender(), fast),
               testing::AllOf(HasSubstr("slower than the least airspeed"), HasSubstr("on the ground")));
-  Contender absent = laser_contender();
+  ComparedModel absent = laser_contender();
   absent.references = {pcor::pressure_reference("PS_B")};
   EXPECT_THAT(message_of({flight_file()}, absent), testing::AllOf(HasSubstr("PS_B"), HasSubstr("PS_A")));
   EXPECT_THAT(message_of({}, laser_contender()), HasSubstr("at least one flight"));
@@ -298,7 +298,7 @@ class RealFlight : public testing::Test {
 // out; total pressures with slope 0.99989, offset -0.05 and rms 0.088 hPa.
 TEST_F(RealFlight, SaysWhereEquation18Fails) {
   CompareOptions options;
-  options.mask.most_flaps = 100.0;
+  options.mask.max_flaps = 100.0;
   const Comparison result = pcor::compare({path_}, {pair_contender()}, options);
   const pcor::Statistics& all = result.models.front().all;
   EXPECT_NEAR(all.bias, 0.51, 0.02);
@@ -323,12 +323,12 @@ TEST_F(RealFlight, FailsMostWhereTheLiftSaysThatFlapsAreOut) {
 }
 
 TEST_F(RealFlight, IsMendedByARefitOfBothSystems) {
-  const Contender pair = pair_contender();
+  const ComparedModel pair = pair_contender();
   pcor::RefitOptions options;
   options.fit_reference = true;
   options.training_share = 0.5;
-  options.mask.least_airspeed = 80.0;
-  options.mask.most_flaps = 100.0;
+  options.mask.min_airspeed = 80.0;
+  options.mask.max_flaps = 100.0;
   const pcor::RefitResult fit = pcor::refit({path_}, pair.model, pair.references, options);
   ASSERT_EQ(fit.flights.size(), 2U);
   const pcor::FlightFit& second_half = fit.flights[1];

@@ -9,12 +9,12 @@
 #include <tuple>
 #include <vector>
 
-#include "support/made_samples.hpp"
 #include "support/many_seeds.hpp"
 #include "support/nuisance.hpp"
+#include "support/synthetic_samples.hpp"
 
-// Scores of the bias of a right law, bias / stated error, over all samples, regimes, bands and flights,
-// whatever the noise: their rms is near one.
+// WhitenedSystem of the bias of a right law, bias / stated error, over all samples, regimes, bands and
+// flights, whatever the noise: their rms is near one.
 
 namespace {
 
@@ -44,7 +44,7 @@ std::shared_ptr<const pcor::FlightSamples> flight(unsigned seed, const pcor::tes
 
 /// Rms of the scores of all biases that are stated, over many comparisons of some flights.
 double score_of(const pcor::test::Nuisance& nuisance, std::size_t seeds, std::size_t flights) {
-  pcor::ModelFile law = made::model({"static-constant", "static-alpha", "static-qp"});
+  pcor::ModelDefinition law = made::model({"static-constant", "static-alpha", "static-qp"});
   law.model.effects[0].parameters = {0.004127875};
   law.model.effects[1].parameters = {0.021279816};
   law.model.effects[2].parameters = {0.030849643};

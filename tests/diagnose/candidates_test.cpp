@@ -12,8 +12,8 @@
 
 #include "support/short_flight.hpp"
 
+using pcor::ModelDefinition;
 using pcor::ModelEffect;
-using pcor::ModelFile;
 using pcor::NotTestable;
 using pcor::Quantity;
 using pcor::internal::Candidate;
@@ -31,7 +31,7 @@ ModelEffect formula() {
   effect.formula = "k * sin(roll / 10) + c * attack * mach";
   effect.parameter_names = {"k", "c"};
   effect.parameters = {0.0, 0.0};
-  effect.where = pcor::Where::total_line;
+  effect.location = pcor::EffectLocation::total_line;
   return effect;
 }
 
@@ -47,7 +47,7 @@ bool has_candidate(const CandidateSet& set, const std::string& effect) {
                      [&](const Candidate& candidate) { return candidate.effect.id == effect; });
 }
 
-CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
+CandidateSet candidates_of_file(const ModelDefinition& model, const std::vector<ModelEffect>& formulas = {}) {
   return pcor::internal::find_candidates(model, formulas, {short_flight()}, {pcor::lams_reference()});
 }
 
@@ -63,11 +63,11 @@ TEST(Candidates, AreTheCatalogueThatTheModelLacks) {
   for (const Candidate& candidate : set.candidates) effects += candidate.is_variant ? 0 : 1;
   EXPECT_EQ(effects + set.not_testable.size() + 3, pcor::catalogue_size);
   for (const Candidate& candidate : set.candidates) {
-    const pcor::EffectFacts& facts = pcor::effect_facts[pcor::effect_named(candidate.effect.id)];
+    const pcor::EffectInfo& info = pcor::effect_info[pcor::effect_named(candidate.effect.id)];
     EXPECT_FALSE(candidate.tested.empty());
     for (const pcor::internal::CandidateParameter& parameter : candidate.tested) {
-      EXPECT_FALSE(facts.parameters[parameter.place].shape);
-      EXPECT_EQ(candidate.effect.parameters[parameter.place], facts.parameters[parameter.place].neutral);
+      EXPECT_FALSE(info.parameters[parameter.place].shape);
+      EXPECT_EQ(candidate.effect.parameters[parameter.place], info.parameters[parameter.place].neutral);
       EXPECT_LE(parameter.bounds.lower, 0.0) << candidate.effect.id;
       EXPECT_GE(parameter.bounds.upper, 0.0) << candidate.effect.id;
     }
@@ -106,7 +106,7 @@ TEST(Candidates, WithoutTheirInputsAreNotTestable) {
   const NotTestable* torque = reason_for(set, "speedbrake-thrust");
   ASSERT_NE(torque, nullptr);
   EXPECT_THAT(torque->reason, HasSubstr("engine_torque"));
-  ModelFile named = laser_model();
+  ModelDefinition named = laser_model();
   named.variables[Quantity::engine_torque] = "ENGTRQ";
   EXPECT_TRUE(has_candidate(candidates_of_file(named), "speedbrake-thrust"));
 }
@@ -116,7 +116,7 @@ TEST(Candidates, OfHumidityFollowTheGasConstants) {
   ASSERT_NE(reason_for(moist, "humidity-neglected"), nullptr);
   EXPECT_THAT(reason_for(moist, "humidity-neglected")->reason, HasSubstr("moist"));
   EXPECT_TRUE(has_candidate(moist, "humidity-error"));
-  ModelFile model = laser_model();
+  ModelDefinition model = laser_model();
   model.model.moist = false;
   const CandidateSet dry = candidates_of_file(model);
   ASSERT_NE(reason_for(dry, "humidity-error"), nullptr);
@@ -165,7 +165,7 @@ TEST(Candidates, OfFormulasNeedTheirVariables) {
   ASSERT_NE(reason_for(set, "try-2"), nullptr);
   EXPECT_THAT(reason_for(set, "try-2")->reason, HasSubstr("has no variable NO_SUCH_VARIABLE"));
   // One that the model has is part of the model.
-  ModelFile with = laser_model();
+  ModelDefinition with = laser_model();
   with.model.effects.push_back(good);
   EXPECT_FALSE(has_candidate(candidates_of_file(with, {good}), "try-1"));
 }

@@ -1,10 +1,10 @@
 // A diagnosis by a team is that of one process alone, bit by bit.
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/diagnose/what_if.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <pcor/words/error.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -16,15 +16,15 @@
 #include <vector>
 
 #include "diagnose/packed_diagnosis.hpp"
+#include "parallel/packed.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
-#include "team/packed.hpp"
 
 namespace cereal {
 
 template <class Archive>
 void serialize(Archive& archive, pcor::ModelEffect& effect) {
-  archive(effect.id, effect.parameters, effect.parameter_names, effect.formula, effect.where, effect.unit,
+  archive(effect.id, effect.parameters, effect.parameter_names, effect.formula, effect.location, effect.unit,
           effect.source, effect.scaling.static_pressure, effect.scaling.dynamic_pressure);
 }
 
@@ -75,14 +75,14 @@ void serialize(Archive& archive, pcor::NotTestable& effect) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, pcor::TracedVariable& variable) {
+void serialize(Archive& archive, pcor::EmpiricalPredictor& variable) {
   archive(variable.name, variable.unit, variable.description, variable.r2, variable.p_value,
           variable.linear_r2, variable.slope, variable.slope_error, variable.centre, variable.formula,
-          variable.sampling, variable.places, variable.where);
+          variable.sampling, variable.places, variable.location);
 }
 
 template <class Archive>
-void serialize(Archive& archive, pcor::FlightStep& step) {
+void serialize(Archive& archive, pcor::FlightOffset& step) {
   archive(step.flight, step.size, step.standard_error, step.p_value);
 }
 
@@ -128,7 +128,7 @@ namespace pcor {
 namespace {
 
 using internal::packed;
-using test::run_as_team;
+using test::run_with_communicator;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -154,7 +154,7 @@ Paths flights(const std::string& effect, unsigned seed) {
   return paths;
 }
 
-ModelFile model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+ModelDefinition model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 void expect_same(const Diagnosis& one, const Diagnosis& other) {
   EXPECT_EQ(one.verdict, other.verdict);
@@ -179,9 +179,9 @@ void expect_same(const Diagnosis& one, const Diagnosis& other) {
 }
 
 /// Runs a team, and tells what it exchanged.
-void run(std::size_t size, const std::function<void(Team&)>& work) {
+void run(std::size_t size, const std::function<void(Communicator&)>& work) {
   testing::internal::CaptureStderr();  // in further threads HDF5 tells what netCDF asks it for in vain
-  const auto sent = run_as_team(size, work, true);
+  const auto sent = run_with_communicator(size, work, true);
   testing::internal::GetCapturedStderr();
   std::size_t bytes = 0;
   for (const auto& member : sent) bytes = std::accumulate(member.begin(), member.end(), bytes);
@@ -193,8 +193,8 @@ Diagnosis expect_that_of_one(const Paths& paths, const References& references, D
   const Diagnosis alone = diagnose(paths, model(), references, options);
   for (const std::size_t size : {1U, 2U, 3U, 6U}) {
     SCOPED_TRACE(size);
-    run(size, [&](Team& team) {
-      expect_same(diagnose({paths, {{}, &team}}, model(), references, options), alone);
+    run(size, [&](Communicator& comm) {
+      expect_same(diagnose({paths, {{}, &comm}}, model(), references, options), alone);
     });
   }
   return alone;
@@ -236,17 +236,17 @@ TEST(WhatIfOfATeam, IsThatOfOne) {
   WhatIfOptions options;
   options.diagnose.training_share = 0.8;
   options.own = diagnosis.own;
-  const auto of_team = [&](Team& team, WhatIfOptions with) {
-    const FlightSet all(paths, {{}, &team});
+  const auto of_team = [&](Communicator& comm, WhatIfOptions with) {
+    const FlightSet all(paths, {{}, &comm});
     with.holdout = all.part(paths.size() - 1, 1);
     return what_if(all.part(0, paths.size() - 1), model(), {lams_reference()}, candidates, with);
   };
-  const WhatIf alone = of_team(pcor::alone(), options);
+  const WhatIf alone = of_team(pcor::serial_communicator(), options);
   EXPECT_THAT(alone.panel.separations, Not(IsEmpty()));
   EXPECT_GT(alone.panel.held_out.samples, 0.0);
   for (const std::size_t size : {2U, 6U}) {
-    run(size, [&](Team& team) {
-      const WhatIf found = of_team(team, options);
+    run(size, [&](Communicator& comm) {
+      const WhatIf found = of_team(comm, options);
       EXPECT_EQ(packed(found.panel.coefficients), packed(alone.panel.coefficients));
       EXPECT_EQ(packed(found.panel.weights), packed(alone.panel.weights));
       EXPECT_EQ(packed(found.panel.alike), packed(alone.panel.alike));
@@ -257,8 +257,8 @@ TEST(WhatIfOfATeam, IsThatOfOne) {
     });
   }
   options.diagnose.series_of = {1};
-  run(2, [&](Team& team) {
-    const WhatIf shown = of_team(team, options);
+  run(2, [&](Communicator& comm) {
+    const WhatIf shown = of_team(comm, options);
     ASSERT_EQ(shown.flights.size(), 2U);
     EXPECT_EQ(shown.flights[0].samples->name, alone.flights[1].samples->name);
     EXPECT_EQ(packed(shown.flights[0]), packed(alone.flights[1]));
@@ -313,10 +313,10 @@ TEST(DiagnosisOfATeam, FailsOnAllMembersAsOneAlone) {
   }
   EXPECT_THAT(alone, HasSubstr("broken.nc"));
   for (const std::size_t size : {2U, 3U, 6U}) {
-    run(size, [&](Team& team) {
+    run(size, [&](Communicator& comm) {
       try {
-        diagnose({paths, {{}, &team}}, model(), {lams_reference()});
-        ADD_FAILURE() << "of " << team.rank();
+        diagnose({paths, {{}, &comm}}, model(), {lams_reference()});
+        ADD_FAILURE() << "of " << comm.rank();
       } catch (const Error& error) {
         EXPECT_EQ(error.what(), alone);
       }

@@ -1,10 +1,10 @@
 // Diagnoses of simulated flights whose missing effect is known.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <pcor/words/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +21,8 @@ using pcor::Alias;
 using pcor::DiagnoseOptions;
 using pcor::Diagnosis;
 using pcor::Finding;
+using pcor::ModelDefinition;
 using pcor::ModelEffect;
-using pcor::ModelFile;
 using pcor::Verdict;
 using testing::AnyOf;
 using testing::HasSubstr;
@@ -93,7 +93,7 @@ std::filesystem::path climbs(unsigned seed, double offset, double bias = 0.0) {
   return path;
 }
 
-ModelFile model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+ModelDefinition model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 Diagnosis diagnose(const Paths& flights, const DiagnoseOptions& options = {}) {
   return pcor::diagnose(flights, model(), {pcor::lams_reference()}, options);
@@ -186,7 +186,7 @@ TEST(Diagnose, FindsWhatSideslipDoesToThePorts) {
 
 // The coefficients of a model are where the last fit left them, which may be far from these flights.
 TEST(Diagnose, FindsTheSameWhereTheModelIsNotFitted) {
-  ModelFile off = model();
+  ModelDefinition off = model();
   off.model.effects[0].parameters[0] = 0.001;
   off.model.effects[2].parameters[0] = 0.07;
   const Paths flights{flight("c130-eq18", 321, static_lag)};
@@ -221,7 +221,7 @@ TEST(Diagnose, TracesWhatNoEffectExplainsToItsVariable) {
   EXPECT_THAT(diagnosis.verdict, AnyOf(Verdict::unexplained, Verdict::partial));
   ASSERT_TRUE(diagnosis.unexplained.significant);
   ASSERT_FALSE(diagnosis.unexplained.variables.empty());
-  const pcor::TracedVariable& traced = diagnosis.unexplained.variables[0];
+  const pcor::EmpiricalPredictor& traced = diagnosis.unexplained.variables[0];
   EXPECT_EQ(traced.name, "ENGTRQ");
   EXPECT_EQ(traced.unit, "percent");
   EXPECT_THAT(traced.formula, HasSubstr("ENGTRQ"));
@@ -235,12 +235,12 @@ TEST(Diagnose, TracesWhatNoEffectExplainsToItsVariable) {
 TEST(Diagnose, DoesNotLookWhereItIsToldNotTo) {
   DiagnoseOptions options;
   options.not_variables = {"ENGTRQ"};
-  for (const pcor::TracedVariable& variable :
+  for (const pcor::EmpiricalPredictor& variable :
        diagnose({flight("c130-eq18", 341, engine_torque)}, options).unexplained.variables)
     EXPECT_NE(variable.name, "ENGTRQ");
   options.whole_file = false;
   const Diagnosis diagnosis = diagnose({flight("c130-eq18", 341, engine_torque)}, options);
-  for (const pcor::TracedVariable& variable : diagnosis.unexplained.variables)
+  for (const pcor::EmpiricalPredictor& variable : diagnosis.unexplained.variables)
     EXPECT_THAT(variable.formula, IsEmpty()) << variable.name;
 }
 
@@ -354,7 +354,7 @@ TEST(Diagnose, AlongAFlightPartsAddUp) {
 }
 
 TEST(Diagnose, AModelWithoutFreeCoefficientsIsDiagnosedToo) {
-  ModelFile fixed = model();
+  ModelDefinition fixed = model();
   fixed.fits.assign(3, pcor::EffectFit(1));
   for (pcor::EffectFit& fit : fixed.fits) fit[0].fixed = true;
   const Diagnosis diagnosis =
@@ -415,11 +415,11 @@ TEST(Diagnose, TellsByTotalPressuresWhereWhatItTracesActs) {
                        {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
     ASSERT_FALSE(diagnosis.unexplained.variables.empty()) << total;
     // The laser alone shows what is in the total line as a drift that goes with more than one variable.
-    const pcor::TracedVariable& traced = diagnosis.unexplained.variables.front();
+    const pcor::EmpiricalPredictor& traced = diagnosis.unexplained.variables.front();
     if (!total) {
       EXPECT_EQ(traced.name, "ENGTRQ");
     }
-    EXPECT_EQ(traced.where, total ? pcor::Where::pitot : pcor::Where::static_defect);
+    EXPECT_EQ(traced.location, total ? pcor::EffectLocation::pitot : pcor::EffectLocation::static_defect);
     EXPECT_EQ(traced.places.front(), total ? "pitot" : "port");
     EXPECT_EQ(std::count(traced.places.begin(), traced.places.end(), "laser"), total ? 0 : 1);
     EXPECT_THAT(places_text(traced), HasSubstr(total ? "differ with it, too" : "do not differ with it"));
@@ -532,7 +532,7 @@ void expect_advice(const Diagnosis& diagnosis) {
     for (const Alias& alias : finding.aliases) EXPECT_THAT(advice.sentence, HasSubstr(alias.effect));
     if (advice.manoeuvre.empty()) {
       const std::size_t place = pcor::effect_named(finding.effect.id);
-      EXPECT_THAT(advice.sentence, HasSubstr(std::string(pcor::effect_facts[place].manoeuvre)));
+      EXPECT_THAT(advice.sentence, HasSubstr(std::string(pcor::effect_info[place].manoeuvre)));
       continue;
     }
     EXPECT_THAT(advice.sentence, HasSubstr(advice.manoeuvre));
@@ -540,7 +540,7 @@ void expect_advice(const Diagnosis& diagnosis) {
         diagnosis.flights.begin(), diagnosis.flights.end(), [&advice](const pcor::FlightDiagnosis& along) {
           const std::vector<pcor::Interval>& intervals = along.samples->intervals;
           return std::any_of(intervals.begin(), intervals.end(), [&advice](const pcor::Interval& interval) {
-            return pcor::facts_of(interval.regime).name == advice.manoeuvre;
+            return pcor::info_of(interval.regime).name == advice.manoeuvre;
           });
         }));
   }

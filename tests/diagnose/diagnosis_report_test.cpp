@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor {
 namespace {
@@ -233,8 +233,8 @@ Improvement improvement() {
   return made;
 }
 
-ModelFile model() {
-  ModelFile file;
+ModelDefinition model() {
+  ModelDefinition file;
   file.model.name = "C-130 PSFD 2011";
   return file;
 }
@@ -254,7 +254,7 @@ std::string all_of(const std::vector<std::string>& texts) {
 }
 
 /// The words of the page, without its data and its script: nothing in them may be the name of no number.
-std::string words_of(const Report& report) {
+std::string split_words(const Report& report) {
   const std::string html = report_html(report);
   const std::string body = html.substr(html.find("<body>"), html.find("id=\"data\"") - html.find("<body>"));
   EXPECT_THAT(body, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));
@@ -276,8 +276,8 @@ TEST(DiagnosisReport, SaysWhatIsMissingHowLargeAndHowSure) {
                      HasSubstr("cannot tell it from lams-azimuth (error of the azimuth of the laser beam)"),
                      HasSubstr("Fly 2 more yaw manoeuvres of 1.5 min each"))));
   EXPECT_THAT(report.summary, Contains(HasSubstr("clock-skew |dt| < 0.13 s (0.021 hPa rms)")));
-  EXPECT_THAT(report.facts, Contains(testing::Pair("Not used", HasSubstr("200 "))));
-  words_of(report);
+  EXPECT_THAT(report.info, Contains(testing::Pair("Not used", HasSubstr("200 "))));
+  split_words(report);
 }
 
 TEST(DiagnosisReport, HasAPageInWordsForEachFinding) {
@@ -325,7 +325,7 @@ TEST(DiagnosisReport, DrawsEachFindingAgainstItsOwnInputsFirst) {
   EXPECT_THAT(sideslip->y, ElementsAre("before", "after"));
   EXPECT_EQ(sideslip->x_choices.front(), "sideslip");
   EXPECT_THAT(sideslip->x_choices, Not(Contains("attack")));  // it has no value
-  EXPECT_GT(sideslip->samples_per_independent, 2.0);
+  EXPECT_GT(sideslip->autocorrelation_time, 2.0);
   const auto* lag =
       item<BinnedPanel>(report, "Residual before and after, against what static-lag depends on");
   ASSERT_NE(lag, nullptr);
@@ -371,7 +371,7 @@ TEST(DiagnosisReport, TellsOfStructureWithoutAnExplanation) {
   const auto* binned = item<BinnedPanel>(report, "What is left, against ENGTRQ");
   ASSERT_NE(binned, nullptr);
   EXPECT_EQ(binned->x_choices.front(), "variable ENGTRQ");
-  words_of(report);
+  split_words(report);
 }
 
 TEST(DiagnosisReport, SilenceComesWithItsLimits) {
@@ -383,19 +383,19 @@ TEST(DiagnosisReport, SilenceComesWithItsLimits) {
   const auto* limits = item<ReportTable>(report, "How large what was not found may be");
   ASSERT_NE(limits, nullptr);
   EXPECT_EQ(limits->rows[1][3], "");
-  words_of(report);
+  split_words(report);
 }
 
 TEST(DiagnosisReport, NeedsNothingButAVerdict) {
   Diagnosis diagnosis;
-  words_of(diagnosis_report(diagnosis, {}));
+  split_words(diagnosis_report(diagnosis, {}));
   diagnosis.findings.resize(1);
   diagnosis.verdict = Verdict::ambiguous;
   diagnosis.unexplained.significant = true;
   diagnosis.unexplained.variables.resize(1);
   diagnosis.limits.resize(1);
   diagnosis.flights.resize(1);
-  words_of(diagnosis_report(diagnosis, {}));
+  split_words(diagnosis_report(diagnosis, {}));
 }
 
 TEST(DiagnosisReport, LeavesOutWhatIsNoNumber) {
@@ -411,7 +411,7 @@ TEST(DiagnosisReport, LeavesOutWhatIsNoNumber) {
       values->assign(values->size(), nan);
     one.added.clear();
   }
-  const std::string words = words_of(diagnosis_report(diagnosis, model()));
+  const std::string words = split_words(diagnosis_report(diagnosis, model()));
   EXPECT_THAT(words, HasSubstr("b1 unknown and b2 = 1 hPa"));
 }
 
@@ -423,7 +423,7 @@ TEST(DiagnosisReport, EscapesNames) {
   diagnosis.findings.front().worst_flight = diagnosis.findings.front().evidence.front().flight =
       samples->name;
   diagnosis.findings.front().advice.sentence = "<b>fly</b>";
-  const std::string words = words_of(diagnosis_report(diagnosis, model()));
+  const std::string words = split_words(diagnosis_report(diagnosis, model()));
   EXPECT_THAT(words, Not(AnyOf(HasSubstr("<i>"), HasSubstr("<b>"))));
   EXPECT_THAT(words, HasSubstr("&lt;i&gt;rf&amp;01&lt;/i&gt;"));
 }
@@ -447,7 +447,7 @@ TEST(ImprovementReport, ShowsTheLadder) {
   ASSERT_NE(table, nullptr);
   EXPECT_THAT(table->rows[1], ElementsAre("+ static-beta-odd", "4", "0.196", "0.161", "0.081", "lams-azimuth",
                                           "Sideslip counts, be it at the ports or at the laser."));
-  words_of(report);
+  split_words(report);
 }
 
 TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
@@ -480,7 +480,7 @@ TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
   ASSERT_NE(time, nullptr);
   EXPECT_EQ(time->caption, "Held out: later.nc.");
   EXPECT_THAT(time->columns, ElementsAre("ladder-given", "ladder-refitted", "ladder-best"));
-  words_of(report);
+  split_words(report);
 }
 
 TEST(ImprovementReport, TellsAPartThatWasHeldOutFromAFlight) {
@@ -524,9 +524,9 @@ TEST(ImprovementReport, MayHaveNothingToAdd) {
   made.steps.resize(1);
   const Report report = improvement_report(made, model());
   EXPECT_EQ(report.title, "No effect makes the model better");
-  words_of(report);
+  split_words(report);
   made.steps[0] = {};
-  words_of(improvement_report(made, {}));
+  split_words(improvement_report(made, {}));
   made.steps.clear();
   EXPECT_THROW(improvement_report(made, {}), Error);
 }

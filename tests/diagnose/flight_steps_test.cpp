@@ -6,8 +6,8 @@
 #include <random>
 
 using pcor::internal::Binning;
-using pcor::internal::find_mean_steps;
-using pcor::internal::MeanStep;
+using pcor::internal::find_mean_offsets;
+using pcor::internal::MeanOffset;
 using pcor::internal::NoiseModel;
 
 namespace {
@@ -38,13 +38,13 @@ struct Flights {
     noise.coefficients = {0.0};
   }
 
-  std::vector<MeanStep> steps() const {
-    return find_mean_steps(pcor::internal::FlightShare(bins.size()), bins, columns, residuals, noise);
+  std::vector<MeanOffset> steps() const {
+    return find_mean_offsets(pcor::internal::FlightPartition(bins.size()), bins, columns, residuals, noise);
   }
 };
 
 TEST(MeanSteps, KnowsTheFlightThatDiffersAndByHowMuch) {
-  const std::vector<MeanStep> steps = Flights({0.0, 0.0, 0.15, 0.0}, 1).steps();
+  const std::vector<MeanOffset> steps = Flights({0.0, 0.0, 0.15, 0.0}, 1).steps();
   ASSERT_EQ(steps.size(), 4U);
   // The error of a mean of 300 values of 0.2 against that of 900.
   EXPECT_NEAR(steps[2].error, 0.2 * std::sqrt(1.0 / 300.0 + 1.0 / 900.0), 0.002);
@@ -55,7 +55,7 @@ TEST(MeanSteps, KnowsTheFlightThatDiffersAndByHowMuch) {
 }
 
 TEST(MeanSteps, CompareTwoFlights) {
-  const std::vector<MeanStep> steps = Flights({0.1, -0.1}, 2).steps();
+  const std::vector<MeanOffset> steps = Flights({0.1, -0.1}, 2).steps();
   EXPECT_NEAR(steps[1].size, -0.2, 4.0 * steps[1].error);
   EXPECT_LT(steps[1].chance, 1e-6);
   EXPECT_EQ(steps[0].chance, 1.0) << "that the first lies above the second is the same once more";
@@ -69,7 +69,7 @@ TEST(MeanSteps, AreNoneWhereTheModelHasTheStep) {
       flights.columns[f].conservativeResize(Eigen::NoChange, 2);
       flights.columns[f].col(1).setConstant(f == 0 ? 0.0 : 1.0);
     }
-    for (const MeanStep& each : flights.steps()) EXPECT_GT(each.chance, 0.05);
+    for (const MeanOffset& each : flights.steps()) EXPECT_GT(each.chance, 0.05);
   }
 }
 
@@ -91,7 +91,7 @@ TEST(MeanSteps, AreThoseOfLeastSquaresWithAConstantOfEachFlight) {
     right.segment(f * rows, rows) = flights.residuals[flight];
   }
   const Eigen::VectorXd means = all.colPivHouseholderQr().solve(right).tail(count);
-  const std::vector<MeanStep> steps = flights.steps();
+  const std::vector<MeanOffset> steps = flights.steps();
   for (Eigen::Index f = 0; f < count; ++f) {
     const double others = (means.sum() - means[f]) / static_cast<double>(count - 1);
     EXPECT_NEAR(steps[static_cast<std::size_t>(f)].size, means[f] - others, 1e-10);
@@ -122,9 +122,9 @@ TEST(MeanSteps, OfFlightsThatScatterAreChance) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::vector<double> means(6);
     for (double& mean : means) mean = 0.1 * normal(engine);
-    const std::vector<MeanStep> steps = Flights(means, 100 + seed).steps();
+    const std::vector<MeanOffset> steps = Flights(means, 100 + seed).steps();
     claims +=
-        std::any_of(steps.begin(), steps.end(), [](const MeanStep& each) { return each.chance < 0.01; });
+        std::any_of(steps.begin(), steps.end(), [](const MeanOffset& each) { return each.chance < 0.01; });
   }
   EXPECT_LE(claims, 7);
 }

@@ -48,7 +48,7 @@ class Flights {
   }
 
   std::vector<FlownRegime> regimes() {
-    scores_.share = FlightShare(columns_.size());
+    scores_.share = FlightPartition(columns_.size());
     return flown_regimes(scores_, [this](std::size_t f) { return FlightInBins{columns_[f], bins_[f]}; });
   }
 
@@ -68,7 +68,7 @@ class Flights {
   std::normal_distribution<double> normal_;
   std::vector<FlightColumns> columns_;
   std::vector<Binning> bins_;
-  Scores scores_;
+  WhitenedSystem scores_;
 };
 
 const Interval ground = interval(Regime::ground, 0.0, 100.0);

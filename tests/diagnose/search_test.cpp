@@ -18,10 +18,10 @@ using pcor::internal::Binning;
 using pcor::internal::ColumnGroup;
 using pcor::internal::GroupScore;
 using pcor::internal::NoiseModel;
-using pcor::internal::Scores;
 using pcor::internal::Search;
 using pcor::internal::SearchOptions;
 using pcor::internal::SearchResult;
+using pcor::internal::WhitenedSystem;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
@@ -38,7 +38,7 @@ struct Problem {
   Eigen::VectorXd residual;
   NoiseModel noise;
   std::vector<ColumnGroup> groups;
-  Scores scores;
+  WhitenedSystem scores;
 
   /// @param common how much of one series every column has; @param offset how much of the base is in the
   /// residual, hPa
@@ -85,7 +85,8 @@ struct Problem {
 
   Search search() {
     if (groups.empty()) one_by_one();
-    scores = pcor::internal::find_scores(pcor::internal::FlightShare(1), bins, {columns}, {residual}, noise);
+    scores =
+        pcor::internal::find_scores(pcor::internal::FlightPartition(1), bins, {columns}, {residual}, noise);
     return Search(scores, base, groups);
   }
 };
@@ -409,7 +410,7 @@ TEST(Search, AGivenThresholdAndAGreatestNumberHold) {
   for (Eigen::Index c = 0; c < 6; ++c) problem.residual += 0.5 * problem.candidate(c);
   SearchOptions options;
   options.threshold = 9.0;
-  options.most_effects = 3;
+  options.max_effects = 3;
   EXPECT_LE(run(problem, options).chosen.size(), 3U);
   options.threshold = 1e6;
   EXPECT_THAT(run(problem, options).chosen, IsEmpty());
@@ -465,7 +466,7 @@ TEST(OneDegreeEquivalent, IsAsRare) {
   for (const double freedom : {1.0, 2.0, 3.0, 6.0}) {
     double before = -1.0;
     for (double chi2 = 0.0; chi2 < 900.0; chi2 += 0.5) {
-      const double equivalent = pcor::internal::one_degree_equivalent(chi2, freedom);
+      const double equivalent = pcor::internal::chi2_one_dof(chi2, freedom);
       EXPECT_GE(equivalent, before);
       EXPECT_LE(equivalent, chi2 + 1e-12);
       before = equivalent;
@@ -477,6 +478,6 @@ TEST(OneDegreeEquivalent, IsAsRare) {
     }
   }
   // Tables: 5 % of two degrees is 5.991, of one 3.841.
-  EXPECT_NEAR(pcor::internal::one_degree_equivalent(5.991, 2.0), 3.841, 1e-3);
+  EXPECT_NEAR(pcor::internal::chi2_one_dof(5.991, 2.0), 3.841, 1e-3);
   EXPECT_NEAR(pcor::internal::chi_squared_tail(12.592, 6.0), 0.05, 1e-5);
 }

@@ -36,7 +36,7 @@ FlownRegime regime_of(Regime regime, const Eigen::MatrixXd& rows, double duratio
   return {regime, duration, rows.transpose() * rows, "second.nc"};
 }
 
-Rivalry rivalry_of(const Eigen::MatrixXd& rows, double size) {
+SeparationProblem rivalry_of(const Eigen::MatrixXd& rows, double size) {
   return {rows.transpose() * rows, 1.0, {effect}, Eigen::VectorXd::Constant(1, size), {{base, rival}}};
 }
 
@@ -74,7 +74,7 @@ TEST(Separation, IsAsProbableAsItIsFrequent) {
 }
 
 TEST(Separation, GrowsWithRepeatsAsWithLongerIntervals) {
-  const Rivalry rivalry = rivalry_of(rows_of(100, 0.99), 0.5);
+  const SeparationProblem rivalry = rivalry_of(rows_of(100, 0.99), 0.5);
   double before = 0.0;
   for (const int length : {100, 200, 400, 800}) {
     const std::vector<FlownRegime> once{regime_of(Regime::circle, rows_of(length, 0.97, 4))};
@@ -97,7 +97,7 @@ TEST(Separation, GrowsWithRepeatsAsWithLongerIntervals) {
 }
 
 TEST(Separation, IsByTheRegimeThatGainsMostInTheSameTime) {
-  const Rivalry rivalry = rivalry_of(rows_of(100, 0.99), 1.0);
+  const SeparationProblem rivalry = rivalry_of(rows_of(100, 0.99), 1.0);
   const Eigen::MatrixXd rows = rows_of(200, 0.7, 5);
   std::vector<FlownRegime> regimes{regime_of(Regime::climb, rows_of(800, 0.9, 6), 1200.0),
                                    regime_of(Regime::circle, rows, 160.0)};
@@ -113,7 +113,7 @@ TEST(Separation, IsByTheRegimeThatGainsMostInTheSameTime) {
 TEST(Separation, IsOfTheRivalThatImitatesMost) {
   const Eigen::MatrixXd rows = rows_of(100, 0.99);
   const std::vector<FlownRegime> regimes{regime_of(Regime::yaw_manoeuvre, rows_of(400, 0.9, 7))};
-  Rivalry rivalry = rivalry_of(rows, 1.0);
+  SeparationProblem rivalry = rivalry_of(rows, 1.0);
   const Plan of_one = best_plan(regimes, rivalry);
   rivalry.rests.push_back({base});  // which imitates nothing
   const Plan of_two = best_plan(regimes, rivalry);
@@ -127,8 +127,8 @@ TEST(Separation, IsOfTheRivalThatImitatesMost) {
 
 TEST(Separation, IsWhatTheCatalogueSaysWhereNoRegimeHelps) {
   const ModelEffect lag = neutral_effect("static-lag");
-  const std::string manoeuvre(effect_facts[effect_named("static-lag")].manoeuvre);
-  const Rivalry rivalry = rivalry_of(rows_of(100, 1.0), 5.0);
+  const std::string manoeuvre(effect_info[effect_named("static-lag")].manoeuvre);
+  const SeparationProblem rivalry = rivalry_of(rows_of(100, 1.0), 5.0);
   const std::vector<FlownRegime> alike{regime_of(Regime::pitch_manoeuvre, rows_of(100, 1.0, 8))};
   for (const std::vector<FlownRegime>& regimes : {alike, std::vector<FlownRegime>{}}) {
     const Plan plan = best_plan(regimes, rivalry);
@@ -150,7 +150,7 @@ TEST(Separation, NeedsARegimeThatHalvesTheDoubt) {
   const Eigen::MatrixXd rows = rows_of(300, 0.9);
   const std::vector<FlownRegime> nothing{regime_of(Regime::turn, 1e-3 * rows_of(10, 0.5, 9))};
   for (const double size : {0.4, 0.5}) {
-    const Rivalry rivalry = rivalry_of(rows, size);
+    const SeparationProblem rivalry = rivalry_of(rows, size);
     EXPECT_EQ(best_plan(nothing, rivalry).regime, nullptr) << size;
     EXPECT_FALSE(is_separated(rivalry)) << size;
   }

@@ -35,7 +35,7 @@ std::vector<double> draws(std::size_t count, unsigned seed) {
 }
 
 pcor::internal::VariableValues known(const std::vector<double>& values) {
-  return {pcor::internal::FlightShare(1), [&values](std::size_t) { return values; }};
+  return {pcor::internal::FlightPartition(1), [&values](std::size_t) { return values; }};
 }
 
 Eigen::MatrixXd functions_of(const Smooth& smooth, const std::vector<double>& values) {
@@ -89,7 +89,7 @@ struct Flight {
   }
 
   StructureTest test(const std::vector<Eigen::MatrixXd>& aside = {}) const {
-    StructureTest result(pcor::internal::FlightShare(1), bins, columns, residuals, noise, 1, aside);
+    StructureTest result(pcor::internal::FlightPartition(1), bins, columns, residuals, noise, 1, aside);
     for (std::size_t k = 0; k < variables.size(); ++k)
       result.add("v" + std::to_string(k), {variables[k].data()});
     return result;
@@ -338,7 +338,7 @@ TEST(StructureTest, FindsAnAngle) {
   for (Eigen::Index i = 0; i < 900; ++i)
     flight.residuals[0][i] +=
         0.3 * std::cos(flight.variables[2][static_cast<std::size_t>(i)] * std::acos(-1.0) / 180.0);
-  StructureTest test(pcor::internal::FlightShare(1), flight.bins, flight.columns, flight.residuals,
+  StructureTest test(pcor::internal::FlightPartition(1), flight.bins, flight.columns, flight.residuals,
                      flight.noise, 1);
   ASSERT_TRUE(test.add("heading", {flight.variables[2].data()}, 360.0));
   EXPECT_GT(test.structures()[0].gain, 50.0);
@@ -358,7 +358,7 @@ TEST(StructureTest, WhatTheModelHasIsNotStructure) {
 
 TEST(StructureTest, LeavesOutWhatDoesNotVaryOrIsMissing) {
   Flight flight(300, 3, 6);
-  StructureTest test(pcor::internal::FlightShare(1), flight.bins, flight.columns, flight.residuals,
+  StructureTest test(pcor::internal::FlightPartition(1), flight.bins, flight.columns, flight.residuals,
                      flight.noise, 1);
   const std::vector<double> constant(300, 5.0);
   EXPECT_FALSE(test.add("constant", {constant.data()}));
@@ -375,9 +375,9 @@ TEST(SharesNoise, IsWhatWasComputedFromTheSameMeasurement) {
   const std::vector<double> residual = draws(3600, 7);
   std::vector<double> derived = draws(3600, 8);
   for (std::size_t i = 0; i < derived.size(); ++i) derived[i] = 3.0 * derived[i] - residual[i];
-  EXPECT_TRUE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {residual}, {derived.data()}));
+  EXPECT_TRUE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {derived.data()}));
   const std::vector<double> other = draws(3600, 9);
-  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {residual}, {other.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {other.data()}));
 }
 
 // An effect makes residual and variable go together in its manoeuvres alone.
@@ -390,15 +390,16 @@ TEST(SharesNoise, IsNotWhatGoesWithItInManoeuvresAlone) {
     if (i >= 1000 && i < 1400) variable[i] += 3.0 * std::sin(static_cast<double>(i) / 2.0);
     residual[i] = 0.3 * residual[i] + variable[i];
   }
-  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {residual}, {variable.data()}));
+  EXPECT_FALSE(
+      pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {variable.data()}));
 }
 
 TEST(SharesNoise, OfNothingIsFalse) {
   const std::vector<double> nothing(600, missing);
   const std::vector<double> values = draws(600, 12);
-  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {nothing}, {values.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {nothing}, {values.data()}));
   const std::vector<double> constant(600, 1.0);
-  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {values}, {constant.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {values}, {constant.data()}));
 }
 
 // Of twenty minutes and variables that have nothing to do with it, few are taken for it: two windows of 300
@@ -409,7 +410,7 @@ TEST(SharesNoise, IsRarelyChance) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const std::vector<double> other = draws(1200, 500 + seed);
     shared +=
-        pcor::internal::shares_noise(pcor::internal::FlightShare(1), {residual}, {other.data()}) ? 1 : 0;
+        pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {other.data()}) ? 1 : 0;
   }
   EXPECT_LE(shared, 6);
 }

@@ -16,10 +16,10 @@
 
 // Laws that hold for every effect of the catalogue, the ones to come included.
 
-using pcor::effect_facts;
 using pcor::effect_functions;
+using pcor::effect_info;
 using pcor::effect_named;
-using pcor::EffectFacts;
+using pcor::EffectInfo;
 using pcor::Formula;
 using pcor::FormulaError;
 using pcor::Quantity;
@@ -30,25 +30,25 @@ namespace {
 
 using Parameters = std::vector<double>;
 
-double value(const EffectFacts& facts, const State<double>& state, const Parameters& parameters) {
-  return effect_functions<double, double>[effect_named(facts.id)](state, parameters.data());
+double value(const EffectInfo& info, const State<double>& state, const Parameters& parameters) {
+  return effect_functions<double, double>[effect_named(info.id)](state, parameters.data());
 }
 
 // Random inputs of flight and parameters, within the bounds of the parameters.
 class Draw {
  public:
-  State<double> state(const EffectFacts& facts) {
+  State<double> state(const EffectInfo& info) {
     State<double> state;
-    for (std::size_t i = 0; i < facts.need_count(); ++i) {
-      const InputRange range = input_range(facts.needs[i]);
-      state[facts.needs[i]] = uniform(range.lower, range.upper);
+    for (std::size_t i = 0; i < info.need_count(); ++i) {
+      const InputRange range = input_range(info.needs[i]);
+      state[info.needs[i]] = uniform(range.lower, range.upper);
     }
     return state;
   }
-  Parameters parameters(const EffectFacts& facts) {
+  Parameters parameters(const EffectInfo& info) {
     Parameters result;
-    for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-      const auto& parameter = facts.parameters[i];
+    for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+      const auto& parameter = info.parameters[i];
       result.push_back(uniform(parameter.lower, parameter.upper));
     }
     return result;
@@ -60,18 +60,18 @@ class Draw {
 };
 
 // `parameters`, but those that do not shape the effect are neutral where `keep` is not their number.
-Parameters neutral_but(const EffectFacts& facts, Parameters parameters, std::size_t keep) {
+Parameters neutral_but(const EffectInfo& info, Parameters parameters, std::size_t keep) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (i != keep && !facts.parameters[i].shape) parameters[i] = facts.parameters[i].neutral;
+    if (i != keep && !info.parameters[i].shape) parameters[i] = info.parameters[i].neutral;
   }
   return parameters;
 }
 
 // The parts of the value that each parameter makes, without their signs: what rounding is measured by.
-double size(const EffectFacts& facts, const State<double>& state, const Parameters& parameters) {
+double size(const EffectInfo& info, const State<double>& state, const Parameters& parameters) {
   double sum = 0.0;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (!facts.parameters[i].shape) sum += std::abs(value(facts, state, neutral_but(facts, parameters, i)));
+    if (!info.parameters[i].shape) sum += std::abs(value(info, state, neutral_but(info, parameters, i)));
   }
   return sum;
 }
@@ -103,15 +103,15 @@ bool is_without_trace(std::string_view id) {
   return std::any_of(all.begin(), all.end(), [id](const auto& effect) { return effect.id == id; });
 }
 
-class EveryEffect : public testing::TestWithParam<EffectFacts> {};
+class EveryEffect : public testing::TestWithParam<EffectInfo> {};
 
 }  // namespace
 
 TEST(Catalogue, IdsAreUniqueAndResolve) {
   std::set<std::string> ids;
   for (std::size_t i = 0; i < pcor::catalogue_size; ++i) {
-    EXPECT_TRUE(ids.emplace(effect_facts[i].id).second) << effect_facts[i].id;
-    EXPECT_EQ(effect_named(effect_facts[i].id), i);
+    EXPECT_TRUE(ids.emplace(effect_info[i].id).second) << effect_info[i].id;
+    EXPECT_EQ(effect_named(effect_info[i].id), i);
   }
   EXPECT_EQ(effect_named("static"), pcor::catalogue_size);
   EXPECT_EQ(effect_named(""), pcor::catalogue_size);
@@ -129,10 +129,10 @@ TEST(Catalogue, HoldsTheTermsOfTheMemoUnderTheirNames) {
                                       {"static-beta-odd", "b1"},
                                       {"static-beta-even", "b2"}}) {
     ASSERT_NE(effect_named(id), pcor::catalogue_size) << id;
-    const EffectFacts& facts = effect_facts[effect_named(id)];
-    EXPECT_EQ(facts.parameter_count(), 1U);
-    EXPECT_EQ(facts.parameters[0].name, parameter);
-    EXPECT_EQ(facts.where, pcor::Where::static_defect);
+    const EffectInfo& info = effect_info[effect_named(id)];
+    EXPECT_EQ(info.parameter_count(), 1U);
+    EXPECT_EQ(info.parameters[0].name, parameter);
+    EXPECT_EQ(info.location, pcor::EffectLocation::static_defect);
   }
 }
 
@@ -154,9 +154,9 @@ TEST(Catalogue, HoldsZeroGainAndDriftAtEveryPlaceThatHasThem) {
                                           {"psfd-thermal", "thermal drift", "p-transducer"},
                                           {"transducer-thermal", "thermal drift", "q-transducer"}}) {
     ASSERT_NE(effect_named(id), pcor::catalogue_size) << id;
-    const EffectFacts& facts = effect_facts[effect_named(id)];
-    EXPECT_EQ(facts.family, family) << id;
-    EXPECT_EQ(place_of(facts), place) << id;
+    const EffectInfo& info = effect_info[effect_named(id)];
+    EXPECT_EQ(info.family, family) << id;
+    EXPECT_EQ(place_of(info), place) << id;
   }
 }
 
@@ -246,9 +246,9 @@ TEST(Catalogue, SumsToEquation18) {
   state[Quantity::static_pressure] = 700;
   state[Quantity::dynamic_ratio] = 67.6 / 700;
   state[Quantity::attack_ratio] = -0.318;
-  const double sum = value(effect_facts[effect_named("static-constant")], state, {.004127875}) +
-                     value(effect_facts[effect_named("static-alpha")], state, {.021279816}) +
-                     value(effect_facts[effect_named("static-qp")], state, {.030849643});
+  const double sum = value(effect_info[effect_named("static-constant")], state, {.004127875}) +
+                     value(effect_info[effect_named("static-alpha")], state, {.021279816}) +
+                     value(effect_info[effect_named("static-qp")], state, {.030849643});
   EXPECT_NEAR(sum, 2.8895 - 4.7369 + 2.0854, 2e-4);
   EXPECT_NEAR(sum, 0.24, 0.006);
 }
@@ -258,24 +258,24 @@ TEST_P(EveryEffect, IsNamedInLowerCaseWithHyphens) {
 }
 
 TEST_P(EveryEffect, IsDocumented) {
-  const EffectFacts& facts = GetParam();
-  EXPECT_FALSE(facts.title.empty());
-  EXPECT_THAT(std::string(facts.family), MatchesRegex("[A-Za-z]+( [a-z]+)*"));
-  EXPECT_FALSE(facts.formula.empty());
-  EXPECT_FALSE(facts.size.empty());
-  EXPECT_FALSE(facts.look_alikes.empty());
-  EXPECT_FALSE(facts.manoeuvre.empty());
-  EXPECT_FALSE(facts.source.empty());
-  EXPECT_LT(static_cast<std::size_t>(facts.where), pcor::where_count);
+  const EffectInfo& info = GetParam();
+  EXPECT_FALSE(info.title.empty());
+  EXPECT_THAT(std::string(info.family), MatchesRegex("[A-Za-z]+( [a-z]+)*"));
+  EXPECT_FALSE(info.formula.empty());
+  EXPECT_FALSE(info.size.empty());
+  EXPECT_FALSE(info.look_alikes.empty());
+  EXPECT_FALSE(info.manoeuvre.empty());
+  EXPECT_FALSE(info.source.empty());
+  EXPECT_LT(static_cast<std::size_t>(info.location), pcor::location_count);
 }
 
 TEST_P(EveryEffect, ParametersHaveNameUnitAndBounds) {
-  const EffectFacts& facts = GetParam();
-  ASSERT_GE(facts.parameter_count(), 1U);
+  const EffectInfo& info = GetParam();
+  ASSERT_GE(info.parameter_count(), 1U);
   std::set<std::string> names;
   for (std::size_t i = 0; i < pcor::parameter_capacity; ++i) {
-    const auto& parameter = facts.parameters[i];
-    if (i >= facts.parameter_count()) {
+    const auto& parameter = info.parameters[i];
+    if (i >= info.parameter_count()) {
       EXPECT_TRUE(parameter.name.empty()) << "parameters must follow each other without a gap";
       continue;
     }
@@ -290,7 +290,7 @@ TEST_P(EveryEffect, ParametersHaveNameUnitAndBounds) {
     EXPECT_EQ(parameter.typical == parameter.neutral, parameter.shape) << parameter.name;
     EXPECT_TRUE(std::isfinite(parameter.lower) && std::isfinite(parameter.upper)) << parameter.name;
   }
-  EXPECT_FALSE(facts.parameters[0].shape) << "the first parameter is a size";
+  EXPECT_FALSE(info.parameters[0].shape) << "the first parameter is a size";
 }
 
 TEST_P(EveryEffect, NamesEffectsThatLookLikeIt) {
@@ -306,19 +306,19 @@ TEST_P(EveryEffect, HasTheUnitOfItsPlace) {
   const std::set<std::pair<std::string, std::string>> with_constant{
       {"temp-deice-heat", "hPa"}, {"roll-static", "deg"}, {"load-factor", "m"}, {"lams-pod-flex", "m"},
       {"line-head", "m"},         {"lams-cloud", "m"},    {"temp-wetting", "m"}};
-  const EffectFacts& facts = GetParam();
+  const EffectInfo& info = GetParam();
   Draw draw;
   for (const std::string base : {"hPa", "deg", "m"}) {
-    if (with_constant.count({std::string(facts.id), base}) > 0) continue;
-    State<double> state = draw.state(facts);
-    Parameters parameters = draw.parameters(facts);
+    if (with_constant.count({std::string(info.id), base}) > 0) continue;
+    State<double> state = draw.state(info);
+    Parameters parameters = draw.parameters(info);
     const double expected =
-        value(facts, state, parameters) * std::exp2(power_of(base, facts_of(facts.where).unit));
-    for (std::size_t i = 0; i < facts.need_count(); ++i)
-      state[facts.needs[i]] *= std::exp2(power_of(base, facts_of(facts.needs[i]).unit));
+        value(info, state, parameters) * std::exp2(power_of(base, info_of(info.location).unit));
+    for (std::size_t i = 0; i < info.need_count(); ++i)
+      state[info.needs[i]] *= std::exp2(power_of(base, info_of(info.needs[i]).unit));
     for (std::size_t i = 0; i < parameters.size(); ++i)
-      parameters[i] *= std::exp2(power_of(base, facts.parameters[i].unit));
-    EXPECT_NEAR(value(facts, state, parameters), expected, 1e-14 * std::abs(expected)) << base;
+      parameters[i] *= std::exp2(power_of(base, info.parameters[i].unit));
+    EXPECT_NEAR(value(info, state, parameters), expected, 1e-14 * std::abs(expected)) << base;
   }
 }
 
@@ -332,99 +332,98 @@ TEST_P(EveryEffect, IsAbsentAtItsNeutralParameters) {
 
 TEST_P(EveryEffect, IsLinearInItsParameters) {
   // Those of shape stay as they are. Some products of rounding 1e-16 of the larger of the parts.
-  const EffectFacts& facts = GetParam();
+  const EffectInfo& info = GetParam();
   Draw draw;
   for (int i = 0; i < 100; ++i) {
-    const State<double> state = draw.state(facts);
-    const Parameters a = draw.parameters(facts);
-    Parameters b = draw.parameters(facts), sum = a, triple = a;
+    const State<double> state = draw.state(info);
+    const Parameters a = draw.parameters(info);
+    Parameters b = draw.parameters(info), sum = a, triple = a;
     for (std::size_t j = 0; j < a.size(); ++j) {
-      if (facts.parameters[j].shape) {
+      if (info.parameters[j].shape) {
         b[j] = a[j];
       } else {
         sum[j] += b[j];
         triple[j] *= 3;
       }
     }
-    const double va = value(facts, state, a), vb = value(facts, state, b);
-    const double parts = size(facts, state, a) + size(facts, state, b);
-    EXPECT_NEAR(value(facts, state, sum), va + vb, 1e-14 * parts);
-    EXPECT_NEAR(value(facts, state, triple), 3 * va, 1e-14 * parts);
+    const double va = value(info, state, a), vb = value(info, state, b);
+    const double parts = size(info, state, a) + size(info, state, b);
+    EXPECT_NEAR(value(info, state, sum), va + vb, 1e-14 * parts);
+    EXPECT_NEAR(value(info, state, triple), 3 * va, 1e-14 * parts);
   }
 }
 
 TEST_P(EveryEffect, ReproducesItsWorkedExample) {
-  const EffectFacts& facts = GetParam();
+  const EffectInfo& info = GetParam();
   State<double> state;
   std::set<Quantity> given;
-  for (const auto& input : facts.example.inputs) {
+  for (const auto& input : info.example.inputs) {
     if (input.quantity == Quantity::count) continue;
     state[input.quantity] = input.value;
     given.insert(input.quantity);
   }
-  const std::set<Quantity> needed(facts.needs.begin(), facts.needs.begin() + facts.need_count());
+  const std::set<Quantity> needed(info.needs.begin(), info.needs.begin() + info.need_count());
   EXPECT_EQ(given, needed) << "the example shows every input, and nothing else";
-  const Parameters parameters(facts.example.parameters.begin(),
-                              facts.example.parameters.begin() + facts.parameter_count());
-  EXPECT_NE(facts.example.value, 0.0);
-  EXPECT_NEAR(value(facts, state, parameters) / facts.example.value, 1.0, 1e-12);
+  const Parameters parameters(info.example.parameters.begin(),
+                              info.example.parameters.begin() + info.parameter_count());
+  EXPECT_NE(info.example.value, 0.0);
+  EXPECT_NEAR(value(info, state, parameters) / info.example.value, 1.0, 1e-12);
 }
 
 TEST_P(EveryEffect, NeedsEveryInputThatItNames) {
-  const EffectFacts& facts = GetParam();
+  const EffectInfo& info = GetParam();
   Draw draw;
-  const Parameters parameters = draw.parameters(facts);
-  for (std::size_t i = 0; i < facts.need_count(); ++i) {
-    State<double> state = draw.state(facts);
-    state[facts.needs[i]] = std::nan("");
-    EXPECT_TRUE(std::isnan(value(facts, state, parameters))) << facts_of(facts.needs[i]).name;
+  const Parameters parameters = draw.parameters(info);
+  for (std::size_t i = 0; i < info.need_count(); ++i) {
+    State<double> state = draw.state(info);
+    state[info.needs[i]] = std::nan("");
+    EXPECT_TRUE(std::isnan(value(info, state, parameters))) << info_of(info.needs[i]).name;
   }
-  EXPECT_FALSE(std::isnan(value(facts, draw.state(facts), parameters))) << "and no other";
+  EXPECT_FALSE(std::isnan(value(info, draw.state(info), parameters))) << "and no other";
 }
 
 TEST_P(EveryEffect, IsTheFormulaThatItDocuments) {
-  const EffectFacts& facts = GetParam();
+  const EffectInfo& info = GetParam();
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i) names.emplace_back(facts.parameters[i].name);
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) names.emplace_back(info.parameters[i].name);
   FormulaError error;
-  const auto formula = Formula::parse(facts.formula, names, &error);
+  const auto formula = Formula::parse(info.formula, names, &error);
   ASSERT_TRUE(formula.has_value()) << error.message;
   // The time over which a need is found is in that need.
-  const bool remembers = facts.memory.of != Quantity::count && facts.parameters[facts.memory.parameter].shape;
+  const bool remembers = info.memory.of != Quantity::count && info.parameters[info.memory.parameter].shape;
   EXPECT_EQ(formula->unused_parameters(),
-            remembers ? std::vector<std::string>{names[facts.memory.parameter]} : std::vector<std::string>{});
+            remembers ? std::vector<std::string>{names[info.memory.parameter]} : std::vector<std::string>{});
 
   std::set<Quantity> used;
   for (const std::string& name : formula->variables()) used.insert(pcor::quantity_named(name));
-  EXPECT_EQ(used, std::set<Quantity>(facts.needs.begin(), facts.needs.begin() + facts.need_count()));
+  EXPECT_EQ(used, std::set<Quantity>(info.needs.begin(), info.needs.begin() + info.need_count()));
 
   // The order of operations may differ: 1e-16 for each of them.
   Draw draw;
   for (int i = 0; i < 1000; ++i) {
-    const State<double> state = draw.state(facts);
-    const Parameters parameters = draw.parameters(facts);
+    const State<double> state = draw.state(info);
+    const Parameters parameters = draw.parameters(info);
     std::vector<double> variables;
     for (const std::string& name : formula->variables())
       variables.push_back(state[pcor::quantity_named(name)]);
     const double expected = formula->value(variables.data(), parameters.data());
-    EXPECT_NEAR(value(facts, state, parameters), expected, 1e-14 * size(facts, state, parameters));
+    EXPECT_NEAR(value(info, state, parameters), expected, 1e-14 * size(info, state, parameters));
   }
 }
 
 TEST_P(EveryEffect, CompilesForAScalarThatIsNoDouble) {
   using archetype::Physics;
-  const EffectFacts& facts = GetParam();
+  const EffectInfo& info = GetParam();
   Draw draw;
-  const State<double> state = draw.state(facts);
-  const Parameters parameters = draw.parameters(facts);
+  const State<double> state = draw.state(info);
+  const Parameters parameters = draw.parameters(info);
   State<Physics> numbers;
-  for (std::size_t i = 0; i < facts.need_count(); ++i)
-    numbers[facts.needs[i]] = Physics(state[facts.needs[i]]);
+  for (std::size_t i = 0; i < info.need_count(); ++i) numbers[info.needs[i]] = Physics(state[info.needs[i]]);
   const std::vector<Physics> coefficients(parameters.begin(), parameters.end());
   const Physics result =
-      effect_functions<Physics, Physics>[effect_named(facts.id)](numbers, coefficients.data());
-  EXPECT_EQ(result.value(), value(facts, state, parameters));
+      effect_functions<Physics, Physics>[effect_named(info.id)](numbers, coefficients.data());
+  EXPECT_EQ(result.value(), value(info, state, parameters));
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(effect_facts),
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(effect_info),
                          [](const auto& effect) { return pcor::test::test_name(effect.param.id); });

@@ -13,7 +13,7 @@
 #include "support/temporary_directory.hpp"
 
 using pcor::FittedParameter;
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::RefitResult;
 using testing::Contains;
 using testing::HasSubstr;
@@ -39,15 +39,15 @@ std::filesystem::path flight(const std::string& scenario, const std::string& mor
 
 const std::string warm_thermometer = "\n[noise]\nTTRR = { rms = 0.03, bias = 0.3 }\n";
 
-ModelFile law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+ModelDefinition law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
-ModelFile no_law() {
-  ModelFile model = law();
+ModelDefinition no_law() {
+  ModelDefinition model = law();
   for (auto& effect : model.model.effects) effect.parameters[0] = 0.0;
   return model;
 }
 
-RefitResult fit(const std::filesystem::path& path, const ModelFile& model,
+RefitResult fit(const std::filesystem::path& path, const ModelDefinition& model,
                 const std::vector<std::string>& references) {
   return pcor::refit({path}, model, pcor::read_references(references, model, {}).used);
 }
@@ -56,9 +56,9 @@ constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // of usual f
 
 /// By how much delta-p of the fit is off in usual flight, hPa.
 double error_of(const RefitResult& fit) {
-  const std::vector<ModelFile> models{fit.model, law()};
+  const std::vector<ModelDefinition> models{fit.model, law()};
   std::vector<double> defects;
-  for (const ModelFile& each : models) {
+  for (const ModelDefinition& each : models) {
     const auto& effects = each.model.effects;
     defects.push_back(effects[0].parameters[0] * pressure + effects[1].parameters[0] * pressure * ratio +
                       effects[2].parameters[0] * dynamic);
@@ -115,7 +115,7 @@ TEST(GpsFit, GoesWithALaser) {
 }
 
 TEST(GpsFit, RefusesStages) {
-  const ModelFile model = law();
+  const ModelDefinition model = law();
   pcor::RefitOptions options;
   options.stages.push_back({{pcor::Regime::speed_run}, {"static-qp"}});
   EXPECT_ANY_THROW(

@@ -9,7 +9,7 @@
 #include "fit/fit_flights.hpp"
 #include "fit/fit_parameters.hpp"
 #include "fit/solver.hpp"
-#include "support/made_samples.hpp"
+#include "support/synthetic_samples.hpp"
 
 // The offsets of the intervals of a stage, which every flight finds for itself, against one system of
 // equations that has all of them as unknowns, and against the laws that a least has.
@@ -67,7 +67,7 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
   }
 
   RefitOptions options_;
-  ModelFile model_ = made::model({"static-constant", "static-alpha", "static-qp"});
+  ModelDefinition model_ = made::model({"static-constant", "static-alpha", "static-qp"});
   References references_ = made::pressure_reference();
   FlightSet flights_{flights()};
   FitTask task_{model_,

@@ -18,13 +18,13 @@ double weight(Loss loss, double deviations) {
 }
 
 TEST(Loss, IsFoundByItsName) {
-  for (const Loss loss : losses) EXPECT_EQ(loss_named(name_of(loss)), loss) << name_of(loss);
+  for (const Loss loss : losses) EXPECT_EQ(loss_named(to_string(loss)), loss) << to_string(loss);
   EXPECT_FALSE(loss_named("tuckey"));
 }
 
 TEST(Loss, LetsOutliersCountLess) {
   for (const Loss loss : losses) {
-    SCOPED_TRACE(name_of(loss));
+    SCOPED_TRACE(to_string(loss));
     EXPECT_NEAR(weight(loss, 0.0), 1.0, 1e-12);
     if (loss == Loss::none) {
       EXPECT_EQ(weight(loss, 10.0), 1.0);

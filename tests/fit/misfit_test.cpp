@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "support/made_samples.hpp"
+#include "support/synthetic_samples.hpp"
 
 using namespace pcor;
 using namespace pcor::internal;
@@ -43,7 +43,7 @@ TEST(Misfit, HasNoLoadFactorWithoutRoll) {
   const std::size_t half = samples.time.size() / 2;
   for (std::size_t i = 0; i < samples.time.size(); ++i)
     samples.motion.roll.push_back(i < half ? NAN : 30.0 * std::sin(0.01 * static_cast<double>(i)));
-  const ModelFile model = made::model({"static-constant", "static-alpha", "static-qp"});
+  const ModelDefinition model = made::model({"static-constant", "static-alpha", "static-qp"});
   const References references = made::pressure_reference();
   const RefitOptions options;
   const FlightSet set({std::make_shared<const FlightSamples>(samples)});
@@ -52,7 +52,7 @@ TEST(Misfit, HasNoLoadFactorWithoutRoll) {
       [] {}};
   task.start = Eigen::Vector3d(0.004, 0.02, 0.03);
   FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
-  const MisfitColumns columns(flights);
+  const MisfitBasis columns(flights);
   constexpr Eigen::Index load_factor = 4 * 7;
   const auto of_half = flights.of_each([&](std::size_t, FitFlight& fit) {
     const Eigen::MatrixXd bumps = columns(fit).middleCols(load_factor, 7);

@@ -55,7 +55,7 @@ struct Study {
 Study study(const std::string& scenario_name, const std::string& model_name, pcor::RefitOptions options) {
   options.trust_reference = true;  // it is exact in these flights
   const pcor::test::TemporaryDirectory directory;
-  const pcor::ModelFile model = pcor::read_model(scenarios / "models" / (model_name + ".toml"));
+  const pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / (model_name + ".toml"));
   pcor::Scenario scenario = pcor::read_scenario(scenarios / (scenario_name + ".toml"));
   Study result;
   for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
@@ -131,9 +131,9 @@ TEST(Recovery, OfEquation20WithTheRawMachNumberIsSaidToBeCollinear) {
 TEST(Recovery, OfEffectsBeforeTheLaserFindsNoneThatIsNotThere) {
   const pcor::test::TemporaryDirectory directory;
   pcor::Scenario scenario = pcor::read_scenario(scenarios / "c130-eq18.toml");
-  pcor::ModelFile model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
   for (const char* id : {"recovery-factor", "lams-elevation"}) {
-    pcor::ModelFile with = model;
+    pcor::ModelDefinition with = model;
     with.model.effects.push_back(pcor::neutral_effect(id));
     std::size_t negative = 0;
     std::size_t at_bound = 0;

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/fit/refit.hpp>
-#include <pcor/words/error.hpp>
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "support/made_samples.hpp"
+#include "support/synthetic_samples.hpp"
 
 using pcor::FlightSamples;
 using pcor::Loss;
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::Quantity;
 using pcor::RefitOptions;
 using pcor::RefitResult;
@@ -35,7 +35,7 @@ made::Plan plan_18(unsigned seed) {
 }
 
 /// The reference of these flights has noise and is exact otherwise.
-RefitResult fit(const pcor::FlightSet& flights, const ModelFile& model, RefitOptions options = {}) {
+RefitResult fit(const pcor::FlightSet& flights, const ModelDefinition& model, RefitOptions options = {}) {
   options.trust_reference = true;
   return pcor::refit(flights, model, made::pressure_reference(), options);
 }
@@ -52,7 +52,8 @@ std::map<std::string, pcor::FittedParameter> by_name(const RefitResult& result) 
   return parameters;
 }
 
-std::string message_of(const Flights& flights, const ModelFile& model, const RefitOptions& options = {}) {
+std::string message_of(const Flights& flights, const ModelDefinition& model,
+                       const RefitOptions& options = {}) {
   try {
     fit(flights, model, options);
   } catch (const pcor::Error& error) {
@@ -129,7 +130,7 @@ TEST(Refit, StatesItsErrors) {
 }
 
 TEST(Refit, DoesNotMindOutliers) {
-  const ModelFile model = made::model(equation_18);
+  const ModelDefinition model = made::model(equation_18);
   made::Plan plan = plan_18(3);
   const auto clean = by_name(fit({made::shared(plan)}, model));
   plan.outliers = 0.05;
@@ -173,13 +174,13 @@ TEST(Refit, AddsFlightsUp) {
 TEST(Refit, DoesNotDependOnWhatIsKeptInMemory) {
   const Flights flights{made::shared(plan_18(6)), made::shared(plan_18(7))};
   const auto kept = by_name(fit(flights, made::model(equation_18)));
-  const pcor::FlightSet without({flights[0], flights[1]}, {{}, &pcor::alone(), 0});
+  const pcor::FlightSet without({flights[0], flights[1]}, {{}, &pcor::serial_communicator(), 0});
   for (const auto& [name, parameter] : by_name(fit(without, made::model(equation_18))))
     EXPECT_NEAR(parameter.value, kept.at(name).value, 1e-12) << name;  // sums in another order: rounding
 }
 
 TEST(Refit, HoldsWhatIsFixed) {
-  ModelFile model = made::model(equation_18);
+  ModelDefinition model = made::model(equation_18);
   model.model.effects[1].parameters = {0.02};
   RefitOptions options;
   options.fix = {"static-alpha"};
@@ -190,7 +191,7 @@ TEST(Refit, HoldsWhatIsFixed) {
 }
 
 TEST(Refit, StopsAtABoundAndSaysSo) {
-  ModelFile model = made::model(equation_18);
+  ModelDefinition model = made::model(equation_18);
   model.fits.resize(1);
   model.fits[0].resize(1);
   model.fits[0][0].bounds = pcor::Bounds{-0.01, 0.002};
@@ -203,7 +204,7 @@ TEST(Refit, StopsAtABoundAndSaysSo) {
 }
 
 TEST(Refit, StopsAtABoundWithNothingElseFree) {
-  ModelFile model = made::model({"static-constant"});
+  ModelDefinition model = made::model({"static-constant"});
   model.fits.resize(1);
   model.fits[0].resize(1);
   model.fits[0][0].bounds = pcor::Bounds{-0.01, 0.0001};
@@ -213,7 +214,7 @@ TEST(Refit, StopsAtABoundWithNothingElseFree) {
 }
 
 TEST(Refit, NamesWhatCannotBeToldApart) {
-  ModelFile model = made::model(equation_18);
+  ModelDefinition model = made::model(equation_18);
   pcor::ModelEffect twin;
   twin.id = "twin";
   twin.formula = "k * static_pressure";
@@ -259,7 +260,7 @@ TEST(Refit, FitsSlopesToManoeuvresFirst) {
   interval.begin = begin;
   interval.end = end;
   samples.intervals = {interval};
-  ModelFile model = made::model(equation_18);
+  ModelDefinition model = made::model(equation_18);
   model.model.effects[2].parameters = {truth_18.at("static-qp.a2")};
   RefitOptions options;
   options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-alpha"}}};
@@ -309,7 +310,7 @@ TEST(Refit, DrawsToItsStartWhatTheFlightsLeaveOpen) {
   const auto free = by_name(fit({samples}, made::model(equation_18)));
   for (const auto& [name, parameter] : by_name(fit({samples}, made::model(equation_18), with_prior)))
     EXPECT_NEAR(parameter.value, free.at(name).value, free.at(name).standard_error) << name;
-  const ModelFile powers = made::model(
+  const ModelDefinition powers = made::model(
       {"static-constant", "static-alpha", "static-qp", "static-mach", "static-mach2", "static-mach3"});
   const auto open = by_name(fit({samples}, powers));
   for (const auto& [name, parameter] : by_name(fit({samples}, powers, with_prior))) {
@@ -324,7 +325,7 @@ TEST(Refit, FindsByGlobalSearchWhatCeresFromTheStartDoesNot) {
   plan.defect = [](double p, double q, double ratio, double time) {
     return made::equation_18(p, q, ratio, time) + 1.5 * std::sin(0.031 * time);
   };
-  ModelFile model = made::model(equation_18);
+  ModelDefinition model = made::model(equation_18);
   pcor::ModelEffect wave;
   wave.id = "wave";
   wave.formula = "a * sin(w * time) + b * cos(w * time)";
@@ -378,7 +379,7 @@ TEST(Refit, TheStartDoesNotDecideWhichSamplesTakePart) {
     }
   }
   const Flights flights{std::make_shared<FlightSamples>(samples)};
-  ModelFile model = made::model(equation_18);
+  ModelDefinition model = made::model(equation_18);
   const RefitResult near = fit(flights, model);
   for (pcor::ModelEffect& effect : model.model.effects) {
     if (effect.id == "static-qp") effect.parameters[0] = 0.6;
@@ -407,7 +408,7 @@ TEST(Refit, RefusesAModelWhoseHeldOutPartIsOff) {
 }
 
 TEST(Refit, RefusesWhatCannotBeDone) {
-  const ModelFile model = made::model(equation_18);
+  const ModelDefinition model = made::model(equation_18);
   made::Plan plan = plan_18(15);
   EXPECT_THAT(message_of({}, model), HasSubstr("no flight"));
   EXPECT_THAT(message_of({made::shared(plan)}, made::model({})), HasSubstr("no coefficient is free"));
@@ -432,7 +433,7 @@ TEST(Refit, RefusesWhatCannotBeDone) {
 
 TEST(Refit, WritesWhatItFound) {
   const RefitResult result = fit({made::shared(plan_18(16))}, made::model(equation_18));
-  const ModelFile back = pcor::parse_model(pcor::write_model(result.model), "fitted");
+  const ModelDefinition back = pcor::parse_model(pcor::write_model(result.model), "fitted");
   const auto found = by_name(result);
   EXPECT_EQ(back.model.effects[1].parameters[0], found.at("static-alpha.a1").value);
   EXPECT_EQ(back.fit(1, 0).standard_error, found.at("static-alpha.a1").standard_error);

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <pcor/campaign/chosen_references.hpp>
 #include <pcor/fit/refit.hpp>
-#include <pcor/roles/with_effects.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include <pcor/simulate/simulate.hpp>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 #include "support/temporary_directory.hpp"
 
 using pcor::FittedParameter;
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::References;
 using pcor::RefitResult;
 
@@ -37,11 +37,11 @@ const std::filesystem::path& flight_file() {
   return path;
 }
 
-ModelFile law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+ModelDefinition law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
-ModelFile law_with_gain() { return pcor::with_effects(law(), {pcor::neutral_effect("qcf-gain")}, {}); }
+ModelDefinition law_with_gain() { return pcor::add_effects(law(), {pcor::neutral_effect("qcf-gain")}, {}); }
 
-RefitResult fit(const ModelFile& model, const std::vector<std::string>& references) {
+RefitResult fit(const ModelDefinition& model, const std::vector<std::string>& references) {
   return pcor::refit({flight_file()}, model, pcor::read_references(references, model, {}).used);
 }
 
@@ -77,7 +77,7 @@ TEST(SeveralReferences, ThatSeeNoCoefficientChangeNothing) {
 }
 
 TEST(SeveralReferences, DoNotTellWhatTwoSystemsHaveAlike) {
-  ModelFile model = pcor::with_effects(law(), {pcor::neutral_effect("total-lag")}, {});
+  ModelDefinition model = pcor::add_effects(law(), {pcor::neutral_effect("total-lag")}, {});
   model.fits.back().front().bounds =
       pcor::Bounds{-30.0, 30.0};  // the flight has no lag, and may go below zero
   const FittedParameter alone = parameter(fit(model, {"lams"}), "total-lag.tau");

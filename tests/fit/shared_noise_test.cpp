@@ -6,7 +6,7 @@
 
 #include "fit/fit_flights.hpp"
 #include "fit/fit_parameters.hpp"
-#include "support/made_samples.hpp"
+#include "support/synthetic_samples.hpp"
 
 // The noise of more flights than those from which its memory is found.
 
@@ -21,7 +21,7 @@ constexpr std::size_t loud = 16;   // which is none of those
 /// The robust deviation of the innovations of each flight.
 std::vector<double> deviations(std::size_t memory) {
   RefitOptions options;
-  const ModelFile model = made::model({"static-constant", "static-alpha", "static-qp"});
+  const ModelDefinition model = made::model({"static-constant", "static-alpha", "static-qp"});
   const References references = made::pressure_reference();
   std::vector<std::shared_ptr<const FlightSamples>> samples;
   for (std::size_t f = 0; f < count; ++f) {
@@ -31,7 +31,7 @@ std::vector<double> deviations(std::size_t memory) {
     plan.defect = made::equation_18;
     samples.push_back(made::shared(plan));
   }
-  const FlightSet set(samples, {{}, &alone(), memory});
+  const FlightSet set(samples, {{}, &serial_communicator(), memory});
   FitTask task{
       model, *references.front(), options, set, fit_parameters(model, *references.front(), options), {}, {},
       [] {}};
@@ -40,7 +40,7 @@ std::vector<double> deviations(std::size_t memory) {
   flights.measure_noise(task.start, true);
   return flights.of_each([&](std::size_t, FitFlight& fit) {
     const Eigen::VectorXd innovations = fit.without_noise(fit.rows(task.start)).rightCols(1);
-    return robust_deviation({innovations.begin(), innovations.end()});
+    return robust_standard_deviation({innovations.begin(), innovations.end()});
   });
 }
 

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "support/made_samples.hpp"
 #include "support/many_seeds.hpp"
 #include "support/nuisance.hpp"
+#include "support/synthetic_samples.hpp"
 
-// Scores of refitted coefficients, (estimate - truth) / stated error, over flights whose noise is slower and
-// less tidy than an autoregression: their rms is near one.
+// WhitenedSystem of refitted coefficients, (estimate - truth) / stated error, over flights whose noise is
+// slower and less tidy than an autoregression: their rms is near one.
 
 namespace {
 
@@ -51,7 +51,7 @@ std::map<std::string, double> scores_of(const Nuisance& nuisance, std::size_t se
     Flights all;
     for (std::size_t f = 0; f < flights; ++f)
       all.push_back(flight(static_cast<unsigned>(1000 + s * flights + f), nuisance));
-    pcor::ModelFile model = made::model({"static-constant", "static-alpha", "static-qp"});
+    pcor::ModelDefinition model = made::model({"static-constant", "static-alpha", "static-qp"});
     // A start that is two times wrong: what the first stage holds must not stay in the others.
     model.model.effects[2].parameters = {2.0 * truth.at("static-qp.a2")};
     for (const pcor::FittedParameter& parameter :

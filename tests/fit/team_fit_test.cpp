@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 #include <pcor/fit/refit.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "support/made_samples.hpp"
+#include "support/synthetic_samples.hpp"
 #include "support/thread_team.hpp"
 
 // A fit whose flights are shared is the fit of one process, and sends little.
@@ -46,7 +46,7 @@ std::string text_of(const RefitResult& result) {
     for (const double value : row) add(value);
   }
   for (const double value : {result.rms, result.bulk_rms, result.noise_rms, result.drift_rms,
-                             result.r_squared, result.condition_number, result.samples_per_independent})
+                             result.r_squared, result.condition_number, result.autocorrelation_time})
     add(value);
   for (const FlightFit& flight : result.flights) {
     text += flight.flight + " ";
@@ -59,22 +59,23 @@ std::string text_of(const RefitResult& result) {
   return text + fmt::format("{} {}", result.samples, result.outliers);
 }
 
-RefitResult fit_of(const std::vector<std::shared_ptr<const FlightSamples>>& of, Team& team,
+RefitResult fit_of(const std::vector<std::shared_ptr<const FlightSamples>>& of, Communicator& comm,
                    std::size_t threads = 1) {
   RefitOptions options;
   options.threads = threads;
   options.training_share = 0.9;
-  return refit({of, {{}, &team}}, made::model({"static-constant", "static-alpha", "static-qp"}),
+  return refit({of, {{}, &comm}}, made::model({"static-constant", "static-alpha", "static-qp"}),
                made::pressure_reference(), options);
 }
 
 TEST(TeamFit, IsThatOfOneProcessForAnyNumberOfMembersAndThreads) {
   const auto all = flights(5);
-  const std::string alone_result = text_of(fit_of(all, alone()));
-  EXPECT_EQ(text_of(fit_of(all, alone(), 2)), alone_result);
+  const std::string alone_result = text_of(fit_of(all, serial_communicator()));
+  EXPECT_EQ(text_of(fit_of(all, serial_communicator(), 2)), alone_result);
   for (const std::size_t members : {2, 3, 7}) {
     std::vector<std::string> results(members);
-    test::run_as_team(members, [&](Team& team) { results[team.rank()] = text_of(fit_of(all, team)); });
+    test::run_with_communicator(
+        members, [&](Communicator& comm) { results[comm.rank()] = text_of(fit_of(all, comm)); });
     EXPECT_THAT(results, Each(alone_result)) << members;
   }
 }
@@ -87,13 +88,14 @@ TEST(TeamFit, IsSoWithMoreFlightsThanTheNoiseIsFoundFromOfWhichSomeTellNothing) 
       std::fill(values.begin() + 5, values.end(), NAN);
     all[blind] = without;
   }
-  const RefitResult alone_result = fit_of(all, alone());
+  const RefitResult alone_result = fit_of(all, serial_communicator());
   std::vector<std::string> results(4);
-  test::run_as_team(4, [&](Team& team) { results[team.rank()] = text_of(fit_of(all, team)); });
+  test::run_with_communicator(4,
+                              [&](Communicator& comm) { results[comm.rank()] = text_of(fit_of(all, comm)); });
   EXPECT_THAT(results, Each(text_of(alone_result)));
   // The order of the flights does not matter, but for the rounding of sums.
   std::reverse(all.begin(), all.end());
-  const RefitResult reversed = fit_of(all, alone());
+  const RefitResult reversed = fit_of(all, serial_communicator());
   for (std::size_t p = 0; p < reversed.parameters.size(); ++p) {
     const FittedParameter& one = alone_result.parameters[p];
     EXPECT_NEAR(reversed.parameters[p].value, one.value, 1e-6 * one.standard_error);
@@ -104,7 +106,7 @@ TEST(TeamFit, IsSoWithMoreFlightsThanTheNoiseIsFoundFromOfWhichSomeTellNothing) 
 /// The bytes of each exchange of all members together.
 std::vector<std::size_t> bytes_of_exchanges(std::size_t count) {
   const auto all = flights(count);
-  const auto sent = test::run_as_team(3, [&](Team& team) { fit_of(all, team); });
+  const auto sent = test::run_with_communicator(3, [&](Communicator& comm) { fit_of(all, comm); });
   std::vector<std::size_t> bytes(sent.front().size(), 0);
   for (const std::vector<std::size_t>& member : sent) {
     EXPECT_EQ(member.size(), sent.front().size());
@@ -133,12 +135,12 @@ TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
 
 TEST(TeamFit, FailsOnAllMembersAlike) {
   std::vector<std::string> messages(2);
-  test::run_as_team(2, [&](Team& team) {
+  test::run_with_communicator(2, [&](Communicator& comm) {
     const std::vector<std::filesystem::path> paths{"nowhere/a.nc", "nowhere/b.nc"};
     try {
-      refit({paths, {{}, &team}}, made::model({"static-constant"}), made::pressure_reference());
+      refit({paths, {{}, &comm}}, made::model({"static-constant"}), made::pressure_reference());
     } catch (const Error& error) {
-      messages[team.rank()] = error.what();
+      messages[comm.rank()] = error.what();
     }
   });
   EXPECT_THAT(messages, Each(::testing::HasSubstr("nowhere/a.nc")));

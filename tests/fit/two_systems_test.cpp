@@ -21,8 +21,8 @@ const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "dat
 
 struct Pair {
   std::filesystem::path scenario;
-  pcor::ModelFile own;
-  pcor::ModelFile other;
+  pcor::ModelDefinition own;
+  pcor::ModelDefinition other;
 };
 
 Pair c130() {
@@ -130,7 +130,7 @@ TEST(TwoSystems, StateThePriorAsTheErrorOfWhatTheyHaveInCommon) {
   for (std::size_t p = 0; p < 3; ++p) {
     const pcor::FittedParameter& parameter = fit.parameters[p];
     const std::string effect = parameter.name.substr(0, parameter.name.find('.'));
-    const double typical = pcor::effect_facts[pcor::effect_named(effect)].parameters[0].typical;
+    const double typical = pcor::effect_info[pcor::effect_named(effect)].parameters[0].typical;
     // The difference, known to a few per cent of that, adds next to nothing.
     EXPECT_NEAR(parameter.standard_error, typical / std::sqrt(2.0), 0.05 * typical) << parameter.name;
   }

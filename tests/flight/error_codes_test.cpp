@@ -1,8 +1,8 @@
 // What programs learn of an error without reading its message.
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/error.hpp>
 
 #include <string>
 

@@ -6,7 +6,7 @@
 #include <new>
 #include <string>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "flight/netcdf_file.hpp"
 #include "support/of_library.hpp"
 #include "support/short_flight.hpp"

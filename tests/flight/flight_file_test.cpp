@@ -48,7 +48,7 @@ class MemoryFile final : public FlightFile {
   }
   std::vector<double> number_attribute(int, const std::string&) const override { return {}; }
   bool is_numeric(int) const override { return true; }
-  double greatest_number(int) const override { return 1e300; }
+  double max_number(int) const override { return 1e300; }
   std::vector<double> missing_values(int) const override { return {-1.0}; }
   std::array<double, 2> valid_range(int) const override { return {-1000.0, 1e10}; }
   void read(int variable, RecordBlock records, double* out) const override {
@@ -75,7 +75,7 @@ std::vector<double> values_of(const Flight& flight, const std::string& name) {
 }
 
 TEST(FlightFile, OfAnyFormatIsAFlight) {
-  const Flight flight(std::make_unique<MemoryFile>(), pcor::TimeStamp::begin);
+  const Flight flight(std::make_unique<MemoryFile>(), pcor::TimestampAlignment::begin);
   EXPECT_EQ(flight.records(), 3U);
   EXPECT_EQ(flight.time().first, 1077062460.0);
   EXPECT_EQ(flight.variable("PSFD").rate, 2);
@@ -85,7 +85,7 @@ TEST(FlightFile, OfAnyFormatIsAFlight) {
 TEST(FlightFile, OfAnyFormatIsCopiedToNetcdf) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path output = directory.path() / "out.nc";
-  const Flight flight(std::make_unique<MemoryFile>(), pcor::TimeStamp::begin);
+  const Flight flight(std::make_unique<MemoryFile>(), pcor::TimestampAlignment::begin);
   FlightWriter writer(output, flight, {});
   for (const std::string& name : flight.variables()) {
     if (name != flight.time_variable()) writer.copy(name);

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
+#include <pcor/base/error.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/flight/flight.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/utc.hpp>
 
 #include <chrono>
 #include <cmath>
@@ -19,7 +19,7 @@
 using pcor::Error;
 using pcor::Flight;
 using pcor::RecordBlock;
-using pcor::TimeStamp;
+using pcor::TimestampAlignment;
 using pcor::UnitConversion;
 using pcor::utc_text;
 using pcor::test::NetcdfMaker;
@@ -125,7 +125,7 @@ TEST_F(FlightTest, AFileWithoutANameIsRefused) {
 // The netCDF library believes a header, and takes the memory it asks for.
 TEST_F(FlightTest, ADamagedHeaderIsRefusedOrReadSoonAndInLittleMemory) {
   constexpr int mutations = 250;
-  constexpr std::size_t most_mutated = 2048;
+  constexpr std::size_t max_mutated = 2048;
   const auto begin = std::chrono::steady_clock::now();
   std::mt19937 random(20040218);
   int refused = 0;
@@ -143,7 +143,7 @@ TEST_F(FlightTest, ADamagedHeaderIsRefusedOrReadSoonAndInLittleMemory) {
     std::ostringstream text;
     text << std::ifstream(path(), std::ios::binary).rdbuf();
     const std::string whole = text.str();
-    std::uniform_int_distribution<std::size_t> place(0, std::min(most_mutated, whole.size()) - 1);
+    std::uniform_int_distribution<std::size_t> place(0, std::min(max_mutated, whole.size()) - 1);
     for (int i = 0; i < mutations; ++i) {
       std::string damaged = whole;
       for (auto changes = 1 + random() % 4; changes > 0; --changes) {
@@ -466,9 +466,9 @@ TEST_F(FlightTest, SamplesLieInTheMiddleOfTheirIntervals) {
   Flight(path()).read_sample_times({0, 2}, 2, values);
   EXPECT_THAT(std::vector(values, values + 4),
               ElementsAre(midnight + 100.25, midnight + 100.75, midnight + 101.25, midnight + 101.75));
-  Flight(path(), TimeStamp::middle).read_sample_times({0, 2}, 1, values);
+  Flight(path(), TimestampAlignment::middle).read_sample_times({0, 2}, 1, values);
   EXPECT_THAT(std::vector(values, values + 2), ElementsAre(midnight + 100, midnight + 101));
-  Flight(path(), TimeStamp::middle).read_sample_times({0, 1}, 2, values);
+  Flight(path(), TimestampAlignment::middle).read_sample_times({0, 1}, 2, values);
   EXPECT_THAT(std::vector(values, values + 2), ElementsAre(midnight + 99.75, midnight + 100.25));
 }
 
@@ -1054,7 +1054,7 @@ TEST_F(FlightTest, BlocksOfAnySizeGiveTheSame) {
 
 TEST_F(FlightTest, BlocksHoldEveryRecordOnceAndWhatLiesTogetherIsReadTogether) {
   constexpr std::size_t records = 5000;
-  const auto longest_block = [&](int mode, int rate) {
+  const auto max_block = [&](int mode, int rate) {
     {
       NetcdfMaker maker(path(), mode);
       maker.time(sequence(0, records));
@@ -1071,10 +1071,10 @@ TEST_F(FlightTest, BlocksHoldEveryRecordOnceAndWhatLiesTogetherIsReadTogether) {
     EXPECT_EQ(next, records);
     return longest;
   };
-  EXPECT_EQ(longest_block(NC_NETCDF4, 1000), pcor::records_per_block);
-  EXPECT_EQ(longest_block(0, 1), pcor::records_per_block);
+  EXPECT_EQ(max_block(NC_NETCDF4, 1000), pcor::records_per_block);
+  EXPECT_EQ(max_block(0, 1), pcor::records_per_block);
   // Records of 4,004 bytes: as many as are in a buffer of 1 MiB wherever the first of them lies in it.
-  const std::size_t together = longest_block(0, 1000);
+  const std::size_t together = max_block(0, 1000);
   EXPECT_LT(together * 4004, std::size_t{1} << 20);
   EXPECT_GT(together * 4004, std::size_t{1} << 19);
 }

@@ -1,10 +1,10 @@
 #include <gmock/gmock.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
+#include <pcor/base/atomic_file.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/flight/flight_writer.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/replacement_file.hpp>
-#include <pcor/words/utc.hpp>
 
 #include <csignal>
 #include <cstdlib>
@@ -18,9 +18,9 @@
 
 using pcor::Error;
 using pcor::FileDescription;
-using pcor::FileKind;
 using pcor::Flight;
 using pcor::FlightWriter;
+using pcor::NetcdfFormat;
 using pcor::NewFlight;
 using pcor::OutputVariable;
 using pcor::RecordBlock;
@@ -53,7 +53,7 @@ OutputVariable pressure(const std::string& name = "PSXC", int rate = 1) {
   return variable;
 }
 
-FileKind kind_of(const std::filesystem::path& path) { return pcor::internal::NetcdfFile(path).kind(); }
+NetcdfFormat kind_of(const std::filesystem::path& path) { return pcor::internal::NetcdfFile(path).kind(); }
 
 std::string contents(const std::filesystem::path& path) {
   std::ostringstream text;
@@ -173,7 +173,7 @@ class FlightWriterTest : public testing::Test {
   }
 
   // Writes a long flight to `path` until something gives; the message of that.
-  static std::string write_much(const std::filesystem::path& path, FileKind kind) {
+  static std::string write_much(const std::filesystem::path& path, NetcdfFormat kind) {
     return message_of<Error>([&] {
       constexpr std::size_t records = 4096;
       NewFlight flight{midnight};
@@ -284,7 +284,7 @@ TEST_F(FlightWriterTest, TheFileSaysWhatItIs) {
 }
 
 TEST_F(FlightWriterTest, AVariableWithoutAnyValueHasNoRange) {
-  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+  for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
     NewFlight start{midnight};
     start.kind = kind;
     FlightWriter writer(output, start, {});
@@ -364,7 +364,7 @@ TEST_F(FlightWriterTest, TextAttributesThatAreStringsAreCopied) {
 
 TEST_F(FlightWriterTest, BlocksMakeTheWhole) {
   constexpr std::size_t records = 2 * pcor::records_per_block + 3;
-  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+  for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
     NewFlight start{midnight};
     start.kind = kind;
     FlightWriter writer(output, start, {});
@@ -556,7 +556,7 @@ TEST_F(FlightWriterTest, ASymbolicLinkIsFollowed) {
 }
 
 TEST_F(FlightWriterTest, WhatIsNotFinishedIsHiddenBesideTheOutputAndGoesAtASignal) {
-  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+  for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
     std::ofstream(output) << "old";
     NewFlight flight{midnight};
     flight.kind = kind;
@@ -580,9 +580,9 @@ TEST_F(FlightWriterTest, AFinishedFileStaysAtASignal) {
 }
 
 TEST_F(FlightWriterTest, MoreUnfinishedFilesThanAreListedAreStillWritten) {
-  std::vector<std::unique_ptr<pcor::ReplacementFile>> files;
+  std::vector<std::unique_ptr<pcor::AtomicFile>> files;
   for (int i = 0; i < 20; ++i)
-    files.push_back(std::make_unique<pcor::ReplacementFile>(directory / std::to_string(i)));
+    files.push_back(std::make_unique<pcor::AtomicFile>(directory / std::to_string(i)));
   for (const auto& file : files) file->commit();
   EXPECT_EQ(directory.entries(), 20);
   files.clear();
@@ -590,7 +590,7 @@ TEST_F(FlightWriterTest, MoreUnfinishedFilesThanAreListedAreStillWritten) {
 }
 
 TEST_F(FlightWriterTest, ANewFileHasThePermissionsOfAnyNewFile) {
-  pcor::ReplacementFile file(output);
+  pcor::AtomicFile file(output);
   file.commit();
   const auto other = directory / "other";
   std::ofstream(other).flush();
@@ -599,7 +599,7 @@ TEST_F(FlightWriterTest, ANewFileHasThePermissionsOfAnyNewFile) {
 
 TEST_F(FlightWriterTest, AnOutputsNameMayBeAsLongAsTheDiskAllows) {
   const auto longest = directory / std::string(255, 'n');
-  pcor::ReplacementFile(longest).commit();
+  pcor::AtomicFile(longest).commit();
   EXPECT_TRUE(std::filesystem::exists(longest));
 }
 
@@ -675,7 +675,7 @@ TEST_F(FlightWriterTest, AFileThatMayNotGrowLeavesNothing) {
   getrlimit(RLIMIT_FSIZE, &before);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   std::ofstream(output) << "old";
-  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+  for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
     rlimit small = before;
     small.rlim_cur = 200000;
     setrlimit(RLIMIT_FSIZE, &small);
@@ -687,7 +687,7 @@ TEST_F(FlightWriterTest, AFileThatMayNotGrowLeavesNothing) {
     EXPECT_EQ(directory.entries(), 1);
   }
   std::signal(SIGXFSZ, handler);
-  EXPECT_EQ(write_much(output, FileKind::netcdf4), "no error") << "and the next file is whole";
+  EXPECT_EQ(write_much(output, NetcdfFormat::netcdf4), "no error") << "and the next file is whole";
 }
 
 TEST_F(FlightWriterTest, AFullDiskIsSaidToBeFull) {
@@ -695,7 +695,7 @@ TEST_F(FlightWriterTest, AFullDiskIsSaidToBeFull) {
   std::filesystem::create_directory(disk);
   if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=300k") != 0)
     GTEST_SKIP() << "only root can mount the small disk that this test fills";
-  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+  for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
     const std::string message = write_much(disk / "out.nc", kind);
     EXPECT_THAT(message, AllOf(HasSubstr((disk / "out.nc").string()), Not(HasSubstr("\n"))));
     EXPECT_TRUE(message.find("disk is full") != std::string::npos ||
@@ -720,5 +720,5 @@ TEST_F(FlightWriterTest, TheReferenceFlightIsCopiedWhole) {
     EXPECT_THAT(after.values(name), Pointwise(NanSensitiveDoubleEq(), before.values(name))) << name;
   EXPECT_EQ(Flight(output).time().first, flight.time().first);
   EXPECT_EQ(Flight(output).time().last, flight.time().last);
-  EXPECT_EQ(kind_of(output), FileKind::classic);
+  EXPECT_EQ(kind_of(output), NetcdfFormat::classic);
 }

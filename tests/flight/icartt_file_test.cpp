@@ -4,9 +4,9 @@
 #include <fstream>
 #include <string>
 
+#include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/flight/flight_writer.hpp>
-#include <pcor/words/error.hpp>
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr std::size_t most_samples = 1 << 20;
+constexpr std::size_t max_samples = 1 << 20;
 
 /// A file that holds these bytes, in place of those before. The HDF5 library opens none without a name.
 std::filesystem::path file_of(const std::uint8_t* bytes, std::size_t size) {
@@ -24,7 +24,7 @@ std::filesystem::path file_of(const std::uint8_t* bytes, std::size_t size) {
 
 void read_values(const pcor::Flight& flight, const pcor::VariableInfo& variable, int rate) {
   const std::size_t count = flight.records() * static_cast<std::size_t>(rate);
-  if (count > most_samples) return;
+  if (count > max_samples) return;
   std::vector<double> values(count);
   flight.read_at_rate(rate, variable.name, {0, flight.records()}, {}, values.data());
   for (const double value : values)

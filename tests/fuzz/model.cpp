@@ -1,4 +1,4 @@
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 
 #include "reading.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 namespace fuzz {
 

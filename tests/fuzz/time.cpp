@@ -46,7 +46,7 @@ class TimesFile final : public pcor::internal::FlightFile {
     return {};
   }
   bool is_numeric(int /*variable*/) const override { return true; }
-  double greatest_number(int /*variable*/) const override { return std::numeric_limits<double>::max(); }
+  double max_number(int /*variable*/) const override { return std::numeric_limits<double>::max(); }
   std::vector<double> missing_values(int /*variable*/) const override { return {}; }
   std::array<double, 2> valid_range(int /*variable*/) const override {
     return {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
@@ -69,7 +69,7 @@ class TimesFile final : public pcor::internal::FlightFile {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   return fuzz::reading(bytes, size, [](const std::string& text) {
-    const pcor::Flight flight(std::make_unique<TimesFile>(text), pcor::TimeStamp::begin);
+    const pcor::Flight flight(std::make_unique<TimesFile>(text), pcor::TimestampAlignment::begin);
     std::vector<double> times(flight.records());
     flight.read_time_stamps({0, times.size()}, times.data());
     for (std::size_t i = 1; i < times.size(); ++i)

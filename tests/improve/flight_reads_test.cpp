@@ -59,7 +59,7 @@ TEST(FlightReads, OfAnImprovementAreOneForEachSetOfRoles) {
     paths.push_back(directory / (std::to_string(seed) + ".nc"));
     simulate_flight(scenario, paths.back());
   }
-  const ModelFile model = read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  const ModelDefinition model = read_model(scenarios / "models" / "c130-psfd-eq18.toml");
   const FlightSet flights(paths);
   const auto counts = std::make_shared<Counts>();
   ImproveOptions options;

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
-#include <pcor/roles/with_effects.hpp>
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/roles/add_effects.hpp>
 
 #include <cmath>
 #include <deque>
@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "improve/improve_loop.hpp"
-#include "support/made_samples.hpp"
+#include "support/synthetic_samples.hpp"
 
 using namespace pcor::internal;
 
 using pcor::Diagnosis;
 using pcor::Improvement;
 using pcor::ImproveStep;
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::RefitResult;
 using pcor::Verdict;
 using pcor::internal::ImproveLoop;
@@ -43,12 +43,12 @@ class Improve : public testing::Test {
       return next;
     };
     loop_.add = [](const TrialModel& model, const pcor::internal::AddedEffect& added) {
-      return TrialModel{pcor::with_effects(model.file, {added.effect})};
+      return TrialModel{pcor::add_effects(model.file, {added.effect})};
     };
     loop_.try_models = [this](const std::vector<TrialModel>& models) { return tried(models); };
   }
 
-  RefitResult fitted(const ModelFile& model) {
+  RefitResult fitted(const ModelDefinition& model) {
     RefitResult fit;
     fit.model = model;
     fit.model.law.rms_hpa = rms_.front();
@@ -142,7 +142,7 @@ Diagnosis diagnosis(Verdict verdict, const std::vector<std::string>& findings = 
 }
 
 Diagnosis with_trace(Diagnosis result, const std::string& variable) {
-  pcor::TracedVariable traced;
+  pcor::EmpiricalPredictor traced;
   traced.name = variable;
   traced.slope = -0.03;
   traced.formula = "k * (" + variable + " - 48)";
@@ -159,7 +159,7 @@ std::vector<std::string> added(const Improvement& improvement) {
   return names;
 }
 
-std::vector<std::string> effects(const ModelFile& model) {
+std::vector<std::string> effects(const ModelDefinition& model) {
   std::vector<std::string> ids;
   for (const pcor::ModelEffect& effect : model.model.effects) ids.push_back(effect.id);
   return ids;
@@ -295,7 +295,7 @@ TEST_F(Improve, BelievesTheFittedFlightsWhereWhatIsHeldOutTellsNothing) {
 TEST_F(Improve, DropsWhatCannotBeFitted) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"})};
   loop_.refit = [this](const TrialModel& trial) {
-    const ModelFile& model = trial.file;
+    const ModelDefinition& model = trial.file;
     if (model.model.effects.size() > 2) throw pcor::Error("tau and a0 cannot all be free on these flights");
     return fitted(model);
   };
@@ -374,7 +374,7 @@ TEST_F(Improve, SaysThatNothingGoesWithWhatIsLeft) {
 TEST_F(Improve, StopsAfterAsManyStepsAsAreAllowed) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag", "static-mach", "static-mach2"})};
   rms_ = {1.0, 0.9, 0.8, 0.7};
-  loop_.most_steps = 2;
+  loop_.max_steps = 2;
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag", "static-mach"));
   EXPECT_THAT(improvement.why_stopped, HasSubstr("as many as were allowed"));

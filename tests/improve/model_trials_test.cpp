@@ -1,7 +1,7 @@
 #include "improve/model_trials.hpp"
 
 #include <gtest/gtest.h>
-#include <pcor/roles/with_effects.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include <pcor/simulate/simulate.hpp>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include "support/temporary_directory.hpp"
 
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::internal::coefficients_in;
 using pcor::internal::Comparison;
 using pcor::internal::comparison_of;
@@ -37,16 +37,16 @@ std::filesystem::path flight() {
 }
 
 /// The law of the flight, with the laser.
-ModelFile law() {
-  ModelFile file = pcor::read_model(data / "models" / "c130-psfd-eq18.toml");
+ModelDefinition law() {
+  ModelDefinition file = pcor::read_model(data / "models" / "c130-psfd-eq18.toml");
   file.variables.emplace(pcor::Quantity::attack, "ATTACK");
   file.variables.emplace(pcor::Quantity::sideslip, "SSLIP");
   file.variables.emplace(pcor::Quantity::lams_airspeed, "VLAMS");
   return file;
 }
 
-ModelFile with(const std::string& effect, double value) {
-  ModelFile file = pcor::with_effects(law(), {{effect}});
+ModelDefinition with(const std::string& effect, double value) {
+  ModelDefinition file = pcor::add_effects(law(), {{effect}});
   file.model.effects.back().parameters[0] = value;
   return file;
 }
@@ -66,7 +66,7 @@ double rms_between(const std::vector<double>& a, const std::vector<double>& b,
 }  // namespace
 
 TEST(Union, HasTheEffectsOfAllOnce) {
-  const ModelFile whole = union_of({with("static-mach", 0.01), with("static-beta-odd", 0.02)});
+  const ModelDefinition whole = union_of({with("static-mach", 0.01), with("static-beta-odd", 0.02)});
   EXPECT_EQ(whole.model.effects.size(), law().model.effects.size() + 2);
   EXPECT_EQ(coefficients_in(whole, whole).size(), coefficients_in(law(), whole).size());
   EXPECT_EQ(coefficients_in(with("static-mach", 0.01), whole).back(), 0.0) << "an absent effect does nothing";
@@ -74,7 +74,7 @@ TEST(Union, HasTheEffectsOfAllOnce) {
 }
 
 TEST(Union, KeepsTheShapeOfAnAbsentEffect) {
-  ModelFile shaped = pcor::with_effects(law(), {{"pitot-angle", {0.0002, 4.0}}});
+  ModelDefinition shaped = pcor::add_effects(law(), {{"pitot-angle", {0.0002, 4.0}}});
   EXPECT_EQ(coefficients_in(law(), union_of({law(), shaped})).back(), 4.0);
 }
 
@@ -123,7 +123,7 @@ TEST(Trials, PartsAreFittedOrHeldOut) {
 
 TEST(Trials, StaticPressuresDifferByWhatAnEffectAdds) {
   // static-constant adds a0 * p to delta-p: 0.001 of it is 0.9 hPa at 900 hPa.
-  ModelFile more = law();
+  ModelDefinition more = law();
   more.model.effects[0].parameters[0] += 0.001;
   const std::vector<TrialFlight> flights = tried({{law()}, {more}}, {pcor::lams_reference()});
   const std::vector<double> one = static_pressures_of(flights, 0);
@@ -139,7 +139,7 @@ TEST(Trials, WhatBothSystemsHaveAlikeIsNoDifferenceOfTheirTotalPressures) {
   const pcor::ModelEffect loss{"pitot-angle", {0.0004, 2.0}};
   const pcor::References total{
       pcor::total_pressure_reference(pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"))};
-  const ModelFile own = pcor::with_effects(law(), {loss});
+  const ModelDefinition own = pcor::add_effects(law(), {loss});
   const std::vector<TrialFlight> flights = tried({{law()}, {own}, {own, {loss.id}}}, total);
   const TrialFlight& only = flights.front();
   const double alone = rms_between(only.residuals[0], only.residuals[1], only.fitted);

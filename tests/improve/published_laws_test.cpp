@@ -14,7 +14,7 @@
 
 #include "support/short_flight.hpp"
 
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::Quantity;
 using pcor::test::short_flight;
 using testing::Gt;
@@ -28,10 +28,10 @@ const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "dat
 
 /// The law on the variables of the flight: those that only other aircraft have get their like, and the laser
 /// and its angle of attack join.
-ModelFile law(const std::filesystem::path& path) {
+ModelDefinition law(const std::filesystem::path& path) {
   const std::map<std::string, std::string> alike{
       {"PSF", "PSFD"}, {"PSTF", "PSFRD"}, {"QCTF", "QCFR"}, {"TTHR1", "TTRR"}, {"RTH1", "RTF1"}};
-  ModelFile file = pcor::read_model(path);
+  ModelDefinition file = pcor::read_model(path);
   for (auto& [role, variable] : file.variables) {
     if (const auto found = alike.find(variable); found != alike.end()) variable = found->second;
   }
@@ -51,7 +51,7 @@ std::vector<std::filesystem::path> laws() {
   return paths;
 }
 
-std::string name_of(const testing::TestParamInfo<std::filesystem::path>& info) {
+std::string to_string(const testing::TestParamInfo<std::filesystem::path>& info) {
   std::string name = info.param.stem().string();
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
@@ -62,7 +62,7 @@ std::string name_of(const testing::TestParamInfo<std::filesystem::path>& info) {
 TEST(PublishedLaws, AreTwentyFive) { EXPECT_THAT(laws(), SizeIs(25)); }
 
 TEST_P(PublishedLaw, GoesThroughEveryCommandOnAFlightThatHasAllVariables) {
-  const ModelFile file = law(GetParam());
+  const ModelDefinition file = law(GetParam());
   for (const std::string text : {"lams", "pressure:PS_A"}) {
     SCOPED_TRACE(text);
     const std::shared_ptr<const pcor::Reference> reference = pcor::read_reference(text, file);
@@ -72,13 +72,13 @@ TEST_P(PublishedLaw, GoesThroughEveryCommandOnAFlightThatHasAllVariables) {
     const pcor::Diagnosis diagnosis = pcor::diagnose({short_flight()}, file, {reference});
     EXPECT_THAT(diagnosis.candidates, Gt(10U));
     pcor::ImproveOptions once;
-    once.most_steps = 1;
+    once.max_steps = 1;
     EXPECT_THAT(pcor::improve({short_flight()}, file, {reference}, once).steps, Not(IsEmpty()));
   }
 }
 
 TEST(Laws, NeedNoThermometerAgainstAPressure) {
-  ModelFile file = law(data / "models" / "c130-psfd-eq18.toml");
+  ModelDefinition file = law(data / "models" / "c130-psfd-eq18.toml");
   for (const Quantity role : {Quantity::recovery_temperature, Quantity::ambient_temperature,
                               Quantity::vapor_pressure, Quantity::dew_point, Quantity::lams_airspeed})
     file.variables.erase(role);
@@ -86,4 +86,4 @@ TEST(Laws, NeedNoThermometerAgainstAPressure) {
   EXPECT_THAT(pcor::diagnose({short_flight()}, file, {reference}).candidates, Gt(10U));
 }
 
-INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()), name_of);
+INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()), to_string);

@@ -7,35 +7,35 @@
 
 namespace {
 
-using pcor::quality_facts;
-using pcor::QualityFacts;
+using pcor::quality_info;
 using pcor::QualityFlags;
+using pcor::QualityInfo;
 
-std::uint32_t bits_of(const QualityFacts& facts) { return static_cast<std::uint32_t>(facts.bit); }
+std::uint32_t bits_of(const QualityInfo& info) { return static_cast<std::uint32_t>(info.bit); }
 
-TEST(QualityFacts, HasOneBitForEachFromTheLowest) {
-  for (std::size_t i = 0; i < quality_facts.size(); ++i) EXPECT_EQ(bits_of(quality_facts[i]), 1U << i);
+TEST(QualityInfo, HasOneBitForEachFromTheLowest) {
+  for (std::size_t i = 0; i < quality_info.size(); ++i) EXPECT_EQ(bits_of(quality_info[i]), 1U << i);
 }
 
 // A netCDF flag variable of type int, and a float of a host that has no integers, hold them all.
-TEST(QualityFacts, FitsAFloat) { EXPECT_LE(quality_facts.size(), 24U); }
+TEST(QualityInfo, FitsAFloat) { EXPECT_LE(quality_info.size(), 24U); }
 
 // The CF conventions, sec. 3.5: words of letters, digits and _ - . + @, separated by blanks.
-TEST(QualityFacts, HasNamesThatAreFlagMeanings) {
+TEST(QualityInfo, HasNamesThatAreFlagMeanings) {
   std::set<std::string> names;
-  for (const QualityFacts& facts : quality_facts) {
-    EXPECT_THAT(std::string(facts.name), testing::MatchesRegex("[a-z][a-z0-9_]*"));
-    EXPECT_TRUE(names.insert(std::string(facts.name)).second) << facts.name << " twice";
-    EXPECT_FALSE(facts.meaning.empty()) << facts.name;
+  for (const QualityInfo& info : quality_info) {
+    EXPECT_THAT(std::string(info.name), testing::MatchesRegex("[a-z][a-z0-9_]*"));
+    EXPECT_TRUE(names.insert(std::string(info.name)).second) << info.name << " twice";
+    EXPECT_FALSE(info.meaning.empty()) << info.name;
   }
 }
 
 TEST(QualityFlags, KeepsEachBitApart) {
-  for (const QualityFacts& set : quality_facts) {
+  for (const QualityInfo& set : quality_info) {
     QualityFlags flags;
     flags.set(set.bit);
     EXPECT_EQ(flags.bits(), bits_of(set));
-    for (const QualityFacts& other : quality_facts) EXPECT_EQ(flags.has(other.bit), set.bit == other.bit);
+    for (const QualityInfo& other : quality_info) EXPECT_EQ(flags.has(other.bit), set.bit == other.bit);
   }
 }
 

@@ -8,22 +8,22 @@
 #include <string>
 
 using pcor::Quality;
-using pcor::quality_facts;
+using pcor::quality_info;
 using pcor::QualityFlags;
 using pcor::Quantity;
 using pcor::quantity_count;
-using pcor::quantity_facts;
+using pcor::quantity_info;
 using pcor::quantity_named;
 using testing::MatchesRegex;
 
 TEST(Quantity, NamesResolveToTheirQuantity) {
   for (std::size_t i = 0; i < quantity_count; ++i) {
-    const auto& facts = quantity_facts[i];
-    EXPECT_EQ(quantity_named(facts.name), static_cast<Quantity>(i)) << facts.name;
-    EXPECT_EQ(&facts_of(static_cast<Quantity>(i)), &facts);
-    EXPECT_THAT(std::string(facts.name), MatchesRegex("[a-z][a-z_]*"));
-    EXPECT_FALSE(facts.unit.empty()) << facts.name;
-    EXPECT_FALSE(facts.description.empty()) << facts.name;
+    const auto& info = quantity_info[i];
+    EXPECT_EQ(quantity_named(info.name), static_cast<Quantity>(i)) << info.name;
+    EXPECT_EQ(&info_of(static_cast<Quantity>(i)), &info);
+    EXPECT_THAT(std::string(info.name), MatchesRegex("[a-z][a-z_]*"));
+    EXPECT_FALSE(info.unit.empty()) << info.name;
+    EXPECT_FALSE(info.description.empty()) << info.name;
   }
   EXPECT_EQ(quantity_named("PSFD"), Quantity::count);
   EXPECT_EQ(quantity_named(""), Quantity::count);
@@ -73,8 +73,8 @@ TEST(Quantity, RolesAreThoseOfTheModelFile) {
 
 TEST(Quantity, RatesHaveTheUnitOfTheirQuantityPerSecond) {
   for (const auto& each : pcor::rates) {
-    EXPECT_EQ(std::string(facts_of(each.rate).unit), std::string(facts_of(each.quantity).unit) + "/s");
-    EXPECT_EQ(std::string(facts_of(each.rate).name), std::string(facts_of(each.quantity).name) + "_rate");
+    EXPECT_EQ(std::string(info_of(each.rate).unit), std::string(info_of(each.quantity).unit) + "/s");
+    EXPECT_EQ(std::string(info_of(each.rate).name), std::string(info_of(each.quantity).name) + "_rate");
     EXPECT_FALSE(is_role(each.rate));
   }
 }
@@ -101,10 +101,10 @@ TEST(State, HoldsFurtherVariablesBehindTheQuantities) {
 
 TEST(Quality, EachBitIsOneBitOfItsOwnAndIsExplained) {
   std::set<std::string> names;
-  for (std::size_t i = 0; i < quality_facts.size(); ++i) {
-    EXPECT_EQ(static_cast<std::uint32_t>(quality_facts[i].bit), 1U << i);
-    EXPECT_TRUE(names.emplace(quality_facts[i].name).second) << quality_facts[i].name;
-    EXPECT_FALSE(quality_facts[i].meaning.empty());
+  for (std::size_t i = 0; i < quality_info.size(); ++i) {
+    EXPECT_EQ(static_cast<std::uint32_t>(quality_info[i].bit), 1U << i);
+    EXPECT_TRUE(names.emplace(quality_info[i].name).second) << quality_info[i].name;
+    EXPECT_FALSE(quality_info[i].meaning.empty());
   }
 }
 

@@ -50,8 +50,8 @@ TEST(Binning, OfWholeCellsAreMeansOfFourSeconds) {
   std::iota(values.begin(), values.end(), 0.0);
   const Binning bins(values, seconds(40), 1.0);
   ASSERT_EQ(bins.size(), 10U);
-  ASSERT_EQ(bins.stretches().size(), 1U);
-  EXPECT_EQ(bins.stretches()[0].count, 10U);
+  ASSERT_EQ(bins.segments().size(), 1U);
+  EXPECT_EQ(bins.segments()[0].count, 10U);
   const Eigen::VectorXd means = bins.means(values);
   for (std::size_t b = 0; b < 10; ++b) {
     EXPECT_EQ(means[static_cast<Eigen::Index>(b)], 4.0 * static_cast<double>(b) + 1.5);
@@ -89,10 +89,10 @@ TEST(Binning, CellsThatAreLessThanHalfFullAreLeftOutAndEndAStretch) {
   const Binning bins(residual, seconds(20), 1.0);
   ASSERT_EQ(bins.size(), 4U);
   EXPECT_EQ(bins.time()[1], 1321560006.5);  // of the records that are there
-  ASSERT_EQ(bins.stretches().size(), 2U);
-  EXPECT_EQ(bins.stretches()[0].count, 3U);
-  EXPECT_EQ(bins.stretches()[1].first, 3U);
-  EXPECT_EQ(bins.stretches()[1].count, 1U);
+  ASSERT_EQ(bins.segments().size(), 2U);
+  EXPECT_EQ(bins.segments()[0].count, 3U);
+  EXPECT_EQ(bins.segments()[1].first, 3U);
+  EXPECT_EQ(bins.segments()[1].count, 1U);
   for (const std::size_t record : bins.records()) EXPECT_NE(record, 14U);
 }
 
@@ -100,9 +100,9 @@ TEST(Binning, AGapInTimeEndsAStretch) {
   std::vector<double> time = seconds(40);
   for (std::size_t i = 20; i < 40; ++i) time[i] += 600.0;
   const Binning bins(std::vector<double>(40, 0.0), time, 1.0);
-  ASSERT_EQ(bins.stretches().size(), 2U);
-  EXPECT_EQ(bins.stretches()[0].count, 5U);
-  EXPECT_EQ(bins.stretches()[1].count, 5U);
+  ASSERT_EQ(bins.segments().size(), 2U);
+  EXPECT_EQ(bins.segments()[0].count, 5U);
+  EXPECT_EQ(bins.segments()[1].count, 5U);
 }
 
 // The differences over a minute that begin in one telescope into a difference of means of minutes.
@@ -110,7 +110,7 @@ TEST(Binning, AreAsLongAsIsAsked) {
   const Binning bins(std::vector<double>(300, 0.0), seconds(300), 1.0, 60.0);
   EXPECT_EQ(bins.size(), 5U);
   EXPECT_EQ(bins.time()[1] - bins.time()[0], 60.0);
-  EXPECT_EQ(bins.stretches().size(), 1U);
+  EXPECT_EQ(bins.segments().size(), 1U);
 }
 
 TEST(Binning, OfNothingIsNothing) {
@@ -122,7 +122,7 @@ TEST(Binning, OfSlowRecordsIsTheRecords) {
   const std::vector<double> values{1.0, 5.0, 2.0};
   const Binning bins(values, seconds(3, 10.0), 10.0);
   ASSERT_EQ(bins.size(), 3U);
-  EXPECT_EQ(bins.stretches().size(), 1U);
+  EXPECT_EQ(bins.segments().size(), 1U);
   EXPECT_EQ(bins.means(values)[1], 5.0);
 }
 

@@ -1,7 +1,7 @@
 #include "numerics/least_cost.hpp"
 
 #include <gtest/gtest.h>
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 #include <cmath>
 #include <vector>
@@ -20,7 +20,7 @@ nlopt::opt search() {
 TEST(LeastCost, IsFound) {
   std::vector<double> x{2.0, 2.0};
   nlopt::opt bobyqa = search();
-  find_least_cost(
+  minimize_objective(
       bobyqa, [](const std::vector<double>& at) { return std::hypot(at[0] - 0.5, at[1] + 1.0); }, x);
   EXPECT_NEAR(x[0], 0.5, 1e-4);
   EXPECT_NEAR(x[1], -1.0, 1e-4);
@@ -35,7 +35,7 @@ TEST(LeastCost, LetsThroughWhatTheCostThrows) {
     return at[0] * at[0];
   };
   try {
-    find_least_cost(bobyqa, cost, x);
+    minimize_objective(bobyqa, cost, x);
     FAIL() << "nothing was thrown";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "flight.nc: it is gone");

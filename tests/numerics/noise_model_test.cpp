@@ -70,7 +70,7 @@ TEST(Whitening, TurnsTheCovarianceOfTheProcessIntoUnity) {
   std::vector<double> residual(23, 1.0);
   residual[2] = residual[5] = residual[14] = missing;  // stretches of 2, 2, 8 and 8
   const Binning bins = bins_of(residual);
-  ASSERT_EQ(bins.stretches().size(), 4U);
+  ASSERT_EQ(bins.segments().size(), 4U);
   for (const std::vector<double>& coefficients :
        {std::vector<double>{}, {0.7}, {1.0, -0.5}, {0.4, 0.1, -0.3, 0.2}}) {
     NoiseModel noise;
@@ -80,11 +80,11 @@ TEST(Whitening, TurnsTheCovarianceOfTheProcessIntoUnity) {
     noise.level = {level};
     const std::vector<double> lags = autocovariance(coefficients, bins.size());
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(level.size(), level.size());
-    for (const pcor::Stretch& stretch : bins.stretches()) {
-      for (std::size_t i = 0; i < stretch.count; ++i) {
-        for (std::size_t j = 0; j < stretch.count; ++j) {
-          covariance(static_cast<Eigen::Index>(stretch.first + i),
-                     static_cast<Eigen::Index>(stretch.first + j)) = lags[i > j ? i - j : j - i];
+    for (const pcor::Segment& segment : bins.segments()) {
+      for (std::size_t i = 0; i < segment.count; ++i) {
+        for (std::size_t j = 0; j < segment.count; ++j) {
+          covariance(static_cast<Eigen::Index>(segment.first + i),
+                     static_cast<Eigen::Index>(segment.first + j)) = lags[i > j ? i - j : j - i];
         }
       }
     }

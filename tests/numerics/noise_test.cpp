@@ -11,7 +11,7 @@
 
 using pcor::Autoregression;
 using pcor::NoiseFloor;
-using pcor::Stretch;
+using pcor::Segment;
 
 namespace {
 
@@ -36,41 +36,41 @@ std::vector<double> first_order(std::size_t count, double memory, unsigned seed)
   return values;
 }
 
-std::vector<Stretch> whole(const std::vector<double>& values) {
-  return pcor::stretches_of(values, seconds(values.size()), 1.0);
+std::vector<Segment> whole(const std::vector<double>& values) {
+  return pcor::contiguous_segments(values, seconds(values.size()), 1.0);
 }
 
 }  // namespace
 
-TEST(Stretches, EndAtMissingValuesAndGaps) {
+TEST(Segments, EndAtMissingValuesAndGaps) {
   const std::vector<double> values{1, 2, missing, 3, 4, 5, missing, missing, 6};
   std::vector<double> time = seconds(values.size());
   time[5] += 10;
   for (std::size_t i = 6; i < time.size(); ++i) time[i] += 10;
-  const std::vector<Stretch> stretches = pcor::stretches_of(values, time, 1.0);
-  ASSERT_EQ(stretches.size(), 4U);
-  EXPECT_EQ(stretches[1].first, 3U);
-  EXPECT_EQ(stretches[1].count, 2U);
-  EXPECT_EQ(stretches[2].first, 5U);
-  EXPECT_EQ(stretches[3].count, 1U);
+  const std::vector<Segment> segments = pcor::contiguous_segments(values, time, 1.0);
+  ASSERT_EQ(segments.size(), 4U);
+  EXPECT_EQ(segments[1].first, 3U);
+  EXPECT_EQ(segments[1].count, 2U);
+  EXPECT_EQ(segments[2].first, 5U);
+  EXPECT_EQ(segments[3].count, 1U);
 }
 
-TEST(Stretches, EndWhereTimeDoesNotGoOn) {
+TEST(Segments, EndWhereTimeDoesNotGoOn) {
   // Two flights one after another, the earlier one last, and a time that stands.
-  const std::vector<Stretch> stretches =
-      pcor::stretches_of({1, 2, 3, 4, 5, 6}, {100, 101, 20, 21, 22, 22}, 1.0);
-  ASSERT_EQ(stretches.size(), 3U);
-  EXPECT_EQ(stretches[1].first, 2U);
-  EXPECT_EQ(stretches[1].count, 3U);
-  EXPECT_EQ(stretches[2].first, 5U);
+  const std::vector<Segment> segments =
+      pcor::contiguous_segments({1, 2, 3, 4, 5, 6}, {100, 101, 20, 21, 22, 22}, 1.0);
+  ASSERT_EQ(segments.size(), 3U);
+  EXPECT_EQ(segments[1].first, 2U);
+  EXPECT_EQ(segments[1].count, 3U);
+  EXPECT_EQ(segments[2].first, 5U);
 }
 
 TEST(RobustDeviation, IsThatOfTheBulk) {
   std::vector<double> values = first_order(20000, 0.0, 1);
   for (std::size_t i = 0; i < values.size(); i += 5) values[i] = 1000.0;
   // A fifth of outliers moves the median of |x| to the 0.625 quantile of the rest: 1.316 instead of 1.
-  EXPECT_NEAR(pcor::robust_deviation(values), 1.316, 0.03);
-  EXPECT_TRUE(std::isnan(pcor::robust_deviation({missing, missing})));
+  EXPECT_NEAR(pcor::robust_standard_deviation(values), 1.316, 0.03);
+  EXPECT_TRUE(std::isnan(pcor::robust_standard_deviation({missing, missing})));
 }
 
 // Over 20,000 samples of white noise a robust level errs by about 1.6/sqrt(40,000) = 0.8 %; 4 % is five
@@ -79,7 +79,7 @@ TEST(NoiseFloor, IsThatOfWhiteNoise) {
   const std::vector<double> values = first_order(20000, 0.0, 2);
   const NoiseFloor floor = pcor::noise_floor(values, whole(values), 1.0);
   EXPECT_NEAR(floor.rms, 1.0, 0.04);
-  EXPECT_NEAR(floor.samples_per_independent, 1.0, 0.15);
+  EXPECT_NEAR(floor.autocorrelation_time, 1.0, 0.15);
 }
 
 TEST(NoiseFloor, KnowsTheMemoryOfTheNoise) {
@@ -88,7 +88,7 @@ TEST(NoiseFloor, KnowsTheMemoryOfTheNoise) {
     const NoiseFloor floor = pcor::noise_floor(values, whole(values), 1.0);
     const double expected = (1.0 + memory) / (1.0 - memory);
     EXPECT_NEAR(floor.rms, 1.0, 0.08) << memory;
-    EXPECT_NEAR(floor.samples_per_independent, expected, 0.25 * expected) << memory;
+    EXPECT_NEAR(floor.autocorrelation_time, expected, 0.25 * expected) << memory;
   }
 }
 

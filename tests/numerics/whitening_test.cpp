@@ -54,11 +54,11 @@ TEST(Whitening, TurnsTheCovarianceOfSlowPartsIntoUnity) {
     noise.level = {Eigen::VectorXd::LinSpaced(count, 0.3, 0.5)};
     noise.slow = {0.4, 0.0, 0.7, 0.2};
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
-    for (const pcor::Stretch& stretch : bins.stretches()) {
-      for (std::size_t i = 0; i < stretch.count; ++i) {
-        for (std::size_t j = 0; j < stretch.count; ++j) {
-          const auto a = static_cast<Eigen::Index>(stretch.first + i);
-          const auto b = static_cast<Eigen::Index>(stretch.first + j);
+    for (const pcor::Segment& segment : bins.segments()) {
+      for (std::size_t i = 0; i < segment.count; ++i) {
+        for (std::size_t j = 0; j < segment.count; ++j) {
+          const auto a = static_cast<Eigen::Index>(segment.first + i);
+          const auto b = static_cast<Eigen::Index>(segment.first + j);
           covariance(a, b) = noise.level[0][a] * noise.level[0][b] *
                              std::pow(coefficient, std::abs(static_cast<double>(a - b))) /
                              (1.0 - coefficient * coefficient);

@@ -55,8 +55,8 @@ constexpr double thermometer_offset = 0.3;                    // K
 const std::map<std::string, double> noise{
     {"PSFD", 0.05}, {"QCF", 0.05}, {"TTRR", 0.1}, {"ADIFR", 0.03}, {"QCR", 0.03}};
 
-ModelFile model() {
-  ModelFile file = parse_model(R"(
+ModelDefinition model() {
+  ModelDefinition file = parse_model(R"(
 format = "pcor-model/1"
 name = "equation 18, fitted"
 [variables]
@@ -81,7 +81,7 @@ id = "qcf-zero"
 [[effect]]
 id = "temp-offset"
 )",
-                               "model.toml");
+                                     "model.toml");
   file.covariance.parameters = {"static-constant.a0", "static-alpha.a1", "static-qp.a2"};
   file.covariance.matrix.assign(3, std::vector<double>(3, 0.0));
   for (std::size_t i = 0; i < 3; ++i) {
@@ -153,7 +153,7 @@ std::vector<std::size_t> samples_of(const SimulationSummary& summary) {
 
 TEST(Coverage, IsTwoThirdsWithinOneAndNineteenOfTwentyWithinTwo) {
   const test::TemporaryDirectory directory;
-  const ModelFile file = model();
+  const ModelDefinition file = model();
   std::array<Shares, compared.size()> shares{};
   Shares all;
   const std::size_t flights = test::number_of_seeds();

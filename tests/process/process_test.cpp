@@ -14,9 +14,9 @@
 #include <tuple>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/lams.hpp>
 #include <pcor/realtime/low_pass.hpp>
-#include <pcor/words/error.hpp>
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -27,7 +27,7 @@ using testing::Contains;
 using testing::HasSubstr;
 
 // Equation 18 of the memo, in a C-130 with a laser.
-ModelFile lams_model() {
+ModelDefinition lams_model() {
   return parse_model(R"(
 format = "pcor-model/1"
 name = "test"
@@ -243,7 +243,7 @@ TEST_F(Process, TellsItsProgress) {
 
 TEST_F(Process, RenamesItsResults) {
   write_flight(input_, 10, 1);
-  ModelFile model = lams_model();
+  ModelDefinition model = lams_model();
   model.output["PCOR"] = "PCORD";
   ProcessOptions options;
   options.suffix = "_NEW";
@@ -254,7 +254,7 @@ TEST_F(Process, RenamesItsResults) {
 
 TEST_F(Process, GoesOnWithoutALaser) {
   write_flight(input_, 10, 1);
-  ModelFile model = lams_model();
+  ModelDefinition model = lams_model();
   model.variables[Quantity::lams_airspeed] = "BEAM1";
   const ProcessSummary summary = process_flight(input_, model, output_);
   EXPECT_THAT(summary.notes, Contains(HasSubstr("BEAM1 is not in this file")));
@@ -263,7 +263,7 @@ TEST_F(Process, GoesOnWithoutALaser) {
 
 TEST_F(Process, RefusesLamsWithoutALaser) {
   write_flight(input_, 10, 1);
-  ModelFile model = lams_model();
+  ModelDefinition model = lams_model();
   model.variables.erase(Quantity::lams_airspeed);
   ProcessOptions options;
   options.correct_with = CorrectWith::lams;
@@ -274,7 +274,7 @@ TEST_F(Process, RefusesLamsWithoutALaser) {
 
 TEST_F(Process, TakesFormulasOfVariablesInTheFile) {
   write_flight(input_, 10, 1);
-  ModelFile plain = lams_model();
+  ModelDefinition plain = lams_model();
   process_flight(input_, plain, output_);
   const std::vector<double> before = read("PCOR", "hPa");
   ModelEffect thrust;
@@ -308,7 +308,7 @@ moist = false
 )" + effect,
                        "calibrated.toml");
   };
-  const ModelFile plain = model(""), calibrated = model(R"(
+  const ModelDefinition plain = model(""), calibrated = model(R"(
 [[effect]]
 id = "temp-calibration"
 parameters = { a0 = 0.5, a1 = 0.01, a2 = 0.0005 }
@@ -462,7 +462,7 @@ TEST_F(FilteredTemperature, IsMissingWithItsSample) {
   EXPECT_FALSE(std::isnan(filtered[30]));
   EXPECT_GE(flagged, 2U) << "the neighbours of a single missing sample";
   std::size_t place = 0;
-  while (quality_facts[place].bit != Quality::filter_window_incomplete) ++place;
+  while (quality_info[place].bit != Quality::filter_window_incomplete) ++place;
   EXPECT_EQ(summary.flagged[place], flagged);
 }
 
@@ -490,7 +490,7 @@ TEST_F(Process, LeavesOutAFrozenSensorAndSaysSo) {
       maker->series(name, unit, values);
     }
     maker.reset();  // writes it
-    ModelFile model = lams_model();
+    ModelDefinition model = lams_model();
     model.variables.erase(Quantity::lams_airspeed);
     const ProcessSummary summary = process_flight(input_, model, output_);
     EXPECT_THAT(summary.notes, Contains(HasSubstr(frozen + " is frozen")));
@@ -525,7 +525,7 @@ TEST_F(Process, SaysWhereSamplesAreUneven) {
     maker.series("PSFD", "hPa", p);
     maker.series("QCF", "hPa", q);
   }
-  const ModelFile model = parse_model(R"(
+  const ModelDefinition model = parse_model(R"(
 format = "pcor-model/1"
 name = "lagging"
 [variables]
@@ -535,7 +535,7 @@ dynamic_pressure = "QCF"
 id = "static-lag"
 parameters = { tau = 5.0 }
 )",
-                                      "test.toml");
+                                            "test.toml");
   process_flight(input_, model, output_);
   const std::vector<double> corrected = read("PSXC", ""), flags = read("PCORFLAG", "");
   const auto bit = static_cast<std::uint32_t>(Quality::uneven_samples);
@@ -590,8 +590,8 @@ TEST_F(Process, TellsTheRampFromFlight) {
   EXPECT_NEAR(summary.flying_dynamic_pressure, 22.05 * 1.008, 0.02);
 }
 
-ModelFile uncertain_model() {
-  ModelFile file = lams_model();
+ModelDefinition uncertain_model() {
+  ModelDefinition file = lams_model();
   file.fits.resize(file.model.effects.size());
   file.fits[0] = {{false, 1e-4, {}}};
   file.uncertainty.roles[Quantity::static_pressure] = 0.03;
@@ -600,7 +600,7 @@ ModelFile uncertain_model() {
 
 TEST_F(Process, WritesUncertaintiesBesideTheirResults) {
   write_flight(input_, 20, 1);
-  ModelFile file = uncertain_model();
+  ModelDefinition file = uncertain_model();
   file.output["PSXC"] = "PSFDC";
   ProcessOptions options;
   options.suffix = "_NEW";
@@ -671,7 +671,7 @@ TEST_F(Process, WritesHydrostaticStepsThatAddUpToTheHeight) {
     maker.series("TTRR", "degC", std::vector<double>(8, 5.0));
     maker.series("EDPC", "hPa", std::vector<double>(8, 0.0));
   }
-  ModelFile model = parse_model(R"(
+  ModelDefinition model = parse_model(R"(
 format = "pcor-model/1"
 [variables]
 static_pressure = "PSFD"
@@ -679,7 +679,7 @@ dynamic_pressure = "QCF"
 recovery_temperature = "TTRR"
 vapor_pressure = "EDPC"
 )",
-                                "plain.toml");
+                                      "plain.toml");
   EXPECT_THAT(process_flight(input_, model, output_).outputs, testing::Not(Contains("HYDSTEP")));
   model.model.effects.push_back({"temp-calibration", {0.5, -0.01, 0.0001}});
   ProcessOptions options;
@@ -708,7 +708,7 @@ TEST_F(Process, HydrostaticStepsKnowTheVapour) {
     maker.series("TTRR", "degC", {20, 20});
     maker.series("EDPC", "hPa", {9.0, 8.9});
   }
-  ModelFile model = lams_model();
+  ModelDefinition model = lams_model();
   model.model.effects.clear();
   model.variables.erase(Quantity::lams_airspeed);
   model.variables.erase(Quantity::radome_dynamic_pressure);
@@ -730,7 +730,7 @@ TEST_F(Process, GivesRatesToEffectsOnBothSidesOfAGap) {
     maker.series("PSFD", "hPa", {700, 701, 702, 703, 800, 801, 900});
     maker.series("QCF", "hPa", std::vector<double>(7, 60.0));
   }
-  ModelFile model = parse_model(R"(
+  ModelDefinition model = parse_model(R"(
 format = "pcor-model/1"
 name = "lag"
 [variables]
@@ -742,7 +742,7 @@ moist = false
 id = "static-lag"
 parameters = { tau = 0.5 }
 )",
-                                "lag.toml");
+                                      "lag.toml");
   const ProcessSummary summary = process_flight(input_, model, output_);
   EXPECT_EQ(summary.gaps, 2U);
   const std::vector<double> p = read("PSXC", "hPa");
@@ -773,7 +773,7 @@ class NoisyLag : public Process {
       maker.series("QCF", "hPa", std::vector<double>(records, 60.0));
       maker.series("TTRR", "K", temperature);
     }
-    const ModelFile model = parse_model(R"(
+    const ModelDefinition model = parse_model(R"(
 format = "pcor-model/1"
 name = "lag"
 [variables]
@@ -786,7 +786,7 @@ moist = false
 id = "temp-lag"
 parameters = { tau = 8.0 }
 )",
-                                        "lag.toml");
+                                              "lag.toml");
     return process_flight(input_, model, output_, steady());
   }
 };

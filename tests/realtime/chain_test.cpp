@@ -12,6 +12,7 @@
 
 using pcor::BindingError;
 using pcor::Chain;
+using pcor::EffectLocation;
 using pcor::LamsApproach;
 using pcor::Model;
 using pcor::ModelEffect;
@@ -20,7 +21,6 @@ using pcor::Quality;
 using pcor::QualityFlags;
 using pcor::Quantity;
 using pcor::State;
-using pcor::Where;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -92,11 +92,11 @@ ModelEffect catalogued(std::string id, std::vector<double> parameters) {
   return effect;
 }
 
-ModelEffect written(Where where, std::string formula, std::vector<std::string> names = {},
+ModelEffect written(EffectLocation location, std::string formula, std::vector<std::string> names = {},
                     std::vector<double> values = {}) {
   ModelEffect effect;
   effect.id = "of-the-user";
-  effect.where = where;
+  effect.location = location;
   effect.formula = std::move(formula);
   effect.parameter_names = std::move(names);
   effect.parameters = std::move(values);
@@ -228,9 +228,9 @@ TEST(Chain, ScalesAnEffectAtEveryPlaceByTheMeasuredPressures) {
     EXPECT_NEAR(q, q_of_formula, 1e-15 * 4 * p);
   };
   expect_same(catalogued("static-attack", {0.002}), {-1, 1},
-              written(Where::static_defect, "0.002 * attack * 700 * dynamic_pressure / 70"));
+              written(EffectLocation::static_defect, "0.002 * attack * 700 * dynamic_pressure / 70"));
   expect_same(catalogued("qcf-zero", {0.4}), {0, -2},
-              written(Where::dynamic_transducer, "-0.4 * (70 / dynamic_pressure)^2"));
+              written(EffectLocation::dynamic_transducer, "-0.4 * (70 / dynamic_pressure)^2"));
 }
 
 TEST(Chain, WithoutEffectsCorrectsNothing) {
@@ -450,22 +450,22 @@ TEST(Calibration, MovesTheLimitOfSaturation) {
 
 TEST(Calibration, ByAFormulaIsFoundFromTheTemperatureBeforeIt) {
   const Miscalibrated air;
-  const Model model = with(air.Truth::model(), written(Where::ambient_temperature,
+  const Model model = with(air.Truth::model(), written(EffectLocation::ambient_temperature,
                                                        "a + b * (ambient_temperature - 273.15) - 2e-4 * "
                                                        "(ambient_temperature - 273.15)^2",
                                                        {"a", "b"}, {0.55, 0.01}));
   EXPECT_NEAR(fly(model, air.recorded())[Quantity::ambient_temperature], air.T, 1e-10);
   EXPECT_NEAR(fly(model, air.recorded())[Quantity::lams_static_defect], air.defect(), 1e-9);
   // Elsewhere a derived ambient temperature is known only after delta-p.
-  const Model early =
-      with(air.Truth::model(), written(Where::static_defect, "k * ambient_temperature", {"k"}, {0.0}));
+  const Model early = with(air.Truth::model(),
+                           written(EffectLocation::static_defect, "k * ambient_temperature", {"k"}, {0.0}));
   EXPECT_THAT(error_of(early, air.recorded()), HasSubstr("'ambient_temperature'"));
 }
 
 TEST(Calibration, WithoutItsInputTakesTheTemperatureAway) {
   const Miscalibrated air;
   const Model model =
-      with(air.Truth::model(), written(Where::ambient_temperature, "k * altitude", {"k"}, {1e-4}));
+      with(air.Truth::model(), written(EffectLocation::ambient_temperature, "k * altitude", {"k"}, {1e-4}));
   for (const Recorded& recorded : {air.recorded(), air.recorded_ambient()}) {
     Model own = model;
     if (recorded.count(Quantity::ambient_temperature) > 0) own.lams.approach = LamsApproach::with_temperature;
@@ -590,7 +590,7 @@ TEST(Upstream, StaticLagMovesBothPressuresAtThePorts) {
                                     {Quantity::port_dynamic_pressure, 1.0},
                                     {Quantity::corrected_static_pressure, -1.0},
                                     {Quantity::corrected_dynamic_pressure, 1.0}})
-    EXPECT_NEAR(s[after] - still[after], sign * 0.18, 1e-12) << facts_of(after).name;
+    EXPECT_NEAR(s[after] - still[after], sign * 0.18, 1e-12) << info_of(after).name;
   // Delta-p of the model stands in recorded pressures; that of LAMS in those of the ports, so it loses all.
   EXPECT_EQ(s[Quantity::static_defect], still[Quantity::static_defect]);
   EXPECT_NEAR(s[Quantity::lams_static_defect] - still[Quantity::lams_static_defect], 0.18, 1e-9);
@@ -624,11 +624,11 @@ TEST(Upstream, TheRadomeRatioMovesItsEffectsAndTheAngleOfAttack) {
   EXPECT_NEAR(s[Quantity::static_defect] - still[Quantity::static_defect], 0.02 * -0.005 * p, 1e-12);
   for (const Quantity other : {Quantity::sideslip, Quantity::port_static_pressure,
                                Quantity::port_dynamic_pressure, Quantity::radome_dynamic_pressure})
-    EXPECT_EQ(s[other], still[other]) << facts_of(other).name;
+    EXPECT_EQ(s[other], still[other]) << info_of(other).name;
 }
 
 TEST(Upstream, TheRadomePressureMovesBothRatios) {
-  const Model with_loss = with(radome_model(), written(Where::radome, "k", {"k"}, {2}));
+  const Model with_loss = with(radome_model(), written(EffectLocation::radome, "k", {"k"}, {2}));
   const Sample s = fly(with_loss, radome_record()), still = fly(radome_model(), radome_record());
   EXPECT_NEAR(s[Quantity::radome_dynamic_pressure], 70, 1e-12);
   EXPECT_NEAR(s[Quantity::attack_ratio], -0.3 * 68 / 70, 1e-12);
@@ -648,7 +648,7 @@ TEST(Upstream, TheLossOfTheRadomeFollowsTheAnglesWithoutIt) {
 
 TEST(Upstream, ARecordedAngleIsNotOfTheRadomeRatio) {
   const Recorded recorded = with(radome_record(), Quantity::attack, 2.5);
-  const Model drifting = with(radome_model(), written(Where::attack_ratio, "k", {"k"}, {0.1}));
+  const Model drifting = with(radome_model(), written(EffectLocation::attack_ratio, "k", {"k"}, {0.1}));
   EXPECT_EQ(fly(drifting, recorded)[Quantity::attack], 2.5);
   EXPECT_NEAR(fly(drifting, recorded)[Quantity::attack_ratio], -0.2, 1e-12);
 }
@@ -670,8 +670,8 @@ TEST(Upstream, VapourThatIsNeglectedAndCountedAgainGivesMoistAir) {
     EXPECT_EQ(without_vapor[Quantity::humidity], 0);
     for (const Quantity result : {Quantity::humidity, Quantity::corrected_mach, Quantity::ambient_temperature,
                                   Quantity::corrected_airspeed, Quantity::lams_static_defect}) {
-      EXPECT_NEAR(counted[result] / moist[result], 1.0, 1e-12) << facts_of(result).name;
-      EXPECT_EQ(neutral[result], without_vapor[result]) << facts_of(result).name;
+      EXPECT_NEAR(counted[result] / moist[result], 1.0, 1e-12) << info_of(result).name;
+      EXPECT_EQ(neutral[result], without_vapor[result]) << info_of(result).name;
     }
     EXPECT_EQ(counted.flags.bits(), moist.flags.bits());
     EXPECT_GT(std::abs(counted[Quantity::lams_static_defect] - without_vapor[Quantity::lams_static_defect]),
@@ -700,7 +700,8 @@ TEST(Upstream, AnErrorOfTheHumidityIsTakenOut) {
 TEST(Upstream, VapourPressureIsKnownToFormulasFromADewPoint) {
   const Recorded recorded =
       with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::dew_point, 265);
-  const Model model = with(truth.model(), written(Where::static_defect, "k * vapor_pressure", {"k"}, {1.0}));
+  const Model model =
+      with(truth.model(), written(EffectLocation::static_defect, "k * vapor_pressure", {"k"}, {1.0}));
   const double p = recorded.at(Quantity::static_pressure);
   const double e = pcor::vapor_pressure_from_dew_point(265.0, p);
   EXPECT_NEAR(fly(model, recorded)[Quantity::static_defect] - 0.005 * p, e, 1e-12);
@@ -712,8 +713,8 @@ TEST(Upstream, ALateLaserIsBroughtForward) {
   Recorded recorded = truth.recorded();
   recorded[Quantity::airspeed_rate] = 0.4;
   const Sample s = fly(model, recorded);
-  const Model shifted =
-      with(truth.model(), written(Where::beam_speed, "k", {"k"}, {0.5 * s[Quantity::airspeed_rate]}));
+  const Model shifted = with(
+      truth.model(), written(EffectLocation::beam_speed, "k", {"k"}, {0.5 * s[Quantity::airspeed_rate]}));
   EXPECT_NEAR(s[Quantity::lams_static_defect], fly(shifted, recorded)[Quantity::lams_static_defect], 1e-12);
   const Recorded unknown = without(truth.recorded(), Quantity::recovery_temperature);
   EXPECT_THAT(error_of(model, unknown), HasSubstr("'recovery_temperature'"));
@@ -723,11 +724,11 @@ TEST(Upstream, WhatActsOnTheBeamNeedsNothingWithoutALaser) {
   Model model;
   model.effects = {catalogued("lams-scale", {0.001}), catalogued("lams-pod-flex", {0.3}),
                    catalogued("static-constant", {0.005})};
-  const Model own = with(model, written(Where::beam_azimuth, "k * ROLLX", {"k"}, {0.1}));
+  const Model own = with(model, written(EffectLocation::beam_azimuth, "k * ROLLX", {"k"}, {0.1}));
   const Recorded recorded{{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67.6}};
   for (const Model& each : {model, own}) {
     const Chain chain = build(each, recorded);
-    EXPECT_FALSE(chain.acts(Where::beam_speed));
+    EXPECT_FALSE(chain.acts(EffectLocation::beam_speed));
     EXPECT_TRUE(chain.extra_names().empty());
     EXPECT_EQ(chain.parameters().size(), each.effects.size()) << "the coefficients keep their places";
     EXPECT_NEAR(fly(chain, recorded)[Quantity::static_defect], 3.5, 1e-12);
@@ -735,53 +736,55 @@ TEST(Upstream, WhatActsOnTheBeamNeedsNothingWithoutALaser) {
 }
 
 TEST(Upstream, WhatActsOnTheRadomeNeedsItsPressures) {
-  for (const Where where : {Where::radome, Where::attack_ratio}) {
-    EXPECT_THAT(error_of(with(truth.model(), written(where, "k", {"k"}, {0.1})), truth.recorded()),
+  for (const EffectLocation location : {EffectLocation::radome, EffectLocation::attack_ratio}) {
+    EXPECT_THAT(error_of(with(truth.model(), written(location, "k", {"k"}, {0.1})), truth.recorded()),
                 AllOf(HasSubstr("of-the-user"), HasSubstr("_pressure'")));
   }
 }
 
 TEST(Formula, ActsAtEveryPlace) {
-  const auto change = [](Where where, double amount, Quantity of) {
-    const Model model = with(truth.model(), written(where, "k", {"k"}, {amount}));
-    EXPECT_TRUE(build(model, truth.recorded()).acts(where));
+  const auto change = [](EffectLocation location, double amount, Quantity of) {
+    const Model model = with(truth.model(), written(location, "k", {"k"}, {amount}));
+    EXPECT_TRUE(build(model, truth.recorded()).acts(location));
     return fly(model, truth.recorded())[of] - fly(truth.model(), truth.recorded())[of];
   };
-  EXPECT_NEAR(change(Where::static_transducer, 0.3, Quantity::port_static_pressure), 0.3, 1e-12);
-  EXPECT_NEAR(change(Where::static_transducer, 0.3, Quantity::port_dynamic_pressure), 0.0, 1e-12);
-  EXPECT_NEAR(change(Where::dynamic_transducer, 0.3, Quantity::port_dynamic_pressure), 0.3, 1e-12);
-  EXPECT_NEAR(change(Where::dynamic_transducer, 0.3, Quantity::port_static_pressure), 0.0, 1e-12);
-  EXPECT_NEAR(change(Where::static_line, 0.3, Quantity::port_static_pressure), 0.3, 1e-12);
-  EXPECT_NEAR(change(Where::static_line, 0.3, Quantity::port_dynamic_pressure), -0.3, 1e-12);
-  EXPECT_NEAR(change(Where::total_line, 0.3, Quantity::port_dynamic_pressure), 0.3, 1e-12);
-  EXPECT_NEAR(change(Where::total_line, 0.3, Quantity::port_static_pressure), 0.0, 1e-12);
-  EXPECT_NEAR(change(Where::pitot, 0.3, Quantity::port_dynamic_pressure), 0.3, 1e-12);
-  EXPECT_NEAR(change(Where::pitot, 0.3, Quantity::port_static_pressure), 0.0, 1e-12);
-  EXPECT_NEAR(change(Where::attack, 0.3, Quantity::attack), 0.3, 1e-12);
-  EXPECT_NEAR(change(Where::sideslip, 0.3, Quantity::sideslip), 0.3, 1e-12);
-  EXPECT_NEAR(change(Where::static_defect, 0.3, Quantity::static_defect), 0.3, 1e-12);
-  EXPECT_NEAR(change(Where::humidity, 0.7, Quantity::humidity), 0.7 / truth.p, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::static_transducer, 0.3, Quantity::port_static_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::static_transducer, 0.3, Quantity::port_dynamic_pressure), 0.0, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::dynamic_transducer, 0.3, Quantity::port_dynamic_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::dynamic_transducer, 0.3, Quantity::port_static_pressure), 0.0, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::static_line, 0.3, Quantity::port_static_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::static_line, 0.3, Quantity::port_dynamic_pressure), -0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::total_line, 0.3, Quantity::port_dynamic_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::total_line, 0.3, Quantity::port_static_pressure), 0.0, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::pitot, 0.3, Quantity::port_dynamic_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::pitot, 0.3, Quantity::port_static_pressure), 0.0, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::attack, 0.3, Quantity::attack), 0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::sideslip, 0.3, Quantity::sideslip), 0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::static_defect, 0.3, Quantity::static_defect), 0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::humidity, 0.7, Quantity::humidity), 0.7 / truth.p, 1e-12);
   // Warmer by 1 K at the thermometer is warmer by 1/(1 + a_r x) outside, x = 0.026.
-  EXPECT_NEAR(change(Where::temperature, 1.0, Quantity::ambient_temperature), 1 / (1 + 0.975 * 0.0265), 1e-3);
-  EXPECT_NEAR(change(Where::recovery, 0.01, Quantity::ambient_temperature), -0.0697, 1e-4);
-  EXPECT_NEAR(change(Where::ambient_temperature, 0.3, Quantity::ambient_temperature), 0.3, 1e-12);
+  EXPECT_NEAR(change(EffectLocation::temperature, 1.0, Quantity::ambient_temperature),
+              1 / (1 + 0.975 * 0.0265), 1e-3);
+  EXPECT_NEAR(change(EffectLocation::recovery, 0.01, Quantity::ambient_temperature), -0.0697, 1e-4);
+  EXPECT_NEAR(change(EffectLocation::ambient_temperature, 0.3, Quantity::ambient_temperature), 0.3, 1e-12);
   // 0.237 hPa/K at 268.6 K, falling as 1/T^2, as in the table of sensitivities. In warmer air the laser's
   // airspeed is a lower Mach number, the thermometer heats up less, and so the air is warmer by a_r x again.
-  EXPECT_NEAR(change(Where::ambient_temperature, 0.3, Quantity::lams_static_defect),
+  EXPECT_NEAR(change(EffectLocation::ambient_temperature, 0.3, Quantity::lams_static_defect),
               0.3 * (1 + 0.975 * 0.0265) * 0.237 * std::pow(268.6 / 270.15, 2), 0.0003);
   // 1 m/s of the laser is -1.09 hPa at 700 hPa and 120 m/s, and so are d cos/cos of the two angles.
-  EXPECT_NEAR(change(Where::beam_speed, 0.1, Quantity::lams_static_defect), -0.109, 0.001);
-  EXPECT_NEAR(change(Where::beam_elevation, 0.5, Quantity::lams_static_defect),
-              change(Where::attack, 0.5, Quantity::lams_static_defect), 1e-12);
-  EXPECT_NEAR(change(Where::beam_azimuth, 0.5, Quantity::lams_static_defect),
-              change(Where::sideslip, -0.5, Quantity::lams_static_defect), 1e-12);
+  EXPECT_NEAR(change(EffectLocation::beam_speed, 0.1, Quantity::lams_static_defect), -0.109, 0.001);
+  EXPECT_NEAR(change(EffectLocation::beam_elevation, 0.5, Quantity::lams_static_defect),
+              change(EffectLocation::attack, 0.5, Quantity::lams_static_defect), 1e-12);
+  EXPECT_NEAR(change(EffectLocation::beam_azimuth, 0.5, Quantity::lams_static_defect),
+              change(EffectLocation::sideslip, -0.5, Quantity::lams_static_defect), 1e-12);
 }
 
 TEST(Formula, ReadsVariablesOfTheFileAndRoles) {
   Model model = truth.model();
-  model.effects.push_back(written(Where::static_defect, "k * ENGTRQ / 100 + c * static_pressure * FLAP2",
-                                  {"k", "c"}, {2.0, 0.001}));
-  model.effects.push_back(written(Where::static_defect, "m * ENGTRQ", {"m"}, {0.5}));
+  model.effects.push_back(written(EffectLocation::static_defect,
+                                  "k * ENGTRQ / 100 + c * static_pressure * FLAP2", {"k", "c"},
+                                  {2.0, 0.001}));
+  model.effects.push_back(written(EffectLocation::static_defect, "m * ENGTRQ", {"m"}, {0.5}));
   const Recorded recorded = truth.recorded();
   const Chain chain = build(model, recorded);
   EXPECT_THAT(chain.extra_names(), ElementsAre("ENGTRQ", "FLAP2"));
@@ -868,9 +871,9 @@ TEST(QualityBits, EachIsSetByItsCauseAndTakesAwayWhatItSays) {
            {Quality::outside_domain, Quantity::dynamic_pressure, 10.0, {}},
            {Quality::outside_domain, Quantity::dynamic_pressure, 130.0, {}}}) {
     const Sample s = fly(full_model(), with(full_record(), changed, to));
-    SCOPED_TRACE(std::string(facts_of(changed).name) + " = " + std::to_string(to));
+    SCOPED_TRACE(std::string(info_of(changed).name) + " = " + std::to_string(to));
     EXPECT_TRUE(s.has(bit));
-    for (const Quantity quantity : gone) EXPECT_TRUE(std::isnan(s[quantity])) << facts_of(quantity).name;
+    for (const Quantity quantity : gone) EXPECT_TRUE(std::isnan(s[quantity])) << info_of(quantity).name;
   }
   Model negative = full_model();
   negative.effects[0].parameters = {-0.001};
@@ -917,7 +920,7 @@ TEST(QualityBits, ADefectBelowTheNegativeDynamicPressureIsNone) {
   EXPECT_TRUE(s.has(Quality::defect_exceeds_dynamic_pressure));
   for (const Quantity gone : {Quantity::static_defect, Quantity::corrected_static_pressure,
                               Quantity::corrected_dynamic_pressure, Quantity::corrected_airspeed})
-    EXPECT_TRUE(std::isnan(s[gone])) << pcor::facts_of(gone).name;
+    EXPECT_TRUE(std::isnan(s[gone])) << pcor::info_of(gone).name;
 }
 
 TEST(QualityBits, ALaserThatAsksForADefectBeyondTheDynamicPressureIsNotBelieved) {
@@ -973,7 +976,7 @@ TEST(Ramp, AirspeedBeginsAtTheLeastDynamicPressure) {
   const Sample s = at(2.01);
   EXPECT_NEAR(s[Quantity::corrected_airspeed],
               std::sqrt(2 * 2.01 / p * 287.05 * s[Quantity::ambient_temperature]), 0.03);
-  model.policy.least_dynamic_pressure = 0.0;
+  model.policy.min_dynamic_pressure = 0.0;
   EXPECT_FALSE(std::isnan(at(0.1)[Quantity::corrected_airspeed]));
 }
 
@@ -1009,16 +1012,17 @@ TEST(Build, WantsTheInputsOfEffects) {
 }
 
 TEST(Build, WantsFormulasThatParse) {
-  EXPECT_THAT(
-      error_of(with(truth.model(), written(Where::static_defect, "k *", {"k"}, {1})), truth.recorded()),
-      AllOf(HasSubstr("formula of effect 'of-the-user': "), HasSubstr("column 4")));
-  EXPECT_EQ(
-      error_of(with(truth.model(), written(Where::static_defect, "k", {"k"}, {1, 2})), truth.recorded()),
-      "effect 'of-the-user' takes 1 parameter(s), not 2");
-  EXPECT_EQ(error_of(with(truth.model(), written(Where::static_defect, "flaps")), truth.recorded()),
+  EXPECT_THAT(error_of(with(truth.model(), written(EffectLocation::static_defect, "k *", {"k"}, {1})),
+                       truth.recorded()),
+              AllOf(HasSubstr("formula of effect 'of-the-user': "), HasSubstr("column 4")));
+  EXPECT_EQ(error_of(with(truth.model(), written(EffectLocation::static_defect, "k", {"k"}, {1, 2})),
+                     truth.recorded()),
+            "effect 'of-the-user' takes 1 parameter(s), not 2");
+  EXPECT_EQ(error_of(with(truth.model(), written(EffectLocation::static_defect, "flaps")), truth.recorded()),
             "the formula of effect 'of-the-user' needs the role 'flaps': name its variable in the table "
             "[variables]");
-  EXPECT_EQ(error_of(with(truth.model(), written(Where::static_defect, "corrected_mach")), truth.recorded()),
+  EXPECT_EQ(error_of(with(truth.model(), written(EffectLocation::static_defect, "corrected_mach")),
+                     truth.recorded()),
             "the formula of effect 'of-the-user' needs 'corrected_mach', which is known only after delta-p");
 }
 
@@ -1026,7 +1030,7 @@ TEST(Build, WantsFormulasThatFit) {
   const auto formula_of = [](int count, int first = 0) {
     std::string text = "0";
     for (int i = 0; i < count; ++i) text += " + V" + std::to_string(first + i);
-    return written(Where::static_defect, text);
+    return written(EffectLocation::static_defect, text);
   };
   EXPECT_EQ(error_of(with(truth.model(), formula_of(12)), truth.recorded()), "no error");
   EXPECT_EQ(error_of(with(truth.model(), formula_of(13)), truth.recorded()),
@@ -1076,8 +1080,8 @@ TEST(Build, TellsProgramsWhatIsMissing) {
   EXPECT_EQ(error.quantity, Quantity::flaps);
   EXPECT_EQ(error.who, "effect 'flaps-gear'");
   EXPECT_EQ(error.message(), error.who + " " + error.what);
-  error = error_of(with({}, written(Where::static_defect, "corrected_mach")));
-  EXPECT_EQ(error.code, BindingError::Code::known_too_late);
+  error = error_of(with({}, written(EffectLocation::static_defect, "corrected_mach")));
+  EXPECT_EQ(error.code, BindingError::Code::circular_dependency);
   EXPECT_EQ(error.quantity, Quantity::corrected_mach);
 }
 
@@ -1107,9 +1111,10 @@ TEST(Chain, CompilesForAScalarThatIsNoDouble) {
     model.lams.approach = approach;
     model.recovery = {{0.988, 0.053, 0.090, 0.091}};
     model.effects.push_back(catalogued("temp-calibration", {0.3, 0.01, 0.0001}));
-    for (const Where where : {Where::static_transducer, Where::attack, Where::temperature, Where::pitot})
+    for (const EffectLocation location : {EffectLocation::static_transducer, EffectLocation::attack,
+                                          EffectLocation::temperature, EffectLocation::pitot})
       model.effects.push_back(
-          written(where, "k * if(attack > 0, sqrt(abs(attack)), tanh(attack))", {"k"}, {0.01}));
+          written(location, "k * if(attack > 0, sqrt(abs(attack)), tanh(attack))", {"k"}, {0.01}));
     const Chain chain = build(model, full_record());
     const Sample expected = fly(chain, full_record());
 
@@ -1128,7 +1133,7 @@ TEST(Chain, CompilesForAScalarThatIsNoDouble) {
          {Quantity::static_defect, Quantity::lams_static_defect, Quantity::corrected_static_pressure,
           Quantity::humidity, Quantity::corrected_mach, Quantity::ambient_temperature,
           Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::lams_dynamic_pressure})
-      EXPECT_NEAR(state[quantity].value(), expected[quantity], 1e-9) << facts_of(quantity).name;
+      EXPECT_NEAR(state[quantity].value(), expected[quantity], 1e-9) << info_of(quantity).name;
   }
 }
 
@@ -1138,11 +1143,11 @@ TEST(Additions, DoWhatAnEffectThereDoes) {
   // At every place: the chain with a formula of constant value is the chain with that amount added.
   Model model = Truth().model();
   const Recorded recorded = full_record();
-  for (std::size_t i = 0; i < pcor::where_count; ++i) {
-    const auto where = static_cast<Where>(i);
-    SCOPED_TRACE(facts_of(where).name);
-    const Sample by_effect = fly(with(model, written(where, "k", {"k"}, {0.01})), recorded);
-    model.additions = {where};
+  for (std::size_t i = 0; i < pcor::location_count; ++i) {
+    const auto location = static_cast<EffectLocation>(i);
+    SCOPED_TRACE(info_of(location).name);
+    const Sample by_effect = fly(with(model, written(location, "k", {"k"}, {0.01})), recorded);
+    model.additions = {location};
     Chain chain = build(model, recorded);
     ASSERT_EQ(chain.parameters().back(), 0.0);
     std::vector<double> parameters = chain.parameters();
@@ -1167,7 +1172,8 @@ TEST(Additions, AskForNothingAndChangeNothingWhereAPlaceIsOfNoUse) {
   const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);
   Model model = with({}, catalogued("static-attack", {0.001}));
   const Sample before = fly(model, recorded);
-  model.additions = {Where::radome, Where::attack_ratio, Where::beam_speed, Where::beam_azimuth};
+  model.additions = {EffectLocation::radome, EffectLocation::attack_ratio, EffectLocation::beam_speed,
+                     EffectLocation::beam_azimuth};
   const Chain chain = build(model, recorded);
   for (const Quantity input : {Quantity::radome_dynamic_pressure, Quantity::attack_ratio})
     EXPECT_FALSE(chain.needs(input));
@@ -1178,7 +1184,7 @@ TEST(Additions, AskForNothingAndChangeNothingWhereAPlaceIsOfNoUse) {
 TEST(EffectValue, IsWhatTheEffectGivesAtItsPlace) {
   const Recorded recorded = Truth().recorded();
   Model model = with({}, catalogued("static-qp", {0.03}));
-  model = with(model, written(Where::static_defect, "k * static_pressure", {"k"}, {0.004}));
+  model = with(model, written(EffectLocation::static_defect, "k * static_pressure", {"k"}, {0.004}));
   const Chain chain = build(model, recorded);
   const Sample sample = fly(chain, recorded);
   const double by_hand = chain.effect_value(0, sample.state, chain.parameters().data()) +
@@ -1198,7 +1204,7 @@ TEST(WithEffect, IsTheChainOfTheLongerModel) {
   const Recorded recorded = with(full_record(), Quantity::roll, 20.0);
   const Chain shorter = build(Truth().model(), recorded);
   for (const ModelEffect& effect : {catalogued("static-lag", {0.2}), catalogued("psfd-bias", {0.3}),
-                                    written(Where::total_line, "k * roll / 90", {"k"}, {0.5})}) {
+                                    written(EffectLocation::total_line, "k * roll / 90", {"k"}, {0.5})}) {
     const auto longer = shorter.with_effect(effect, nullptr);
     ASSERT_TRUE(longer.has_value());
     EXPECT_EQ(fly(*longer, recorded)[Quantity::corrected_static_pressure],

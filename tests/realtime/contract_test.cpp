@@ -41,7 +41,7 @@ struct RoleCase {
   double good;
 
   friend std::ostream& operator<<(std::ostream& out, const RoleCase& given) {
-    return out << pcor::facts_of(given.role).name;
+    return out << pcor::info_of(given.role).name;
   }
 };
 
@@ -81,7 +81,7 @@ Model model_of(Quantity role) {
   model.sideslip_radome = {0.1, 11.8, 0.0};
   ModelEffect effect;
   effect.id = "of-the-role";
-  effect.formula = "k * " + std::string(pcor::facts_of(role).name);
+  effect.formula = "k * " + std::string(pcor::info_of(role).name);
   effect.parameter_names = {"k"};
   effect.parameters = {1e-4};
   model.effects.push_back(effect);
@@ -140,7 +140,7 @@ class Contract : public testing::TestWithParam<RoleCase> {
       run(expected, good);
       run(loop, bad);
       for (const Quantity result : results_of(loop)) {
-        SCOPED_TRACE(testing::Message() << pcor::facts_of(result).name << " with " << value);
+        SCOPED_TRACE(testing::Message() << pcor::info_of(result).name << " with " << value);
         judge(loop.state()[result], expected.state()[result],
               loop.quality().bits() & ~expected.quality().bits());
       }
@@ -149,7 +149,7 @@ class Contract : public testing::TestWithParam<RoleCase> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Roles, Contract, testing::ValuesIn(all_roles()),
-                         [](const auto& each) { return std::string(pcor::facts_of(each.param.role).name); });
+                         [](const auto& each) { return std::string(pcor::info_of(each.param.role).name); });
 
 // The result is that of a good sample where it does not depend on the role; else it is missing, or another,
 // and a bit says so: dry air is taken where the humidity is missing, the model where the laser is.
@@ -166,10 +166,10 @@ TEST_P(Contract, WithoutAValueAResultIsUnhurtOrABitSaysSo) {
 // Numbers that are none of a flight, at the limits of the role and beyond: no infinity comes out, and NaN
 // only with a bit.
 TEST_P(Contract, AnyNumberGivesAValueOrABit) {
-  const pcor::QuantityFacts& facts = pcor::facts_of(GetParam().role);
+  const pcor::QuantityInfo& info = pcor::info_of(GetParam().role);
   for (const double number :
-       {0.0, -0.0, -GetParam().good, facts.least, facts.most, 2.0 * facts.least, 2.0 * facts.most, 1e-310,
-        1e30, -1e30, std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()}) {
+       {0.0, -0.0, -GetParam().good, info.least, info.most, 2.0 * info.least, 2.0 * info.most, 1e-310, 1e30,
+        -1e30, std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()}) {
     judge_each(number, [](double value, double expected, std::uint32_t bits) {
       EXPECT_FALSE(std::isinf(value));
       EXPECT_TRUE(!std::isnan(value) || std::isnan(expected) || bits != 0U) << "missing without a bit";

@@ -15,6 +15,7 @@
 namespace {
 
 using pcor::CorrectWith;
+using pcor::EffectLocation;
 using pcor::Functor;
 using pcor::Loop;
 using pcor::Model;
@@ -23,7 +24,6 @@ using pcor::Quality;
 using pcor::QualityFlags;
 using pcor::Quantity;
 using pcor::State;
-using pcor::Where;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsNan;
@@ -83,11 +83,11 @@ std::unique_ptr<Functor> sum(const std::vector<Quantity>& inputs, Quantity outpu
   });
 }
 
-ModelEffect formula(Where where, std::string text, std::vector<std::string> names = {},
+ModelEffect formula(EffectLocation location, std::string text, std::vector<std::string> names = {},
                     std::vector<double> values = {}) {
   ModelEffect effect;
   effect.id = "of-the-user";
-  effect.where = where;
+  effect.location = location;
   effect.formula = std::move(text);
   effect.parameter_names = std::move(names);
   effect.parameters = std::move(values);
@@ -140,7 +140,7 @@ void expect_same(const Loop& loop, const Loop& expected) {
     const double value = loop.state()[result];
     const double wanted = expected.state()[result];
     EXPECT_TRUE(value == wanted || (std::isnan(value) && std::isnan(wanted)))
-        << pcor::facts_of(result).name << ": " << value << " for " << wanted;
+        << pcor::info_of(result).name << ": " << value << " for " << wanted;
   }
   EXPECT_EQ(own_bits(loop), own_bits(expected));
 }
@@ -245,7 +245,7 @@ TEST(Loop, ComputesEquation18ByHand) {
   const double heating = std::pow(767.6 / (700.0 + defect), 2.0 / 7.0 / (1.0 + humidity / 7.0)) - 1.0;
   EXPECT_NEAR(s[Quantity::corrected_mach], std::sqrt(5.0 * (1.0 + humidity / 5.0) * heating), 1e-12);
   EXPECT_EQ(loop.quality().bits(), 0U);
-  for (const Quantity result : results) EXPECT_TRUE(std::isfinite(s[result])) << pcor::facts_of(result).name;
+  for (const Quantity result : results) EXPECT_TRUE(std::isfinite(s[result])) << pcor::info_of(result).name;
 }
 
 TEST(Loop, AgreesAtAnyRateOnAConstantFlight) {
@@ -557,7 +557,7 @@ TEST(LoopFrozen, ASensorThatStandsStillSetsABit) {
        {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature}) {
     const std::vector<bool> told = told_frozen(role, 0.05, 0.001, 5000, 9000);
     for (std::size_t i = 0; i < told.size(); ++i)
-      ASSERT_EQ(told[i], i >= 5000 + 19 && i < 9000) << i << " of " << pcor::facts_of(role).name;
+      ASSERT_EQ(told[i], i >= 5000 + 19 && i < 9000) << i << " of " << pcor::info_of(role).name;
   }
 }
 
@@ -636,7 +636,7 @@ TEST(LoopVariables, HaveOnePlaceForEachName) {
 
 TEST(LoopVariables, OfFormulasAreSetByName) {
   Model model;
-  model.effects = {formula(Where::static_defect, "k * ENGTRQ / 100 + SPLR", {"k"}, {2.0})};
+  model.effects = {formula(EffectLocation::static_defect, "k * ENGTRQ / 100 + SPLR", {"k"}, {2.0})};
   const Sample recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 67.6}};
   Loop loop = build(model, recorded, 1.0);
   EXPECT_THAT(loop.extra_names(), ElementsAre("ENGTRQ", "SPLR"));
@@ -653,7 +653,7 @@ TEST(LoopVariables, OfFormulasAreSetByName) {
 // What a functor of the user's own computes is there before the stage that reads it, whatever the stage.
 TEST(LoopFunctors, MayStandBetweenTheStagesOfTheModel) {
   Model model = c130();
-  model.effects.push_back(formula(Where::static_defect, "THRUST"));
+  model.effects.push_back(formula(EffectLocation::static_defect, "THRUST"));
   Sample recorded = level;
   recorded.erase(Quantity::lams_airspeed);
   Loop loop = build(model, recorded, 1.0);
@@ -871,7 +871,7 @@ TEST(LoopQuality, TellsWhatWasWrongAndLosesOnlyWhatDependsOnIt) {
       const bool lost = std::count(test.lost.begin(), test.lost.end(), result) > 0;
       const double value = loop.state()[result];
       EXPECT_TRUE(lost ? std::isnan(value) : std::isfinite(value))
-          << pcor::facts_of(result).name << " " << value;
+          << pcor::info_of(result).name << " " << value;
     }
   }
 }
@@ -896,20 +896,22 @@ TEST(LoopQuality, HasNoAirspeedOnTheGround) {
 }
 
 TEST(LoopQuality, TellsOfAnEffectThatDividesByZero) {
-  const Where places[] = {Where::static_transducer, Where::static_line, Where::total_line, Where::pitot,
-                          Where::static_defect,     Where::attack,      Where::recovery};
-  for (const Where place : places) {
+  const EffectLocation places[] = {EffectLocation::static_transducer, EffectLocation::static_line,
+                                   EffectLocation::total_line,        EffectLocation::pitot,
+                                   EffectLocation::static_defect,     EffectLocation::attack,
+                                   EffectLocation::recovery};
+  for (const EffectLocation place : places) {
     Model model = c130();
     model.effects.push_back(formula(place, "1 / (static_pressure - 700)"));
     Loop loop = build(model, level, 1.0);
     run(loop, level, 0.0);
     // The angle of attack is of use to LAMS alone here.
-    EXPECT_EQ(loop.quality().has(Quality::effect_input_missing), place != Where::attack)
-        << pcor::facts_of(place).name;
-    EXPECT_TRUE(loop.quality().has(Quality::lams_missing) || place == Where::static_defect);
+    EXPECT_EQ(loop.quality().has(Quality::effect_input_missing), place != EffectLocation::attack)
+        << pcor::info_of(place).name;
+    EXPECT_TRUE(loop.quality().has(Quality::lams_missing) || place == EffectLocation::static_defect);
     for (const Quantity result : results) EXPECT_FALSE(std::isinf(loop.state()[result]));
     EXPECT_THAT(loop.state()[Quantity::corrected_airspeed],
-                place == Where::attack ? Not(IsNan()) : testing::Matcher<double>(IsNan()));
+                place == EffectLocation::attack ? Not(IsNan()) : testing::Matcher<double>(IsNan()));
   }
 }
 
@@ -1045,7 +1047,7 @@ TEST(LoopGarbage, InfinityCountsAsMissing) {
     double time = 0.0;
     for (const auto& [role, value] : level) {
       for (const double garbage : {infinity, -infinity}) {
-        SCOPED_TRACE(testing::Message() << pcor::facts_of(role).name << " = " << garbage);
+        SCOPED_TRACE(testing::Message() << pcor::info_of(role).name << " = " << garbage);
         run(infinite, with(level, {{role, garbage}}), ++time);
         run(absent, with(level, {{role, missing}}), time);
         expect_same(infinite, absent);
@@ -1069,7 +1071,7 @@ TEST(LoopGarbage, InfinityCountsAsMissingInOtherRoles) {
     model.effects.push_back({"static-mach2", {0.01}});
     Loop infinite = build(model, recorded, 1.0);
     Loop absent = build(model, recorded, 1.0);
-    SCOPED_TRACE(pcor::facts_of(role).name);
+    SCOPED_TRACE(pcor::info_of(role).name);
     run(infinite, with(recorded, {{role, infinity}}), 0.0);
     run(absent, with(recorded, {{role, missing}}), 0.0);
     expect_same(infinite, absent);
@@ -1086,7 +1088,7 @@ double garbage(std::mt19937& random, double good) {
 
 std::string text(const Sample& sample) {
   std::ostringstream text;
-  for (const auto& [role, value] : sample) text << "\n  " << pcor::facts_of(role).name << " = " << value;
+  for (const auto& [role, value] : sample) text << "\n  " << pcor::info_of(role).name << " = " << value;
   return text.str();
 }
 
@@ -1097,7 +1099,7 @@ TEST(LoopGarbage, LeavesNothingForTheNextSample) {
   models[1].lams.approach = pcor::LamsApproach::iterated;
   models[1].policy.taper_below = 40.0;
   models[2].effects.push_back({"static-mach2", {0.01}});
-  models[2].effects.push_back(formula(Where::static_defect, "sqrt(dynamic_ratio) * log(mach)"));
+  models[2].effects.push_back(formula(EffectLocation::static_defect, "sqrt(dynamic_ratio) * log(mach)"));
   models[2].policy.minimum = -3.0;
   models[3].moist = false;
   models[3].recovery = {{0.9959, 0.0283, 0.0374, 0.0762}};
@@ -1116,7 +1118,7 @@ TEST(LoopGarbage, LeavesNothingForTheNextSample) {
           for (const Quantity result : results) {
             if (!std::isnan(loop.state()[result])) continue;
             ASSERT_NE(loop.quality().bits(), 0U)
-                << pcor::facts_of(result).name << " lost without a word:" << text(bad);
+                << pcor::info_of(result).name << " lost without a word:" << text(bad);
           }
         }
         run(loop, level, ++time / 25.0);

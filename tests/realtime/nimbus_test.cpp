@@ -233,7 +233,7 @@ void run_plain(Loop& loop, const std::vector<std::string>& roles, const std::vec
   for (std::size_t i = 0; i < roles.size(); ++i) {
     const Quantity role = pcor::quantity_named(roles[i]);
     const auto value = static_cast<double>(raw(inputs[i], time));
-    loop.state()[role] = pcor::facts_of(role).unit == "K" ? value + 273.15 : value;
+    loop.state()[role] = pcor::info_of(role).unit == "K" ? value + 273.15 : value;
   }
   loop.run(time);
 }

@@ -79,10 +79,10 @@ State<double> fly(const Model& model, const Recorded& recorded, const ModelUncer
   return loop->state();
 }
 
-ModelEffect typical(const EffectFacts& facts) {
-  ModelEffect effect{std::string(facts.id), {}};
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i)
-    effect.parameters.push_back(facts.parameters[i].typical);
+ModelEffect typical(const EffectInfo& info) {
+  ModelEffect effect{std::string(info.id), {}};
+  for (std::size_t i = 0; i < info.parameter_count(); ++i)
+    effect.parameters.push_back(info.parameters[i].typical);
   return effect;
 }
 
@@ -127,45 +127,44 @@ void expect_stated(const State<double>& stated, const State<double>& above, cons
     // Dry constants are within 2 %. Left out is what an effect on the temperature feels of the calibration of
     // that temperature itself, 0.5 K here: 3e-4 K.
     EXPECT_NEAR(stated[each.uncertainty], difference, 0.02 * difference + 3e-4)
-        << what << ": " << facts_of(each.result).name;
+        << what << ": " << info_of(each.result).name;
   }
 }
 
-class OfEveryEffect : public testing::TestWithParam<EffectFacts> {};
+class OfEveryEffect : public testing::TestWithParam<EffectInfo> {};
 
 TEST_P(OfEveryEffect, IsTheDifferenceThatItsCoefficientMakes) {
-  const EffectFacts& facts = GetParam();
+  const EffectInfo& info = GetParam();
   const Recorded all = everything_recorded();
   for (const Recorded& recorded :
        {all, without(all, {Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed})}) {
     Model model = law();
     for (const ModelEffect& effect : model.effects) {
-      if (effect.id == facts.id) model.effects = {};
+      if (effect.id == info.id) model.effects = {};
     }
-    model.effects.push_back(typical(facts));
-    model.moist = facts.constants != GasConstants::dry;
-    const std::size_t first = parameter_count(model) - facts.parameter_count();
-    for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-      const double typical_size = 0.1 * std::abs(facts.parameters[i].typical);
+    model.effects.push_back(typical(info));
+    model.moist = info.constants != GasConstants::dry;
+    const std::size_t first = parameter_count(model) - info.parameter_count();
+    for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+      const double typical_size = 0.1 * std::abs(info.parameters[i].typical);
       const double size = typical_size > 0.0 ? typical_size : 0.5;  // of a shape whose usual value is zero
       Model above = model;
       parameter_at(above, first + i) += size;
       Model below = model;
       parameter_at(below, first + i) -= size;
       expect_stated(fly(model, recorded, of_parameter(model, first + i, size)), fly(above, recorded),
-                    fly(below, recorded),
-                    std::string(facts.id) + '.' + std::string(facts.parameters[i].name));
+                    fly(below, recorded), std::string(info.id) + '.' + std::string(info.parameters[i].name));
     }
   }
 }
 
-std::string name_of_test(const testing::TestParamInfo<EffectFacts>& effect) {
+std::string name_of_test(const testing::TestParamInfo<EffectInfo>& effect) {
   std::string name(effect.param.id);
   for (char& letter : name) letter = letter == '-' ? '_' : letter;
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, OfEveryEffect, testing::ValuesIn(effect_facts), name_of_test);
+INSTANTIATE_TEST_SUITE_P(Catalogue, OfEveryEffect, testing::ValuesIn(effect_info), name_of_test);
 
 TEST(ResultUncertainty, OfARoleIsTheDifferenceThatItsValueMakes) {
   Model model = law();
@@ -186,7 +185,7 @@ TEST(ResultUncertainty, OfARoleIsTheDifferenceThatItsValueMakes) {
     Recorded below = recorded;
     below[role] -= size;
     expect_stated(fly(model, recorded, uncertainty), fly(model, above), fly(model, below),
-                  std::string(facts_of(role).name));
+                  std::string(info_of(role).name));
   }
 }
 
@@ -330,7 +329,7 @@ TEST_F(InALoop, IsMissingWhereItsResultIsAndBackWithIt) {
       for (const UncertainResult& each : uncertain_results) {
         run(quantity, to);
         EXPECT_EQ(std::isnan(loop_->state()[each.uncertainty]), std::isnan(loop_->state()[each.result]))
-            << facts_of(quantity).name << ' ' << to << ": " << facts_of(each.result).name;
+            << info_of(quantity).name << ' ' << to << ": " << info_of(each.result).name;
         EXPECT_GT(run()[each.uncertainty], 0.0) << "the sample after";
       }
     }

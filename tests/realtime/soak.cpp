@@ -265,7 +265,7 @@ class Soak {
                                 : value >= result.least && value <= result.most;
       if (is_right) continue;
       if (++broken > 10) continue;
-      std::fprintf(stderr, "%s = %g with the bits %x:", std::string(facts_of(result.quantity).name).c_str(),
+      std::fprintf(stderr, "%s = %g with the bits %x:", std::string(info_of(result.quantity).name).c_str(),
                    value, loop_.quality().bits());
       for (const Usual& role : world_.roles) std::fprintf(stderr, " %g", loop_.state()[role.quantity]);
       std::fprintf(stderr, "\n");

@@ -21,15 +21,15 @@ double sample_of(Quantity quantity) {
     case Quantity::vapor_pressure:
       return 3.0;
     default:
-      return facts_of(quantity).unit == "K" ? 275.0 + 0.01 * static_cast<double>(index(quantity)) : 1.5;
+      return info_of(quantity).unit == "K" ? 275.0 + 0.01 * static_cast<double>(index(quantity)) : 1.5;
   }
 }
 
 // All of the catalogue, each with parameters of a size that is felt and breaks nothing.
 Model every_effect(LamsApproach approach) {
   Model model;
-  for (const EffectFacts& facts : effect_facts) {
-    model.effects.push_back({std::string(facts.id), std::vector<double>(facts.parameter_count(), 1e-4)});
+  for (const EffectInfo& info : effect_info) {
+    model.effects.push_back({std::string(info.id), std::vector<double>(info.parameter_count(), 1e-4)});
   }
   ModelEffect formula;
   formula.id = "of-the-user";
@@ -87,9 +87,9 @@ void expect_true_words(const Correction& correction) {
     for (std::size_t i = 0; i < state_capacity; ++i) {
       const auto quantity = static_cast<Quantity>(i);
       if (is_in(writes, i)) {
-        EXPECT_FALSE(is_missing(after[quantity])) << facts_of(quantity).name;
+        EXPECT_FALSE(is_missing(after[quantity])) << info_of(quantity).name;
         EXPECT_THAT(other[quantity], testing::NanSensitiveDoubleEq(after[quantity]))
-            << facts_of(quantity).name << " depends on what is not said to be read";
+            << info_of(quantity).name << " depends on what is not said to be read";
       } else {
         EXPECT_THAT(other[quantity], testing::NanSensitiveDoubleEq(other_before[quantity]))
             << "place " << i << " is written, which is not said";
@@ -148,9 +148,9 @@ TEST(Stages, KnowTheSourcesOfWhatIsDerived) {
       after[input] = 1.01 * state[input];
       chain->measure(after, chain->parameters().data(), none);
       EXPECT_TRUE(after[derived] == before[derived] || is_in(sources, index(input)))
-          << facts_of(derived).name << " is moved by " << facts_of(input).name;
+          << info_of(derived).name << " is moved by " << info_of(input).name;
     }
-    EXPECT_FALSE(sources.empty()) << facts_of(derived).name;
+    EXPECT_FALSE(sources.empty()) << info_of(derived).name;
   }
 }
 

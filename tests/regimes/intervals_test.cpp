@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/error.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/regimes/regimes.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/utc.hpp>
 
 #include "support/temporary_directory.hpp"
 
@@ -44,7 +44,7 @@ std::string refusal(const std::string& text) { return message_of(format + text);
 std::vector<std::string> in_words(const std::vector<Interval>& intervals) {
   std::vector<std::string> words;
   for (const Interval& interval : intervals) {
-    words.push_back(std::string(facts_of(interval.regime).name) + " " +
+    words.push_back(std::string(info_of(interval.regime).name) + " " +
                     std::to_string(static_cast<long>(interval.begin - midnight)) + "-" +
                     std::to_string(static_cast<long>(interval.end - midnight)));
   }

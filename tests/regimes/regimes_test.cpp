@@ -15,14 +15,14 @@
 #include <type_traits>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/regimes/regimes.hpp>
-#include <pcor/words/error.hpp>
 
 namespace pcor {
 
 void PrintTo(const Interval& interval, std::ostream* stream) {
-  *stream << facts_of(interval.regime).name << " " << std::fixed << interval.begin << " to " << interval.end
+  *stream << info_of(interval.regime).name << " " << std::fixed << interval.begin << " to " << interval.end
           << " (" << interval.note << ")";
 }
 
@@ -190,9 +190,9 @@ std::vector<Interval> manoeuvres(const std::vector<Interval>& intervals) {
 void expect_one(Regime regime, const std::vector<Interval>& intervals, double begin, double end,
                 double tolerance) {
   const std::vector<Interval> found = of(regime, intervals);
-  ASSERT_THAT(found, SizeIs(1)) << facts_of(regime).name;
-  EXPECT_NEAR(found[0].begin, begin, tolerance) << facts_of(regime).name << ": " << found[0].note;
-  EXPECT_NEAR(found[0].end, end, tolerance) << facts_of(regime).name << ": " << found[0].note;
+  ASSERT_THAT(found, SizeIs(1)) << info_of(regime).name;
+  EXPECT_NEAR(found[0].begin, begin, tolerance) << info_of(regime).name << ": " << found[0].note;
+  EXPECT_NEAR(found[0].end, end, tolerance) << info_of(regime).name << ": " << found[0].note;
 }
 
 void expect_phases_cover(const FlightMotion& motion, const std::vector<Interval>& intervals) {
@@ -315,7 +315,7 @@ void expect_told(const Story& story, const std::vector<Interval>& found) {
 TEST(Regimes, HaveNames) {
   for (std::size_t i = 0; i < regime_count; ++i) {
     const auto regime = static_cast<Regime>(i);
-    EXPECT_EQ(regime_named(facts_of(regime).name), regime);
+    EXPECT_EQ(regime_named(info_of(regime).name), regime);
   }
   EXPECT_EQ(regime_named("loop"), Regime::count);
 }

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "support/temporary_directory.hpp"
 
 namespace pcor {
@@ -159,7 +159,7 @@ TEST(Report, EscapesEveryText) {
   report.columns[0].name = report.columns[0].title = report.columns[0].unit = bad;
   report.title = report.subtitle = bad;
   report.summary = {bad};
-  report.facts = {{bad, bad}};
+  report.info = {{bad, bad}};
   report.intervals = {{bad, start, start + 1}};
   report.flight_names = {bad};
   report.items = {TimePanel{bad, bad, {bad}, bad},

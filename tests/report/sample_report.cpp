@@ -235,11 +235,11 @@ pcor::Report sample_report(std::size_t samples, std::size_t flights) {
       "The published model errs with the Mach number and the angle of attack; the refit has no "
       "such structure.",
       "The two systems of total pressure differ by a gain of 0.99946 and an offset of 0.31 hPa."};
-  report.facts = {{"Flight", "rf01, 2003-06-01, 12:10–14:08 UTC"},
-                  {"Samples", std::to_string(report.time.size())},
-                  {"Rate", "1 Hz"},
-                  {"Models", "c130-psfd-qcr-2003, refit"},
-                  {"Reference", "LAMS"}};
+  report.info = {{"Flight", "rf01, 2003-06-01, 12:10–14:08 UTC"},
+                 {"Samples", std::to_string(report.time.size())},
+                 {"Rate", "1 Hz"},
+                 {"Models", "c130-psfd-qcr-2003, refit"},
+                 {"Reference", "LAMS"}};
   report.columns = titled(columns);
   report.items = items();
   return report;

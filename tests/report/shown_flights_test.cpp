@@ -24,7 +24,7 @@ std::vector<FlightToShow> flights(std::size_t count) {
 
 TEST(ShownFlights, AreAllOfFew) {
   EXPECT_THAT(flights_to_show(flights(3)), ElementsAre(0, 1, 2));
-  EXPECT_EQ(flights_to_show(flights(most_flights_shown)).size(), most_flights_shown);
+  EXPECT_EQ(flights_to_show(flights(max_flights_shown)).size(), max_flights_shown);
 }
 
 TEST(ShownFlights, OfManyAreTheWorstAndOthersOverAllOfTheTime) {
@@ -33,7 +33,7 @@ TEST(ShownFlights, OfManyAreTheWorstAndOthersOverAllOfTheTime) {
   all[41].failure = 2.0;
   all[60].failure = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::size_t> shown = flights_to_show(all);
-  EXPECT_EQ(shown.size(), most_flights_shown);
+  EXPECT_EQ(shown.size(), max_flights_shown);
   EXPECT_TRUE(std::is_sorted(shown.begin(), shown.end()));
   EXPECT_EQ(std::set<std::size_t>(shown.begin(), shown.end()).size(), shown.size());
   EXPECT_THAT(shown, IsSupersetOf({40, 41}));

@@ -15,14 +15,14 @@
 
 using pcor::BindingError;
 using pcor::Chain;
-using pcor::effect_facts;
 using pcor::effect_functions;
-using pcor::EffectFacts;
+using pcor::effect_info;
+using pcor::EffectInfo;
+using pcor::EffectLocation;
 using pcor::Model;
 using pcor::ModelEffect;
 using pcor::Quantity;
 using pcor::State;
-using pcor::Where;
 
 namespace {
 
@@ -46,25 +46,25 @@ class Draw {
   std::mt19937_64 engine_{20120106};
 };
 
-State<double> draw_state(const EffectFacts& facts, Draw& draw) {
+State<double> draw_state(const EffectInfo& info, Draw& draw) {
   State<double> state;
-  for (std::size_t i = 0; i < facts.need_count(); ++i) {
-    const InputRange range = input_range(facts.needs[i]);
-    state[facts.needs[i]] = draw(range.lower, range.upper);
+  for (std::size_t i = 0; i < info.need_count(); ++i) {
+    const InputRange range = input_range(info.needs[i]);
+    state[info.needs[i]] = draw(range.lower, range.upper);
   }
   return state;
 }
 
-std::vector<double> draw_parameters(const EffectFacts& facts, Draw& draw) {
+std::vector<double> draw_parameters(const EffectInfo& info, Draw& draw) {
   std::vector<double> result;
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i)
-    result.push_back(draw(facts.parameters[i].lower, facts.parameters[i].upper));
+  for (std::size_t i = 0; i < info.parameter_count(); ++i)
+    result.push_back(draw(info.parameters[i].lower, info.parameters[i].upper));
   return result;
 }
 
 class EveryEffect : public testing::TestWithParam<std::size_t> {
  protected:
-  const EffectFacts& facts() const { return effect_facts[GetParam()]; }
+  const EffectInfo& info() const { return effect_info[GetParam()]; }
   double value(const State<double>& state, const std::vector<double>& parameters) const {
     return effect_functions<double, double>[GetParam()](state, parameters.data());
   }
@@ -75,8 +75,8 @@ class EveryEffect : public testing::TestWithParam<std::size_t> {
 TEST_P(EveryEffect, HasItsDerivativeByEachParameter) {
   Draw draw;
   for (int n = 0; n < 20; ++n) {
-    const State<double> state = draw_state(facts(), draw);
-    std::vector<double> parameters = draw_parameters(facts(), draw);
+    const State<double> state = draw_state(info(), draw);
+    std::vector<double> parameters = draw_parameters(info(), draw);
     std::vector<Jet> dual;
     for (std::size_t i = 0; i < parameters.size(); ++i) dual.emplace_back(parameters[i], static_cast<int>(i));
     const Jet result = effect_functions<double, Jet>[GetParam()](state, dual.data());
@@ -88,10 +88,10 @@ TEST_P(EveryEffect, HasItsDerivativeByEachParameter) {
         moved[i] = x;
         return value(state, moved);
       };
-      const double width = facts().parameters[i].upper - facts().parameters[i].lower;
+      const double width = info().parameters[i].upper - info().parameters[i].lower;
       const double expected = difference(along, parameters[i], 1e-3 * width);
       EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)], expected, 1e-9 * (1 + std::abs(expected)))
-          << facts().parameters[i].name;
+          << info().parameters[i].name;
     }
   }
 }
@@ -99,16 +99,16 @@ TEST_P(EveryEffect, HasItsDerivativeByEachParameter) {
 TEST_P(EveryEffect, HasItsDerivativeByEachInput) {
   Draw draw;
   for (int n = 0; n < 20; ++n) {
-    const State<double> state = draw_state(facts(), draw);
-    const std::vector<double> parameters = draw_parameters(facts(), draw);
+    const State<double> state = draw_state(info(), draw);
+    const std::vector<double> parameters = draw_parameters(info(), draw);
     State<Jet> dual;
-    for (std::size_t i = 0; i < facts().need_count(); ++i)
-      dual[facts().needs[i]] = Jet(state[facts().needs[i]], static_cast<int>(i));
+    for (std::size_t i = 0; i < info().need_count(); ++i)
+      dual[info().needs[i]] = Jet(state[info().needs[i]], static_cast<int>(i));
     const Jet result = effect_functions<Jet, double>[GetParam()](dual, parameters.data());
     const double plain = value(state, parameters);
     EXPECT_NEAR(result.a, plain, 1e-14 * std::abs(plain));
-    for (std::size_t i = 0; i < facts().need_count(); ++i) {
-      const Quantity need = facts().needs[i];
+    for (std::size_t i = 0; i < info().need_count(); ++i) {
+      const Quantity need = info().needs[i];
       const InputRange range = input_range(need);
       const auto along = [&](double x) {
         State<double> moved = state;
@@ -117,14 +117,14 @@ TEST_P(EveryEffect, HasItsDerivativeByEachInput) {
       };
       const double expected = difference(along, state[need], 1e-5 * (range.upper - range.lower));
       EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)], expected, 1e-6 * (1 + std::abs(expected)))
-          << facts_of(need).name;
+          << info_of(need).name;
     }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::Range<std::size_t>(0, pcor::catalogue_size),
                          [](const auto& effect) {
-                           return pcor::test::test_name(effect_facts[effect.param].id);
+                           return pcor::test::test_name(effect_info[effect.param].id);
                          });
 
 namespace {
@@ -256,7 +256,7 @@ TEST(Chain, EveryStageHasItsDerivative) {
          {Quantity::port_static_pressure, Quantity::static_defect, Quantity::lams_static_defect,
           Quantity::corrected_static_pressure, Quantity::corrected_mach, Quantity::ambient_temperature,
           Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::lams_dynamic_pressure}) {
-      EXPECT_NEAR(state[quantity].a, plain[quantity], 1e-9) << facts_of(quantity).name;
+      EXPECT_NEAR(state[quantity].a, plain[quantity], 1e-9) << info_of(quantity).name;
       for (std::size_t i = 0; i < chain.parameters().size(); ++i) {
         const auto along = [&, quantity = quantity](double x) {
           std::vector<double> parameters = chain.parameters();
@@ -266,7 +266,7 @@ TEST(Chain, EveryStageHasItsDerivative) {
         const double expected = difference(along, chain.parameters()[i], 1e-5);
         EXPECT_NEAR(state[quantity].v[static_cast<Eigen::Index>(i)], expected,
                     1e-6 * (1 + std::abs(expected)))
-            << facts_of(quantity).name << " by parameter " << i << (upstream ? ", upstream" : "");
+            << info_of(quantity).name << " by parameter " << i << (upstream ? ", upstream" : "");
       }
     }
   }
@@ -294,37 +294,37 @@ TEST_P(EveryEffect, MovesTheResidualByItsDerivative) {
   // Each in the law of the memo with its typical coefficients; the shape of one that does not act here, below
   // the onset of the transonic pocket, alone moves nothing.
   Model model = memo_model(false);
-  model.moist = facts().constants != pcor::GasConstants::dry;
+  model.moist = info().constants != pcor::GasConstants::dry;
   ModelEffect added;
-  added.id = std::string(facts().id);
-  for (std::size_t i = 0; i < facts().parameter_count(); ++i)
-    added.parameters.push_back(facts().parameters[i].typical);
-  if (facts().id == "static-transonic") added.parameters[1] = 0.3;
+  added.id = std::string(info().id);
+  for (std::size_t i = 0; i < info().parameter_count(); ++i)
+    added.parameters.push_back(info().parameters[i].typical);
+  if (info().id == "static-transonic") added.parameters[1] = 0.3;
   // A law has each effect once.
   const auto same = [&](const ModelEffect& each) { return each.id == added.id; };
   model.effects.erase(std::remove_if(model.effects.begin(), model.effects.end(), same), model.effects.end());
   model.effects.insert(model.effects.begin(), added);
   const Chain chain = build(model);
   std::vector<Jet> parameters(chain.parameters().begin(), chain.parameters().end());
-  for (std::size_t i = 0; i < facts().parameter_count(); ++i)
+  for (std::size_t i = 0; i < info().parameter_count(); ++i)
     parameters[i] = Jet(chain.parameters()[i], static_cast<int>(i));
   const Jet result = residual(chain, parameters);
   EXPECT_NEAR(result.a, residual(chain, chain.parameters()), 1e-9);
-  for (std::size_t i = 0; i < facts().parameter_count(); ++i) {
+  for (std::size_t i = 0; i < info().parameter_count(); ++i) {
     const auto along = [&](double x) {
       std::vector<double> moved = chain.parameters();
       moved[i] = x;
       return residual(chain, moved);
     };
-    const double width = facts().parameters[i].upper - facts().parameters[i].lower;
+    const double width = info().parameters[i].upper - info().parameters[i].lower;
     const double expected = difference(along, chain.parameters()[i], 1e-4 * width);
     // Of the range of the coefficient 1e-7 hPa, a thousandth of what a fit can see, and 1e-6 of the
     // derivative.
     EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)] * width, expected * width,
                 1e-7 + 1e-6 * std::abs(expected * width))
-        << facts().parameters[i].name;
+        << info().parameters[i].name;
     // A date moves what lies between, and no sample does; the time of drying is in the wetness.
-    if (facts().parameters[i].name == "since" || facts().parameters[i].name == "drying") continue;
-    EXPECT_GT(std::abs(expected * width), 1e-3) << facts().parameters[i].name << " moves nothing";
+    if (info().parameters[i].name == "since" || info().parameters[i].name == "drying") continue;
+    EXPECT_GT(std::abs(expected * width), 1e-3) << info().parameters[i].name << " moves nothing";
   }
 }

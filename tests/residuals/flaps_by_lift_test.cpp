@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 namespace {
 
-constexpr double least_airspeed = 60.0;
+constexpr double min_airspeed = 60.0;
 
 /// A C-130 that takes off, cruises for an hour and a half, and approaches.
 struct Flight {
@@ -51,7 +51,7 @@ struct Flight {
     samples.model.columns = {{Quantity::static_pressure, p}, {Quantity::dynamic_pressure, q}};
   }
 
-  std::optional<FlapsByLift> found() const { return find_flaps_by_lift(samples, attack, least_airspeed); }
+  std::optional<FlapsByLift> found() const { return find_flaps_by_lift(samples, attack, min_airspeed); }
 };
 
 TEST(FlapsByLift, AreOutWhereTheAngleIsTooSmallForTheLift) {

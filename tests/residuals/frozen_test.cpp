@@ -39,7 +39,7 @@ void freeze(Series& values, std::size_t first, std::size_t count) {
 
 std::vector<std::pair<std::size_t, std::size_t>> found(const Series& values) {
   std::vector<std::pair<std::size_t, std::size_t>> spans;
-  for (const pcor::Stretch& span : find_frozen(values, std::vector<bool>(values.size(), true)))
+  for (const pcor::Segment& span : find_frozen(values, std::vector<bool>(values.size(), true)))
     spans.emplace_back(span.first, span.count);
   return spans;
 }

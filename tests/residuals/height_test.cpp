@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/residuals/reference.hpp>
-#include <pcor/words/error.hpp>
 
 #include <cmath>
 #include <memory>
@@ -21,7 +21,7 @@ pcor::FlightSamples climb() {
   return flight;
 }
 
-std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::ModelFile& model) {
+std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model) {
   return made::residuals_of(flight, model, *pcor::height_reference(model));
 }
 
@@ -68,7 +68,7 @@ TEST(Height, SeesAZeroOfTheStaticPressureGrowWithHeight) {
 }
 
 TEST(Height, HasTheDerivativesOfItsResiduals) {
-  const pcor::ModelFile model = made::air_model({{"psfd-bias", 0.3}});
+  const pcor::ModelDefinition model = made::air_model({{"psfd-bias", 0.3}});
   // Centred differences of a step of 1e-3 hPa are right to 1e-9 / 1e-3.
   EXPECT_LT(made::derivative_error(climb(), model, *pcor::height_reference(model), 1e-3), 1e-5);
 }
@@ -78,7 +78,7 @@ TEST(Height, HasDerivativesWithoutTheNoiseOfTheHeights) {
   auto flight = std::make_shared<pcor::FlightSamples>(climb());
   for (std::size_t i = 0; i < flight->time.size(); ++i)
     flight->reference.columns[0].second[i] += 3.0 * std::sin(0.7 * static_cast<double>(i));
-  const pcor::ModelFile model = made::air_model({{"static-constant", 0.01}});
+  const pcor::ModelDefinition model = made::air_model({{"static-constant", 0.01}});
   const pcor::Residuals residuals(flight, model, *pcor::height_reference(model));
   const std::size_t sample = 900;
   double residual = 0.0;

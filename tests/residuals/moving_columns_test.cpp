@@ -18,20 +18,20 @@ namespace {
 
 using pcor::Flight;
 using pcor::FlightSamples;
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::Quantity;
 
-ModelFile with_clock(double seconds) {
-  ModelFile model = pcor::test::laser_model();
+ModelDefinition with_clock(double seconds) {
+  ModelDefinition model = pcor::test::laser_model();
   model.model.effects.push_back({"clock-skew", {seconds}});
   return model;
 }
 
-std::shared_ptr<FlightSamples> samples_of(const std::filesystem::path& path, const ModelFile& model) {
+std::shared_ptr<FlightSamples> samples_of(const std::filesystem::path& path, const ModelDefinition& model) {
   return std::make_shared<FlightSamples>(pcor::read_samples(Flight(path), model, *pcor::lams_reference()));
 }
 
-std::vector<double> parameters_with(const ModelFile& model, double seconds) {
+std::vector<double> parameters_with(const ModelDefinition& model, double seconds) {
   std::vector<double> parameters;
   for (const pcor::ModelEffect& effect : model.model.effects)
     parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
@@ -62,7 +62,7 @@ std::filesystem::path late_flight(const pcor::test::TemporaryDirectory& director
 }
 
 TEST(MovingColumns, ChangeAsTheirSlopeSays) {
-  const ModelFile model = with_clock(0.5);
+  const ModelDefinition model = with_clock(0.5);
   const auto samples = samples_of(pcor::test::short_flight(), model);
   ASSERT_EQ(samples->model.moving.size(), 1U);
   EXPECT_EQ(samples->model.moving[0].at, 0.5);
@@ -84,7 +84,7 @@ TEST(MovingColumns, ChangeAsTheirSlopeSays) {
 }
 
 TEST(MovingColumns, HaveTheSameSamplesAtEveryDelay) {
-  const ModelFile model = with_clock(0.0);
+  const ModelDefinition model = with_clock(0.0);
   const auto samples = samples_of(pcor::test::short_flight(), model);
   const std::vector<double> at_zero = *samples->model.find(Quantity::airspeed_rate);
   for (const double seconds : {-5.0, 1.4, 30.0}) {
@@ -97,10 +97,10 @@ TEST(MovingColumns, HaveTheSameSamplesAtEveryDelay) {
 }
 
 TEST(MovingColumns, LetAFormulaReadTheRateOfTheAirspeed) {
-  ModelFile model = pcor::test::laser_model();
+  ModelDefinition model = pcor::test::laser_model();
   pcor::ModelEffect formula;
   formula.id = "mine";
-  formula.where = pcor::Where::static_defect;
+  formula.location = pcor::EffectLocation::static_defect;
   formula.formula = "k * airspeed_rate";
   formula.parameter_names = {"k"};
   formula.parameters = {0.1};
@@ -112,8 +112,8 @@ TEST(MovingColumns, LetAFormulaReadTheRateOfTheAirspeed) {
   EXPECT_EQ(residuals.mask_counts()[0], without.mask_counts()[0]);
 }
 
-ModelFile with_wetting(double drying) {
-  ModelFile model = pcor::test::laser_model();
+ModelDefinition with_wetting(double drying) {
+  ModelDefinition model = pcor::test::laser_model();
   model.variables[Quantity::liquid_water] = "PLWCC";
   model.model.effects.push_back({"temp-wetting", {-1.0, drying}});
   return model;
@@ -130,7 +130,7 @@ std::filesystem::path wet_flight(const pcor::test::TemporaryDirectory& directory
 
 TEST(MovingColumns, KnowHowTheWetnessHangsOnTheDrying) {
   const pcor::test::TemporaryDirectory directory;
-  const ModelFile model = with_wetting(8.0);
+  const ModelDefinition model = with_wetting(8.0);
   const auto samples = samples_of(wet_flight(directory, 8.0), model);
   ASSERT_EQ(samples->model.moving.size(), 1U);
   const std::vector<double> before = *samples->model.find(Quantity::wetness);

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor {
 namespace {
@@ -15,10 +15,10 @@ using testing::HasSubstr;
 
 const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
 
-ModelFile with_laser() { return read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml"); }
-ModelFile without_laser() { return read_model(data / "models" / "c130-psfd-eq18.toml"); }
+ModelDefinition with_laser() { return read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml"); }
+ModelDefinition without_laser() { return read_model(data / "models" / "c130-psfd-eq18.toml"); }
 
-std::string message_of(const std::string& text, const ModelFile& model) {
+std::string message_of(const std::string& text, const ModelDefinition& model) {
   try {
     read_reference(text, model);
   } catch (const Error& error) {

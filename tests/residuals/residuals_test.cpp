@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/residuals/residuals.hpp>
-#include <pcor/words/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 using pcor::Mask;
 using pcor::MaskOptions;
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::Quantity;
 using pcor::Reference;
 using pcor::Residuals;
@@ -24,13 +24,14 @@ namespace {
 
 const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
 
-Residuals residuals(const ModelFile& model, const Reference& reference, const MaskOptions& options = {}) {
+Residuals residuals(const ModelDefinition& model, const Reference& reference,
+                    const MaskOptions& options = {}) {
   const auto samples = std::make_shared<const pcor::FlightSamples>(
       pcor::read_samples(pcor::Flight(short_flight()), model, reference, options));
   return Residuals(samples, model, reference, options);
 }
 
-ModelFile other_system() { return pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"); }
+ModelDefinition other_system() { return pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"); }
 
 std::vector<std::size_t> used(const Residuals& residuals) {
   std::vector<std::size_t> places;
@@ -92,7 +93,7 @@ TEST(Residuals, AgainstLamsAreTheDefectOfTheLaserLessThatOfTheModel) {
   const std::vector<double> values = tested.values(at);
   const std::vector<double> laser = tested.quantity(Quantity::lams_static_defect, at);
   const std::vector<double> model = tested.quantity(Quantity::static_defect, at);
-  const std::vector<double> wanted = tested.wanted_defect(at);
+  const std::vector<double> wanted = tested.target_defect(at);
   for (const std::size_t i : used(tested)) {
     EXPECT_NEAR(values[i], laser[i] - model[i], 1e-12);
     EXPECT_NEAR(wanted[i], laser[i], 1e-12);
@@ -108,7 +109,7 @@ TEST(Residuals, OfTwoSystemsAreOppositeWhenTheyChangePlaces) {
 }
 
 TEST(Residuals, HaveTheDerivativesOfTheWholeChain) {
-  ModelFile model = laser_model();
+  ModelDefinition model = laser_model();
   for (const char* id : {"static-mach2", "lams-elevation", "recovery-factor", "static-lag"})
     model.model.effects.push_back(pcor::neutral_effect(id));
   pcor::ModelEffect bend;
@@ -134,7 +135,7 @@ TEST(Residuals, HaveTheDerivativesOfTheReferenceToo) {
 TEST(Residuals, AtTheSensorAreThoseOfThePressureToFirstOrder) {
   // With a recovery thermometer the temperature goes with the Mach number, with an ambient one it does not.
   for (const bool with_recovery : {true, false}) {
-    ModelFile model = laser_model();
+    ModelDefinition model = laser_model();
     if (!with_recovery) {
       model.variables.erase(Quantity::recovery_temperature);
       model.variables[Quantity::ambient_temperature] = "TRUE_AT";
@@ -179,12 +180,12 @@ TEST(Masks, SayWhyEverySampleIsNotUsed) {
   for (const std::size_t i : used(tested)) {
     EXPECT_FALSE(regimes[i][static_cast<std::size_t>(pcor::Regime::climb)]);
     EXPECT_FALSE(regimes[i][static_cast<std::size_t>(pcor::Regime::ground)]);
-    EXPECT_GE(tested.samples().motion.airspeed[i], options.least_airspeed);
+    EXPECT_GE(tested.samples().motion.airspeed[i], options.min_airspeed);
   }
 }
 
 TEST(Masks, KnowALaserThatIsOffOrAstray) {
-  const ModelFile model = laser_model();
+  const ModelDefinition model = laser_model();
   pcor::FlightSamples samples =
       pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
   const std::vector<std::size_t> places = used(residuals(model, *pcor::lams_reference()));
@@ -201,7 +202,7 @@ TEST(Masks, KnowALaserThatIsOffOrAstray) {
 }
 
 TEST(Masks, CountAMissingInputAsMissing) {
-  const ModelFile model = laser_model();
+  const ModelDefinition model = laser_model();
   pcor::FlightSamples samples =
       pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
   const std::vector<std::size_t> places = used(residuals(model, *pcor::lams_reference()));

@@ -6,7 +6,7 @@
 
 #include "support/isothermal_air.hpp"
 
-using pcor::ModelFile;
+using pcor::ModelDefinition;
 using pcor::Quantity;
 
 namespace {
@@ -29,8 +29,8 @@ pcor::FlightSamples flight() {
   return samples;
 }
 
-ModelFile other(const Effects& effects = {}) {
-  ModelFile file = made::air_model(effects);
+ModelDefinition other(const Effects& effects = {}) {
+  ModelDefinition file = made::air_model(effects);
   file.variables.erase(Quantity::ambient_temperature);
   return file;
 }

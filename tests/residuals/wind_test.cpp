@@ -46,7 +46,7 @@ double circles(int second) { return std::fmod(2.0 * second, 360.0); }
 double legs(int second) { return second % 600 < 300 ? 40.0 : 220.0; }
 double straight(int) { return 40.0; }
 
-std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::ModelFile& model) {
+std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model) {
   return made::residuals_of(flight, model, *pcor::wind_reference(model));
 }
 
@@ -61,7 +61,7 @@ TEST(Wind, ThatIsSteadyLeavesNothing) {
 
 TEST(Wind, SaysByHowMuchDeltaPIsOffWhereHeadingsAreTurned) {
   // 1 hPa too much of delta-p is an airspeed too small by dV/dp; to second order of 1 hPa in 75.
-  const pcor::ModelFile model = made::air_model({{"static-constant", 1.0 / 674.2}});
+  const pcor::ModelDefinition model = made::air_model({{"static-constant", 1.0 / 674.2}});
   for (const auto& heading : {circles, legs}) {
     const std::vector<double> left = residuals(flight(heading), model);
     for (const std::size_t i : {500U, 900U, 1290U}) EXPECT_NEAR(left[i], -1.0, 0.05) << i;
@@ -69,12 +69,12 @@ TEST(Wind, SaysByHowMuchDeltaPIsOffWhereHeadingsAreTurned) {
 }
 
 TEST(Wind, SaysNothingOnOneHeading) {
-  const pcor::ModelFile model = made::air_model({{"static-constant", 1.0 / 674.2}});
+  const pcor::ModelDefinition model = made::air_model({{"static-constant", 1.0 / 674.2}});
   for (const double value : residuals(flight(straight), model)) ASSERT_NEAR(value, 0.0, 0.03);
 }
 
 TEST(Wind, HasTheDerivativesOfItsResiduals) {
-  const pcor::ModelFile model = made::air_model({{"static-constant", 0.001}});
+  const pcor::ModelDefinition model = made::air_model({{"static-constant", 0.001}});
   // Centred differences of a step of 1e-6 of p, some 7e-4 hPa, are right to 1e-5.
   EXPECT_LT(made::derivative_error(flight(circles), model, *pcor::wind_reference(model), 1e-6), 1e-4);
 }
@@ -94,7 +94,7 @@ TEST(Wind, DoesNotBelieveASensorThatIsFrozen) {
       if (quantity == frozen) std::fill_n(values.begin() + 800, 60, values[800]);
     }
     samples.reference.frozen = {{frozen, 800, 60}};
-    const pcor::ModelFile model = made::air_model();
+    const pcor::ModelDefinition model = made::air_model();
     const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(samples), model,
                                     *pcor::wind_reference(model));
     EXPECT_EQ(residuals.mask()[799], pcor::Mask::none);
@@ -107,7 +107,7 @@ TEST(Wind, DoesNotBelieveASensorThatIsFrozen) {
 
 TEST(Wind, SeesWhichSensorsOfAFlightAreFrozen) {
   const pcor::test::TemporaryDirectory directory;
-  const pcor::ModelFile model = pcor::test::laser_model();
+  const pcor::ModelDefinition model = pcor::test::laser_model();
   const auto reference = pcor::wind_reference(model);
   for (const auto& [name, quantity] :
        {std::pair("THDG", Quantity::heading), std::pair("GGSPD", Quantity::ground_speed),

@@ -5,9 +5,9 @@
 #include <set>
 #include <string>
 
+#include <pcor/base/error.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/error.hpp>
-#include "laws/model_names.hpp"
+#include "model_io/model_names.hpp"
 #include "roles/usual_variables.hpp"
 #include "support/netcdf_file.hpp"
 
@@ -23,9 +23,9 @@ std::string refusal_of(const std::string& text) {
 
 const std::string head = "format = \"pcor-aircraft/1\"\nname = \"mine\"\ntitle = \"my aircraft\"\n";
 
-TEST(AircraftFamily, DataAreWhole) {
+TEST(VariableNaming, DataAreWhole) {
   std::set<std::string> names;
-  for (const AircraftFamily& family : aircraft_families()) {
+  for (const VariableNaming& family : aircraft_families()) {
     SCOPED_TRACE(family.name);
     EXPECT_TRUE(names.insert(family.name).second);
     EXPECT_FALSE(family.title.empty());
@@ -52,7 +52,7 @@ TEST(AircraftFamily, DataAreWhole) {
   EXPECT_EQ(aircraft_families().front().name, "ncar") << "whose names stand for a file that none knows";
 }
 
-TEST(AircraftFamily, RefusesWhatHasNoMeaning) {
+TEST(VariableNaming, RefusesWhatHasNoMeaning) {
   EXPECT_THAT(refusal_of("name = \"mine\""), HasSubstr("mine.toml:1:"));
   EXPECT_THAT(refusal_of("format = \"pcor-aircraft/1\"\nname = \"mine\""), HasSubstr("has no title"));
   EXPECT_THAT(refusal_of(head + "[series]\nheigth = [\"ALT\"]"), HasSubstr("heigth"));
@@ -65,7 +65,7 @@ TEST(AircraftFamily, RefusesWhatHasNoMeaning) {
               HasSubstr("no published recovery factor"));
 }
 
-TEST(AircraftFamily, IsNamed) {
+TEST(VariableNaming, IsNamed) {
   EXPECT_EQ(family_named("faam-core").unit_of("VELD_GIN"), "-1 m s-1");
   EXPECT_EQ(family_named("faam-core").unit_of("ALT_GIN"), "") << "as the file says";
   EXPECT_THAT(test::message_of<Error>([] { family_named("fam-core"); }),

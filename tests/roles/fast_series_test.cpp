@@ -57,18 +57,18 @@ double rms_of_difference(const std::vector<double>& found, double shift, double 
 }
 
 TEST(ShortestPeriod, IsTheWholeBandOfWhatHasNoNoise) {
-  EXPECT_EQ(signal_band_of(wandering(4000), seconds(4000), 1.0).shortest_period, 2.0);
+  EXPECT_EQ(signal_band_of(wandering(4000), seconds(4000), 1.0).min_period, 2.0);
 }
 
 TEST(ShortestPeriod, CutsNoiseOff) {
   // All of the wave is at 40 s; what is shorter is noise. Half an octave to either side is left.
-  const double period = signal_band_of(wave(4000, 1, 0.3), seconds(4000), 1.0).shortest_period;
+  const double period = signal_band_of(wave(4000, 1, 0.3), seconds(4000), 1.0).min_period;
   EXPECT_GT(period, 8.0);
   EXPECT_LT(period, 40.0);
 }
 
 TEST(ShortestPeriod, FindsNoiseThatIsKnownAtAHighRateOnly) {
-  const double period = signal_band_of(wave(2000, 25, 1.5), seconds(2000), 1.0).shortest_period;
+  const double period = signal_band_of(wave(2000, 25, 1.5), seconds(2000), 1.0).min_period;
   EXPECT_GT(period, 8.0);
   EXPECT_LT(period, 40.0);
 }
@@ -78,7 +78,7 @@ TEST(ShortestPeriod, IsThatOfTwoSamplesWhereTheyAreFarApart) {
   for (const double step : {16.0, 20.0, 60.0}) {
     std::vector<double> time = seconds(50);
     for (double& each : time) each *= step;
-    EXPECT_EQ(signal_band_of(series, time, step).shortest_period, 2.0 * step);
+    EXPECT_EQ(signal_band_of(series, time, step).min_period, 2.0 * step);
   }
 }
 
@@ -104,8 +104,8 @@ TEST(RateOfSeries, HasLessNoiseWithTheNoisesOwnCutOff) {
   const FastSeries noisy = wave(4000, 1, 0.1);
   const std::vector<double> time = seconds(4000);
   const double whole = rms_of_difference(rate_of(noisy, time, 1.0, 2.0), 0.0, 2.0 * pi / 40.0);
-  const double cut = rms_of_difference(
-      rate_of(noisy, time, 1.0, signal_band_of(noisy, time, 1.0).shortest_period), 0.0, 2.0 * pi / 40.0);
+  const double cut = rms_of_difference(rate_of(noisy, time, 1.0, signal_band_of(noisy, time, 1.0).min_period),
+                                       0.0, 2.0 * pi / 40.0);
   EXPECT_LT(cut, 0.1 * whole);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -28,8 +28,8 @@ class PlausiblePressure : public testing::Test {
     return Flight(path);
   }
 
-  static ModelFile model() {
-    ModelFile model;
+  static ModelDefinition model() {
+    ModelDefinition model;
     model.variables[Quantity::static_pressure] = "PSFD";
     return model;
   }
@@ -42,7 +42,7 @@ TEST_F(PlausiblePressure, HectopascalsThatAreCalledPascalsAreRefusedWithTheirUni
   EXPECT_THAT(test::message_of<Error>([&] { require_possible_pressure(wrong, model()); }),
               AllOf(HasSubstr("PSFD in 'Pa'"), HasSubstr("the height GGALT"),
                     HasSubstr("static_pressure = \"hPa\"")));
-  ModelFile stated = model();
+  ModelDefinition stated = model();
   stated.units[Quantity::static_pressure] = "Pa";
   EXPECT_FALSE(impossible_pressure(wrong, stated)) << "what a model states is believed";
 }

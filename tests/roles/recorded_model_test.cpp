@@ -14,7 +14,7 @@ struct Recorded {
 };
 
 /// The model of a flight of ten records that has these variables.
-std::optional<ModelFile> model_with(const std::vector<Recorded>& variables) {
+std::optional<ModelDefinition> model_with(const std::vector<Recorded>& variables) {
   const test::TemporaryDirectory directory;
   const std::filesystem::path path = directory / "flight.nc";
   {

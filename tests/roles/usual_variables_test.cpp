@@ -11,7 +11,7 @@ using testing::IsSupersetOf;
 using testing::Not;
 
 TEST(UsualVariables, BelongToRolesThatAModelNeedNotName) {
-  const AircraftFamily& ncar = family_named("ncar");
+  const VariableNaming& ncar = family_named("ncar");
   EXPECT_THAT(usual_variables(ncar, Quantity::attack), ElementsAre("ATTACK", "AKRD"));
   EXPECT_THAT(usual_variables(ncar, Quantity::cabin_pressure), ElementsAre("PCAB"));
   EXPECT_THAT(usual_variables(Quantity::attack), IsSupersetOf({"ATTACK", "AOA", "alpha", "ALPHA"}));
@@ -19,12 +19,12 @@ TEST(UsualVariables, BelongToRolesThatAModelNeedNotName) {
        {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::lams_airspeed, Quantity::mach,
         Quantity::vapor_pressure, Quantity::dew_point, Quantity::recovery_temperature,
         Quantity::ambient_temperature, Quantity::corrected_mach})
-    EXPECT_TRUE(usual_variables(role).empty()) << facts_of(role).name;
+    EXPECT_TRUE(usual_variables(role).empty()) << info_of(role).name;
 }
 
 TEST(UsualVariables, OfTheAltitudeAreHeightsByGps) {
   // Against the height that a pressure makes, no pressure could be tested.
-  const AircraftFamily& ncar = family_named("ncar");
+  const VariableNaming& ncar = family_named("ncar");
   EXPECT_THAT(usual_variables(ncar, Quantity::altitude), Not(Contains("PALT")));
   EXPECT_THAT(usual_heights(ncar), IsSupersetOf(usual_variables(ncar, Quantity::altitude)));
   EXPECT_EQ(usual_heights(ncar).back(), "PALT");
@@ -33,17 +33,17 @@ TEST(UsualVariables, OfTheAltitudeAreHeightsByGps) {
 TEST(UsualVariables, KnowsSeriesThatNoModelReads) {
   ASSERT_NE(series_named("longitude"), nullptr);
   EXPECT_EQ(series_named("longitude")->unit, "deg");
-  EXPECT_EQ(series_named("roll"), &facts_of(Quantity::roll));
+  EXPECT_EQ(series_named("roll"), &info_of(Quantity::roll));
   EXPECT_EQ(series_named("ground_speed_up"), nullptr);
   EXPECT_EQ(series_named("corrected_mach"), nullptr) << "it is a result";
 }
 
 TEST(NamesOfSeries, EachThatIsMeasuredHasLimits) {
   for (const std::string& series : pcor::internal::names_of_series()) {
-    const pcor::QuantityFacts& facts = *pcor::internal::series_named(series);
-    if (facts.quantity == pcor::Quantity::date) continue;
-    EXPECT_GT(facts.least, -1e6) << series;
-    EXPECT_LT(facts.most, 1e6) << series;
+    const pcor::QuantityInfo& info = *pcor::internal::series_named(series);
+    if (info.quantity == pcor::Quantity::date) continue;
+    EXPECT_GT(info.least, -1e6) << series;
+    EXPECT_LT(info.most, 1e6) << series;
   }
 }
 

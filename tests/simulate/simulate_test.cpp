@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/batch/batch.hpp>
 #include <pcor/flight/flight.hpp>
-#include <pcor/laws/model_file.hpp>
-#include <pcor/words/error.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include "simulate/random.hpp"
 #include "simulate/turbulence.hpp"
 #include "support/temporary_directory.hpp"
@@ -286,7 +286,7 @@ TEST(Simulate, LamsFindsTheDefect) {
   const std::string text = head + noiseless + "[lams]\nelevation = 1.5\nazimuth = -0.8\n" + systems + aloft +
                            leg("pitch") + leg("speed-run", "low = 95\nhigh = 125") + leg("yaw");
   const Simulated flight(text);
-  const ModelFile model = parse_model(R"(
+  const ModelDefinition model = parse_model(R"(
 format = "pcor-model/1"
 name = "laser only"
 [variables]
@@ -303,7 +303,7 @@ azimuth = -0.8
 [temperature]
 recovery_factor = 0.95
 )",
-                                      "model.toml");
+                                            "model.toml");
   const std::map<Quantity, std::vector<double>> recorded{
       {Quantity::static_pressure, flight("PSFD", "hPa")},
       {Quantity::dynamic_pressure, flight("QCF", "hPa")},

@@ -18,8 +18,8 @@ namespace made {
 inline constexpr double air_temperature = 260.0;  // K
 
 /// A model of the pair PSFD/QCF with an ambient temperature and these effects of the catalogue.
-inline pcor::ModelFile air_model(const std::vector<std::pair<std::string, double>>& effects = {}) {
-  pcor::ModelFile file;
+inline pcor::ModelDefinition air_model(const std::vector<std::pair<std::string, double>>& effects = {}) {
+  pcor::ModelDefinition file;
   file.model.name = "made";
   file.variables = {{pcor::Quantity::static_pressure, "PSFD"},
                     {pcor::Quantity::dynamic_pressure, "QCF"},
@@ -61,7 +61,7 @@ inline pcor::FlightSamples air_flight(const std::vector<double>& height,
 }
 
 /// The residuals of a flight, with the parameters of the model.
-inline std::vector<double> residuals_of(const pcor::FlightSamples& flight, const pcor::ModelFile& model,
+inline std::vector<double> residuals_of(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model,
                                         const pcor::Reference& reference) {
   const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(flight), model, reference);
   return residuals.values(residuals.parameters().data());
@@ -69,7 +69,7 @@ inline std::vector<double> residuals_of(const pcor::FlightSamples& flight, const
 
 /// The largest difference between the derivatives by the first parameter and finite differences of the
 /// residuals, over the largest derivative, at every tenth sample: residuals of a part are those of the whole.
-inline double derivative_error(const pcor::FlightSamples& flight, const pcor::ModelFile& model,
+inline double derivative_error(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model,
                                const pcor::Reference& reference, double step) {
   const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(flight), model, reference);
   std::vector<std::size_t> places;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/simulate/simulate.hpp>
 
 #include <filesystem>
@@ -22,6 +22,6 @@ inline const std::filesystem::path& short_flight() {
 }
 
 /// The law with which that flight was simulated, and the variable of the laser.
-inline ModelFile laser_model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+inline ModelDefinition laser_model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 }  // namespace pcor::test

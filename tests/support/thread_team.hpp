@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pcor/team/team.hpp>
+#include <pcor/parallel/communicator.hpp>
 
 #include <atomic>
 #include <chrono>
@@ -23,9 +23,8 @@ namespace pcor::test {
 /// netCDF library
 /// @return bytes that each member sent at each exchange
 /// @throws what a member threw, after all have ended
-inline std::vector<std::vector<std::size_t>> run_as_team(std::size_t size,
-                                                         const std::function<void(Team&)>& work,
-                                                         bool one_at_a_time = false) {
+inline std::vector<std::vector<std::size_t>> run_with_communicator(
+    std::size_t size, const std::function<void(Communicator&)>& work, bool one_at_a_time = false) {
   struct Table {
     std::mutex working{};  // of the one that works, where one does at a time
     std::mutex mutex{};
@@ -37,7 +36,7 @@ inline std::vector<std::vector<std::size_t>> run_as_team(std::size_t size,
   } table;
   table.laid.resize(size);
 
-  class Member final : public Team {
+  class Member final : public Communicator {
    public:
     Member(Table& table, std::size_t rank, std::size_t size, bool one_at_a_time)
         : table_(table), rank_(rank), size_(size), one_at_a_time_(one_at_a_time) {}

@@ -42,13 +42,13 @@ class DryAir : public testing::Test {
     dry_.variables.erase(pcor::Quantity::vapor_pressure);
   }
 
-  std::string trouble(const HeightRecord& record, const pcor::ModelFile& model) const {
+  std::string trouble(const HeightRecord& record, const pcor::ModelDefinition& model) const {
     return trouble_with_dry_air(record, model, pcor::Flight(directory_ / "flight.nc"));
   }
 
   pcor::test::TemporaryDirectory directory_;
-  const pcor::ModelFile moist_ = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
-  pcor::ModelFile dry_ = moist_;
+  const pcor::ModelDefinition moist_ = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  pcor::ModelDefinition dry_ = moist_;
 };
 
 TEST_F(DryAir, IsNoTroubleAbove5Km) {
@@ -66,11 +66,11 @@ TEST_F(DryAir, IsAirWithoutVapourWhateverTheModelNames) {
 TEST_F(DryAir, SaysWhichHumidityTheModelCouldName) {
   EXPECT_THAT(trouble(climb_from(1000.0, 0.0), dry_),
               AllOf(HasSubstr("vapor_pressure = \"EDPC\""), HasSubstr("moist = true"), Not(HasSubstr("\n"))));
-  pcor::ModelFile named = moist_;
+  pcor::ModelDefinition named = moist_;
   named.model.moist = false;
   EXPECT_THAT(trouble(climb_from(1000.0, 0.0), named),
               AllOf(HasSubstr("moist = true"), Not(HasSubstr("EDPC"))));
-  pcor::ModelFile of_others = dry_;
+  pcor::ModelDefinition of_others = dry_;
   of_others.roles_from = "faam-core";
   EXPECT_THAT(trouble(climb_from(1000.0, 0.0), of_others), HasSubstr("name the flight's vapor_pressure"));
 }

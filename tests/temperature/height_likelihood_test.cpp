@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "support/made_air.hpp"
+#include "support/synthetic_air.hpp"
 #include "temperature/height_least_squares.hpp"
 
 using namespace pcor::internal;
@@ -22,8 +22,8 @@ using pcor::internal::HeightNoise;
 using pcor::internal::HeightPrior;
 using pcor::internal::HeightRecord;
 
-const pcor::internal::Workers one_thread(pcor::alone(), 1);
-const pcor::internal::Workers three_threads(pcor::alone(), 3);
+const pcor::internal::Workers one_thread(pcor::serial_communicator(), 1);
+const pcor::internal::Workers three_threads(pcor::serial_communicator(), 3);
 
 HeightRecord record_of(const made::AirPlan& plan) {
   return pcor::internal::height_record(made::air(plan), {}, {});
@@ -341,8 +341,8 @@ TEST(HeightLeastSquares, ErrorsAreTooSmallWhereNoiseRemembersItself) {
     squares_least += std::pow(least.coefficients[0] / least.standard_errors[0], 2);
     squares_likely += std::pow(likely.best(1)[0], 2) / likely.covariance(1)(0, 0);
   }
-  // Scores of the likelihood have a mean square of 1, known to sqrt(2/40) = 0.22 from 40 seeds; those of
-  // least squares one of about twice the memory, 240.
+  // WhitenedSystem of the likelihood have a mean square of 1, known to sqrt(2/40) = 0.22 from 40 seeds; those
+  // of least squares one of about twice the memory, 240.
   EXPECT_NEAR(squares_likely / seeds, 1.0, 0.67);
   EXPECT_GT(squares_least / seeds, 50.0);
 }

@@ -8,8 +8,8 @@
 #include <limits>
 #include <memory>
 
-#include <pcor/words/error.hpp>
-#include "support/made_air.hpp"
+#include <pcor/base/error.hpp>
+#include "support/synthetic_air.hpp"
 
 using namespace pcor::internal;
 
@@ -23,9 +23,9 @@ using testing::HasSubstr;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-HeightRecord record_of(const pcor::internal::FlightAir& air, double least_climb_rate = 0.0) {
+HeightRecord record_of(const pcor::internal::FlightAir& air, double min_climb_rate = 0.0) {
   pcor::internal::HeightRecordOptions options;
-  options.least_climb_rate = least_climb_rate;
+  options.min_climb_rate = min_climb_rate;
   return height_record(air, {}, options);
 }
 
@@ -50,7 +50,7 @@ std::string message_for(const pcor::internal::FlightAir& air) {
 
 TEST(HeightRecord, IntegralClosesInAirThatIsKnownInClosedForm) {
   const HeightRecord record = record_of(made::air({}));
-  EXPECT_EQ(record.stretches, 1U);
+  EXPECT_EQ(record.segments, 1U);
   EXPECT_EQ(record.samples, 5400U);
   // The trapezium rule over 3 m errs by less than 1e-8 of the height; rounding of 5400 steps is smaller.
   EXPECT_LT(range_of_excess(record), 1e-3);
@@ -143,13 +143,13 @@ TEST(HeightRecord, ErrorsOfTheLawAreWhatTheySay) {
 TEST(HeightRecord, BeginsAnewAfterAGapAndCrossesAShortOne) {
   pcor::internal::FlightAir air = made::air({});
   for (std::size_t i = 1000; i < 1005; ++i) air.pressure[i] = nan;
-  EXPECT_EQ(record_of(air).stretches, 1U);
+  EXPECT_EQ(record_of(air).segments, 1U);
   EXPECT_LT(range_of_excess(record_of(air)), 2e-3);
   for (std::size_t i = 2000; i < 2030; ++i) air.temperature[i] = nan;
   const HeightRecord record = record_of(air);
-  EXPECT_EQ(record.stretches, 2U);
+  EXPECT_EQ(record.segments, 2U);
   EXPECT_EQ(std::count_if(record.blocks.begin(), record.blocks.end(),
-                          [](const HeightBlock& block) { return block.starts_stretch; }),
+                          [](const HeightBlock& block) { return block.starts_segment; }),
             2);
 }
 
@@ -157,7 +157,7 @@ TEST(HeightRecord, MissingHeightIsNotAGap) {
   pcor::internal::FlightAir air = made::air({});
   for (std::size_t i = 1000; i < 1600; ++i) air.geopotential_height[i] = nan;
   const HeightRecord record = record_of(air);
-  EXPECT_EQ(record.stretches, 1U);
+  EXPECT_EQ(record.segments, 1U);
   EXPECT_EQ(record.missing_heights, 600U);
   EXPECT_LT(range_of_excess(record), 1e-3);
 }
@@ -169,14 +169,14 @@ TEST(HeightRecord, SpikesAreLeftOutAndStepsBeginAnew) {
   const HeightRecord record = record_of(air);
   EXPECT_EQ(record.height_spikes, 20U);
   EXPECT_EQ(record.height_steps, 1U);
-  EXPECT_EQ(record.stretches, 2U);
+  EXPECT_EQ(record.segments, 2U);
 }
 
 TEST(HeightRecord, KeepsOnlyWhatClimbsFastEnough) {
   const HeightRecord all = record_of(made::air({}));
   const HeightRecord climbs = record_of(made::air({}), 2.0);
   EXPECT_LT(climbs.blocks.size(), all.blocks.size());
-  EXPECT_GE(climbs.stretches, 3U);  // three climbs and descents in one and a half periods
+  EXPECT_GE(climbs.segments, 3U);  // three climbs and descents in one and a half periods
   for (const HeightBlock& block : climbs.blocks) EXPECT_GE(std::abs(block.climb), 2.0);
 }
 

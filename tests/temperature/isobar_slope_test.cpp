@@ -7,7 +7,7 @@
 #include <cmath>
 #include <memory>
 
-#include "support/made_air.hpp"
+#include "support/synthetic_air.hpp"
 
 using namespace pcor::internal;
 
@@ -147,7 +147,7 @@ TEST(IsobarSlope, NamesAreReadBack) {
   for (const IsobarSlope option :
        {IsobarSlope::fitted, IsobarSlope::none, IsobarSlope::level_legs, IsobarSlope::climb_descent,
         IsobarSlope::whole_flight, IsobarSlope::geostrophic})
-    EXPECT_EQ(pcor::isobar_slope_named(name_of(option)), option);
+    EXPECT_EQ(pcor::isobar_slope_named(to_string(option)), option);
   EXPECT_FALSE(pcor::isobar_slope_named("steep"));
 }
 

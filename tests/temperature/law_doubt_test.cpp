@@ -34,7 +34,7 @@ TEST(LawDoubt, IsTheMeanOfWhatTheModelStatesInEverySample) {
   pcor::Scenario scenario = pcor::read_scenario(scenarios / "c130-climbs.toml");
   scenario.legs.resize(5);
   pcor::simulate_flight(scenario, directory / "flight.nc");
-  pcor::ModelFile model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
   const FlightAir air = read_flight_air({directory / "flight.nc"}, 0, model);
   EXPECT_FALSE(stated_law_variance(model, air));
 

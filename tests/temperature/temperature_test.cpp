@@ -19,11 +19,11 @@
 #include <variant>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/process/process.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <pcor/words/error.hpp>
 #include "campaign/flight_air.hpp"
-#include "laws/calibration.hpp"
+#include "model_io/calibration.hpp"
 #include "support/many_seeds.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -71,7 +71,7 @@ Scenario no_climb() {
 }
 
 /// The law that the scenario flies with, and the laser.
-ModelFile model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+ModelDefinition model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 /// Errors are those of the noise: the pressures of the simulator have no error that lasts.
 TemperatureOptions of_degree(int degree) {
@@ -138,7 +138,7 @@ class Temperature : public testing::Test {
     return path;
   }
 
-  fs::path processed(const fs::path& flight, const ModelFile& with, const std::string& name) {
+  fs::path processed(const fs::path& flight, const ModelDefinition& with, const std::string& name) {
     ProcessOptions options;
     options.hydrostatic = true;
     process_flight(flight, with, directory_ / name, options);
@@ -157,7 +157,8 @@ double apart(const TemperatureFit& one, const TemperatureFit& other) {
   return most;
 }
 
-// Where the search for the noise stops, 0.001 of -2 ln L, coefficients move by a small part of their error.
+// Where the search for the noise stops, 0.001 of -2 ln L, coefficients move by a small part of their
+// error.
 constexpr double search_stops = 0.1;
 
 // Many seeds
@@ -165,7 +166,7 @@ constexpr double search_stops = 0.1;
 const std::size_t seeds = test::number_of_seeds();
 
 /// What the fits of all seeds say of one coefficient: how far it is from the truth, and its stated errors.
-struct Scores {
+struct WhitenedSystem {
   std::vector<double> errors;
   std::vector<double> stated;
 
@@ -192,8 +193,8 @@ struct Scores {
 class TemperatureRecovery : public Temperature {};
 
 TEST_F(TemperatureRecovery, OfOffsetAndSlopeOverIsobarsThatSlope) {
-  std::array<Scores, 2> likelihood;
-  std::array<Scores, 2> least_squares;
+  std::array<WhitenedSystem, 2> likelihood;
+  std::array<WhitenedSystem, 2> least_squares;
   for (std::uint64_t seed = 6000; seed < 6000 + seeds; ++seed) {
     const fs::path flight = fly(climbs(), seed);
     const std::array<double, 2> true_value = truth(flight);
@@ -245,7 +246,7 @@ Scenario::Effect effect(const std::string& id, const std::map<std::string, doubl
 /// The default errors know what is usually wrong with pressures and humidity: flights on which each is wrong
 /// as it is known beforehand, the law by 0.3 hPa in each of its terms.
 TEST_F(TemperatureRecovery, WithAllThatIsUsuallyWrong) {
-  Scores scores;
+  WhitenedSystem scores;
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
   for (std::uint64_t seed = 7000; seed < 7000 + seeds; ++seed) {
@@ -300,7 +301,7 @@ TEST_F(Temperature, AThermometerIsNotBlamedForTheHumidity) {
 
 TEST_F(Temperature, DryAirIsRefusedUnlessItIsWanted) {
   const fs::path flight = fly(one_climb(), 1);
-  ModelFile dry = model();
+  ModelDefinition dry = model();
   dry.model.moist = false;
   EXPECT_THAT([&] { fit_temperature({flight}, dry, of_degree(1)); },
               ThrowsMessage<Error>(AllOf(HasSubstr("flight1.nc"), HasSubstr("taken for dry"))));
@@ -347,7 +348,7 @@ TEST_F(Temperature, ProfileAndCurvatureAgree) {
 
 TEST_F(Temperature, TheModelFileHasWhatTheResultSays) {
   const TemperatureResult result = fit_temperature({fly(one_climb(), 1)}, model(), of_degree(1));
-  const ModelFile read = parse_model(write_model(result.model), "made");
+  const ModelDefinition read = parse_model(write_model(result.model), "made");
   const ModelEffect& effect = read.model.effects.back();
   EXPECT_EQ(effect.id, calibration_id);
   EXPECT_THAT(effect.parameters,
@@ -361,9 +362,9 @@ TEST_F(Temperature, TheModelFileHasWhatTheResultSays) {
 TEST_F(Temperature, ACorrectionThatTheModelHasIsReplaced) {
   const fs::path flight = fly(one_climb(), 1);
   const TemperatureResult bare = fit_temperature({flight}, model(), of_degree(1));
-  const ModelFile wrong = with_calibration(model(), {2.0, -0.03, 0.0005}, {0.1, 0.1, 0.1},
-                                           {{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}, {0.0, 0.0, 0.01}});
-  for (const ModelFile& start : {wrong, bare.model}) {
+  const ModelDefinition wrong = with_calibration(model(), {2.0, -0.03, 0.0005}, {0.1, 0.1, 0.1},
+                                                 {{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}, {0.0, 0.0, 0.01}});
+  for (const ModelDefinition& start : {wrong, bare.model}) {
     const TemperatureResult again = fit_temperature({flight}, start, of_degree(1));
     EXPECT_EQ(again.likelihood.coefficients, bare.likelihood.coefficients);
     EXPECT_EQ(write_model(again.model), write_model(bare.model));
@@ -373,8 +374,8 @@ TEST_F(Temperature, ACorrectionThatTheModelHasIsReplaced) {
 TEST_F(Temperature, ArchivedFlightsGiveTheSame) {
   // Archived steps are floats of 0.02 m/K, to 1e-9, and temperatures to 4e-6 K. At higher rates steps are of
   // the samples, where raw flights have means over a record: alike to the turbulence within a second.
-  const ModelFile curved = with_calibration(model(), {0.5, -0.02, 0.0003}, {0.1, 0.1, 0.1},
-                                            {{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}, {0.0, 0.0, 0.01}});
+  const ModelDefinition curved = with_calibration(model(), {0.5, -0.02, 0.0003}, {0.1, 0.1, 0.1},
+                                                  {{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}, {0.0, 0.0, 0.01}});
   for (const int rate : {1, 5, 25}) {
     Scenario scenario = one_climb();
     scenario.rate = rate;
@@ -382,7 +383,7 @@ TEST_F(Temperature, ArchivedFlightsGiveTheSame) {
     const TemperatureResult raw = fit_temperature({flight}, model(), of_degree(1));
     TemperatureOptions options = of_degree(1);
     options.archived = true;
-    for (const ModelFile& with : {model(), curved}) {
+    for (const ModelDefinition& with : {model(), curved}) {
       const fs::path archive = processed(flight, with, "archived.nc");
       const TemperatureResult archived = fit_temperature({archive}, model(), options);
       // They have no angle of attack, so that an error of the law with it is not taken off. That makes errors
@@ -411,7 +412,7 @@ TEST_F(Temperature, SecondsWithoutPressureAreCrossed) {
       fit_temperature({processed(gaps, model(), "archived.nc")}, model(), options);
   for (const TemperatureResult& result : {raw, archived}) {
     EXPECT_NEAR(static_cast<double>(result.samples + missing), static_cast<double>(whole.samples), 1.0);
-    EXPECT_EQ(result.flights[0].stretches, 1U);
+    EXPECT_EQ(result.flights[0].segments, 1U);
     // 2 % fewer samples of noise that remembers itself for a minute are hardly less; the steps across two
     // seconds are exact to (dp/p)^2/12, some 1e-7.
     EXPECT_LT(apart(whole.likelihood, result.likelihood), 0.3);
@@ -542,10 +543,10 @@ TEST_F(Temperature, StatedErrorsKnowWhatAnEstimateOfTheSlopeLeaves) {
 
 TEST_F(Temperature, InTurnComesToRest) {
   const std::vector<fs::path> flights = fly_several(one_climb(), 1, 2);
-  ModelFile start = model();
+  ModelDefinition start = model();
   start.model.effects[0].parameters = {0.006};  // by 0.0019 of the pressure too much
-  const CalibrationInTurn found =
-      calibrate_in_turn(flights, start, {pcor::lams_reference()}, {}, of_degree(1));
+  const IterativeCalibration found =
+      calibrate_iteratively(flights, start, {pcor::lams_reference()}, {}, of_degree(1));
   ASSERT_TRUE(found.converged);
   ASSERT_GT(found.rounds.size(), 1U);
   for (std::size_t i = 1; i < found.rounds.size(); ++i) {
@@ -564,8 +565,8 @@ TEST_F(Temperature, InTurnComesToRest) {
   EXPECT_NEAR(found.rounds.front().temperature_change, whole, 0.01);
   EXPECT_EQ(found.rounds.back().coefficients, found.temperature.likelihood.coefficients);
 
-  const CalibrationInTurn again =
-      calibrate_in_turn(flights, found.temperature.model, {pcor::lams_reference()}, {}, of_degree(1));
+  const IterativeCalibration again =
+      calibrate_iteratively(flights, found.temperature.model, {pcor::lams_reference()}, {}, of_degree(1));
   EXPECT_TRUE(again.converged);
   ASSERT_THAT(again.rounds, SizeIs(1));
   EXPECT_LT(again.rounds[0].defect_change, 1e-3);       // hPa, as promised
@@ -574,7 +575,8 @@ TEST_F(Temperature, InTurnComesToRest) {
 
 TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
   const std::vector<fs::path> flights{fly(one_climb(), 1)};
-  const CalibrationInTurn found = calibrate_in_turn(flights, model(), {pcor::lams_reference()}, {}, {});
+  const IterativeCalibration found =
+      calibrate_iteratively(flights, model(), {pcor::lams_reference()}, {}, {});
   EXPECT_TRUE(found.converged);
   EXPECT_THAT(found.temperature.degrees, SizeIs(4));  // none to quadratic
   EXPECT_THAT(found.temperature.notes_on_degree, ElementsAre(HasSubstr("none can be held out")));
@@ -585,14 +587,14 @@ TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
 
 TEST_F(Temperature, InTurnSaysHowFarThePressureMoved) {
   const std::vector<fs::path> flights{fly(one_climb(), 1)};
-  const CalibrationInTurn found =
-      calibrate_in_turn(flights, model(), {pcor::lams_reference()}, {}, of_degree(1));
+  const IterativeCalibration found =
+      calibrate_iteratively(flights, model(), {pcor::lams_reference()}, {}, of_degree(1));
   ASSERT_TRUE(found.converged);
   // From the end with 0.001 of the pressure more back to it.
-  ModelFile start = found.temperature.model;
+  ModelDefinition start = found.temperature.model;
   start.model.effects[0].parameters[0] += 0.001;
-  const CalibrationInTurn back =
-      calibrate_in_turn(flights, start, {pcor::lams_reference()}, {}, of_degree(1));
+  const IterativeCalibration back =
+      calibrate_iteratively(flights, start, {pcor::lams_reference()}, {}, of_degree(1));
   const FlightAir air = read_flight_air({flights[0]}, 0, model());
   double squares = 0.0;
   double count = 0.0;
@@ -668,11 +670,11 @@ TEST_F(Temperature, MakesAReport) {
 
 TEST_F(Temperature, RefusesWhatTellsNothing) {
   EXPECT_THAT([] { fit_temperature({}, model()); }, ThrowsMessage<Error>(HasSubstr("at least one flight")));
-  EXPECT_THROW(calibrate_in_turn({}, model(), {pcor::lams_reference()}, {}, {}), Error);
+  EXPECT_THROW(calibrate_iteratively({}, model(), {pcor::lams_reference()}, {}, {}), Error);
   TemperatureOptions archived;
   archived.archived = true;
   EXPECT_THAT(
-      [&] { calibrate_in_turn({fly(one_climb(), 3)}, model(), {pcor::lams_reference()}, {}, archived); },
+      [&] { calibrate_iteratively({fly(one_climb(), 3)}, model(), {pcor::lams_reference()}, {}, archived); },
       ThrowsMessage<Error>(HasSubstr("as recorded")));
   const std::vector<fs::path> flights = fly_several(no_climb(), 1, 2);
   EXPECT_THAT([&] { fit_temperature({flights[0]}, model()); },
@@ -698,7 +700,7 @@ TEST_F(Temperature, RefusesADegreeThatThereIsNot) {
 TEST(IsobarSlopeNames, AreReadBack) {
   for (const char* name : {"fitted", "none", "level-legs", "climb-descent", "whole-flight", "geostrophic"}) {
     ASSERT_TRUE(isobar_slope_named(name)) << name;
-    EXPECT_EQ(name_of(*isobar_slope_named(name)), name);
+    EXPECT_EQ(to_string(*isobar_slope_named(name)), name);
   }
   EXPECT_FALSE(isobar_slope_named("steep"));
 }

@@ -6,7 +6,7 @@
 #include <new>
 #include <string>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "support/of_library.hpp"
 
 using pcor::test::of_library;

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/error.hpp>
 
 #include <cmath>
 #include <limits>

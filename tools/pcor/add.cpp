@@ -5,15 +5,15 @@
 #include <memory>
 #include <string>
 
+#include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/improve/improve.hpp>
-#include <pcor/roles/with_effects.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/error.hpp>
 #include "command.hpp"
 #include "diagnosis.hpp"
-#include "model_of_flight.hpp"
+#include "model_selector.hpp"
 #include "shaped_effect.hpp"
 
 namespace pcor::tool {
@@ -25,7 +25,7 @@ struct Options {
   std::string model;
   std::string output;
   std::string formula;
-  std::string where = "static";
+  std::string location = "static";
   std::string unit;
   std::string source;
   std::string flight;
@@ -38,11 +38,11 @@ ModelEffect own_effect(const Options& options, const std::vector<std::string>& v
                             options.effects.size(), fmt::join(options.effects, ", ")));
   }
   ModelEffect effect = formula_effect(options.effects.front(), options.formula, "--formula");
-  effect.where = where_named(options.where);
-  const std::string wanted(facts_of(effect.where).unit);
+  effect.location = location_named(options.location);
+  const std::string wanted(info_of(effect.location).unit);
   if (!options.unit.empty() && standard_unit(options.unit) != standard_unit(wanted)) {
     throw Error(fmt::format("--unit {}: what acts at '{}' is in {}; write the formula in {}", options.unit,
-                            options.where, wanted, wanted));
+                            options.location, wanted, wanted));
   }
   effect.unit = wanted;
   effect.source = options.source;
@@ -58,7 +58,7 @@ std::vector<ModelEffect> wanted_effects(const Options& options, const std::vecto
 }
 
 /// The roles that `extended` names beyond `model`.
-std::vector<Quantity> new_roles(const ModelFile& model, const ModelFile& extended) {
+std::vector<Quantity> new_roles(const ModelDefinition& model, const ModelDefinition& extended) {
   std::vector<Quantity> roles;
   for (const Quantity role : extended.roles()) {
     if (model.variables.count(role) == 0) roles.push_back(role);
@@ -66,35 +66,36 @@ std::vector<Quantity> new_roles(const ModelFile& model, const ModelFile& extende
   return roles;
 }
 
-void print(const ModelFile& model, const ModelFile& extended, const Options& options) {
+void print(const ModelDefinition& model, const ModelDefinition& extended, const Options& options) {
   say("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
   for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i) {
     const ModelEffect& effect = extended.model.effects[i];
-    const EffectFacts* facts = effect.is_formula() ? nullptr : &effect_facts[effect_named(effect.id)];
+    const EffectInfo* info = effect.is_formula() ? nullptr : &effect_info[effect_named(effect.id)];
     const std::vector<std::string> names = parameter_names(effect);
     std::vector<std::string> start;
     for (std::size_t k = 0; k < names.size(); ++k) {
       start.push_back(fmt::format("{} = {}{}", names[k], effect.parameters[k],
                                   extended.fit(i, k).fixed ? " (fixed)" : ""));
     }
-    say("{:<20} {:<15} {:<48} {}\n", effect.id, facts_of(facts ? facts->where : effect.where).name,
-        facts ? std::string(facts->formula) : effect.formula, fmt::join(start, ", "));
+    say("{:<20} {:<15} {:<48} {}\n", effect.id, info_of(info ? info->location : effect.location).name,
+        info ? std::string(info->formula) : effect.formula, fmt::join(start, ", "));
   }
   for (const Quantity role : new_roles(model, extended))
-    say("named for it: {} = \"{}\"\n", facts_of(role).name, extended.variables.at(role));
+    say("named for it: {} = \"{}\"\n", info_of(role).name, extended.variables.at(role));
   say("\n");
   say_written({options.output, options.common.json});
   say("To fit it: {} refit {} -m {} -o fitted.toml\n", program(),
       options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output));
 }
 
-nlohmann::ordered_json as_json(const ModelFile& model, const ModelFile& extended, const Options& options) {
+nlohmann::ordered_json as_json(const ModelDefinition& model, const ModelDefinition& extended,
+                               const Options& options) {
   nlohmann::ordered_json json{{"added", nlohmann::ordered_json::array()},
                               {"variables", nlohmann::ordered_json::object()}};
   for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i)
     json["added"].push_back(tool::as_json(extended.model.effects[i]));
   for (const Quantity role : new_roles(model, extended))
-    json["variables"][std::string(facts_of(role).name)] = extended.variables.at(role);
+    json["variables"][std::string(info_of(role).name)] = extended.variables.at(role);
   json["model"] = options.output;
   return json;
 }
@@ -105,15 +106,15 @@ void run(const Options& options) {
   require_writable(options.output);
   JsonResult json(options.common);
   const FlightSet flights = options.flight.empty() ? FlightSet() : FlightSet{options.flight};
-  const ModelFile model = read_model_for(options.model, flights, options.common);
+  const ModelDefinition model = read_model_for(options.model, flights, options.common);
   if (model.variables.count(Quantity::static_pressure) == 0) {
     throw Error(
         fmt::format("{}: it leaves its variables to the flight; give one with --flight", options.model));
   }
   std::vector<std::string> variables;
   if (!flights.empty()) variables = flights[0].variables();
-  const ModelFile extended = with_effects(model, wanted_effects(options, variables), variables);
-  OutputsTogether together;
+  const ModelDefinition extended = add_effects(model, wanted_effects(options, variables), variables);
+  OutputTransaction together;
   deliver(extended, options.output, inputs);
   json.write(as_json(model, extended, options));
   together.appear();
@@ -122,7 +123,7 @@ void run(const Options& options) {
 
 CLI::Validator is_place() {
   std::vector<std::string> names;
-  for (const WhereFacts& facts : where_facts) names.emplace_back(facts.name);
+  for (const EffectLocationInfo& info : effect_location_info) names.emplace_back(info.name);
   return CLI::IsMember(names);
 }
 
@@ -153,7 +154,7 @@ std::function<void()> add_add(CLI::App& program) {
               "the formula of an effect of your own, with a coefficient k and variables by netCDF name or by "
               "role: 'k * ENGTRQ / 100'")
           ->type_name("FORMULA");
-  command->add_option("--where", options->where, "the stage of the measurement at which the formula acts")
+  command->add_option("--where", options->location, "the stage of the measurement at which the formula acts")
       ->check(is_place())
       ->needs(formula)
       ->capture_default_str();

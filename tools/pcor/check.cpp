@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
+#include "communicator.hpp"
 #include "comparison.hpp"
 #include "flight_table.hpp"
-#include "model_of_flight.hpp"
+#include "model_selector.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
-#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -56,7 +56,7 @@ std::string second_model(const Options& options) {
   return options.reference.substr(options.reference.find(':') + 1);
 }
 
-ModelFile read_second(const Options& options) {
+ModelDefinition read_second(const Options& options) {
   const std::string& text = options.reference;
   return is_pair(text) ? *read_reference(text, {})->model() : read_model(second_model(options));
 }
@@ -65,10 +65,10 @@ nlohmann::ordered_json as_json(const ReportTable& table) {
   return {{"title", table.title}, {"headers", table.headers}, {"rows", table.rows}};
 }
 
-nlohmann::ordered_json as_json(const KeyNumber& number) {
+nlohmann::ordered_json as_json(const TestStatistic& number) {
   return {{"value", number.value},     {"stderr", number.standard_error},
           {"matters", number.matters}, {"unit", number.unit},
-          {"what", number.what},       {"verdict", std::string(name_of(number.verdict))}};
+          {"what", number.what},       {"verdict", std::string(to_string(number.verdict))}};
 }
 
 nlohmann::ordered_json as_json(const CheckResult& result) {
@@ -78,10 +78,10 @@ nlohmann::ordered_json as_json(const CheckResult& result) {
   for (const ReportTable& table : result.tables) tables.push_back(as_json(table));
   nlohmann::ordered_json entry{{"name", result.name}, {"ran", result.ran}, {"reason", result.reason}};
   entry["verdict"] =
-      result.ran ? nlohmann::ordered_json(std::string(name_of(result.verdict))) : nlohmann::ordered_json();
+      result.ran ? nlohmann::ordered_json(std::string(to_string(result.verdict))) : nlohmann::ordered_json();
   entry["key"] = result.ran ? as_json(result.key) : nlohmann::ordered_json();
   entry["judged"] = nlohmann::ordered_json::array();
-  for (const KeyNumber& number : result.judged) entry["judged"].push_back(as_json(number));
+  for (const TestStatistic& number : result.judged) entry["judged"].push_back(as_json(number));
   entry["decided"] = result.decided;
   entry["numbers"] = std::move(numbers);
   entry["finding"] = result.finding;
@@ -101,15 +101,15 @@ nlohmann::ordered_json as_json(const Checks& checks) {
 
 /// "-0.154 +- 0.024 hPa between the systems; matters from 0.3 on".
 std::string key_number(const CheckResult& result) {
-  const KeyNumber& key = result.key;
+  const TestStatistic& key = result.key;
   return fmt::format("{:+.3f} +- {:.3f} {} {}; matters from {:g} on", key.value, key.standard_error, key.unit,
                      key.what, key.matters);
 }
 
 /// The first rows of a table in columns, the first to the left and the others to the right.
 void print(const ReportTable& table) {
-  constexpr std::size_t most_rows = 20;
-  const std::size_t rows = std::min(table.rows.size(), most_rows);
+  constexpr std::size_t max_rows = 20;
+  const std::size_t rows = std::min(table.rows.size(), max_rows);
   std::vector<std::size_t> widths;
   for (std::size_t column = 0; column < table.headers.size(); ++column) {
     std::size_t width = table.headers[column].size();
@@ -148,7 +148,8 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
       return result.name == name && result.ran && result.verdict == CheckVerdict::inconsistent;
     });
   };
-  const std::string second = options.reference.empty() ? "" : " --reference " + shell_word(options.reference);
+  const std::string second =
+      options.reference.empty() ? "" : " --reference " + shell_quote(options.reference);
   std::string pictures = fmt::format("To see the pictures: {} check {}{} --report check.html", program(),
                                      command_line(options), second);
   if (fails("total-pressure")) {
@@ -157,7 +158,7 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
            pictures;
   }
   const std::size_t inconsistent = count_of(checks, CheckVerdict::inconsistent);
-  const std::size_t open = count_of(checks, CheckVerdict::cannot_tell);
+  const std::size_t open = count_of(checks, CheckVerdict::inconclusive);
   const bool has_model = !options.model.empty();
   if (has_model && (fails("layers") || fails("lams-temperature"))) {
     return fmt::format("To find the thermometer's error by the height: {} temperature {} -o calibrated.toml",
@@ -169,7 +170,7 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
   if (inconsistent > 0 && has_model && !options.reference.empty()) {
     return fmt::format(
         "To refit the law and learn which effect it lacks: {} improve {} --reference {} -o improved.toml",
-        program(), command_line(options), shell_word(options.reference));
+        program(), command_line(options), shell_quote(options.reference));
   }
   if (inconsistent == 0 && has_model && count_of(checks, CheckVerdict::consistent) > 0) {
     return fmt::format(
@@ -184,7 +185,7 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
   if (!checks.model.empty()) say("{}\n", checks.model);
   say("\n{:<18} {:<14} {}\n", "check", "verdict", "number");
   for (const CheckResult& result : checks.results) {
-    say("{:<18} {:<14} {}\n", result.name, result.ran ? name_of(result.verdict) : "not run",
+    say("{:<18} {:<14} {}\n", result.name, result.ran ? to_string(result.verdict) : "not run",
         result.ran ? key_number(result) : "");
   }
   say("inconsistent: beyond what matters and beyond three standard errors; consistent: within what matters, "
@@ -193,7 +194,7 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
   for (const CheckResult& result : checks.results) {
     say("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
     if (result.ran) {
-      say("  {}: {}.\n", name_of(result.verdict), result.decided);
+      say("  {}: {}.\n", to_string(result.verdict), result.decided);
       say("  cannot see: {}\n", result.cannot_see);
     }
     if (!result.tables.empty()) print(result.tables.front());
@@ -211,16 +212,16 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
 /// A row for each check of each flight, which is checked alone.
 ///
 /// @param together the checks of all flights, which are those of the flight where there is one
-FlightTable flight_table(const FlightSet& flights, const std::optional<ModelFile>& model,
+FlightTable flight_table(const FlightSet& flights, const std::optional<ModelDefinition>& model,
                          const CheckOptions& how, const Checks& together) {
   FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
-  std::vector<std::vector<CheckInShort>> alone{in_short(together)};
-  if (flights.size() > 1) alone = check_each_alone(flights, model, how);
+  std::vector<std::vector<CheckSummary>> alone{in_short(together)};
+  if (flights.size() > 1) alone = check_per_flight(flights, model, how);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const std::string name = flights.name(i);
-    for (const CheckInShort& result : alone[i]) {
+    for (const CheckSummary& result : alone[i]) {
       if (result.ran) {
-        table.add({name, result.name, std::string(name_of(result.verdict)), cell(result.key.value),
+        table.add({name, result.name, std::string(to_string(result.verdict)), cell(result.key.value),
                    cell(result.key.standard_error), result.key.unit, result.key.what});
       } else {
         table.add({name, result.name, "not run", "", "", "", result.reason});
@@ -247,7 +248,7 @@ void run(const Options& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.flights).flights;
-  std::optional<ModelFile> model;
+  std::optional<ModelDefinition> model;
   if (!options.model.empty()) model = read_model_for(options.model, flights, options.common);
   CheckOptions check_options;
   check_options.mask = mask_options(options.flights);
@@ -261,7 +262,7 @@ void run(const Options& options) {
   std::optional<FlightTable> table;
   if (!options.table.empty()) table = flight_table(flights, model, check_options, checks);
   if (!is_speaker()) return;
-  OutputsTogether together;
+  OutputTransaction together;
   if (wants_report(options.common))
     write_report_of_run(check_report(checks), {models_of(options), options.flights.flights, {}},
                         options.common);

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <fstream>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "choices.hpp"
-#include "team.hpp"
+#include "communicator.hpp"
 
 #include "text.hpp"
 
@@ -95,7 +95,7 @@ CLI::Validator is_file_name() {
   return {check, ""};
 }
 
-void deliver(const ModelFile& model, const std::string& output, const std::vector<fs::path>& inputs) {
+void deliver(const ModelDefinition& model, const std::string& output, const std::vector<fs::path>& inputs) {
   if (output != standard_output) {
     save_model(model, output, inputs);
     return;
@@ -125,7 +125,7 @@ void JsonResult::write(nlohmann::ordered_json result) {
 }
 
 void require_writable(const fs::path& output) {
-  if (is_speaker() && is_file(output)) const ReplacementFile probe(output);
+  if (is_speaker() && is_file(output)) const AtomicFile probe(output);
 }
 
 void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs) {

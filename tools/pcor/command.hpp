@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
-#include <pcor/words/replacement_file.hpp>
+#include <pcor/base/atomic_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include "text.hpp"
 
 namespace pcor::tool {
@@ -55,7 +55,7 @@ CLI::Validator is_file_name();
 
 /// Writes a model file, whole or not at all, or to standard output where `output` is `-`.
 /// @param inputs files that are never written over @throws Error as `save_model`
-void deliver(const ModelFile& model, const std::string& output,
+void deliver(const ModelDefinition& model, const std::string& output,
              const std::vector<std::filesystem::path>& inputs);
 
 /// The result as JSON, which the first member of a team writes. Made before the work, so that a place that
@@ -72,7 +72,7 @@ class JsonResult {
 
  private:
   std::string place_;
-  std::optional<ReplacementFile> file_{};
+  std::optional<AtomicFile> file_{};
 };
 
 /// Refuses outputs that are inputs, under whatever name, and two outputs in one place, be it standard output,

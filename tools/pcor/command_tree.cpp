@@ -21,10 +21,10 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
 }
 
 /// The names of all `facts`, an array of what has a name.
-template <class Facts, class Name>
-std::vector<std::string> all_names(const Facts& facts, const Name& name) {
+template <class Info, class Name>
+std::vector<std::string> all_names(const Info& info, const Name& name) {
   std::vector<std::string> names;
-  for (const auto& each : facts) names.emplace_back(name(each));
+  for (const auto& each : info) names.emplace_back(name(each));
   return names;
 }
 
@@ -64,9 +64,9 @@ Offer offer_of(const CLI::Option& option) {
   if (!choices.empty()) return {choices, ""};
   const std::string value = value_name(option);
   if (value == "REGIME")
-    return {all_names(regime_facts, [](const RegimeFacts& facts) { return facts.name; }), ""};
+    return {all_names(regime_info, [](const RegimeInfo& info) { return info.name; }), ""};
   if (value == "ID" || value == "EFFECT...")
-    return {all_names(effect_facts, [](const EffectFacts& facts) { return facts.id; }), ""};
+    return {all_names(effect_info, [](const EffectInfo& info) { return info.id; }), ""};
   if (value == "REFERENCE") return {{"lams", "height", "wind", "static:", "total:", "pressure:"}, ""};
   if (value == "static:OTHER.toml") return {{"static:"}, ""};
   if (value == "FILE") return {{}, "*"};

@@ -15,7 +15,7 @@ inline constexpr std::array commands{
     &add_check,   &add_process, &add_temperature, &add_simulate, &add_completion, &add_man};
 
 /// Those whose flights a team of several processes shares. The others are work of one process.
-inline constexpr std::array<const char*, 6> commands_of_a_team{"compare", "refit", "diagnose",
-                                                               "improve", "check", "temperature"};
+inline constexpr std::array<const char*, 6> parallel_commands{"compare", "refit", "diagnose",
+                                                              "improve", "check", "temperature"};
 
 }  // namespace pcor::tool

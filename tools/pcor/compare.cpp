@@ -9,15 +9,15 @@
 #include <optional>
 #include <string>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/compare/comparison_report.hpp>
 #include <pcor/fit/refit.hpp>
-#include <pcor/words/utc.hpp>
+#include "communicator.hpp"
 #include "comparison.hpp"
 #include "flight_table.hpp"
-#include "model_of_flight.hpp"
+#include "model_selector.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
-#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -48,7 +48,7 @@ nlohmann::ordered_json as_json(const ModelComparison& model) {
   result["rms_over_noise"] = model.all.rms_over_noise();
   result["r2"] = model.r_squared;
   result["flaps_out"] = as_json(model.flaps_out);
-  result["samples_per_independent"] = model.samples_per_independent;
+  result["samples_per_independent"] = model.autocorrelation_time;
   result["reference_stderr_hpa"] = model.reference_error;
   result["regimes"] = as_json(model.regimes);
   result["bands"] = as_json(model.bands);
@@ -87,7 +87,7 @@ nlohmann::ordered_json as_json(const Comparison& comparison) {
   nlohmann::ordered_json intervals = nlohmann::ordered_json::array();
   for (const auto& [flight, interval] : comparison.intervals) {
     intervals.push_back({{"flight", flight},
-                         {"regime", std::string(facts_of(interval.regime).name)},
+                         {"regime", std::string(info_of(interval.regime).name)},
                          {"begin", utc_text(interval.begin, iso_time)},
                          {"end", utc_text(interval.end, iso_time)},
                          {"pair", interval.pair},
@@ -133,7 +133,7 @@ void print_model(const ModelComparison& model, bool with_name) {
   // Of differences over time there is no R2.
   if (std::isfinite(model.r_squared)) say("R2 {:.4f}; ", model.r_squared);
   say("the residuals are correlated in time: {:.1f} samples count as one independent one\n",
-      model.samples_per_independent);
+      model.autocorrelation_time);
   if (model.reference_error > 0.0)
     say("The calibration of the reference may shift the bias by {:.2f} hPa (one standard uncertainty).\n",
         model.reference_error);
@@ -217,9 +217,9 @@ void add_references(ChosenReferences& told, const ChosenReferences& own) {
 }
 
 /// Models that share a name are told apart by their files.
-void name_by_file(std::vector<Contender>& contenders, const std::vector<std::string>& files) {
+void name_by_file(std::vector<ComparedModel>& contenders, const std::vector<std::string>& files) {
   std::map<std::string, std::size_t> count;
-  for (const Contender& contender : contenders) ++count[contender.name];
+  for (const ComparedModel& contender : contenders) ++count[contender.name];
   for (std::size_t i = 0; i < contenders.size(); ++i) {
     if (count[contenders[i].name] > 1) contenders[i].name = files[i];
   }
@@ -241,7 +241,7 @@ void write_flight_table(const Comparison& comparison, const std::string& path) {
 using Levels = std::vector<std::optional<LevelByGps>>;
 
 /// What delta-p of each model lacks in the mean by GPS, where that was asked for.
-Levels levels_by_gps(const FlightSet& flights, const std::vector<Contender>& contenders,
+Levels levels_by_gps(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
                      const Options& options) {
   Levels levels(contenders.size());
   if (options.comparison.references.empty())
@@ -252,7 +252,7 @@ Levels levels_by_gps(const FlightSet& flights, const std::vector<Contender>& con
   return levels;
 }
 
-void print(const Levels& levels, const std::vector<Contender>& contenders) {
+void print(const Levels& levels, const std::vector<ComparedModel>& contenders) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
     if (!levels[i]) continue;
     constexpr double known = 1.0;  // hPa
@@ -287,10 +287,10 @@ void run(const Options& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
-  std::vector<Contender> contenders;
+  std::vector<ComparedModel> contenders;
   ChosenReferences references;  // of all models, as the text tells them
   for (const std::string& path : options.models) {
-    const ModelFile model = read_model_for(path, flights, options.common);
+    const ModelDefinition model = read_model_for(path, flights, options.common);
     const ChosenReferences own = read_references(options.comparison.references, model, flights);
     add_references(references, own);
     contenders.push_back({model.model.name, model, own.used});
@@ -299,9 +299,9 @@ void run(const Options& options) {
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
   if (!options.residuals.empty())
-    compare_options.most_series = options.comparison.flights.size();
+    compare_options.max_series = options.comparison.flights.size();
   else if (!wants_report(options.common))
-    compare_options.most_series = 0;  // all else is numbers
+    compare_options.max_series = 0;  // all else is numbers
   Comparison comparison;
   {
     Progress bar("comparing", !options.common.quiet);
@@ -310,7 +310,7 @@ void run(const Options& options) {
   }
   const Levels levels = levels_by_gps(flights, contenders, options);
   if (!is_speaker()) return;
-  OutputsTogether together;
+  OutputTransaction together;
   if (!options.residuals.empty()) {
     for (std::size_t i = 0; i < comparison.flights.size(); ++i) {
       write_residuals(comparison, i, flights[i], residual_file(options, i), history_of(options));

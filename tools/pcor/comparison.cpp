@@ -10,12 +10,12 @@
 #include <system_error>
 #include <utility>
 
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
 #include <pcor/flight/readable_flights.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
 #include "choices.hpp"
+#include "communicator.hpp"
 #include "processes.hpp"
-#include "team.hpp"
 
 namespace pcor::tool {
 
@@ -45,7 +45,7 @@ namespace {
 /// Takes out the flights that cannot be opened, and says so. @throws Error if none is left.
 void leave_out_unreadable(std::vector<std::string>& flights) {
   const ReadableFlights readable =
-      readable_flights({flights.begin(), flights.end()}, team(), place_to_open());
+      readable_flights({flights.begin(), flights.end()}, comm(), place_to_open());
   for (const UnreadableFlight& unreadable : readable.unreadable)
     tell_choices({fmt::format("left out: {}", unreadable.why)}, false);
   if (readable.flights.empty())
@@ -66,16 +66,16 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
           "--intervals", options.intervals,
           "flight regimes to add or to veto, and times to leave out; docs/intervals.md has the format")
       ->type_name("FILE.toml");
-  command.add_option("--min-airspeed", options.least_airspeed, "samples that are slower are left out, m/s")
+  command.add_option("--min-airspeed", options.min_airspeed, "samples that are slower are left out, m/s")
       ->check(is_amount())
       ->capture_default_str();
   command
-      .add_option("--max-flaps", options.most_flaps,
+      .add_option("--max-flaps", options.max_flaps,
                   "samples with more flaps are left out, percent; not given it is 5, and none is left out "
                   "where an effect of the model reads the flaps")
       ->check(is_amount());
   command
-      .add_option("--time-stamp", options.time_stamp,
+      .add_option("--time-stamp", options.timestamp_alignment,
                   "whether the time of a record is the beginning or the middle of its second")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
@@ -92,7 +92,7 @@ Regime regime_of(const std::string& name, const std::string& option) {
   const Regime regime = regime_named(name);
   if (regime != Regime::count) return regime;
   std::vector<std::string> known;
-  for (const RegimeFacts& facts : regime_facts) known.emplace_back(facts.name);
+  for (const RegimeInfo& info : regime_info) known.emplace_back(info.name);
   const std::string meant = did_you_mean(name, known);
   throw Error(fmt::format("{} '{}': there is no such regime; {}", option, name,
                           meant.empty() ? fmt::format("the regimes are {}", fmt::join(known, ", ")) : meant));
@@ -100,8 +100,8 @@ Regime regime_of(const std::string& name, const std::string& option) {
 
 MaskOptions mask_options(const ComparisonOptions& options) {
   MaskOptions mask;
-  mask.least_airspeed = options.least_airspeed;
-  mask.most_flaps = options.most_flaps;
+  mask.min_airspeed = options.min_airspeed;
+  mask.max_flaps = options.max_flaps;
   for (const std::string& name : options.exclude) mask.exclude.push_back(regime_of(name, "--exclude"));
   if (!options.intervals.empty()) mask.intervals = read_intervals(options.intervals);
   return mask;
@@ -111,8 +111,9 @@ CommandFlights::CommandFlights(const ComparisonOptions& options, const std::vect
                                std::size_t memory) {
   std::vector<std::filesystem::path> paths = flight_paths(options);
   paths.insert(paths.end(), held_out.begin(), held_out.end());
-  const TimeStamp time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
-  const FlightSet all(paths, {time_stamp, &team(), memory});
+  const TimestampAlignment timestamp_alignment =
+      options.timestamp_alignment == "middle" ? TimestampAlignment::middle : TimestampAlignment::begin;
+  const FlightSet all(paths, {timestamp_alignment, &comm(), memory});
   flights = all.part(0, options.flights.size());
   holdout = all.part(options.flights.size(), held_out.size());
 }
@@ -125,13 +126,13 @@ namespace {
 
 std::string with_options(std::string line, const ComparisonOptions& options) {
   for (const std::string& reference : options.references)
-    line += "--reference " + shell_word(reference) + " ";
-  for (const std::string& regime : options.exclude) line += "--exclude " + shell_word(regime) + " ";
+    line += "--reference " + shell_quote(reference) + " ";
+  for (const std::string& regime : options.exclude) line += "--exclude " + shell_quote(regime) + " ";
   if (!options.intervals.empty()) line += "--intervals " + shell_path(options.intervals) + " ";
-  if (options.least_airspeed != MaskOptions{}.least_airspeed)
-    line += fmt::format("--min-airspeed {} ", options.least_airspeed);
-  if (options.most_flaps) line += fmt::format("--max-flaps {} ", *options.most_flaps);
-  if (options.time_stamp != "begin") line += "--time-stamp " + options.time_stamp + " ";
+  if (options.min_airspeed != MaskOptions{}.min_airspeed)
+    line += fmt::format("--min-airspeed {} ", options.min_airspeed);
+  if (options.max_flaps) line += fmt::format("--max-flaps {} ", *options.max_flaps);
+  if (options.timestamp_alignment != "begin") line += "--time-stamp " + options.timestamp_alignment + " ";
   line.pop_back();
   return line;
 }
@@ -157,13 +158,13 @@ std::string command_line(const ComparisonOptions& options) {
 }
 
 std::string advised_command_line(const ComparisonOptions& options) {
-  constexpr std::size_t most_to_read = 16;
-  if (options.flights.size() <= most_to_read) return command_line(options);
+  constexpr std::size_t max_to_read = 16;
+  if (options.flights.size() <= max_to_read) return command_line(options);
   return with_options(
       shell_path(options.flights.front()) + " ... " + shell_path(options.flights.back()) + " ", options);
 }
 
-ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model,
+ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelDefinition& model,
                                    const FlightSet& flights) {
   ChosenReferences chosen = read_references(options.references, model, flights);
   if (!options.references.empty()) return chosen;
@@ -200,7 +201,7 @@ void print_flaps_out(const Statistics& flaps_out, const std::string& of_what) {
 
 nlohmann::ordered_json masks_as_json(const std::array<std::size_t, mask_count>& masks) {
   nlohmann::ordered_json result = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < mask_count; ++i) result[std::string(mask_facts[i].name)] = masks[i];
+  for (std::size_t i = 0; i < mask_count; ++i) result[std::string(mask_info[i].name)] = masks[i];
   return result;
 }
 

@@ -18,9 +18,9 @@ struct ComparisonOptions {
   std::vector<std::string> references{};
   std::vector<std::string> exclude{};
   std::string intervals{};
-  double least_airspeed = MaskOptions{}.least_airspeed;
-  std::optional<double> most_flaps{};
-  std::string time_stamp = "begin";
+  double min_airspeed = MaskOptions{}.min_airspeed;
+  std::optional<double> max_flaps{};
+  std::string timestamp_alignment = "begin";
   bool skip_unreadable = false;  ///< flights that cannot be opened are taken from `flights`
 };
 
@@ -67,7 +67,7 @@ std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options
 /// pressure, is not known well enough to be taken unasked: heights that are off by a thousandth, and air that
 /// is not at rest, look to a diagnosis like some tenths of a kelvin at the thermometer.
 /// @param flights those that are held out, too, must allow the references
-ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model,
+ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelDefinition& model,
                                    const FlightSet& flights);
 
 /// Prints which references a model is held against and which not, where there are several to tell of.

@@ -13,15 +13,15 @@ namespace pcor::tool {
 namespace {
 
 /// `text` in single quotes, whatever it holds.
-std::string in_quotes(const std::string& text) {
+std::string quote(const std::string& text) {
   return "'" + CLI::detail::find_and_replace(text, "'", "'\\''") + "'";
 }
 
 /// What bash offers: an assignment that the function below reads.
 std::string bash_offer(const Offer& offer) {
   if (!offer.words.empty())
-    return fmt::format("words={}", in_quotes(fmt::format("{}", fmt::join(offer.words, "\n"))));
-  return offer.files.empty() ? "return" : fmt::format("files={}", in_quotes(offer.files));
+    return fmt::format("words={}", quote(fmt::format("{}", fmt::join(offer.words, "\n"))));
+  return offer.files.empty() ? "return" : fmt::format("files={}", quote(offer.files));
 }
 
 /// The cases of one sub-command: the values of its options, its options, its positional arguments.
@@ -34,13 +34,12 @@ std::string bash_cases(const CLI::App& command) {
     if (value_name(*option).empty()) continue;
     std::vector<std::string> patterns;
     for (const std::string& name : names)
-      patterns.push_back(in_quotes(command.get_name() + " " + name + " ") + "*");
+      patterns.push_back(quote(command.get_name() + " " + name + " ") + "*");
     text += fmt::format("    {}) {} ;;\n", fmt::join(patterns, " | "), bash_offer(offer_of(*option)));
   }
   const CLI::Option* const positional = positional_of(command);
-  text +=
-      fmt::format("    {}*' -'*) {} ;;\n", in_quotes(command.get_name() + " "), bash_offer({options, ""}));
-  text += fmt::format("    {}*) {} ;;\n", in_quotes(command.get_name() + " "),
+  text += fmt::format("    {}*' -'*) {} ;;\n", quote(command.get_name() + " "), bash_offer({options, ""}));
+  text += fmt::format("    {}*) {} ;;\n", quote(command.get_name() + " "),
                       positional == nullptr ? "return" : bash_offer(offer_of(*positional)));
   return text;
 }
@@ -119,15 +118,14 @@ std::string zsh_arguments(const CLI::App& command) {
     for (const std::string& name : names) {
       const std::string others = repeats ? "*" : fmt::format("({})", fmt::join(names, " "));
       const std::string value = value_name(*option).empty() ? "" : zsh_values(*option);
-      text +=
-          fmt::format(" \\\n        {}",
-                      in_quotes(fmt::format("{}{}[{}]{}", others, name, zsh_text(brief(*option)), value)));
+      text += fmt::format(" \\\n        {}",
+                          quote(fmt::format("{}{}[{}]{}", others, name, zsh_text(brief(*option)), value)));
     }
   }
   const CLI::Option* const positional = positional_of(command);
   if (positional != nullptr) {
-    text += fmt::format(" \\\n        {}", in_quotes((positional->get_items_expected_max() > 1 ? "*" : "1") +
-                                                     zsh_values(*positional)));
+    text += fmt::format(" \\\n        {}", quote((positional->get_items_expected_max() > 1 ? "*" : "1") +
+                                                 zsh_values(*positional)));
   }
   return text;
 }
@@ -136,8 +134,7 @@ std::string zsh_completion(const CLI::App& program) {
   std::string commands;
   std::string cases;
   for (const CLI::App* command : shown_commands(program)) {
-    commands +=
-        fmt::format("        {}\n", in_quotes(command->get_name() + ":" + command->get_description()));
+    commands += fmt::format("        {}\n", quote(command->get_name() + ":" + command->get_description()));
     cases += fmt::format("      {}) _arguments{} ;;\n", command->get_name(), zsh_arguments(*command));
   }
   return fmt::format(R"(#compdef pcor

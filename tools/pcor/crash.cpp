@@ -12,8 +12,8 @@
 #include <cstring>
 #include <ctime>
 
-#include <pcor/flight/file_in_hand.hpp>
-#include <pcor/words/replacement_file.hpp>
+#include <pcor/base/atomic_file.hpp>
+#include <pcor/flight/current_input.hpp>
 
 namespace pcor::tool {
 namespace {
@@ -36,7 +36,7 @@ void print(const char* text) {
   print("pcor: ");
   if (file != nullptr) {
     print(file);
-    print(others_were_in_hand()
+    print(had_previous_input()
               ? " is damaged, or a flight that was read before it: the HDF5 library could not read it; see "
                 "which by pcor inspect, and fetch that again from its source\n"
               : " is damaged: the HDF5 library could not read it; fetch it again from its source\n");
@@ -53,9 +53,9 @@ enum class Busy { other, library, reader_of_flights };
 
 /// Of libraries those that are shared can be told by name.
 Busy what_is_busy() {
-  constexpr int most_frames = 64;
-  void* frames[most_frames];
-  const int count = backtrace(frames, most_frames);
+  constexpr int max_frames = 64;
+  void* frames[max_frames];
+  const int count = backtrace(frames, max_frames);
   Busy found = Busy::other;
   for (int i = 0; i < count; ++i) {
     Dl_info place{};
@@ -71,23 +71,24 @@ Busy what_is_busy() {
 extern "C" void explain(int signal) {
   remove_unfinished_files();  // before a look at a stack that may be damaged, too
   const Busy busy = what_is_busy();
-  if (busy != Busy::other) give_up(busy == Busy::reader_of_flights ? file_in_hand() : nullptr);
+  if (busy != Busy::other) give_up(busy == Busy::reader_of_flights ? current_input_path() : nullptr);
   for (std::size_t i = 0; i < crashes.size(); ++i)
     if (crashes[i] == signal) sigaction(signal, &earlier[i], nullptr);
   std::raise(signal);
 }
 
 extern "C" void watch(int /*signal*/) {
-  if (file_in_hand() != nullptr && seconds_in_hand() >= most_seconds_in_hand) give_up(file_in_hand());
+  if (current_input_path() != nullptr && current_input_seconds() >= max_seconds_per_input)
+    give_up(current_input_path());
 }
 
 extern "C" void watch_waiting(int /*signal*/) {
-  const char* const file = file_in_hand();
+  const char* const file = current_input_path();
   static volatile std::sig_atomic_t times = 0;  // few pass while a user has stopped the program
   const double waiting = seconds_of_waiting();
   times = waiting < 0.9 * seconds_between_looks ? 0 : times + 1;
-  if (file == nullptr || waiting < most_seconds_of_waiting ||
-      times * seconds_between_looks < most_seconds_of_waiting)
+  if (file == nullptr || waiting < max_seconds_of_waiting ||
+      times * seconds_between_looks < max_seconds_of_waiting)
     return;
   remove_unfinished_files();
   print("pcor: ");

@@ -8,16 +8,16 @@
 #include <memory>
 #include <string>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
-#include <pcor/words/utc.hpp>
+#include "communicator.hpp"
 #include "comparison.hpp"
 #include "diagnosis.hpp"
 #include "fit_options.hpp"
-#include "model_of_flight.hpp"
+#include "model_selector.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
 #include "shaped_effect.hpp"
-#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -114,9 +114,9 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
       fmt::format(" -m {} --flight {} -o extended.toml && {} refit {} -m extended.toml -o fitted.toml", model,
                   shell_path(options.comparison.flights.front()), program(), flights);
   const auto add_formula = [&and_fit](const std::string& id, const std::string& formula,
-                                      const std::string& where) {
-    return fmt::format("{} add {} {} --where {}{}", program(), shell_word(id),
-                       shell_option("--formula", formula), where, and_fit);
+                                      const std::string& location) {
+    return fmt::format("{} add {} {} --where {}{}", program(), shell_quote(id),
+                       shell_option("--formula", formula), location, and_fit);
   };
   const auto of_catalogue = [](const Finding& finding) {
     return !finding.effect.is_formula() && !finding.of_reference;
@@ -135,7 +135,7 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
     std::string without;
     std::string add = program() + " add";
     for (const Finding& finding : findings) {
-      add += " " + shell_word(argument_of(finding.effect));
+      add += " " + shell_quote(argument_of(finding.effect));
       if (finding.shape_beyond_model.empty()) continue;
       without += fmt::format("{} was found {}, which no model file can hold: it is added without that.\n",
                              finding.id(), finding.shape_beyond_model);
@@ -146,13 +146,13 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   if (sure && findings.size() == 1 && findings[0].effect.parameter_names == std::vector<std::string>{"k"}) {
     const ModelEffect& effect = findings[0].effect;
     return "To add it and fit: " +
-           add_formula(effect.id, effect.formula, std::string(facts_of(effect.where).name));
+           add_formula(effect.id, effect.formula, std::string(info_of(effect.location).name));
   }
   if (!findings.empty()) {
     return fmt::format("To add what helps, one after another: {} improve {} -m {}{} -o best.toml", program(),
                        flights, model, command_line(options.candidates));
   }
-  for (const TracedVariable& variable : diagnosis.unexplained.variables) {
+  for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty()) continue;
     return fmt::format(
         "To see whether a formula of {} helps where it was not fitted: {} improve {} -m {} "
@@ -190,7 +190,7 @@ void run(const Options& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
-  const ModelFile model =
+  const ModelDefinition model =
       with_fit_options(read_model_for(options.model, flights, options.common), options.held);
   const ChosenReferences references = references_to_fit(options.comparison, model, flights);
   DiagnoseOptions diagnose_with;
@@ -219,7 +219,7 @@ void run(const Options& options) {
     }
   }
   if (!is_speaker()) return;
-  OutputsTogether together;
+  OutputTransaction together;
   if (wants_report(options.common))
     write_report_of_run(diagnosis_report(diagnosis, model, &tried),
                         {{options.model}, options.comparison.flights, {}}, options.common);

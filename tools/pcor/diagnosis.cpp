@@ -7,11 +7,11 @@
 #include <cctype>
 #include <filesystem>
 
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/model/formula.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
-#include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 #include "shaped_effect.hpp"
 
@@ -96,7 +96,7 @@ Json limit_as_json(const UpperLimit& limit) {
           {"limits", limit.limits}, {"rms_hpa", limit.rms}, {"note", limit.note}};
 }
 
-Json variable_as_json(const TracedVariable& variable) {
+Json variable_as_json(const EmpiricalPredictor& variable) {
   return {{"name", variable.name},
           {"unit", variable.unit},
           {"description", variable.description},
@@ -111,7 +111,7 @@ Json variable_as_json(const TracedVariable& variable) {
           {"sampling", variable.sampling}};
 }
 
-Json step_as_json(const FlightStep& step) {
+Json step_as_json(const FlightOffset& step) {
   return {{"flight", step.flight},
           {"size_hpa", step.size},
           {"stderr_hpa", step.standard_error},
@@ -151,7 +151,7 @@ ModelEffect formula_effect(const std::string& id, const std::string& formula, co
   effect.parameter_names = {"k"};
   effect.parameters = {0.0};
   effect.formula = formula;
-  effect.unit = facts_of(effect.where).unit;
+  effect.unit = info_of(effect.location).unit;
   FormulaError error;
   const auto parsed = Formula::parse(formula, effect.parameter_names, &error);
   if (!parsed) throw Error(fmt::format("{} '{}': {}; correct it", option, formula, error.message));
@@ -176,7 +176,7 @@ void require_known_variables(const ModelEffect& effect, const std::string& optio
   }
 }
 
-std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelFile& model,
+std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelDefinition& model,
                                             const FlightSet& flights) {
   std::vector<ModelEffect> candidates;
   const auto is_new = [&](const std::string& id) {
@@ -219,15 +219,15 @@ void add_commands(WhatIf& what_if, const std::string& model, const std::string& 
     const ModelEffect& effect = what_if.effects[e];
     WhatIfEffect& shown = what_if.panel.effects[e];
     const bool of_reference = shown.id != effect.id;
-    if (!effect.is_formula() && !of_reference) shown.argument = shell_word(argument_of(effect));
+    if (!effect.is_formula() && !of_reference) shown.argument = shell_quote(argument_of(effect));
     if (effect.is_formula() && effect.parameter_names == std::vector<std::string>{"k"})
-      shown.argument = fmt::format("{} {} --where {}", shell_word(effect.id),
-                                   shell_option("--formula", effect.formula), facts_of(effect.where).name);
+      shown.argument = fmt::format("{} {} --where {}", shell_quote(effect.id),
+                                   shell_option("--formula", effect.formula), info_of(effect.location).name);
   }
   for (const WhatIfEffect& shown : what_if.panel.effects) {
     for (std::size_t c = shown.first; c < shown.first + shown.count; ++c) {
       WhatIfCoefficient& coefficient = what_if.panel.coefficients[c];
-      coefficient.argument = shell_word(shown.id + "." + coefficient.name);
+      coefficient.argument = shell_quote(shown.id + "." + coefficient.name);
     }
   }
   what_if.panel.commands = {fmt::format("{} add", program()), shell_path(model),
@@ -246,16 +246,16 @@ void print_unexplained(const Unexplained& unexplained) {
     say("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "it goes with", "unit", "R2", "p", "hPa per unit",
         "formula", "what it is");
   }
-  for (const TracedVariable& variable : unexplained.variables) {
+  for (const EmpiricalPredictor& variable : unexplained.variables) {
     say("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit, variable.r2,
         probability(variable.p_value), fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error),
         variable.formula, variable.description);
   }
   if (!unexplained.variables.empty()) {
-    const TracedVariable& first = unexplained.variables.front();
+    const EmpiricalPredictor& first = unexplained.variables.front();
     say("{}\n", places_text(first));
   }
-  for (const FlightStep& step : unexplained.steps) {
+  for (const FlightOffset& step : unexplained.steps) {
     say("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight, std::abs(step.size),
         step.standard_error, step.size < 0.0 ? "below" : "above", probability(step.p_value));
   }
@@ -276,7 +276,7 @@ Json as_json(const ModelEffect& effect) {
                        {"dynamic_pressure", effect.scaling.dynamic_pressure}};
   }
   if (effect.is_formula()) {
-    json["where"] = facts_of(effect.where).name;
+    json["where"] = info_of(effect.location).name;
     json["formula"] = effect.formula;
     json["unit"] = effect.unit;
     json["source"] = effect.source;
@@ -297,7 +297,7 @@ Json as_json(const Unexplained& unexplained) {
 }
 
 Json as_json(const Diagnosis& diagnosis) {
-  Json json{{"verdict", name_of(diagnosis.verdict)}, {"reference", diagnosis.reference}};
+  Json json{{"verdict", to_string(diagnosis.verdict)}, {"reference", diagnosis.reference}};
   json["findings"] = list_of(diagnosis.findings, finding_as_json);
   json["unexplained"] = as_json(diagnosis.unexplained);
   json["absorbed"] = list_of(diagnosis.absorbed, [](const AbsorbedEffect& effect) {

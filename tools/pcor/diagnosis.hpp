@@ -21,7 +21,7 @@ void add_candidate_options(CLI::App& command, CandidateOptions& options);
 /// the command line, and those of the file of candidates.
 /// @throws Error if a formula cannot be read, with the place in it, or the file cannot be; or if a formula of
 /// the command line names what is neither a quantity nor a variable of any of the flights.
-std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelFile& model,
+std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelDefinition& model,
                                             const FlightSet& flights);
 
 /// The options as they stand on a command line, each with a blank before it.

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/effects/without_trace.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
 #include "command.hpp"
 
 namespace pcor::tool {
@@ -25,38 +25,38 @@ const EffectWithoutTrace* find_without_trace(const std::string& id) {
   return found == effects_without_trace.end() ? nullptr : &*found;
 }
 
-const EffectFacts& find(const std::string& id) {
+const EffectInfo& find(const std::string& id) {
   const std::size_t place = effect_named(id);
-  if (place < catalogue_size) return effect_facts[place];
+  if (place < catalogue_size) return effect_info[place];
   std::vector<std::string> ids;
-  for (const EffectFacts& facts : effect_facts) ids.emplace_back(facts.id);
+  for (const EffectInfo& info : effect_info) ids.emplace_back(info.id);
   for (const EffectWithoutTrace& effect : effects_without_trace) ids.emplace_back(effect.id);
   const std::string hint = did_you_mean(id, ids);
   throw Error(fmt::format("there is no effect '{}'{}{} to list them: {} effects", id,
                           hint.empty() ? ";" : "; ", hint, program()));
 }
 
-std::string names_of_needs(const EffectFacts& facts) {
+std::string names_of_needs(const EffectInfo& info) {
   std::string names;
-  for (std::size_t i = 0; i < facts.need_count(); ++i) {
+  for (std::size_t i = 0; i < info.need_count(); ++i) {
     if (i > 0) names += ", ";
-    names += facts_of(facts.needs[i]).name;
+    names += info_of(info.needs[i]).name;
   }
   return names.empty() ? "nothing" : names;
 }
 
-nlohmann::ordered_json as_json(const EffectFacts& facts) {
+nlohmann::ordered_json as_json(const EffectInfo& info) {
   nlohmann::ordered_json effect;
-  effect["id"] = facts.id;
-  effect["title"] = facts.title;
-  effect["family"] = facts.family;
-  effect["place"] = place_of(facts);
-  effect["where"] = facts_of(facts.where).name;
-  effect["unit"] = facts_of(facts.where).unit;
-  effect["formula"] = facts.formula;
+  effect["id"] = info.id;
+  effect["title"] = info.title;
+  effect["family"] = info.family;
+  effect["place"] = place_of(info);
+  effect["where"] = info_of(info.location).name;
+  effect["unit"] = info_of(info.location).unit;
+  effect["formula"] = info.formula;
   effect["parameters"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-    const ParameterFacts& parameter = facts.parameters[i];
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+    const ParameterInfo& parameter = info.parameters[i];
     effect["parameters"].push_back({{"name", parameter.name},
                                     {"unit", parameter.unit},
                                     {"neutral", parameter.neutral},
@@ -65,17 +65,16 @@ nlohmann::ordered_json as_json(const EffectFacts& facts) {
                                     {"shape", parameter.shape}});
   }
   effect["scalings"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < facts.scaling_count(); ++i) {
-    effect["scalings"].push_back({{"static_pressure", facts.scalings[i].static_pressure},
-                                  {"dynamic_pressure", facts.scalings[i].dynamic_pressure}});
+  for (std::size_t i = 0; i < info.scaling_count(); ++i) {
+    effect["scalings"].push_back({{"static_pressure", info.scalings[i].static_pressure},
+                                  {"dynamic_pressure", info.scalings[i].dynamic_pressure}});
   }
   effect["needs"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < facts.need_count(); ++i)
-    effect["needs"].push_back(facts_of(facts.needs[i]).name);
-  effect["size"] = facts.size;
-  effect["look_alikes"] = facts.look_alikes;
-  effect["manoeuvre"] = facts.manoeuvre;
-  effect["source"] = facts.source;
+  for (std::size_t i = 0; i < info.need_count(); ++i) effect["needs"].push_back(info_of(info.needs[i]).name);
+  effect["size"] = info.size;
+  effect["look_alikes"] = info.look_alikes;
+  effect["manoeuvre"] = info.manoeuvre;
+  effect["source"] = info.source;
   return effect;
 }
 
@@ -87,49 +86,49 @@ std::string_view text_of(GasConstants constants) {
   return constants == GasConstants::dry ? "models with dry constants" : "models with moist constants";
 }
 
-void print_one(const EffectFacts& facts) {
-  const WhereFacts& where = facts_of(facts.where);
-  say("{}: {}\n\n", facts.id, facts.title);
-  say("  family       {}\n  place        {}\n", facts.family, place_of(facts));
-  say("  formula      {}  [{}]\n  acts on      {}\n", facts.formula, where.unit, where.adds_to);
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-    const ParameterFacts& parameter = facts.parameters[i];
+void print_one(const EffectInfo& info) {
+  const EffectLocationInfo& location = info_of(info.location);
+  say("{}: {}\n\n", info.id, info.title);
+  say("  family       {}\n  place        {}\n", info.family, place_of(info));
+  say("  formula      {}  [{}]\n  acts on      {}\n", info.formula, location.unit, location.adds_to);
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+    const ParameterInfo& parameter = info.parameters[i];
     const std::string neutral =
         parameter.shape ? "shapes the effect" : fmt::format("neutral {}", parameter.neutral);
     say("  parameter    {}  [{}], {}, from {} to {}, typically {}\n", parameter.name, parameter.unit, neutral,
         parameter.lower, parameter.upper, parameter.typical);
   }
-  for (std::size_t i = 0; i < facts.scaling_count(); ++i) {
-    say("  or scaled by (p/700 hPa)^{} (q/70 hPa)^{}\n", facts.scalings[i].static_pressure,
-        facts.scalings[i].dynamic_pressure);
+  for (std::size_t i = 0; i < info.scaling_count(); ++i) {
+    say("  or scaled by (p/700 hPa)^{} (q/70 hPa)^{}\n", info.scalings[i].static_pressure,
+        info.scalings[i].dynamic_pressure);
   }
-  if (facts.constants != GasConstants::any) say("  only in      {}\n", text_of(facts.constants));
-  say("  needs        {}\n", names_of_needs(facts));
-  say("  size         {}\n", facts.size);
-  say("  look-alikes  {}\n", facts.look_alikes);
-  say("  separated by {}\n", facts.manoeuvre);
-  say("  source       {}\n", facts.source);
+  if (info.constants != GasConstants::any) say("  only in      {}\n", text_of(info.constants));
+  say("  needs        {}\n", names_of_needs(info));
+  say("  size         {}\n", info.size);
+  say("  look-alikes  {}\n", info.look_alikes);
+  say("  separated by {}\n", info.manoeuvre);
+  say("  source       {}\n", info.source);
   say("  example      ");
-  for (const auto& input : facts.example.inputs) {
+  for (const auto& input : info.example.inputs) {
     if (input.quantity == Quantity::count) break;
-    say("{} = {}, ", facts_of(input.quantity).name, input.value);
+    say("{} = {}, ", info_of(input.quantity).name, input.value);
   }
   std::string example;
   std::string typical;
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
     const std::string_view separator = i == 0 ? "" : ", ";
-    example += fmt::format("{}{} = {}", separator, facts.parameters[i].name, facts.example.parameters[i]);
-    typical += fmt::format("{}{} = {}", separator, facts.parameters[i].name, facts.parameters[i].typical);
+    example += fmt::format("{}{} = {}", separator, info.parameters[i].name, info.example.parameters[i]);
+    typical += fmt::format("{}{} = {}", separator, info.parameters[i].name, info.parameters[i].typical);
   }
-  say("{} gives {} {}\n\nIn a model file:\n\n", example, facts.example.value, where.unit);
-  say("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", facts.id, typical);
+  say("{} gives {} {}\n\nIn a model file:\n\n", example, info.example.value, location.unit);
+  say("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", info.id, typical);
 }
 
 void print_all() {
   say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what", "formula");
-  for (const EffectFacts& facts : effect_facts) {
-    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", facts.id, facts.family, place_of(facts),
-        facts_of(facts.where).name, facts.title, facts.formula);
+  for (const EffectInfo& info : effect_info) {
+    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, place_of(info),
+        info_of(info.location).name, info.title, info.formula);
   }
   say("\nKnown errors that no term of a model can describe\n\n");
   for (const EffectWithoutTrace& effect : effects_without_trace) say("{:<22} {}\n", effect.id, effect.title);
@@ -147,23 +146,23 @@ void run(const Options& options) {
     return;
   }
   if (!options.id.empty()) {
-    const EffectFacts& facts = find(options.id);
-    json.write(as_json(facts));
+    const EffectInfo& info = find(options.id);
+    json.write(as_json(info));
     if (wants_text(options.common)) {
-      print_one(facts);
+      print_one(info);
       say_written({options.common.json});
     }
     return;
   }
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const EffectFacts& facts : effect_facts) all.push_back(as_json(facts));
+  for (const EffectInfo& info : effect_info) all.push_back(as_json(info));
   nlohmann::ordered_json without_trace = nlohmann::ordered_json::array();
   for (const EffectWithoutTrace& effect : effects_without_trace) without_trace.push_back(as_json(effect));
   json.write({{"effects", all}, {"without_trace", without_trace}});
   if (!wants_text(options.common)) return;
   print_all();
   say_written({options.common.json});
-  say("To read more of one: {} effects {}\n", program(), effect_facts.front().id);
+  say("To read more of one: {} effects {}\n", program(), effect_info.front().id);
 }
 
 }  // namespace

@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
 #include "command.hpp"
 
 namespace pcor::tool {
 namespace {
 
 /// Holds or frees a coefficient, or all those of an effect.
-void set_fixed(ModelFile& model, const std::string& name, bool fixed, const char* option) {
+void set_fixed(ModelDefinition& model, const std::string& name, bool fixed, const char* option) {
   bool found = false;
   std::vector<std::string> known;
   model.fits.resize(model.model.effects.size());
@@ -42,7 +42,7 @@ void add_fit_options(CLI::App& command, FitOptions& options) {
       ->type_name("NAME");
 }
 
-ModelFile with_fit_options(ModelFile model, const FitOptions& options) {
+ModelDefinition with_fit_options(ModelDefinition model, const FitOptions& options) {
   for (const std::string& name : options.free) set_fixed(model, name, false, "--free");
   for (const std::string& name : options.fix) set_fixed(model, name, true, "--fix");
   return model;
@@ -50,8 +50,8 @@ ModelFile with_fit_options(ModelFile model, const FitOptions& options) {
 
 std::string command_line(const FitOptions& options) {
   std::string line;
-  for (const std::string& name : options.fix) line += " --fix " + shell_word(name);
-  for (const std::string& name : options.free) line += " --free " + shell_word(name);
+  for (const std::string& name : options.fix) line += " --fix " + shell_quote(name);
+  for (const std::string& name : options.free) line += " --free " + shell_quote(name);
   return line;
 }
 

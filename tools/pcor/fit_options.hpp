@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 
 namespace pcor::tool {
 
@@ -17,7 +17,7 @@ struct FitOptions {
 void add_fit_options(CLI::App& command, FitOptions& options);
 
 /// The model with its coefficients held and freed as the options say. @throws Error if it has none of a name.
-ModelFile with_fit_options(ModelFile model, const FitOptions& options);
+ModelDefinition with_fit_options(ModelDefinition model, const FitOptions& options);
 
 /// The options as they stand on a command line, each with a blank before it.
 std::string command_line(const FitOptions& options);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include <pcor/words/error.hpp>
-#include <pcor/words/replacement_file.hpp>
+#include <pcor/base/atomic_file.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor::tool {
 namespace {
@@ -24,7 +24,7 @@ std::string escaped(const std::string& text) {
 }  // namespace
 
 void FlightTable::write(const std::string& path) const {
-  ReplacementFile file(path);
+  AtomicFile file(path);
   std::ofstream stream(file.path(), std::ios::binary);
   for (const std::vector<std::string>& row : rows_) {
     for (std::size_t i = 0; i < row.size(); ++i) stream << (i == 0 ? "" : ",") << escaped(row[i]);

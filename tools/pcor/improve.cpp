@@ -10,15 +10,15 @@
 #include <string>
 
 #include <pcor/improve/improvement_report.hpp>
+#include "communicator.hpp"
 #include "comparison.hpp"
 #include "diagnosis.hpp"
 #include "fit_options.hpp"
 #include "fit_summary.hpp"
-#include "model_of_flight.hpp"
+#include "model_selector.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
 #include "report_origin.hpp"
-#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -127,7 +127,8 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
       shell_path(options.comparison.flights.front()), shell_path(options.output));
 }
 
-ImproveOptions improve_options(const Options& options, const ModelFile& model, const CommandFlights& of) {
+ImproveOptions improve_options(const Options& options, const ModelDefinition& model,
+                               const CommandFlights& of) {
   ImproveOptions improve_with;
   improve_with.refit.mask = mask_options(options.comparison);
   improve_with.refit.loss = *loss_named(options.loss);
@@ -150,7 +151,7 @@ void run(const Options& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const CommandFlights of(options.comparison, options.holdout);
-  const ModelFile model =
+  const ModelDefinition model =
       with_fit_options(read_model_for(options.model, of.flights, options.common), options.held);
   const ChosenReferences references = references_to_fit(options.comparison, model, of.all());
   ImproveOptions improve_with = improve_options(options, model, of);
@@ -174,7 +175,7 @@ void run(const Options& options) {
   }
   refuse_worse(improvement.worse, options.force, improvement.model);
   if (!is_speaker()) return;
-  OutputsTogether together;
+  OutputTransaction together;
   deliver(improvement.model, options.output, inputs);
   if (wants_report(options.common))
     write_report_of_run(improvement_report(improvement, model, &tried),

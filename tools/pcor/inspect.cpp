@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/atomic_file.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/message.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/inspect/inspection_report.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/message.hpp>
-#include <pcor/words/replacement_file.hpp>
-#include <pcor/words/utc.hpp>
 #include "command.hpp"
 #include "model_name.hpp"
 #include "report_origin.hpp"
@@ -28,7 +28,7 @@ struct Options {
   std::vector<std::string> flights;
   std::string model;
   std::string roles;
-  std::string time_stamp = "begin";
+  std::string timestamp_alignment = "begin";
 };
 
 double rate_of(const Inspection& flight) {
@@ -42,28 +42,29 @@ std::string command(const std::string& name, const Inspection& flight, const std
 
 /// Up to three commands to paste, in order, that end with a corrected flight and a report.
 std::vector<std::string> next_commands(const Options& options, const Inspection& flight) {
-  const std::string stamp = options.time_stamp == "begin" ? "" : " --time-stamp " + options.time_stamp;
+  const std::string stamp =
+      options.timestamp_alignment == "begin" ? "" : " --time-stamp " + options.timestamp_alignment;
   const std::string output = " -o corrected.nc --report corrected.html";
   const std::string corrected = stamp + (flight.has_results ? " --suffix _NEW" : "") + output;
   std::string reference;
-  for (const std::string& each : flight.references) reference += " --reference " + shell_word(each);
+  for (const std::string& each : flight.references) reference += " --reference " + shell_quote(each);
   if (!flight.model) return {};
-  const auto fits =
-      std::find_if(flight.laws.begin(), flight.laws.end(), [](const LawOfFlight& law) { return law.fits(); });
+  const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
+                                 [](const ModelCandidate& law) { return law.fits(); });
   if (options.model.empty() && fits != flight.laws.end()) {
-    const std::string law = " -m " + shell_word(fits->path.stem().string());
+    const std::string law = " -m " + shell_quote(fits->path.stem().string());
     std::vector<std::string> commands{command("process", flight, law + stamp + output),
                                       command("check", flight, law + stamp + " --report check.html")};
     if (!flight.references.empty())
       commands.push_back(command("compare", flight,
                                  fmt::format("{}{} --reference {} --report compare.html", law, stamp,
-                                             shell_word(flight.references.back()))));
+                                             shell_quote(flight.references.back()))));
     return commands;
   }
   std::vector<std::string> commands;
   const std::string model = " -m " + shell_path(options.model.empty() ? "model.toml" : options.model);
   if (options.model.empty()) {
-    const std::string roles = options.roles.empty() ? "" : " --roles " + shell_word(options.roles);
+    const std::string roles = options.roles.empty() ? "" : " --roles " + shell_quote(options.roles);
     commands.push_back(command("inspect", flight, roles + stamp + " --write-model model.toml"));
   }
   if (flight.is_corrected || reference.empty()) {
@@ -72,7 +73,7 @@ std::vector<std::string> next_commands(const Options& options, const Inspection&
                            ? command("check", flight, model + stamp + " --report check.html")
                            : command("compare", flight,
                                      fmt::format("{}{} --reference {} --report compare.html", model, stamp,
-                                                 shell_word(flight.references.back()))));
+                                                 shell_quote(flight.references.back()))));
   } else {
     commands.push_back(
         command("refit", flight, model + stamp + reference + " -o fitted.toml --report refit.html"));
@@ -118,13 +119,13 @@ nlohmann::ordered_json as_json(const Options& options, const Inspection& flight)
   result["frozen"] = nlohmann::ordered_json::array();
   for (const FrozenSpan& span : flight.frozen) {
     const std::vector<double>& time = flight.samples->time;
-    result["frozen"].push_back({{"role", std::string(facts_of(span.quantity).name)},
+    result["frozen"].push_back({{"role", std::string(info_of(span.quantity).name)},
                                 {"begin", utc_text(time[span.first], iso_time)},
                                 {"end", utc_text(time[span.first + span.count - 1], iso_time)}});
   }
   result["regimes"] = nlohmann::ordered_json::array();
   for (const Interval& interval : flight.intervals) {
-    result["regimes"].push_back({{"name", std::string(facts_of(interval.regime).name)},
+    result["regimes"].push_back({{"name", std::string(info_of(interval.regime).name)},
                                  {"begin", utc_text(interval.begin, iso_time)},
                                  {"end", utc_text(interval.end, iso_time)}});
   }
@@ -133,7 +134,7 @@ nlohmann::ordered_json as_json(const Options& options, const Inspection& flight)
     result["determines"] = {{"level", gps.level}, {"slope", gps.slope}, {"attack", gps.attack}};
   }
   result["laws"] = nlohmann::ordered_json::array();
-  for (const LawOfFlight& law : flight.laws) {
+  for (const ModelCandidate& law : flight.laws) {
     result["laws"].push_back({{"name", law.model.model.name},
                               {"model", law.path.string()},
                               {"lacks", law.lacks},
@@ -254,10 +255,10 @@ void print_flown(const Inspection& flight) {
   }
   if (!flown.empty()) say("\n{:<18} {:>5} {:>8}\n", "flown", "times", "minutes");
   for (const auto& [regime, sum] : flown)
-    say("{:<18} {:>5} {:>8.1f}\n", facts_of(regime).name, sum.first, sum.second / 60.0);
+    say("{:<18} {:>5} {:>8.1f}\n", info_of(regime).name, sum.first, sum.second / 60.0);
   for (const FrozenSpan& span : flight.frozen) {
     const std::vector<double>& time = flight.samples->time;
-    say("{} stands still from {} to {}\n", facts_of(span.quantity).name,
+    say("{} stands still from {} to {}\n", info_of(span.quantity).name,
         utc_text(time[span.first], "%H:%M:%S"), utc_text(time[span.first + span.count - 1], "%H:%M:%S"));
   }
 }
@@ -286,7 +287,7 @@ void print(const Inspection& flight) {
   print_flown(flight);
   if (flight.by_gps) print_by_gps(*flight.by_gps);
   if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
-  for (const LawOfFlight& law : flight.laws) {
+  for (const ModelCandidate& law : flight.laws) {
     say("  {}: {}{}\n", law.path.stem().string(), law.model.model.name,
         !law.lacks.empty()     ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
         : !law.is_in_time      ? "; stated for another time"
@@ -307,15 +308,17 @@ void print_next(const Options& options, const Inspection& flight) {
   for (const std::string& each : commands) say("  {}\n", each);
 }
 
-/// Looks at the flights one after the other. Where there are several, one that cannot be read ends nothing.
+/// Looks at the flights one after the other. Where there are several, one that cannot be read ends
+/// nothing.
 std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordered_json& result) {
   const std::vector<std::filesystem::path> laws = named_models();
-  const TimeStamp time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
+  const TimestampAlignment timestamp_alignment =
+      options.timestamp_alignment == "middle" ? TimestampAlignment::middle : TimestampAlignment::begin;
   std::vector<Inspection> all;
   for (const std::string& flight : options.flights) {
     if (text && !result.empty()) say("\n");
     try {
-      all.push_back(inspect_flight(flight, laws, time_stamp, options.roles));
+      all.push_back(inspect_flight(flight, laws, timestamp_alignment, options.roles));
     } catch (const Error& error) {
       if (options.flights.size() == 1 || error.code() == Error::Code::model) throw;
       result.push_back({{"path", flight}, {"unreadable", error.what()}});
@@ -342,10 +345,10 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
       });
       // A name that TOML would have to escape is no suggestion.
       const bool is_plain = each.variable.find_first_of("\"\\") == std::string::npos &&
-                            message_line(each.variable) == each.variable;
+                            sanitize_line(each.variable) == each.variable;
       if (is_open && !is_used && is_plain)
         comments += fmt::format("# {} = \"{}\"  # {:.2f}: {}\n", role, each.variable, each.score,
-                                message_line(each.why));
+                                sanitize_line(each.why));
     }
   }
   std::string text = write_model(*flight.model);
@@ -358,7 +361,7 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
     fmt::print("{}", text);
     return;
   }
-  ReplacementFile file{std::filesystem::path(output)};
+  AtomicFile file{std::filesystem::path(output)};
   std::ofstream stream(file.path(), std::ios::binary);
   stream << text;
   stream.close();
@@ -378,7 +381,7 @@ void run(const Options& options) {
   result["flights"] = nlohmann::ordered_json::array();
   const std::vector<Inspection> all = look(options, text, result["flights"]);
   const Inspection& first = all.front();
-  OutputsTogether together;
+  OutputTransaction together;
   if (!options.model.empty()) {
     if (first.path != options.flights.front())
       throw Error(
@@ -418,7 +421,7 @@ std::function<void()> add_inspect(CLI::App& program) {
           ".toml; without it, of the one that the flight tells")
       ->type_name("NAME");
   command
-      ->add_option("--time-stamp", options->time_stamp,
+      ->add_option("--time-stamp", options->timestamp_alignment,
                    "whether the time of a record is the beginning or the middle of its second")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "command.hpp"
 #include "command_tree.hpp"
 
 namespace pcor::tool {
 namespace {
 
-constexpr std::size_t longest_line = 78;
+constexpr std::size_t max_line = 78;
 
 struct Options {
   std::string command;
@@ -41,7 +41,7 @@ std::string troff(const std::string& text) {
 /// Running text in short lines, none of which is a request.
 std::string paragraph(const std::string& text) {
   std::string result;
-  for (const std::string& line : CLI::detail::split(folded(troff(text), longest_line), '\n')) {
+  for (const std::string& line : CLI::detail::split(folded(troff(text), max_line), '\n')) {
     const std::string words = CLI::detail::trim_copy(line);
     result += (words[0] == '.' || words[0] == '\'' ? "\\&" : "") + words + "\n";
   }

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
 
 namespace pcor::tool {
 namespace {

@@ -15,11 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/words/error.hpp>
-#include <pcor/words/utc.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/base/utc.hpp>
 #include "command.hpp"
 #include "model_name.hpp"
-#include "model_of_flight.hpp"
+#include "model_selector.hpp"
 #include "processes.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
@@ -36,7 +36,7 @@ struct Options {
   std::string models;  ///< a folder, where each flight is to have its own
   std::string output;
   std::string correct_with = "model";
-  std::string time_stamp = "begin";
+  std::string timestamp_alignment = "begin";
   std::string uncertainty;
   std::string suffix;
   bool copy_all = false;
@@ -53,7 +53,7 @@ std::string command_line(const ProcessTask& task, const Options& options) {
                   options.models.empty() ? "-m" : "--models", shell_path(options.model + options.models),
                   shell_path(task.output.string()));
   if (options.correct_with != "model") line += " --correct-with " + options.correct_with;
-  if (options.time_stamp != "begin") line += " --time-stamp " + options.time_stamp;
+  if (options.timestamp_alignment != "begin") line += " --time-stamp " + options.timestamp_alignment;
   if (!options.uncertainty.empty()) line += " --uncertainty " + options.uncertainty;
   if (!options.suffix.empty()) line += " " + shell_option("--suffix", options.suffix);
   if (options.copy_all) line += " --all";
@@ -67,7 +67,7 @@ nlohmann::ordered_json as_json(const ProcessedFlight& flight, const Options& opt
   result["input"] = flight.input.string();
   result["output"] = flight.output.string();
   result["model"] = options.models.empty() ? options.model : flight.model.model.name;
-  result["state"] = name_of(flight.state);
+  result["state"] = to_string(flight.state);
   if (flight.state == FlightState::unreadable) result["reason"] = flight.reason;
   if (flight.state != FlightState::processed) return result;
   const ProcessSummary& summary = flight.summary;
@@ -84,10 +84,10 @@ nlohmann::ordered_json as_json(const ProcessedFlight& flight, const Options& opt
   result["in_flight"] = summary.in_flight;
   result["gaps"] = summary.gaps;
   result["delta_p_hpa"] = {
-      {"mean", summary.mean_defect}, {"least", summary.least_defect}, {"greatest", summary.greatest_defect}};
+      {"mean", summary.mean_defect}, {"least", summary.min_defect}, {"greatest", summary.max_defect}};
   nlohmann::ordered_json flags;
-  for (std::size_t i = 0; i < quality_facts.size(); ++i)
-    flags[std::string(quality_facts[i].name)] = summary.flagged[i];
+  for (std::size_t i = 0; i < quality_info.size(); ++i)
+    flags[std::string(quality_info[i].name)] = summary.flagged[i];
   result["flags"] = flags;
   result["variables"] = summary.outputs;
   result["notes"] = summary.notes;
@@ -116,11 +116,11 @@ using Flags = decltype(ProcessSummary::flagged);
 
 void print_flags(const Flags& flagged) {
   bool any = false;
-  for (std::size_t i = 0; i < quality_facts.size(); ++i) {
+  for (std::size_t i = 0; i < quality_info.size(); ++i) {
     if (flagged[i] == 0) continue;
     if (!any) say("\n{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
     any = true;
-    say("{:>9}  {:<32} {}\n", flagged[i], quality_facts[i].name, quality_facts[i].meaning);
+    say("{:>9}  {:<32} {}\n", flagged[i], quality_info[i].name, quality_info[i].meaning);
   }
 }
 
@@ -145,8 +145,8 @@ void print(const ProcessedFlight& of) {
   if (summary.in_flight > 0) {
     say("; in flight, at a dynamic pressure of {:.0f} hPa and more, {} with delta-p {:.2f} hPa in the "
         "mean, {:.2f} to {:.2f} hPa",
-        summary.flying_dynamic_pressure, summary.in_flight, summary.mean_defect, summary.least_defect,
-        summary.greatest_defect);
+        summary.flying_dynamic_pressure, summary.in_flight, summary.mean_defect, summary.min_defect,
+        summary.max_defect);
   } else if (summary.corrected > 0) {
     say("; none of them in flight, at a dynamic pressure of {:.0f} hPa and more",
         summary.flying_dynamic_pressure);
@@ -174,13 +174,13 @@ class Table {
     const ProcessSummary& summary = flight.summary;
     say("{:<{}} ", flight.input.filename().string(), width_);
     if (flight.state != FlightState::processed) {
-      say("{}{}\n", name_of(flight.state), flight.reason.empty() ? "" : ": " + flight.reason);
+      say("{}{}\n", to_string(flight.state), flight.reason.empty() ? "" : ": " + flight.reason);
     } else if (summary.in_flight == 0) {
       say("{:>9} {:>9} {:>9} {:>9} {:>9}{}\n", summary.samples, summary.corrected, "no flight", "", "",
           model_of(flight));
     } else {
       say("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}{}\n", summary.samples, summary.corrected,
-          summary.mean_defect, summary.least_defect, summary.greatest_defect, model_of(flight));
+          summary.mean_defect, summary.min_defect, summary.max_defect, model_of(flight));
     }
   }
 
@@ -275,7 +275,8 @@ class OutputFolder {
 ProcessOptions process_options(const Options& options) {
   ProcessOptions process;
   process.correct_with = options.correct_with == "lams" ? CorrectWith::lams : CorrectWith::model;
-  process.time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
+  process.timestamp_alignment =
+      options.timestamp_alignment == "middle" ? TimestampAlignment::middle : TimestampAlignment::begin;
   process.copy_all = options.copy_all;
   process.hydrostatic = options.hydrostatic;
   process.keep_frozen = options.keep_frozen;
@@ -285,7 +286,7 @@ ProcessOptions process_options(const Options& options) {
 }
 
 /// As `process_flights`; what stops several flights says that the others can be done all the same.
-std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, const ModelOfFlight& model_of,
+std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, const ModelSelector& model_of,
                                          const ProcessFlightsOptions& options) {
   try {
     return process_flights(tasks, model_of, options);
@@ -298,7 +299,7 @@ std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, 
 }
 
 /// One model for all, or of each flight its own.
-ModelOfFlight models_of(const Options& options) {
+ModelSelector models_of(const Options& options) {
   if (!options.models.empty()) {
     return [models = models_in(options.models), &options](const fs::path& flight) {
       return model_for_flight(models, flight, options.common);
@@ -315,7 +316,7 @@ void run(const Options& options) {
   require_writable(options.common.report);
   require_figures(options.common);
   JsonResult json(options.common);
-  const ModelOfFlight model_of = models_of(options);
+  const ModelSelector model_of = models_of(options);
   std::optional<OutputFolder> output_folder;
   if (folder) output_folder.emplace(options.output);
   ProcessFlightsOptions process;
@@ -336,7 +337,7 @@ void run(const Options& options) {
     bar.reset();
     if (table) table->add(flight);
   };
-  std::optional<OutputsTogether> together;
+  std::optional<OutputTransaction> together;
   if (!many) together.emplace();  // of many each is there as soon as it is done
   const std::vector<ProcessedFlight> flights = process_all(tasks, model_of, process);
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
@@ -406,7 +407,7 @@ std::function<void()> add_process(CLI::App& program) {
       ->check(CLI::IsMember({"model", "lams"}))
       ->capture_default_str();
   command
-      ->add_option("--time-stamp", options->time_stamp,
+      ->add_option("--time-stamp", options->timestamp_alignment,
                    "whether the time of a record is the beginning or the middle of its second")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();

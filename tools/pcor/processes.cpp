@@ -11,21 +11,21 @@ namespace pcor::tool {
 namespace {
 
 constexpr std::string_view option = "--processes";
-constexpr std::size_t most_processes = 1024;
+constexpr std::size_t max_processes = 1024;
 
 /// The number that a word is, of those that are allowed; 0 where it is none.
 std::size_t processes_in(std::string_view word) {
   std::size_t count = 0;
   const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), count);
   const bool is_number = status == std::errc{} && rest == word.data() + word.size();
-  return is_number && count <= most_processes ? count : 0;
+  return is_number && count <= max_processes ? count : 0;
 }
 
 bool may_copy_itself = false;  // as pcor, which asks how many processes to begin
 
 std::string trouble_with(const std::string& word) {
   if (!may_copy_itself) return "is for pcor alone; mpirun or the like says how many processes pcor_mpi has";
-  if (processes_in(word) == 0) return fmt::format("{} is no number from 1 to {}", word, most_processes);
+  if (processes_in(word) == 0) return fmt::format("{} is no number from 1 to {}", word, max_processes);
   return "";
 }
 

@@ -17,18 +17,18 @@
 #include <system_error>
 #include <vector>
 
-#include <pcor/team/forked_team.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/replacement_file.hpp>
+#include <pcor/base/atomic_file.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/parallel/fork_communicator.hpp>
 
 #include "program.hpp"
 
 #include "commands.hpp"
+#include "communicator.hpp"
 #include "crash.hpp"
 #include "model_name.hpp"
 #include "processes.hpp"
 #include "report_origin.hpp"
-#include "team.hpp"
 #include "text.hpp"
 #include "usage.hpp"
 
@@ -52,8 +52,8 @@ void mind_signals() {
   std::signal(SIGXFSZ, SIG_IGN);  // the write fails, and says why
 }
 
-/// Where a standard stream is closed, the first file that is opened would take its place, and what is said
-/// there.
+/// Where a standard stream is closed, the first file that is opened would take its place, and what
+/// is said there.
 void fill_closed_streams() {
   while (true) {
     // Nothing can be written to standard output so: what is said there is missed.
@@ -72,20 +72,20 @@ void print_nothing() {
 }
 
 /// @throws CLI::ArgumentMismatch if several processes would all do the whole work of a command
-void require_command_of_a_team(const CLI::App& program) {
+void require_parallel_command(const CLI::App& program) {
   const std::string name = program.get_subcommands().front()->get_name();
-  if (team().size() == 1 ||
-      std::find(commands_of_a_team.begin(), commands_of_a_team.end(), name) != commands_of_a_team.end())
+  if (comm().size() == 1 ||
+      std::find(parallel_commands.begin(), parallel_commands.end(), name) != parallel_commands.end())
     return;
   throw CLI::ArgumentMismatch(fmt::format(
       "several processes work together on {} only; run pcor {} as one process, or flight by flight as "
       "docs/campaigns.md says",
-      fmt::join(commands_of_a_team, ", "), name));
+      fmt::join(parallel_commands, ", "), name));
 }
 
 /// @throws Error if the processes of the team were given different commands
 void require_one_command(const std::vector<std::string>& words) {
-  team().gather("", std::hash<std::string>()(fmt::format("{}", fmt::join(words, "\n"))));
+  comm().gather("", std::hash<std::string>()(fmt::format("{}", fmt::join(words, "\n"))));
 }
 
 /// Reads the command line and does what it says. @return the exit status
@@ -112,7 +112,7 @@ int run(int argc, char** argv) {
     program.parse(argc, argv);
     const std::string misplaced = flights_behind_holdout(program, words);
     if (!misplaced.empty()) throw CLI::ArgumentMismatch(misplaced);
-    require_command_of_a_team(program);
+    require_parallel_command(program);
   } catch (const CLI::Success& help_or_version) {
     std::ostringstream text;
     program.exit(help_or_version, text, text);
@@ -140,10 +140,10 @@ Ending failed(const Error& error, bool at_once) {
   // What was said goes out before others know that this is the end.
   finish_text();
   std::fflush(stdout);
-  const Error of_all = team().leave(error).value_or(error);
+  const Error of_all = comm().leave(error).value_or(error);
   if (*of_all.what() != '\0') tell(fmt::format("pcor: {}", of_all.what()));
   // HDF5 may hold what it could not write, whatever the refusal was: it would try once more at the exit.
-  return {work_not_done, at_once || is_final(of_all) || team().size() == 1};
+  return {work_not_done, at_once || is_final(of_all) || comm().size() == 1};
 }
 
 }  // namespace
@@ -152,19 +152,19 @@ Ending run_program(int argc, char** argv) {
   fill_closed_streams();  // before there are connections of processes, which would take their places
   std::signal(SIGCHLD, SIG_DFL);
   try {
-    ForkedTeam team(processes_to_begin({argv + 1, argv + argc}));
-    return run_program(argc, argv, team, team.rank() == 0 ? work_not_done : ForkedTeam::has_told);
+    ForkCommunicator comm(processes_to_begin({argv + 1, argv + argc}));
+    return run_program(argc, argv, comm, comm.rank() == 0 ? work_not_done : ForkCommunicator::has_told);
   } catch (const Error& error) {
     tell(fmt::format("pcor: {}", error.what()));
     return {work_not_done};
   }
 }
 
-Ending run_program(int argc, char** argv, Team& team, int status_of_crash) {
+Ending run_program(int argc, char** argv, Communicator& comm, int status_of_crash) {
   mind_signals();
   const CrashesExplained explained(status_of_crash);
   fill_closed_streams();
-  set_team(team);
+  set_communicator(comm);
   if (!is_speaker()) print_nothing();
   try {
     set_program(argv[0]);
@@ -172,7 +172,7 @@ Ending run_program(int argc, char** argv, Team& team, int status_of_crash) {
     finish_text();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       throw Error("standard output: cannot be written; check the space where it goes");
-    if (const auto error = team.leave()) return failed(*error, false);
+    if (const auto error = comm.leave()) return failed(*error, false);
     return {status};
   } catch (const Error& error) {
     return failed(error, false);

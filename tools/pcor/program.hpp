@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pcor/team/team.hpp>
+#include <pcor/parallel/communicator.hpp>
 
 namespace pcor::tool {
 
@@ -17,7 +17,7 @@ Ending run_program(int argc, char** argv);
 
 /// The same, together with the other members of the team.
 /// @param status_of_crash with which this process ends where a library crashes
-Ending run_program(int argc, char** argv, Team& team, int status_of_crash = 1);
+Ending run_program(int argc, char** argv, Communicator& comm, int status_of_crash = 1);
 
 /// Ends this process so.
 [[noreturn]] void end_process(const Ending& ending);

@@ -10,7 +10,7 @@ namespace pcor::tool {
 namespace {
 
 constexpr std::size_t bar_width = 30;
-constexpr auto shortest_wait = std::chrono::milliseconds(500);
+constexpr auto min_wait = std::chrono::milliseconds(500);
 
 }  // namespace
 
@@ -24,7 +24,7 @@ Progress::~Progress() { erase(); }
 void Progress::show(std::size_t done, std::size_t total) {
   if (!wanted_ || total == 0) return;
   const auto now = std::chrono::steady_clock::now();
-  if (now - last_ < shortest_wait) return;
+  if (now - last_ < min_wait) return;
   last_ = now;
   shown_ = true;
   const std::size_t filled = done * bar_width / total;

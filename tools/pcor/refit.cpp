@@ -11,17 +11,17 @@
 #include <optional>
 #include <string>
 
+#include <pcor/base/error.hpp>
 #include <pcor/fit/refit_report.hpp>
-#include <pcor/words/error.hpp>
+#include "communicator.hpp"
 #include "comparison.hpp"
 #include "fit_options.hpp"
 #include "fit_summary.hpp"
 #include "flight_table.hpp"
-#include "model_of_flight.hpp"
+#include "model_selector.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
 #include "report_origin.hpp"
-#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -144,7 +144,7 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
   json["r2"] = result.r_squared;
   json["samples"] = result.samples;
   json["outliers"] = result.outliers;
-  json["samples_per_independent"] = result.samples_per_independent;
+  json["samples_per_independent"] = result.autocorrelation_time;
   json["condition_number"] = result.condition_number;
   json["reference"] = result.reference_text;
   json["covariance"] = {{"parameters", result.covariance_names}, {"matrix", result.covariance}};
@@ -210,11 +210,11 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
       result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
       result.outliers);
   say("R2 {:.4f}; condition number {:.0f}\n", result.r_squared, result.condition_number);
-  if (result.samples_per_independent > 1.0) {
+  if (result.autocorrelation_time > 1.0) {
     say("with memory and drift of the noise, {} samples tell as much of a mean as {:.0f} independent ones, "
         "and "
         "the standard errors allow for it\n",
-        result.samples, static_cast<double>(result.samples) / result.samples_per_independent);
+        result.samples, static_cast<double>(result.samples) / result.autocorrelation_time);
   }
   if (result.omissions.size() > 1) {
     say("\n{:<36} {:>10} {:>10}\n", "left out, the others refitted", "rms, hPa", "R2");
@@ -256,14 +256,14 @@ void print_next_step(const Options& options) {
 }
 
 /// The flights with the model before and after the fit, for the report.
-Comparison before_against_after(const RefitResult& result, const ModelFile& model,
+Comparison before_against_after(const RefitResult& result, const ModelDefinition& model,
                                 const References& references, const FlightSet& flights,
                                 const Options& options) {
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
   References fitted = references;
   for (std::shared_ptr<const Reference>& reference : fitted) {
-    const ModelFile* const system = reference->model();
+    const ModelDefinition* const system = reference->model();
     if (result.reference && system != nullptr && system->variables == result.reference->variables)
       reference = reference->with_model(*result.reference);
   }
@@ -277,7 +277,7 @@ Comparison before_against_after(const RefitResult& result, const ModelFile& mode
 }
 
 /// A row for each flight, with the coefficients that it finds alone.
-FlightTable flight_table(const RefitResult& all, const ModelFile& model, const References& references,
+FlightTable flight_table(const RefitResult& all, const ModelDefinition& model, const References& references,
                          const FlightSet& flights, RefitOptions with, const Options& options) {
   std::vector<std::string> columns{"flight",         "held_out",       "reference",
                                    "samples",        "rms_before_hpa", "bias_after_hpa",
@@ -291,7 +291,7 @@ FlightTable flight_table(const RefitResult& all, const ModelFile& model, const R
   }
   Progress bar("fitting each flight alone", !options.common.quiet);
   with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-  const auto found = refit_each_alone(flights, model, references, with);
+  const auto found = refit_per_flight(flights, model, references, with);
   std::map<std::string, std::vector<FittedParameter>> alone;
   for (std::size_t i = 0; i < flights.size(); ++i) alone.emplace(flights.name(i), found[i]);
   FlightTable table(columns);
@@ -354,7 +354,7 @@ void run(const Options& options) {
   const CommandFlights of(options.comparison, options.holdout,
                           static_cast<std::size_t>(options.memory_mib * 1048576.0));
   const FlightSet all = of.all();
-  const ModelFile model = read_model_for(options.model, of.flights, options.common);
+  const ModelDefinition model = read_model_for(options.model, of.flights, options.common);
   const ChosenReferences references = references_to_fit(options.comparison, model, all);
   RefitOptions refit_with = refit_options(options, of.holdout);
   RefitResult result;
@@ -372,7 +372,7 @@ void run(const Options& options) {
     table = flight_table(result, model, references.used, of.flights, refit_with, options);
   all.require_unchanged();
   if (!is_speaker()) return;
-  OutputsTogether together;
+  OutputTransaction together;
   if (comparison) {
     write_report_of_run(refit_report(result, *comparison),
                         {{options.model, options.output}, options.comparison.flights, options.holdout},

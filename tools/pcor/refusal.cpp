@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor::tool {
 
@@ -14,7 +14,7 @@ void add_force_option(CLI::App& command, bool& force) {
                    "file then says so");
 }
 
-void refuse_worse(const std::string& worse, bool force, ModelFile& model) {
+void refuse_worse(const std::string& worse, bool force, ModelDefinition& model) {
   // What was said of an earlier step does not hold for this one.
   Provenance& all = model.provenance;
   all.erase(std::remove_if(all.begin(), all.end(), [](const auto& entry) { return entry.first == "forced"; }),

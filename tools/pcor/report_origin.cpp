@@ -6,11 +6,11 @@
 #include <ctime>
 #include <utility>
 
+#include <pcor/base/utc.hpp>
 #include <pcor/report/figures.hpp>
-#include <pcor/words/utc.hpp>
 #include "choices.hpp"
+#include "communicator.hpp"
 #include "processes.hpp"
-#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -26,7 +26,7 @@ FigureUse use_named(const std::string& name) {
 void remember_command(int count, const char* const* words) {
   command_of_this_run = "pcor";
   for (const std::string& word : without_processes({words + 1, words + count}))
-    command_of_this_run += " " + shell_word(word);
+    command_of_this_run += " " + shell_quote(word);
 }
 
 bool wants_report(const CommonOptions& options) {

@@ -8,9 +8,9 @@
 #include <sstream>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
-#include <pcor/laws/model_file.hpp>
-#include <pcor/words/error.hpp>
+#include <pcor/model_io/model_definition.hpp>
 
 namespace pcor::tool {
 namespace {
@@ -26,9 +26,9 @@ double number_in(const std::string& text, const std::string& argument) {
 
 int power_in(const std::string& text, const std::string& argument) {
   const double power = number_in(text, argument);
-  if (power != std::floor(power) || std::abs(power) > largest_power) {
-    throw Error(fmt::format("{}: a power is a whole number from {} to {}, not {}", argument, -largest_power,
-                            largest_power, text));
+  if (power != std::floor(power) || std::abs(power) > max_power) {
+    throw Error(fmt::format("{}: a power is a whole number from {} to {}, not {}", argument, -max_power,
+                            max_power, text));
   }
   return static_cast<int>(power);
 }
@@ -43,11 +43,11 @@ void set_shape(ModelEffect& effect, const std::string& name, const std::string& 
     effect.scaling.dynamic_pressure = power_in(value, argument);
     return;
   }
-  const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+  const EffectInfo& info = effect_info[effect_named(effect.id)];
   std::vector<std::string_view> shapes;
-  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-    if (!facts.parameters[i].shape) continue;
-    const ParameterFacts& shape = facts.parameters[i];
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+    if (!info.parameters[i].shape) continue;
+    const ParameterInfo& shape = info.parameters[i];
     if (shape.name == name) {
       effect.parameters[i] = number_in(value, argument);
       if (effect.parameters[i] >= shape.lower && effect.parameters[i] <= shape.upper) return;
@@ -66,9 +66,9 @@ void set_shape(ModelEffect& effect, const std::string& name, const std::string& 
 std::string argument_of(const ModelEffect& effect) {
   std::vector<std::string> shapes;
   if (!effect.is_formula()) {
-    const EffectFacts& facts = effect_facts[effect_named(effect.id)];
-    for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-      const ParameterFacts& parameter = facts.parameters[i];
+    const EffectInfo& info = effect_info[effect_named(effect.id)];
+    for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+      const ParameterInfo& parameter = info.parameters[i];
       if (parameter.shape && effect.parameters[i] != parameter.typical)
         shapes.push_back(fmt::format("{}={}", parameter.name, effect.parameters[i]));
     }

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include <pcor/words/utc.hpp>
+#include <pcor/base/utc.hpp>
 #include "command.hpp"
 #include "progress.hpp"
 
@@ -49,8 +49,8 @@ nlohmann::ordered_json as_json(const SimulationSummary& summary, const Options& 
                               {"end", utc_text(leg.last_time, iso_time)},
                               {"altitude_m", leg.altitude},
                               {"pressure_hpa", leg.pressure},
-                              {"airspeed_m_s", {leg.least_speed, leg.greatest_speed}},
-                              {"attack_deg", {leg.least_attack, leg.greatest_attack}}});
+                              {"airspeed_m_s", {leg.min_speed, leg.max_speed}},
+                              {"attack_deg", {leg.min_attack, leg.max_attack}}});
   }
   return result;
 }
@@ -63,8 +63,8 @@ void print(const SimulationSummary& summary, const Options& options) {
   for (const LegFlown& leg : summary.legs) {
     say("{:<16} {:>8}  {:>8} {:>8.0f} {:>8.1f} {:>12} {:>12}\n", leg.kind,
         utc_text(leg.first_time, "%H:%M:%S"), utc_text(leg.last_time, "%H:%M:%S"), leg.altitude, leg.pressure,
-        fmt::format("{:.0f} to {:.0f}", leg.least_speed, leg.greatest_speed),
-        fmt::format("{:.1f} to {:.1f}", leg.least_attack, leg.greatest_attack));
+        fmt::format("{:.0f} to {:.0f}", leg.min_speed, leg.max_speed),
+        fmt::format("{:.1f} to {:.1f}", leg.min_attack, leg.max_attack));
   }
   if (!summary.effects.empty()) say("\nsimulated errors: {}\n", fmt::join(summary.effects, ", "));
   say("\nwrote {} variables, and the true values as TRUE_..., to {}\n", summary.variables.size(),
@@ -81,7 +81,7 @@ void run(const Options& options) {
   if (options.seed) scenario.seed = *options.seed;
   SimulateOptions simulate;
   simulate.history = command_line(options, scenario.seed);
-  OutputsTogether together;
+  OutputTransaction together;
   SimulationSummary summary;
   {
     Progress bar("simulating", !options.common.quiet);

@@ -8,13 +8,13 @@
 #include <optional>
 #include <string>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
+#include "communicator.hpp"
 #include "comparison.hpp"
-#include "model_of_flight.hpp"
+#include "model_selector.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
 #include "report_origin.hpp"
-#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -29,7 +29,7 @@ struct Options {
   double slope_size = TemperatureOptions{}.slope_size * 1e5;  // m in 100 km
   std::optional<double> pressure_error;
   bool force = false;
-  double least_climb_rate = 0.0;
+  double min_climb_rate = 0.0;
   bool skip_returning = false;
   bool archived = false;
   bool iterate = false;
@@ -42,7 +42,7 @@ TemperatureOptions temperature_options(const Options& options) {
   result.slope = *isobar_slope_named(options.slope);
   result.slope_size = options.slope_size * 1e-5;
   result.pressure_error = options.pressure_error;
-  result.least_climb_rate = options.least_climb_rate;
+  result.min_climb_rate = options.min_climb_rate;
   result.skip_returning = options.skip_returning;
   result.archived = options.archived;
   result.dry_air = options.force;
@@ -83,7 +83,7 @@ nlohmann::ordered_json as_json(const TemperatureResult& result) {
       one["left_out"] = flight.left_out;
     } else {
       one["samples"] = flight.samples;
-      one["stretches"] = flight.stretches;
+      one["stretches"] = flight.segments;
       one["rms_before_m"] = flight.rms_before;
       one["rms_after_m"] = flight.rms_after;
     }
@@ -133,7 +133,7 @@ nlohmann::ordered_json as_json(const TemperatureResult& result) {
   return json;
 }
 
-nlohmann::ordered_json as_json(const CalibrationInTurn& result) {
+nlohmann::ordered_json as_json(const IterativeCalibration& result) {
   nlohmann::ordered_json rounds = nlohmann::ordered_json::array();
   for (const CalibrationRound& round : result.rounds)
     rounds.push_back({{"rms_hpa", round.rms_hpa},
@@ -152,8 +152,7 @@ void print_flights(const TemperatureResult& result) {
       continue;
     }
     say("{:<28} {:>8} {:>10} {:>7.1f} C {:>7.1f} C {:>9.2f} m {:>8.2f} m\n", flight.flight, flight.samples,
-        flight.stretches, flight.least_temperature, flight.greatest_temperature, flight.rms_before,
-        flight.rms_after);
+        flight.segments, flight.min_temperature, flight.max_temperature, flight.rms_before, flight.rms_after);
   }
 }
 
@@ -210,7 +209,7 @@ void print(const TemperatureResult& result) {
   for (const std::string& note : result.notes) say("\nNote: {}.\n", note);
 }
 
-void print(const CalibrationInTurn& result) {
+void print(const IterativeCalibration& result) {
   say("{:<6} {:>10} {:>22} {:>24}  {}\n", "round", "rms, hPa", "change of delta-p, hPa",
       "change of temperature, K", "coefficients");
   for (std::size_t i = 0; i < result.rounds.size(); ++i) {
@@ -244,10 +243,10 @@ void run(const Options& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
-  const ModelFile model = read_model_for(options.model, flights, options.common);
+  const ModelDefinition model = read_model_for(options.model, flights, options.common);
   TemperatureOptions with = temperature_options(options);
   TemperatureResult result;
-  CalibrationInTurn in_turn;
+  IterativeCalibration in_turn;
   {
     Progress bar(options.iterate ? "fitting and calibrating in turn" : "reading", !options.common.quiet);
     with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
@@ -256,7 +255,7 @@ void run(const Options& options) {
       refit_with.mask = with.mask;
       refit_with.progress = with.progress;
       const References references = references_to_fit(options.comparison, model, flights).used;
-      in_turn = calibrate_in_turn(flights, model, references, refit_with, with);
+      in_turn = calibrate_iteratively(flights, model, references, refit_with, with);
       result = in_turn.temperature;
     } else {
       result = fit_temperature(flights, model, with);
@@ -264,7 +263,7 @@ void run(const Options& options) {
   }
   if (!is_speaker()) return;
   const bool is_refused = !result.worse.empty() && !options.force;
-  OutputsTogether together;
+  OutputTransaction together;
   if (wants_report(options.common))
     write_report_of_run(temperature_report(result),
                         {{options.model, options.output}, options.comparison.flights, {}}, options.common);
@@ -332,7 +331,7 @@ std::function<void()> add_temperature(CLI::App& program) {
                    "transducer, and for the law what the model states, 0.3 if nothing)")
       ->check(is_amount());
   command
-      ->add_option("--min-climb-rate", options->least_climb_rate,
+      ->add_option("--min-climb-rate", options->min_climb_rate,
                    "climbs and descents that are slower are left out, m/s")
       ->check(is_amount())
       ->capture_default_str();

@@ -10,13 +10,13 @@
 #include <cstdlib>
 #include <utility>
 
-#include <pcor/words/message.hpp>
-#include "team.hpp"
+#include <pcor/base/message.hpp>
+#include "communicator.hpp"
 
 namespace pcor::tool {
 namespace {
 
-constexpr std::size_t least_width = 20;
+constexpr std::size_t min_width = 20;
 constexpr auto none = std::string_view::npos;
 
 bool is_plain = false;
@@ -32,7 +32,7 @@ std::size_t terminal_width() {
   winsize size{};
   long width = ioctl(fileno(stdout), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
   if (const char* const stated = std::getenv("COLUMNS")) width = std::atol(stated);
-  return width <= 0 ? 0 : std::max(least_width, static_cast<std::size_t>(width));
+  return width <= 0 ? 0 : std::max(min_width, static_cast<std::size_t>(width));
 }
 
 /// How many columns a line has: what stands between two blanks or more.
@@ -83,7 +83,7 @@ std::string_view take_line(std::string_view& text, std::size_t width, bool is_ro
 
 const std::string& program() { return program_name(); }
 
-void set_program(const std::string& name_as_called) { program_name() = shell_word(name_as_called); }
+void set_program(const std::string& name_as_called) { program_name() = shell_quote(name_as_called); }
 
 void say_plainly() { is_plain = true; }
 
@@ -140,7 +140,7 @@ std::string coloured(std::string line) {
 
 void tell(const std::string& message) {
   if (!is_speaker()) return;
-  const std::string line = message_line(message) + "\n";
+  const std::string line = sanitize_line(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

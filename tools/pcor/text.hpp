@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/words/shell_word.hpp>
+#include <pcor/base/shell_quote.hpp>
 
 namespace pcor::tool {
 
@@ -18,8 +18,8 @@ const std::string& program();
 void set_program(const std::string& name_as_called);
 
 /// Prints text for people on standard output, whose lines are folded at the width of the terminal, with the
-/// verdicts of checks in colour and notes bold unless NO_COLOR is set. Where standard output is no terminal
-/// they stay as they are.
+/// verdicts of checks in colour and notes bold unless NO_COLOR is set. Where standard output is no
+/// terminal they stay as they are.
 void say_text(std::string_view text);
 
 /// From now on standard output counts as no terminal. MPI may pass what its processes print through one.
@@ -31,8 +31,8 @@ void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   say_text(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-/// Says on standard error, in one line, what is wrong; of a team the first member does. Where standard error
-/// takes nothing, it is not said.
+/// Says on standard error, in one line, what is wrong; of a team the first member does. EffectLocation
+/// standard error takes nothing, it is not said.
 void tell(const std::string& message);
 
 /// Prints what `say` keeps of a line that has no end yet.

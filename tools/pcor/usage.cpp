@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include <pcor/words/suggest.hpp>
+#include <pcor/base/suggest.hpp>
 #include "command_tree.hpp"
 #include "text.hpp"
 

@@ -50,17 +50,17 @@ class Batch {
            const double* parameters = nullptr) const;
 
  private:
-  struct StageFacts {
+  struct StageInfo {
     std::bitset<state_capacity> reads;
     std::bitset<state_capacity> writes;
   };
 
-  std::string name_of(Quantity quantity) const;
+  std::string to_string(Quantity quantity) const;
 
   Chain chain_;
   CorrectWith with_;
   std::bitset<state_capacity> recorded_;
-  std::array<StageFacts, Stages::count> stages_;
+  std::array<StageInfo, Stages::count> stages_;
 };
 
 }  // namespace pcor

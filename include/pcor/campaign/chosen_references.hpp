@@ -23,7 +23,7 @@ std::vector<std::string> in_order(std::vector<std::string> texts);
 ///
 /// @throws Error as `read_reference`, or if there is no text and no LAMS: the others do not tell a static
 /// pressure by themselves.
-ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
+ChosenReferences read_references(const std::vector<std::string>& texts, const ModelDefinition& model,
                                  const FlightSet& flights);
 
 }  // namespace pcor

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <pcor/flight/flight.hpp>
+#include <pcor/parallel/communicator.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/samples.hpp>
-#include <pcor/team/team.hpp>
 
 #include <cstddef>
 #include <filesystem>
@@ -15,13 +15,14 @@
 namespace pcor {
 
 namespace internal {
-class FlightShare;
+class FlightPartition;
 }
 
 /// How the flights of a set are read.
 struct FlightSetOptions {
-  TimeStamp time_stamp = TimeStamp::begin;
-  Team* team = &alone();  ///< the processes that share the flights; each reads its own ones
+  TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
+  Communicator* comm =
+      &serial_communicator();  ///< the processes that share the flights; each reads its own ones
   /// Bytes of samples that a process keeps; samples beyond that are read again when they are needed, so the
   /// memory does not grow with the number of flights.
   std::size_t memory = std::size_t{512} << 20U;
@@ -72,8 +73,8 @@ class FlightSet {
   const std::filesystem::path& path(std::size_t flight) const;
   std::vector<std::filesystem::path> paths() const;
 
-  Team& team() const { return *team_; }
-  const internal::FlightShare& share() const { return *share_; }
+  Communicator& comm() const { return *comm_; }
+  const internal::FlightPartition& share() const { return *share_; }
 
   /// One flight, for this process alone.
   FlightSet only(std::size_t flight) const;
@@ -87,7 +88,7 @@ class FlightSet {
   const Flight& operator[](std::size_t flight) const;
 
   /// What a model and a reference read of an own flight (`read_samples`); for samples in memory these.
-  std::shared_ptr<const FlightSamples> samples(std::size_t flight, const ModelFile& model,
+  std::shared_ptr<const FlightSamples> samples(std::size_t flight, const ModelDefinition& model,
                                                const Reference& reference, const MaskOptions& mask) const;
 
   /// What every process knows of the flights: one exchange when it is first asked for.
@@ -117,11 +118,11 @@ class FlightSet {
   struct Entry;
   struct Memory;
 
-  FlightSet(std::vector<std::shared_ptr<Entry>> entries, internal::FlightShare share, Team& team);
+  FlightSet(std::vector<std::shared_ptr<Entry>> entries, internal::FlightPartition share, Communicator& comm);
 
   std::vector<std::shared_ptr<Entry>> entries_{};
-  std::shared_ptr<const internal::FlightShare> share_;
-  Team* team_;
+  std::shared_ptr<const internal::FlightPartition> share_;
+  Communicator* comm_;
 };
 
 }  // namespace pcor

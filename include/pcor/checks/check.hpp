@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pcor/campaign/flight_set.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/report/report.hpp>
 #include <pcor/residuals/residuals.hpp>
 
@@ -18,20 +18,20 @@ namespace pcor {
 enum class CheckVerdict {
   consistent,    ///< what is measured agrees within what the noise allows
   inconsistent,  ///< it does not
-  cannot_tell    ///< the noise allows more than the largest error that would matter
+  inconclusive   ///< the noise allows more than the largest error that would matter
 };
 
 /// "consistent", "inconsistent", "cannot tell".
-std::string_view name_of(CheckVerdict verdict);
+std::string_view to_string(CheckVerdict verdict);
 
 /// A number of a check that would be zero if all were well, with what its size alone says.
-struct KeyNumber {
+struct TestStatistic {
   double value = 0.0;
   double standard_error = 0.0;
   double matters = 0.0;  ///< the smallest value that matters
   std::string unit{};    ///< for example "hPa"
   std::string what{};    ///< in words, for example "from slow to fast"
-  CheckVerdict verdict = CheckVerdict::cannot_tell;
+  CheckVerdict verdict = CheckVerdict::inconclusive;
 };
 
 /// One independent test of the correction, on all flights together.
@@ -39,9 +39,9 @@ struct CheckResult {
   std::string name{};    ///< for example "reverse-heading"
   bool ran = false;      ///< else the flights do not allow it
   std::string reason{};  ///< why it did not run, and what it would need; empty where it ran
-  CheckVerdict verdict = CheckVerdict::cannot_tell;
-  std::vector<KeyNumber> judged{};  ///< all numbers that were judged
-  KeyNumber key{};                  ///< the one of them that decided
+  CheckVerdict verdict = CheckVerdict::inconclusive;
+  std::vector<TestStatistic> judged{};  ///< all numbers that were judged
+  TestStatistic key{};                  ///< the one of them that decided
   std::string decided{};  ///< how it did: the number, its error and the limit, a sentence without full stop
   std::string finding{};  ///< the verdict in a sentence with its numbers
   std::string cannot_see{};                               ///< which errors the check is blind to, a sentence
@@ -59,7 +59,7 @@ struct CheckOptions {
   MaskOptions mask;
   /// The model of a second static system of the aircraft, for the checks of redundant systems. Without it the
   /// second pair of pressures is looked for by its usual names, and is as measured.
-  std::optional<ModelFile> second{};
+  std::optional<ModelDefinition> second{};
   std::function<void(std::size_t done, std::size_t total)>
       progress{};  ///< told after every flight of this member
 };
@@ -85,24 +85,24 @@ struct Checks {
 ///
 /// @throws Error if a flight cannot be read or is given twice, a variable of the model is absent, the flights
 /// are of different aircraft, or both models are of the same pressures.
-Checks check(const FlightSet& flights, const std::optional<ModelFile>& model,
+Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& model,
              const CheckOptions& options = {});
 
 /// What a check says in short; the members are those of `CheckResult`.
-struct CheckInShort {
+struct CheckSummary {
   std::string name{};
   bool ran = false;
   std::string reason{};
-  CheckVerdict verdict = CheckVerdict::cannot_tell;
-  KeyNumber key{};
+  CheckVerdict verdict = CheckVerdict::inconclusive;
+  TestStatistic key{};
 };
 
-std::vector<CheckInShort> in_short(const Checks& checks);
+std::vector<CheckSummary> in_short(const Checks& checks);
 
 /// What the checks say of each flight alone.
 /// @throws Error as `check`
-std::vector<std::vector<CheckInShort>> check_each_alone(const FlightSet& flights,
-                                                        const std::optional<ModelFile>& model,
+std::vector<std::vector<CheckSummary>> check_per_flight(const FlightSet& flights,
+                                                        const std::optional<ModelDefinition>& model,
                                                         const CheckOptions& options = {});
 
 /// The report of the checks: a table of verdicts, and for each check its numbers, tables and pictures.

@@ -40,9 +40,9 @@ struct ModelComparison {
   /// 1 - sum of squared residuals / sum of squared departures of the reference's delta-p from its mean; NaN
   /// for a reference that is no static pressure.
   double r_squared = 0.0;
-  double samples_per_independent = 1.0;
+  double autocorrelation_time = 1.0;
   /// By how much the calibration of the reference and of the thermometer may shift the bias of all samples,
-  /// hPa, beside `Statistics::bias_error`: usual sizes (`ParameterFacts::doubt`), or what `[uncertainty]` of
+  /// hPa, beside `Statistics::bias_error`: usual sizes (`ParameterInfo::doubt`), or what `[uncertainty]` of
   /// the models states. Zero for references of many samples (wind, height).
   double reference_error = 0.0;
   std::vector<PartStatistics> regimes;  ///< those that occur, in the order of `Regime`
@@ -90,17 +90,17 @@ struct Comparison {
 
 struct CompareOptions {
   MaskOptions mask;
-  /// Of how many flights the records are kept; the numbers are of all. Where there are more, those that are
-  /// kept are read once more.
-  std::size_t most_series = 16;
+  /// Of how many flights the records are kept; the numbers are of all. Where there are more, those
+  /// that are kept are read once more.
+  std::size_t max_series = 16;
   /// Told after every flight of this member with every reference.
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
 /// A model, and what it is held against.
-struct Contender {
+struct ComparedModel {
   std::string name;  ///< in tables
-  ModelFile model;
+  ModelDefinition model;
   References references;
 };
 
@@ -111,7 +111,7 @@ struct Contender {
 ///
 /// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
 /// no sample is left: the message says which mask took how many.
-Comparison compare(const FlightSet& flights, const std::vector<Contender>& contenders,
+Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
                    const CompareOptions& options = {});
 
 /// Writes the residuals of a flight to a netCDF file: for each model RESIDUAL_1, RESIDUAL_2 ..., delta-p of

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pcor/campaign/flight_set.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/residuals/statistics.hpp>
@@ -28,7 +28,7 @@ enum class Verdict {
 };
 
 /// As JSON and text have it: "silent", "identified", "cannot be told apart", "partial", "unexplained".
-std::string_view name_of(Verdict verdict);
+std::string_view to_string(Verdict verdict);
 
 struct DiagnoseOptions {
   MaskOptions mask;
@@ -172,7 +172,7 @@ struct NotTestable {
 };
 
 /// A variable of the files with which unexplained structure goes.
-struct TracedVariable {
+struct EmpiricalPredictor {
   std::string name;
   std::string unit;
   std::string description{};
@@ -184,17 +184,18 @@ struct TracedVariable {
   double centre = 0.0;     ///< mean of the variable over the samples used
   std::string formula{};   ///< of an effect that would describe it, e.g. "k * (ENGTRQ - 48)"
   std::string sampling{};  ///< how it was brought to one value a record, in words; empty where it has one
-  /// Where what goes with it may act, as far as references that do not see the static ports tell it: e.g.
-  /// "port", "laser"; empty where they do not.
+  /// Where what goes with it may act, as far as references that do not see the static ports tell it:
+  /// e.g. "port", "laser"; empty where they do not.
   std::vector<std::string> places{};
-  Where where = Where::static_defect;  ///< of the formula: at the pitot where the total pressures have it too
+  EffectLocation location =
+      EffectLocation::static_defect;  ///< of the formula: at the pitot where the total pressures have it too
 };
 
 /// What is known of where the cause of a traced variable acts, a clause without its full stop.
-std::string places_text(const TracedVariable& variable);
+std::string places_text(const EmpiricalPredictor& variable);
 
 /// A flight whose residual lies above or below those of the others.
-struct FlightStep {
+struct FlightOffset {
   std::string flight;
   double size = 0.0;  ///< hPa; positive where delta-p should be larger than in the others
   double standard_error = 0.0;
@@ -207,10 +208,10 @@ struct Unexplained {
   double rms = 0.0;        ///< hPa
   double drift_rms = 0.0;  ///< of it the part that wanders slowly, with nothing that is recorded, hPa
   double p_value = 1.0;
-  std::string regime{};                     ///< where most of it lies, e.g. "climb"
-  std::vector<TracedVariable> variables{};  ///< the strongest first
-  std::vector<FlightStep> steps{};          ///< only those that are significant, the largest first
-  std::vector<std::string> shares_noise{};  ///< variables left out: their noise is that of the residual
+  std::string regime{};                         ///< where most of it lies, e.g. "climb"
+  std::vector<EmpiricalPredictor> variables{};  ///< the strongest first
+  std::vector<FlightOffset> steps{};            ///< only those that are significant, the largest first
+  std::vector<std::string> shares_noise{};      ///< variables left out: their noise is that of the residual
   /// Variables left out: the files say that they are computed from what the residual is computed from.
   std::vector<std::string> computed{};
 };
@@ -278,7 +279,7 @@ void judge_held_out(Diagnosis& diagnosis);
 /// flights without any effect. The noise of several flights is found on all processors.
 ///
 /// @throws Error if a flight cannot be read, a variable of the model is absent, or too few samples are left.
-Diagnosis diagnose(const FlightSet& flights, const ModelFile& model, const References& references,
+Diagnosis diagnose(const FlightSet& flights, const ModelDefinition& model, const References& references,
                    const DiagnoseOptions& options = {});
 
 }  // namespace pcor

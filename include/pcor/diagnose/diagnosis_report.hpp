@@ -23,7 +23,8 @@ std::string limits_text(const UpperLimit& limit);
 /// Mach number and pressure, the ranking with its rivals, and a page in words for each finding.
 /// @param model the one that was diagnosed
 /// @param what_if effects that the reader can add; null for none
-Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model, const WhatIf* what_if = nullptr);
+Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model,
+                        const WhatIf* what_if = nullptr);
 
 /// What kind of effect it is, where it may act, and how large it is beside the usual: "family: zero; place:
 /// p-transducer or other-system; 15 times its usual size: ...".

@@ -11,7 +11,7 @@
 namespace pcor {
 
 /// How many effects the reader of a report may try.
-inline constexpr std::size_t most_what_if_effects = 12;
+inline constexpr std::size_t max_what_if_effects = 12;
 
 /// An effect that the reader of a report may add to the model.
 struct WhatIfCandidate {
@@ -47,7 +47,7 @@ struct WhatIf {
 };
 
 /// The effects of a diagnosis to try: what was found, with what it cannot be told from, the formulas of the
-/// user, and what comes nearest to a finding; at most `most_what_if_effects`.
+/// user, and what comes nearest to a finding; at most `max_what_if_effects`.
 std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
                                                 const std::vector<ModelEffect>& formulas);
 
@@ -56,7 +56,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
 /// effects in whose coefficients the residual is not linear, and what would tell the effects apart.
 ///
 /// @throws Error as `diagnose`.
-WhatIf what_if(const FlightSet& flights, const ModelFile& model, const References& references,
+WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const References& references,
                const std::vector<WhatIfCandidate>& candidates, const WhatIfOptions& options);
 
 }  // namespace pcor

@@ -6,27 +6,27 @@
 namespace pcor::effects {
 
 struct AircraftStep {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "aircraft-step";
-    facts.title = "step of delta-p on a date: something on the aircraft was changed";
-    facts.family = "step";
-    facts.where = Where::static_defect;
-    facts.formula = "if(date < since, 0, step) * static_pressure";
-    facts.parameters[0] = {"step", "1", 0.0, -0.5, 0.5, 0.0017};
-    facts.parameters[1] = {"since", "d", 0.0, -14610.0, 36525.0, 0.0, true};
-    facts.needs = {Quantity::date, Quantity::static_pressure, Quantity::count, Quantity::count};
-    facts.size =
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "aircraft-step";
+    info.title = "step of delta-p on a date: something on the aircraft was changed";
+    info.family = "step";
+    info.location = EffectLocation::static_defect;
+    info.formula = "if(date < since, 0, step) * static_pressure";
+    info.parameters[0] = {"step", "1", 0.0, -0.5, 0.5, 0.0017};
+    info.parameters[1] = {"since", "d", 0.0, -14610.0, 36525.0, 0.0, true};
+    info.needs = {Quantity::date, Quantity::static_pressure, Quantity::count, Quantity::count};
+    info.size =
         "C-130 1.1 to 1.3 hPa between 2011 and 2016, of unknown cause; since is in days since 2000-01-01";
-    facts.look_alikes = "static-constant, psfd-bias, qcf-zero, aircraft-change";
-    facts.manoeuvre =
+    info.look_alikes = "static-constant, psfd-bias, qcf-zero, aircraft-change";
+    info.manoeuvre =
         "level legs at one speed, attack and level in both flights, and the avionics pressure in both";
-    facts.source = "ARISTO memo sec. 4.1 and 4.4";
-    facts.example.inputs[0] = {Quantity::date, 4324.0};
-    facts.example.inputs[1] = {Quantity::static_pressure, 700.0};
-    facts.example.parameters = {0.0017, 4323.5};
-    facts.example.value = 1.19;
-    return facts;
+    info.source = "ARISTO memo sec. 4.1 and 4.4";
+    info.example.inputs[0] = {Quantity::date, 4324.0};
+    info.example.inputs[1] = {Quantity::static_pressure, 700.0};
+    info.example.parameters = {0.0017, 4323.5};
+    info.example.value = 1.19;
+    return info;
   }
 
   template <class State, class P>

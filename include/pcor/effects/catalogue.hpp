@@ -117,8 +117,8 @@ inline constexpr std::size_t catalogue_size = std::tuple_size_v<Catalogue>;
 namespace detail {
 
 template <class... Effect>
-constexpr std::array<EffectFacts, sizeof...(Effect)> facts_of_effects(const std::tuple<Effect...>*) {
-  return {Effect::facts()...};
+constexpr std::array<EffectInfo, sizeof...(Effect)> facts_of_effects(const std::tuple<Effect...>*) {
+  return {Effect::info()...};
 }
 
 template <class S, class P>
@@ -138,7 +138,7 @@ constexpr std::array<EffectFunction<S, P>, sizeof...(Effect)> functions_of_effec
 }  // namespace detail
 
 /// The facts of every effect, in the order of the catalogue.
-inline constexpr std::array<EffectFacts, catalogue_size> effect_facts =
+inline constexpr std::array<EffectInfo, catalogue_size> effect_info =
     detail::facts_of_effects(static_cast<const Catalogue*>(nullptr));
 
 /// The formulas of every effect, for a state of scalar `S` and parameters of scalar `P`.
@@ -149,7 +149,7 @@ inline constexpr auto effect_functions =
 /// The place in the catalogue of the effect called `id`, or `catalogue_size` where there is none.
 constexpr std::size_t effect_named(std::string_view id) {
   for (std::size_t i = 0; i < catalogue_size; ++i) {
-    if (effect_facts[i].id == id) return i;
+    if (effect_info[i].id == id) return i;
   }
   return catalogue_size;
 }

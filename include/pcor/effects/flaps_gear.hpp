@@ -5,24 +5,24 @@
 namespace pcor::effects {
 
 struct FlapsGear {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "flaps-gear";
-    facts.title = "flaps, and the gear that goes with them";
-    facts.family = "configuration";
-    facts.where = Where::static_defect;
-    facts.formula = "defect * flaps / 50";
-    facts.parameters[0] = {"defect", "hPa", 0.0, -50.0, 50.0, 1.5};
-    facts.needs = {Quantity::flaps, Quantity::count, Quantity::count, Quantity::count};
-    facts.scalings[0] = {0, 1};  // with q
-    facts.size = "C-130 1.3 to 1.7 hPa with flaps at 50 % and more; GV unknown";
-    facts.look_alikes = "static-alpha-quad, ground-effect, pcor-regime";
-    facts.manoeuvre = "level leg at one speed, repeated with flaps at 0 and 50 %";
-    facts.source = "NCAR nimbus, qcfrc.c (GOTHAAM); Cooper (2012) fig. 2";
-    facts.example.inputs[0] = {Quantity::flaps, 25.0};
-    facts.example.parameters = {1.5};
-    facts.example.value = 0.75;
-    return facts;
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "flaps-gear";
+    info.title = "flaps, and the gear that goes with them";
+    info.family = "configuration";
+    info.location = EffectLocation::static_defect;
+    info.formula = "defect * flaps / 50";
+    info.parameters[0] = {"defect", "hPa", 0.0, -50.0, 50.0, 1.5};
+    info.needs = {Quantity::flaps, Quantity::count, Quantity::count, Quantity::count};
+    info.scalings[0] = {0, 1};  // with q
+    info.size = "C-130 1.3 to 1.7 hPa with flaps at 50 % and more; GV unknown";
+    info.look_alikes = "static-alpha-quad, ground-effect, pcor-regime";
+    info.manoeuvre = "level leg at one speed, repeated with flaps at 0 and 50 %";
+    info.source = "NCAR nimbus, qcfrc.c (GOTHAAM); Cooper (2012) fig. 2";
+    info.example.inputs[0] = {Quantity::flaps, 25.0};
+    info.example.parameters = {1.5};
+    info.example.value = 0.75;
+    return info;
   }
 
   template <class State, class P>

@@ -6,24 +6,24 @@
 namespace pcor::effects {
 
 struct LoadFactor {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "load-factor";
-    facts.title = "static-port error in accelerated flight";
-    facts.family = "load factor";
-    facts.where = Where::static_defect;
-    facts.formula = "per_g * normal_acceleration / 9.80665";
-    facts.parameters[0] = {"per_g", "hPa", 0.0, -50.0, 50.0, 1.0};
-    facts.needs = {Quantity::normal_acceleration, Quantity::count, Quantity::count, Quantity::count};
-    facts.scalings[0] = {0, 1};  // with q
-    facts.size = "0.2 to 1 hPa for 0.4 g, estimated; King Air above 1.5 hPa in accelerated flight";
-    facts.look_alikes = "static-alpha, static-lag, lams-pod-flex";
-    facts.manoeuvre = "pitch manoeuvre with two periods, 10 and 30 s; steady turn";
-    facts.source = "Rodi and Leon, Atmos. Meas. Tech. 5, 2569 (2012)";
-    facts.example.inputs[0] = {Quantity::normal_acceleration, 1.96133};
-    facts.example.parameters = {1.5};
-    facts.example.value = 0.3;
-    return facts;
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "load-factor";
+    info.title = "static-port error in accelerated flight";
+    info.family = "load factor";
+    info.location = EffectLocation::static_defect;
+    info.formula = "per_g * normal_acceleration / 9.80665";
+    info.parameters[0] = {"per_g", "hPa", 0.0, -50.0, 50.0, 1.0};
+    info.needs = {Quantity::normal_acceleration, Quantity::count, Quantity::count, Quantity::count};
+    info.scalings[0] = {0, 1};  // with q
+    info.size = "0.2 to 1 hPa for 0.4 g, estimated; King Air above 1.5 hPa in accelerated flight";
+    info.look_alikes = "static-alpha, static-lag, lams-pod-flex";
+    info.manoeuvre = "pitch manoeuvre with two periods, 10 and 30 s; steady turn";
+    info.source = "Rodi and Leon, Atmos. Meas. Tech. 5, 2569 (2012)";
+    info.example.inputs[0] = {Quantity::normal_acceleration, 1.96133};
+    info.example.parameters = {1.5};
+    info.example.value = 0.3;
+    return info;
   }
 
   template <class State, class P>

@@ -5,23 +5,23 @@
 namespace pcor::effects {
 
 struct PsfdBias {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "psfd-bias";
-    facts.title = "bias of the static transducer";
-    facts.family = "zero";
-    facts.where = Where::static_transducer;
-    facts.formula = "-offset";
-    facts.parameters[0] = {"offset", "hPa", 0.0, -50.0, 50.0, 0.1};
-    facts.parameters[0].doubt = 0.1;
-    facts.size = "Paroscientific 0.1 hPa; the laser sees 7 to 35 % of it";
-    facts.look_alikes = "static-constant, qcf-zero";
-    facts.manoeuvre =
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "psfd-bias";
+    info.title = "bias of the static transducer";
+    info.family = "zero";
+    info.location = EffectLocation::static_transducer;
+    info.formula = "-offset";
+    info.parameters[0] = {"offset", "hPa", 0.0, -50.0, 50.0, 0.1};
+    info.parameters[0].doubt = 0.1;
+    info.size = "Paroscientific 0.1 hPa; the laser sees 7 to 35 % of it";
+    info.look_alikes = "static-constant, qcf-zero";
+    info.manoeuvre =
         "airport pressure on the ramp; hydrostatic height in climbs; a second static and pitot pair";
-    facts.source = "Cooper (2012), Background";
-    facts.example.parameters = {0.1};
-    facts.example.value = -0.1;
-    return facts;
+    info.source = "Cooper (2012), Background";
+    info.example.parameters = {0.1};
+    info.example.value = -0.1;
+    return info;
   }
 
   template <class State, class P>

@@ -5,25 +5,25 @@
 namespace pcor::effects {
 
 struct PsfdThermal {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "psfd-thermal";
-    facts.title = "drift of the static transducer with its temperature";
-    facts.family = "thermal drift";
-    facts.where = Where::static_transducer;
-    facts.formula = "-per_kelvin * (transducer_temperature - 290) - zero";
-    facts.parameters[0] = {"per_kelvin", "hPa/K", 0.0, -2.0, 2.0, 0.02};
-    facts.parameters[1] = {"zero", "hPa", 0.0, -50.0, 50.0, 0.1};
-    facts.needs = {Quantity::transducer_temperature, Quantity::count, Quantity::count, Quantity::count};
-    facts.size = "estimated 0.01 to 0.03 hPa/K; zero is the error at 290 K";
-    facts.look_alikes = "transducer-thermal, psfd-drift, psfd-bias";
-    facts.manoeuvre =
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "psfd-thermal";
+    info.title = "drift of the static transducer with its temperature";
+    info.family = "thermal drift";
+    info.location = EffectLocation::static_transducer;
+    info.formula = "-per_kelvin * (transducer_temperature - 290) - zero";
+    info.parameters[0] = {"per_kelvin", "hPa/K", 0.0, -2.0, 2.0, 0.02};
+    info.parameters[1] = {"zero", "hPa", 0.0, -50.0, 50.0, 0.1};
+    info.needs = {Quantity::transducer_temperature, Quantity::count, Quantity::count, Quantity::count};
+    info.size = "estimated 0.01 to 0.03 hPa/K; zero is the error at 290 K";
+    info.look_alikes = "transducer-thermal, psfd-drift, psfd-bias";
+    info.manoeuvre =
         "level legs early and late at one speed, attack and level, with a second static and pitot pair";
-    facts.source = "Haering, NASA TM-104316, 1995; estimate";
-    facts.example.inputs[0] = {Quantity::transducer_temperature, 300.0};
-    facts.example.parameters = {0.02, 0.1};
-    facts.example.value = -0.3;
-    return facts;
+    info.source = "Haering, NASA TM-104316, 1995; estimate";
+    info.example.inputs[0] = {Quantity::transducer_temperature, 300.0};
+    info.example.parameters = {0.02, 0.1};
+    info.example.value = -0.3;
+    return info;
   }
 
   template <class State, class P>

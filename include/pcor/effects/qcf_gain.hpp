@@ -5,23 +5,23 @@
 namespace pcor::effects {
 
 struct QcfGain {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "qcf-gain";
-    facts.title = "span error of the dynamic transducer";
-    facts.family = "gain";
-    facts.where = Where::dynamic_transducer;
-    facts.formula = "-gain * dynamic_pressure";
-    facts.parameters[0] = {"gain", "1", 0.0, -0.5, 0.5, 0.005};
-    facts.needs = {Quantity::dynamic_pressure, Quantity::count, Quantity::count, Quantity::count};
-    facts.size = "estimated 0.1 to 0.5 %: 0.06 to 0.35 hPa";
-    facts.look_alikes = "lams-scale, temp-offset, static-qp, static-mach2, qcf-zero";
-    facts.manoeuvre = "a second static and pitot pair over a wide range of q: one laser alone cannot show it";
-    facts.source = "NCAR wind uncertainty technical note table 1";
-    facts.example.inputs[0] = {Quantity::dynamic_pressure, 70.0};
-    facts.example.parameters = {0.005};
-    facts.example.value = -0.35;
-    return facts;
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "qcf-gain";
+    info.title = "span error of the dynamic transducer";
+    info.family = "gain";
+    info.location = EffectLocation::dynamic_transducer;
+    info.formula = "-gain * dynamic_pressure";
+    info.parameters[0] = {"gain", "1", 0.0, -0.5, 0.5, 0.005};
+    info.needs = {Quantity::dynamic_pressure, Quantity::count, Quantity::count, Quantity::count};
+    info.size = "estimated 0.1 to 0.5 %: 0.06 to 0.35 hPa";
+    info.look_alikes = "lams-scale, temp-offset, static-qp, static-mach2, qcf-zero";
+    info.manoeuvre = "a second static and pitot pair over a wide range of q: one laser alone cannot show it";
+    info.source = "NCAR wind uncertainty technical note table 1";
+    info.example.inputs[0] = {Quantity::dynamic_pressure, 70.0};
+    info.example.parameters = {0.005};
+    info.example.value = -0.35;
+    return info;
   }
 
   template <class State, class P>

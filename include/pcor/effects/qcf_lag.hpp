@@ -5,24 +5,24 @@
 namespace pcor::effects {
 
 struct QcfLag {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "qcf-lag";
-    facts.title = "response and filter of the differential transducer";
-    facts.family = "lag";
-    facts.where = Where::dynamic_transducer;
-    facts.formula = "tau * dynamic_pressure_rate";
-    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 30.0, 0.1};
-    facts.needs = {Quantity::dynamic_pressure_rate, Quantity::count, Quantity::count, Quantity::count};
-    facts.size = "QCF answers in 0.05 s and is 0.02 s late: 0.03 hPa in a speed run of 0.3 m/s2";
-    facts.look_alikes = "clock-skew, total-lag";
-    facts.manoeuvre =
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "qcf-lag";
+    info.title = "response and filter of the differential transducer";
+    info.family = "lag";
+    info.location = EffectLocation::dynamic_transducer;
+    info.formula = "tau * dynamic_pressure_rate";
+    info.parameters[0] = {"tau", "s", 0.0, 0.0, 30.0, 0.1};
+    info.needs = {Quantity::dynamic_pressure_rate, Quantity::count, Quantity::count, Quantity::count};
+    info.size = "QCF answers in 0.05 s and is 0.02 s late: 0.03 hPa in a speed run of 0.3 m/s2";
+    info.look_alikes = "clock-skew, total-lag";
+    info.manoeuvre =
         "none with one laser: its clock does the same; a second differential transducer of another response";
-    facts.source = "NCAR wind uncertainty technical note sec. 2.2.3";
-    facts.example.inputs[0] = {Quantity::dynamic_pressure_rate, 0.3};
-    facts.example.parameters = {0.1};
-    facts.example.value = 0.03;
-    return facts;
+    info.source = "NCAR wind uncertainty technical note sec. 2.2.3";
+    info.example.inputs[0] = {Quantity::dynamic_pressure_rate, 0.3};
+    info.example.parameters = {0.1};
+    info.example.value = 0.03;
+    return info;
   }
 
   template <class State, class P>

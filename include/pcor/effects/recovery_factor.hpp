@@ -5,23 +5,23 @@
 namespace pcor::effects {
 
 struct RecoveryFactorError {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "recovery-factor";
-    facts.title = "error of the recovery factor";
-    facts.family = "recovery";
-    facts.where = Where::recovery;
-    facts.formula = "da";
-    facts.parameters[0] = {"da", "1", 0.0, -0.2, 0.2, 0.01};
-    facts.parameters[0].doubt = 0.005;
-    facts.size = "0.01 changes delta-p from LAMS by -0.017 hPa (C-130) to -0.11 hPa (GV)";
-    facts.look_alikes = "temp-offset, static-qp, static-mach2";
-    facts.manoeuvre = "speed run, both branches, at constant temperature";
-    facts.source = "Cooper, Recovery factor study, NCAR, October 2014";
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "recovery-factor";
+    info.title = "error of the recovery factor";
+    info.family = "recovery";
+    info.location = EffectLocation::recovery;
+    info.formula = "da";
+    info.parameters[0] = {"da", "1", 0.0, -0.2, 0.2, 0.01};
+    info.parameters[0].doubt = 0.005;
+    info.size = "0.01 changes delta-p from LAMS by -0.017 hPa (C-130) to -0.11 hPa (GV)";
+    info.look_alikes = "temp-offset, static-qp, static-mach2";
+    info.manoeuvre = "speed run, both branches, at constant temperature";
+    info.source = "Cooper, Recovery factor study, NCAR, October 2014";
 
-    facts.example.parameters = {0.01};
-    facts.example.value = 0.01;
-    return facts;
+    info.example.parameters = {0.01};
+    info.example.value = 0.01;
+    return info;
   }
 
   template <class State, class P>

@@ -8,24 +8,24 @@
 namespace pcor::effects {
 
 struct RollStatic {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "roll-static";
-    facts.title = "left and right static ports differ in turns";
-    facts.family = "roll";
-    facts.where = Where::static_defect;
-    facts.formula = "defect * sin(roll * pi / 180)";
-    facts.parameters[0] = {"defect", "hPa", 0.0, -20.0, 20.0, 0.3};
-    facts.needs = {Quantity::roll, Quantity::count, Quantity::count, Quantity::count};
-    facts.scalings[0] = {0, 1};  // with q
-    facts.size = "0 to 0.3 hPa, estimated";
-    facts.look_alikes = "lams-azimuth, static-beta-odd, horizontal-gradient";
-    facts.manoeuvre = "circles to the left and to the right";
-    facts.source = "NCAR quality-assurance notes, circle manoeuvre";
-    facts.example.inputs[0] = {Quantity::roll, 30.0};
-    facts.example.parameters = {0.3};
-    facts.example.value = 0.15;
-    return facts;
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "roll-static";
+    info.title = "left and right static ports differ in turns";
+    info.family = "roll";
+    info.location = EffectLocation::static_defect;
+    info.formula = "defect * sin(roll * pi / 180)";
+    info.parameters[0] = {"defect", "hPa", 0.0, -20.0, 20.0, 0.3};
+    info.needs = {Quantity::roll, Quantity::count, Quantity::count, Quantity::count};
+    info.scalings[0] = {0, 1};  // with q
+    info.size = "0 to 0.3 hPa, estimated";
+    info.look_alikes = "lams-azimuth, static-beta-odd, horizontal-gradient";
+    info.manoeuvre = "circles to the left and to the right";
+    info.source = "NCAR quality-assurance notes, circle manoeuvre";
+    info.example.inputs[0] = {Quantity::roll, 30.0};
+    info.example.parameters = {0.3};
+    info.example.value = 0.15;
+    return info;
   }
 
   template <class State, class P>

@@ -5,25 +5,25 @@
 namespace pcor::effects {
 
 struct StaticMach2 {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "static-mach2";
-    facts.title = "static-port error with the square of the Mach number";
-    facts.family = "Mach number";
-    facts.where = Where::static_defect;
-    facts.formula = "m2 * mach^2 * static_pressure";
-    facts.parameters[0] = {"m2", "1", 0.0, -2.0, 2.0, 0.02};
-    facts.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
-    facts.size = "C-130 0.019 (PSFD)";
-    facts.look_alikes =
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "static-mach2";
+    info.title = "static-port error with the square of the Mach number";
+    info.family = "Mach number";
+    info.location = EffectLocation::static_defect;
+    info.formula = "m2 * mach^2 * static_pressure";
+    info.parameters[0] = {"m2", "1", 0.0, -2.0, 2.0, 0.02};
+    info.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
+    info.size = "C-130 0.019 (PSFD)";
+    info.look_alikes =
         "static-qp, static-mach, static-mach3, lams-scale, temp-offset, recovery-factor, qcf-gain";
-    facts.manoeuvre = "speed run at two altitudes";
-    facts.source = "Cooper (2012) eq. 19-20";
-    facts.example.inputs[0] = {Quantity::mach, 0.75};
-    facts.example.inputs[1] = {Quantity::static_pressure, 250.0};
-    facts.example.parameters = {-0.2833};
-    facts.example.value = -39.8390625;
-    return facts;
+    info.manoeuvre = "speed run at two altitudes";
+    info.source = "Cooper (2012) eq. 19-20";
+    info.example.inputs[0] = {Quantity::mach, 0.75};
+    info.example.inputs[1] = {Quantity::static_pressure, 250.0};
+    info.example.parameters = {-0.2833};
+    info.example.value = -39.8390625;
+    return info;
   }
 
   template <class State, class P>

@@ -6,29 +6,29 @@
 namespace pcor::effects {
 
 struct TempCalibration {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "temp-calibration";
-    facts.title = "calibration of the ambient temperature";
-    facts.family = "zero";
-    facts.where = Where::ambient_temperature;
-    facts.formula = "a0 + a1 * (ambient_temperature - 273.15) + a2 * (ambient_temperature - 273.15)^2";
-    facts.parameters[0] = {"a0", "K", 0.0, -5.0, 5.0, 0.5};
-    facts.parameters[1] = {"a1", "1", 0.0, -0.05, 0.05, 0.005};
-    facts.parameters[2] = {"a2", "1/K", 0.0, -0.001, 0.001, 0.0001};
-    facts.needs = {Quantity::ambient_temperature, Quantity::count, Quantity::count, Quantity::count};
-    facts.size = "0.3 to 0.55 K and a slope to 0.01: 0.24 hPa/K (C-130), 0.42 hPa/K (GV)";
-    facts.look_alikes =
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "temp-calibration";
+    info.title = "calibration of the ambient temperature";
+    info.family = "zero";
+    info.location = EffectLocation::ambient_temperature;
+    info.formula = "a0 + a1 * (ambient_temperature - 273.15) + a2 * (ambient_temperature - 273.15)^2";
+    info.parameters[0] = {"a0", "K", 0.0, -5.0, 5.0, 0.5};
+    info.parameters[1] = {"a1", "1", 0.0, -0.05, 0.05, 0.005};
+    info.parameters[2] = {"a2", "1/K", 0.0, -0.001, 0.001, 0.0001};
+    info.needs = {Quantity::ambient_temperature, Quantity::count, Quantity::count, Quantity::count};
+    info.size = "0.3 to 0.55 K and a slope to 0.01: 0.24 hPa/K (C-130), 0.42 hPa/K (GV)";
+    info.look_alikes =
         "temp-offset, recovery-factor, lams-scale, qcf-gain, temp-deice-heat, humidity-neglected, "
         "horizontal-gradient, hydrostatic-t-gradient, gps-height";
-    facts.manoeuvre =
+    info.manoeuvre =
         "climbs and descents through many temperatures, there and back, with GPS height: pcor temperature "
         "finds it by the hydrostatic equation";
-    facts.source = "Cooper (2012) eq. 24 and its addition on the GV: T + a0 + a1 T + a2 T^2, T in degC";
-    facts.example.inputs[0] = {Quantity::ambient_temperature, 253.15};
-    facts.example.parameters = {0.55, 0.01, 0.00025};
-    facts.example.value = 0.45;
-    return facts;
+    info.source = "Cooper (2012) eq. 24 and its addition on the GV: T + a0 + a1 T + a2 T^2, T in degC";
+    info.example.inputs[0] = {Quantity::ambient_temperature, 253.15};
+    info.example.parameters = {0.55, 0.01, 0.00025};
+    info.example.value = 0.45;
+    return info;
   }
 
   template <class State, class P>

@@ -8,31 +8,29 @@
 namespace pcor::effects {
 
 struct TempDeiceHeat {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "temp-deice-heat";
-    facts.title = "heat of the de-icing in a heated thermometer";
-    facts.family = "heating";
-    facts.where = Where::temperature;
-    facts.formula =
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "temp-deice-heat";
+    info.title = "heat of the de-icing in a heated thermometer";
+    info.family = "heating";
+    info.location = EffectLocation::temperature;
+    info.formula =
         "-scale * 10^(-1.7841 * log10(max(0.26959 * static_pressure * mach * (1 + mach^2 / 5) / "
         "recovery_temperature, 0.18)) - 1.4025)";
-    facts.parameters[0] = {"scale", "1", 0.0, 0.0, 20.0, 1.0};
-    facts.needs = {Quantity::static_pressure, Quantity::mach, Quantity::recovery_temperature,
-                   Quantity::count};
-    facts.size =
-        "0.38 to 0.84 K over the envelope; less with the constants of the GV, for which scale is 0.6";
-    facts.look_alikes = "temp-offset, qcf-zero, static-leak";
-    facts.manoeuvre = "heater off and on; two thermometers";
-    facts.source =
+    info.parameters[0] = {"scale", "1", 0.0, 0.0, 20.0, 1.0};
+    info.needs = {Quantity::static_pressure, Quantity::mach, Quantity::recovery_temperature, Quantity::count};
+    info.size = "0.38 to 0.84 K over the envelope; less with the constants of the GV, for which scale is 0.6";
+    info.look_alikes = "temp-offset, qcf-zero, static-leak";
+    info.manoeuvre = "heater off and on; two thermometers";
+    info.source =
         "NCAR nimbus, atfh.c and initAC.c (Rosemount 102DB1CB): 10^(-1.7841 log10 Z - 1.4025), Z = 0.26959 p "
         "M/T";
-    facts.example.inputs[0] = {Quantity::static_pressure, 700.0};
-    facts.example.inputs[1] = {Quantity::mach, 0.36};
-    facts.example.inputs[2] = {Quantity::recovery_temperature, 275.0};
-    facts.example.parameters = {1.0};
-    facts.example.value = -0.4581720094401175;
-    return facts;
+    info.example.inputs[0] = {Quantity::static_pressure, 700.0};
+    info.example.inputs[1] = {Quantity::mach, 0.36};
+    info.example.inputs[2] = {Quantity::recovery_temperature, 275.0};
+    info.example.parameters = {1.0};
+    info.example.value = -0.4581720094401175;
+    return info;
   }
 
   template <class State, class P>

@@ -5,25 +5,25 @@
 namespace pcor::effects {
 
 struct TempWetting {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "temp-wetting";
-    facts.title = "the thermometer gets wet in cloud and cools";
-    facts.family = "cloud";
-    facts.where = Where::temperature;
-    facts.formula = "-error * wetness";
-    facts.parameters[0] = {"error", "K", 0.0, -30.0, 0.0, -1.0};
-    facts.parameters[1] = {"drying", "s", 10.0, 0.0, 600.0, 10.0, true, {1.0, 5.0, 20.0, 40.0}};
-    facts.needs = {Quantity::wetness, Quantity::count, Quantity::count, Quantity::count};
-    facts.memory = {Quantity::wetness, 1};
-    facts.size = "-0.5 to -2 K: -0.1 to -0.8 hPa, in cloud and until it is dry, 5 to 20 s later";
-    facts.look_alikes = "lams-cloud";
-    facts.manoeuvre = "passes through cloud with a radiometer";
-    facts.source = "Cooper (2012) item 6 and recommendation 5; ARISTO memo";
-    facts.example.inputs[0] = {Quantity::wetness, 0.6};
-    facts.example.parameters = {-1.0, 10.0};
-    facts.example.value = 0.6;
-    return facts;
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "temp-wetting";
+    info.title = "the thermometer gets wet in cloud and cools";
+    info.family = "cloud";
+    info.location = EffectLocation::temperature;
+    info.formula = "-error * wetness";
+    info.parameters[0] = {"error", "K", 0.0, -30.0, 0.0, -1.0};
+    info.parameters[1] = {"drying", "s", 10.0, 0.0, 600.0, 10.0, true, {1.0, 5.0, 20.0, 40.0}};
+    info.needs = {Quantity::wetness, Quantity::count, Quantity::count, Quantity::count};
+    info.memory = {Quantity::wetness, 1};
+    info.size = "-0.5 to -2 K: -0.1 to -0.8 hPa, in cloud and until it is dry, 5 to 20 s later";
+    info.look_alikes = "lams-cloud";
+    info.manoeuvre = "passes through cloud with a radiometer";
+    info.source = "Cooper (2012) item 6 and recommendation 5; ARISTO memo";
+    info.example.inputs[0] = {Quantity::wetness, 0.6};
+    info.example.parameters = {-1.0, 10.0};
+    info.example.value = 0.6;
+    return info;
   }
 
   template <class State, class P>

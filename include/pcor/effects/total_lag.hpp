@@ -5,25 +5,25 @@
 namespace pcor::effects {
 
 struct TotalLag {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "total-lag";
-    facts.title = "lag of the total-pressure line";
-    facts.family = "lag";
-    facts.where = Where::total_line;
-    facts.formula = "tau * (static_pressure_rate + dynamic_pressure_rate)";
-    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 30.0, 0.1};
-    facts.needs = {Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate, Quantity::count,
-                   Quantity::count};
-    facts.size = "QCF answers in 0.05 s and is 0.02 s late: 0.1 hPa at a climb of 10 m/s";
-    facts.look_alikes = "static-lag, clock-skew, temp-lag";
-    facts.manoeuvre = "speed run, accelerating against decelerating";
-    facts.source = "NCAR wind uncertainty technical note sec. 2.2.3";
-    facts.example.inputs[0] = {Quantity::static_pressure_rate, -0.8};
-    facts.example.inputs[1] = {Quantity::dynamic_pressure_rate, 0.3};
-    facts.example.parameters = {0.1};
-    facts.example.value = -0.05;
-    return facts;
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "total-lag";
+    info.title = "lag of the total-pressure line";
+    info.family = "lag";
+    info.location = EffectLocation::total_line;
+    info.formula = "tau * (static_pressure_rate + dynamic_pressure_rate)";
+    info.parameters[0] = {"tau", "s", 0.0, 0.0, 30.0, 0.1};
+    info.needs = {Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate, Quantity::count,
+                  Quantity::count};
+    info.size = "QCF answers in 0.05 s and is 0.02 s late: 0.1 hPa at a climb of 10 m/s";
+    info.look_alikes = "static-lag, clock-skew, temp-lag";
+    info.manoeuvre = "speed run, accelerating against decelerating";
+    info.source = "NCAR wind uncertainty technical note sec. 2.2.3";
+    info.example.inputs[0] = {Quantity::static_pressure_rate, -0.8};
+    info.example.inputs[1] = {Quantity::dynamic_pressure_rate, 0.3};
+    info.example.parameters = {0.1};
+    info.example.value = -0.05;
+    return info;
   }
 
   template <class State, class P>

@@ -5,24 +5,24 @@
 namespace pcor::effects {
 
 struct TransducerThermal {
-  static constexpr EffectFacts facts() {
-    EffectFacts facts;
-    facts.id = "transducer-thermal";
-    facts.title = "drift of the dynamic transducer with its temperature";
-    facts.family = "thermal drift";
-    facts.where = Where::dynamic_transducer;
-    facts.formula = "-per_kelvin * (transducer_temperature - 290) - zero";
-    facts.parameters[0] = {"per_kelvin", "hPa/K", 0.0, -2.0, 2.0, 0.02};
-    facts.parameters[1] = {"zero", "hPa", 0.0, -50.0, 50.0, 0.1};
-    facts.needs = {Quantity::transducer_temperature, Quantity::count, Quantity::count, Quantity::count};
-    facts.size = "estimated 0.01 to 0.03 hPa/K; zero is the error at 290 K";
-    facts.look_alikes = "adif-drift, time-drift, qcf-zero";
-    facts.manoeuvre = "level legs early and late at one speed, attack and level";
-    facts.source = "Haering, NASA TM-104316, 1995; estimate";
-    facts.example.inputs[0] = {Quantity::transducer_temperature, 300.0};
-    facts.example.parameters = {0.02, 0.1};
-    facts.example.value = -0.3;
-    return facts;
+  static constexpr EffectInfo info() {
+    EffectInfo info;
+    info.id = "transducer-thermal";
+    info.title = "drift of the dynamic transducer with its temperature";
+    info.family = "thermal drift";
+    info.location = EffectLocation::dynamic_transducer;
+    info.formula = "-per_kelvin * (transducer_temperature - 290) - zero";
+    info.parameters[0] = {"per_kelvin", "hPa/K", 0.0, -2.0, 2.0, 0.02};
+    info.parameters[1] = {"zero", "hPa", 0.0, -50.0, 50.0, 0.1};
+    info.needs = {Quantity::transducer_temperature, Quantity::count, Quantity::count, Quantity::count};
+    info.size = "estimated 0.01 to 0.03 hPa/K; zero is the error at 290 K";
+    info.look_alikes = "adif-drift, time-drift, qcf-zero";
+    info.manoeuvre = "level legs early and late at one speed, attack and level";
+    info.source = "Haering, NASA TM-104316, 1995; estimate";
+    info.example.inputs[0] = {Quantity::transducer_temperature, 300.0};
+    info.example.parameters = {0.02, 0.1};
+    info.example.value = -0.3;
+    return info;
   }
 
   template <class State, class P>

@@ -16,7 +16,7 @@ enum class Loss {
   none      ///< least squares
 };
 
-std::string_view name_of(Loss loss);
+std::string_view to_string(Loss loss);
 
 /// The loss of that name; nothing where there is none.
 std::optional<Loss> loss_named(std::string_view name);

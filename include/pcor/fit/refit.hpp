@@ -41,7 +41,7 @@ struct RefitOptions {
   /// prior as its error.
   bool use_prior = false;
   /// The calibration of the references and of the thermometer counts as exact. Otherwise what it may be wrong
-  /// by is part of the standard errors: `ParameterFacts::doubt`, or what `[uncertainty]` of the model states.
+  /// by is part of the standard errors: `ParameterInfo::doubt`, or what `[uncertainty]` of the model states.
   bool trust_reference = false;
   /// Look for the start by a global search between the bounds, for parameters in which the residual is not
   /// linear.
@@ -107,8 +107,8 @@ inline constexpr std::string_view refit_estimator_of_gps =
     "both.";
 
 struct RefitResult {
-  ModelFile model;                       ///< with coefficients, standard errors, covariance and provenance
-  std::optional<ModelFile> reference{};  ///< of the reference's model, where it was fitted too
+  ModelDefinition model;  ///< with coefficients, standard errors, covariance and provenance
+  std::optional<ModelDefinition> reference{};  ///< of the reference's model, where it was fitted too
   std::vector<FittedParameter> parameters{};
   std::vector<std::string> covariance_names{};
   /// Of the fitted parameters, and of those that were held with a stated error, which the others carry;
@@ -129,7 +129,7 @@ struct RefitResult {
   std::size_t outliers = 0;  ///< samples that depart from what the noise allows after those before them
   /// Ratio of the largest to the smallest singular value of the derivatives, each column of length one.
   double condition_number = 0.0;
-  double samples_per_independent = 1.0;
+  double autocorrelation_time = 1.0;
   std::array<std::size_t, mask_count> masks{};
   std::size_t jackknife_parts = 0;  ///< flights, or parts of flights, that were left out one after another
   std::vector<Omission> omissions{};
@@ -173,7 +173,7 @@ struct RefitResult {
 /// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
 /// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the
 /// message names them and says which to fix.
-RefitResult refit(const FlightSet& flights, const ModelFile& model, const References& references,
+RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const References& references,
                   const RefitOptions& options = {});
 
 /// Mean error of delta-p of a model, hPa.
@@ -185,13 +185,14 @@ struct LevelByGps {
 /// The constant part of the pressure that delta-p of the model lacks by GPS, with all other coefficients of
 /// the model: by the same likelihood as `refit`. Empty without the references wind and height.
 /// @throws Error as `refit`
-std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelFile& model,
+std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelDefinition& model,
                                        const References& references, const MaskOptions& mask = {});
 
 /// The coefficients as each flight alone finds them, without held-out flights; none of a flight that cannot
 /// tell them.
 /// @throws Error if a flight cannot be read
-std::vector<std::vector<FittedParameter>> refit_each_alone(const FlightSet& flights, const ModelFile& model,
+std::vector<std::vector<FittedParameter>> refit_per_flight(const FlightSet& flights,
+                                                           const ModelDefinition& model,
                                                            const References& references,
                                                            const RefitOptions& options = {});
 

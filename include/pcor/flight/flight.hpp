@@ -69,12 +69,12 @@ struct TimeAxis {
 };
 
 /// Recorded numbers that are taken as missing though the file does not mark them so, counted by the reason.
-struct LeftOut {
+struct RejectedCounts {
   std::size_t impossible = 0;  ///< the conversion calls them so
   std::size_t invalid = 0;     ///< outside the range that the file states as valid
   std::size_t enormous = 0;    ///< 1e30 and more, infinity too
 
-  LeftOut& operator+=(const LeftOut& other) {
+  RejectedCounts& operator+=(const RejectedCounts& other) {
     impossible += other.impossible;
     invalid += other.invalid;
     enormous += other.enormous;
@@ -84,7 +84,7 @@ struct LeftOut {
 
 /// Which moment of its interval a record's time is. NCAR files have both; half a second is 0.9 hPa in a
 /// climb.
-enum class TimeStamp { begin, middle };
+enum class TimestampAlignment { begin, middle };
 
 /// A flight in a file of the NCAR-RAF/nimbus conventions, old or new, at 1 Hz, at higher rates, or both. The
 /// file is netCDF; another format is a class of its own beside that of netCDF.
@@ -106,10 +106,11 @@ class Flight {
   /// @throws Error if the file is absent, not netCDF, truncated, without records or with more than a hundred
   /// million, has two variables of one name, or if a time is missing, repeated, earlier than the one before,
   /// of a year without flights, or cannot be told at all. Gaps are no error, see `time()`.
-  explicit Flight(const std::filesystem::path& path, TimeStamp time_stamp = TimeStamp::begin);
+  explicit Flight(const std::filesystem::path& path,
+                  TimestampAlignment timestamp_alignment = TimestampAlignment::begin);
 
   /// The same for a file of any format that is open already.
-  Flight(std::unique_ptr<internal::FlightFile> file, TimeStamp time_stamp);
+  Flight(std::unique_ptr<internal::FlightFile> file, TimestampAlignment timestamp_alignment);
 
   Flight(Flight&&) noexcept;
   Flight& operator=(Flight&&) noexcept;
@@ -123,7 +124,7 @@ class Flight {
   /// All records in blocks that are best read one after the other, every variable of one before the next.
   std::vector<RecordBlock> blocks() const;
   const TimeAxis& time() const;
-  TimeStamp time_stamp() const;
+  TimestampAlignment timestamp_alignment() const;
 
   /// The variable that holds the time: "Time", "time" or "time_offset".
   const std::string& time_variable() const;
@@ -162,24 +163,25 @@ class Flight {
   /// @return what is missing though the file does not mark it so
   /// @throws Error if the variable is absent, not a time series, or has an attribute by which its numbers
   /// cannot be told, if the block goes beyond the last record, or the file was replaced or changed meanwhile.
-  LeftOut read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
-               double* out) const;
+  RejectedCounts read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
+                      double* out) const;
 
   /// Reads `block.count * rate` values at the wanted rate. The variable's own rate is exact. A lower one is
   /// held constant over its interval. A higher one gives the mean of the values that are there (NaN if there
   /// are none); for an angle (`modulus_range`) the mean on the circle.
   /// Values that are left out, which are counted at the variable's own rate, take no part in a mean.
   /// @throws Error as `read`, and if neither rate is a multiple of the other.
-  LeftOut read_at_rate(int rate, const std::string& name, RecordBlock block, const UnitConversion& conversion,
-                       double* out) const;
+  RejectedCounts read_at_rate(int rate, const std::string& name, RecordBlock block,
+                              const UnitConversion& conversion, double* out) const;
 
   /// The times of the records as the file has them, seconds since 1970 UTC: `block.count` values.
   void read_time_stamps(RecordBlock block, double* out) const;
 
   /// The middles of the samples' intervals, seconds since 1970 UTC: `block.count * rate` values.
   ///
-  /// A record covers one usual step, which begins at its time stamp or half a step before it (`TimeStamp`),
-  /// and its samples divide it evenly: sample k of N lies at begin + (k + 1/2) / N * step.
+  /// A record covers one usual step, which begins at its time stamp or half a step before it
+  /// (`TimestampAlignment`), and its samples divide it evenly: sample k of N lies at begin + (k + 1/2) / N *
+  /// step.
   void read_sample_times(RecordBlock block, int rate, double* out) const;
 
  private:

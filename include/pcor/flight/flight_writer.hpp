@@ -45,14 +45,14 @@ struct FileDescription {
 };
 
 /// How a netCDF file is stored.
-enum class FileKind { classic, offset64, cdf5, netcdf4, netcdf4_classic };
+enum class NetcdfFormat { classic, offset64, cdf5, netcdf4, netcdf4_classic };
 
 /// What a flight that comes from no file needs instead of an input.
 struct NewFlight {
   double first_time =
       0;  ///< of the first record, seconds since 1970 UTC; its midnight is where `Time` counts from
   bool whole_seconds = true;
-  FileKind kind = FileKind::netcdf4;
+  NetcdfFormat kind = NetcdfFormat::netcdf4;
 };
 
 /// Writes a flight to a netCDF file by the CF and ACDD conventions, whole or not at all. Those of

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pcor/team/team.hpp>
+#include <pcor/parallel/communicator.hpp>
 
 #include <filesystem>
 #include <string>
@@ -29,7 +29,8 @@ enum class OpenedIn {
 };
 
 /// Opens each flight and closes it again; the team shares the work.
-ReadableFlights readable_flights(const std::vector<std::filesystem::path>& flights, Team& team = alone(),
-                                 OpenedIn where = OpenedIn::this_process);
+ReadableFlights readable_flights(const std::vector<std::filesystem::path>& flights,
+                                 Communicator& comm = serial_communicator(),
+                                 OpenedIn location = OpenedIn::this_process);
 
 }  // namespace pcor

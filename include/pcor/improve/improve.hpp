@@ -16,12 +16,12 @@ struct ImproveOptions {
   /// Masks, loss, held-out flights and training share hold for every refit and every diagnosis.
   RefitOptions refit;
   std::vector<ModelEffect> formulas{};  ///< tried beside the catalogue
-  /// Where no effect of the catalogue explains what is left, but a variable of the files does: add a formula
-  /// of that variable, at the static ports unless the total pressures have it too. Not asked for, it is left
-  /// to the user: what goes with a variable may have its cause in the laser or a thermometer, and then the
-  /// corrected pressure would get worse.
+  /// Where no effect of the catalogue explains what is left, but a variable of the files does: add a
+  /// formula of that variable, at the static ports unless the total pressures have it too. Not asked for, it
+  /// is left to the user: what goes with a variable may have its cause in the laser or a thermometer, and
+  /// then the corrected pressure would get worse.
   bool trace_variables = false;
-  std::size_t most_steps = 8;
+  std::size_t max_steps = 8;
   std::function<void(const std::string& what)> progress{};
 };
 
@@ -61,8 +61,8 @@ struct ImprovedFlight {
 };
 
 struct Improvement {
-  ModelFile model;     ///< the best one, refitted, with the rivals that are applied
-  ModelFile refitted;  ///< the one that came, refitted
+  ModelDefinition model;     ///< the best one, refitted, with the rivals that are applied
+  ModelDefinition refitted;  ///< the one that came, refitted
   double given_rms_train =
       std::numeric_limits<double>::quiet_NaN();  ///< of the model as it came, hPa, on the samples of the fit
   double given_rms_holdout = std::numeric_limits<double>::quiet_NaN();  ///< on what was held out; NaN without
@@ -82,12 +82,13 @@ struct Improvement {
 std::string rivals_text(const ImproveStep& step);
 
 /// Refits the model, learns what is missing, adds it, and begins again, until nothing is missing, what is
-/// left cannot be explained, or held-out flights say that another effect does not help. Where flights cannot
-/// tell several effects apart and it matters for the static pressure which of them is there, the model has
-/// the one of the least expected error, or none where one of them would call each other one a harm.
+/// left cannot be explained, or held-out flights say that another effect does not help. EffectLocation
+/// flights cannot tell several effects apart and it matters for the static pressure which of them is there,
+/// the model has the one of the least expected error, or none where one of them would call each other one a
+/// harm.
 ///
 /// @throws Error as `refit` and `diagnose`.
-Improvement improve(const FlightSet& flights, const ModelFile& model, const References& references,
+Improvement improve(const FlightSet& flights, const ModelDefinition& model, const References& references,
                     const ImproveOptions& options = {});
 
 /// The effects of the ladder, and what they could not be told from, for a reader to add under his hand to the

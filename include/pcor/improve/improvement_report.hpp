@@ -9,7 +9,7 @@ namespace pcor {
 /// each effect that was added the page of its finding.
 /// @param start the model at the foot of the ladder
 /// @param what_if effects that the reader can add; null for none
-Report improvement_report(const Improvement& improvement, const ModelFile& start,
+Report improvement_report(const Improvement& improvement, const ModelDefinition& start,
                           const WhatIf* what_if = nullptr);
 
 }  // namespace pcor

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pcor/flight/flight.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 
 #include <optional>
 
@@ -21,6 +21,6 @@ struct GpsDesign {
 /// is that of the prior: the flight does not determine this part.
 /// @param model with the roles, and terms that a refit finds
 /// @return empty without velocity over the ground and height
-std::optional<GpsDesign> gps_design(const Flight& flight, const ModelFile& model);
+std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor

@@ -10,10 +10,10 @@
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/inspect/gps_design.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include <pcor/residuals/samples.hpp>
-#include <pcor/roles/laws_of_flight.hpp>
+#include <pcor/roles/model_candidates.hpp>
 
 namespace pcor {
 
@@ -83,11 +83,11 @@ struct Inspection {
       corrected_pressure{};  ///< the static pressure that the flight's own processing corrected; may be empty
   std::vector<FrozenSpan>
       frozen{};  ///< sensors that stand still in flight, for longer than their noise allows
-  std::vector<Interval> intervals{};  ///< what was flown; empty without pressures
-  std::vector<LawOfFlight> laws{};    ///< for this aircraft, those that fit first
-  std::optional<GpsDesign> by_gps{};  ///< empty without pressures or GPS
+  std::vector<Interval> intervals{};   ///< what was flown; empty without pressures
+  std::vector<ModelCandidate> laws{};  ///< for this aircraft, those that fit first
+  std::optional<GpsDesign> by_gps{};   ///< empty without pressures or GPS
   std::vector<std::string> notes{};
-  std::optional<ModelFile>
+  std::optional<ModelDefinition>
       model{};  ///< ready to run: the roles, and terms that a refit finds; none without pressures
   std::shared_ptr<const FlightSamples> samples{};  ///< what pictures are made of; null without pressures
 };
@@ -99,6 +99,7 @@ struct Inspection {
 /// @throws Error if the flight cannot be read, or there are no such roles
 Inspection inspect_flight(const std::filesystem::path& path,
                           const std::vector<std::filesystem::path>& laws = {},
-                          TimeStamp time_stamp = TimeStamp::begin, const std::string& roles = "");
+                          TimestampAlignment timestamp_alignment = TimestampAlignment::begin,
+                          const std::string& roles = "");
 
 }  // namespace pcor

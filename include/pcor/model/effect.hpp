@@ -11,9 +11,9 @@
 
 namespace pcor {
 
-/// Where in the instrument an effect acts, from what was recorded to the air. The value of an effect is added
-/// to the quantity of its place.
-enum class Where : std::uint8_t {
+/// Where in the instrument an effect acts, from what was recorded to the air. The value of an effect
+/// is added to the quantity of its place.
+enum class EffectLocation : std::uint8_t {
   static_transducer,
   dynamic_transducer,
   static_line,
@@ -34,18 +34,18 @@ enum class Where : std::uint8_t {
   count
 };
 
-inline constexpr std::size_t where_count = static_cast<std::size_t>(Where::count);
+inline constexpr std::size_t location_count = static_cast<std::size_t>(EffectLocation::count);
 
 /// A stage where something acts: its name in model files, the unit of what acts there, what that is added to,
 /// and the place in the instrument that is to be looked at, which stages may share.
-struct WhereFacts {
+struct EffectLocationInfo {
   std::string_view name;
   std::string_view unit;
   std::string_view adds_to;
   std::string_view place;
 };
 
-inline constexpr std::array<WhereFacts, where_count> where_facts{{
+inline constexpr std::array<EffectLocationInfo, location_count> effect_location_info{{
     {"static-transducer", "hPa", "measured static pressure", "p-transducer"},
     {"dynamic-transducer", "hPa", "measured dynamic pressure", "q-transducer"},
     {"static-line", "hPa", "measured static pressure, and taken from the dynamic pressure", "static-line"},
@@ -65,18 +65,20 @@ inline constexpr std::array<WhereFacts, where_count> where_facts{{
     {"pitot", "hPa", "total pressure, and so the dynamic pressure", "pitot"},
 }};
 
-constexpr const WhereFacts& facts_of(Where where) { return where_facts[static_cast<std::size_t>(where)]; }
+constexpr const EffectLocationInfo& info_of(EffectLocation location) {
+  return effect_location_info[static_cast<std::size_t>(location)];
+}
 
-/// The place called `name`, or `Where::count` where there is none.
-constexpr Where where_named(std::string_view name) {
-  for (std::size_t i = 0; i < where_count; ++i) {
-    if (where_facts[i].name == name) return static_cast<Where>(i);
+/// The place called `name`, or `EffectLocation::count` where there is none.
+constexpr EffectLocation location_named(std::string_view name) {
+  for (std::size_t i = 0; i < location_count; ++i) {
+    if (effect_location_info[i].name == name) return static_cast<EffectLocation>(i);
   }
-  return Where::count;
+  return EffectLocation::count;
 }
 
 /// A coefficient of an effect.
-struct ParameterFacts {
+struct ParameterInfo {
   std::string_view name;
   std::string_view unit;
   double neutral = 0.0;                                     ///< the value at which the effect is absent
@@ -87,11 +89,11 @@ struct ParameterFacts {
   /// at its typical value, and the effect is absent, whatever the shape, when all others are neutral.
   bool shape = false;
   /// Other values that nature may have, and 0 behind them: of a shape, and of a time over which a need is
-  /// found (`EffectFacts::memory`). A diagnosis tries them all, a fit begins at the best of them.
+  /// found (`EffectInfo::memory`). A diagnosis tries them all, a fit begins at the best of them.
   std::array<double, 10> tried{};
   /// Standard uncertainty of the calibration of a reference or of the thermometer, in the unit of the
   /// coefficient. Stated errors include it unless the model states another value. Zero: no doubt by default.
-  /// Sources: `EffectFacts::source` and `size` of the effect.
+  /// Sources: `EffectInfo::source` and `size` of the effect.
   double doubt = 0.0;
 };
 
@@ -122,19 +124,19 @@ struct EffectExample {
 /// All that is known of an effect beside its formula in code. The help, the documentation, the law tests, the
 /// refit and the diagnosis read it.
 ///
-/// An effect is a type with `static constexpr EffectFacts facts()` and
+/// An effect is a type with `static constexpr EffectInfo facts()` and
 ///
 ///     template <class State, class P> static auto value(const State& state, const P* parameters)
 ///
 /// which gives what is added at its place: the correction, which brings what was recorded to what is true.
 /// The value is linear in its parameters, but for those that shape it, and zero at the neutral ones.
-struct EffectFacts {
+struct EffectInfo {
   std::string_view id;
   std::string_view title;
   std::string_view family;  ///< what it shares with its other shapes and places, such as lag or attack
-  Where where = Where::static_defect;
+  EffectLocation location = EffectLocation::static_defect;
   std::string_view formula;  ///< in the language of formula effects; a test holds it against `value`
-  std::array<ParameterFacts, parameter_capacity> parameters{};
+  std::array<ParameterInfo, parameter_capacity> parameters{};
   std::array<Quantity, need_capacity> needs{Quantity::count, Quantity::count, Quantity::count,
                                             Quantity::count};
   Memory memory{};
@@ -164,8 +166,8 @@ struct EffectFacts {
 };
 
 /// The place in the instrument that an effect belongs to. A clock is no stage, but shifts one.
-constexpr std::string_view place_of(const EffectFacts& facts) {
-  return facts.family == "clock" ? facts.family : facts_of(facts.where).place;
+constexpr std::string_view place_of(const EffectInfo& info) {
+  return info.family == "clock" ? info.family : info_of(info.location).place;
 }
 
 }  // namespace pcor

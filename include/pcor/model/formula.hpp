@@ -164,8 +164,8 @@ class Formula {
     return result;
   }
 
-  /// One of two values by how a and b compare. Where the comparison neither holds nor fails one of them is
-  /// NaN, and so is their sum.
+  /// One of two values by how a and b compare. Where the comparison neither holds nor fails one of
+  /// them is NaN, and so is their sum.
   template <class S, class Condition>
   static S choose(const Condition& holds, const Condition& fails, const S& a, const S& b, const S& yes,
                   const S& no) noexcept {
@@ -358,7 +358,7 @@ class Formula::Parser {
   bool check_parameters() {
     const auto& names = formula_.parameters_;
     for (auto name = names.begin(); name != names.end(); ++name) {
-      const std::string parameter = "the parameter " + quoted(*name);
+      const std::string parameter = "the parameter " + quote(*name);
       if (name->empty() || !begins_name(name->front()) ||
           !std::all_of(name->begin(), name->end(), continues_name)) {
         return reject(parameter + " is not a name: letters, digits and _, beginning with no digit");
@@ -440,8 +440,8 @@ class Formula::Parser {
     if (name == "pi") return push({Operation::constant, 0, 3.14159265358979323846});
     if (const Function* const known = function(name)) {
       if (accept('(')) return call(*known, begin);
-      return fail(begin, "the function " + quoted(name) + " at " + column(begin) +
-                             " has no arguments in parentheses");
+      return fail(
+          begin, "the function " + quote(name) + " at " + column(begin) + " has no arguments in parentheses");
     }
     auto& parameters = formula_.parameters_;
     const auto parameter = std::find(parameters.begin(), parameters.end(), name);
@@ -471,7 +471,7 @@ class Formula::Parser {
       if (!accept(')')) return unexpected("',' or ')'");
     }
     if (arguments != called.arguments) {
-      return fail(begin, "the function " + quoted(called.name) + " at " + column(begin) + " takes " +
+      return fail(begin, "the function " + quote(called.name) + " at " + column(begin) + " takes " +
                              std::to_string(called.arguments) +
                              (called.arguments == 1 ? " argument" : " arguments") + ", not " +
                              std::to_string(arguments));
@@ -581,13 +581,13 @@ class Formula::Parser {
     std::string names;
     for (const Function& known : functions) names.append(names.empty() ? "" : ", ").append(known.name);
     return fail(begin,
-                "unknown function " + quoted(name) + " at " + column(begin) + "; the functions are " + names);
+                "unknown function " + quote(name) + " at " + column(begin) + "; the functions are " + names);
   }
 
   static std::string column(std::size_t at) { return "column " + std::to_string(at + 1); }
 
   /// In quotes, and short and on one line whatever the text is.
-  static std::string quoted(std::string_view text) {
+  static std::string quote(std::string_view text) {
     constexpr std::size_t longest = 40;
     std::string result = "'";
     for (const char c : text.substr(0, longest)) result += c >= '\0' && c < ' ' ? '?' : c;
@@ -597,10 +597,10 @@ class Formula::Parser {
   /// What is at the current place: a word, or one character, which may be several bytes of UTF-8.
   std::string found() const {
     if (at_ == text_.size()) return "the end";
-    if (continues_name(text_[at_])) return quoted(word());
+    if (continues_name(text_[at_])) return quote(word());
     std::size_t end = at_ + 1;
     while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0U) == 0x80U) ++end;
-    return quoted(text_.substr(at_, end - at_));
+    return quote(text_.substr(at_, end - at_));
   }
 
   Formula& formula_;

@@ -22,9 +22,9 @@ struct ModelEffect {
 
   std::vector<std::string> parameter_names{};  ///< of a formula; empty for an effect of the catalogue
   std::string formula{};                       ///< empty for an effect of the catalogue
-  Where where = Where::static_defect;          ///< of a formula
-  std::string unit{};                          ///< of a formula's value
-  std::string source{};                        ///< of a formula
+  EffectLocation location = EffectLocation::static_defect;  ///< of a formula
+  std::string unit{};                                       ///< of a formula's value
+  std::string source{};                                     ///< of a formula
 
   Scaling scaling{};  ///< of an effect of the catalogue
 
@@ -55,7 +55,7 @@ struct Policy {
   /// Below this dynamic pressure (hPa) nothing says that air flows: delta-p is missing, but under a taper,
   /// and so are Mach number and airspeed. The default, 18 m/s at sea level, is ten times the 0.2 hPa of noise
   /// that a transducer shows on the ramp; there such a noise is 5 % of the airspeed.
-  double least_dynamic_pressure = 2.0;
+  double min_dynamic_pressure = 2.0;
 };
 
 /// The range of a quantity over which the law was fitted. Outside it a sample is flagged.
@@ -72,9 +72,9 @@ struct Model {
   std::string aircraft{};
   std::vector<ModelEffect> effects{};
   /// Places where an amount of its own is added, a parameter each behind those of the effects, zero: the
-  /// derivative by it is that by whatever an effect there gives. Where the model has no use for the place the
-  /// amount changes nothing. No model file has them.
-  std::vector<Where> additions{};
+  /// derivative by it is that by whatever an effect there gives. Where the model has no use for the
+  /// place the amount changes nothing. No model file has them.
+  std::vector<EffectLocation> additions{};
   LamsMounting lams;
   RecoveryFactor recovery{{1.0, 0.0, 0.0, 0.0}};
   bool moist = true;  ///< constants of moist air; of dry air where false

@@ -20,13 +20,13 @@ struct Limits {
 inline constexpr std::array<Limits, state_capacity> limits_of_places = [] {
   std::array<Limits, state_capacity> limits{};
   for (std::size_t i = 0; i < quantity_count; ++i) {
-    limits[i] = {quantity_facts[i].least, quantity_facts[i].most};
+    limits[i] = {quantity_info[i].least, quantity_info[i].most};
   }
   return limits;
 }();
 
 /// True where the value, in the unit of the quantity, is infinite or beyond what is believed of it
-/// (`QuantityFacts`). A missing value is not implausible.
+/// (`QuantityInfo`). A missing value is not implausible.
 template <class S>
 constexpr auto is_implausible(Quantity quantity, const S& value) {
   const Limits& limits = limits_of_places[index(quantity)];

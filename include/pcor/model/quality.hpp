@@ -35,13 +35,13 @@ enum class Quality : std::uint32_t {
 };
 
 /// A quality bit and what it means.
-struct QualityFacts {
+struct QualityInfo {
   Quality bit;
   std::string_view name;
   std::string_view meaning;
 };
 
-inline constexpr std::array<QualityFacts, 21> quality_facts{{
+inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::static_pressure_missing, "static_pressure_missing",
      "no static pressure, or one beyond all flights: nothing is derived"},
     {Quality::dynamic_pressure_missing, "dynamic_pressure_missing",

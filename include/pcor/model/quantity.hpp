@@ -102,7 +102,7 @@ constexpr std::size_t extra_number(Quantity quantity) { return index(quantity) -
 /// What a quantity is called, its unit inside the library, what it is, and between which values it is
 /// believed: wide limits, which no flight comes near, and beyond which a value is not of this world but of a
 /// fault.
-struct QuantityFacts {
+struct QuantityInfo {
   std::string_view name;
   std::string_view unit;
   std::string_view description;
@@ -112,7 +112,7 @@ struct QuantityFacts {
 };
 
 /// The facts of every quantity, in the order of the enumeration.
-inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
+inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
     {"static_pressure", "hPa", "static pressure as measured, p_m", Quantity::static_pressure, -2000.0,
      2000.0},
     {"dynamic_pressure", "hPa", "dynamic pressure as measured, q_m", Quantity::dynamic_pressure, -2000.0,
@@ -221,18 +221,18 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
 /// True where every row of the facts stands at the place of its quantity.
 constexpr bool facts_are_in_order() {
   for (std::size_t i = 0; i < quantity_count; ++i) {
-    if (index(quantity_facts[i].quantity) != i) return false;
+    if (index(quantity_info[i].quantity) != i) return false;
   }
   return true;
 }
 static_assert(facts_are_in_order(), "a quantity has its row of facts at its place in the enumeration");
 
-constexpr const QuantityFacts& facts_of(Quantity quantity) { return quantity_facts[index(quantity)]; }
+constexpr const QuantityInfo& info_of(Quantity quantity) { return quantity_info[index(quantity)]; }
 
 /// The quantity called `name`, or `Quantity::count` where there is none.
 constexpr Quantity quantity_named(std::string_view name) {
   for (std::size_t i = 0; i < quantity_count; ++i) {
-    if (quantity_facts[i].name == name) return static_cast<Quantity>(i);
+    if (quantity_info[i].name == name) return static_cast<Quantity>(i);
   }
   return Quantity::count;
 }

@@ -21,7 +21,7 @@ constexpr bool operator==(const Scaling& a, const Scaling& b) {
 }
 
 /// The largest power of a scaling, up or down: steeper is nothing that a port does.
-inline constexpr int largest_power = 3;
+inline constexpr int max_power = 3;
 
 namespace detail {
 

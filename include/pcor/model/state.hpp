@@ -7,7 +7,7 @@
 
 namespace pcor {
 
-/// The values of all quantities at one sample, in the units of `quantity_facts`. What is not known is NaN.
+/// The values of all quantities at one sample, in the units of `quantity_info`. What is not known is NaN.
 template <class S>
 class State {
  public:

@@ -104,11 +104,11 @@ namespace detail {
 
 // 2 artanh(s)/s as a polynomial in s^2, and (e^y - 1)/y as one in y, interpolated at the zeros of Chebyshev
 // polynomials: within 2e-16 up to these limits, which air below Mach 0.847 does not pass.
-inline constexpr double greatest_square = 0.0533;
+inline constexpr double max_square = 0.0533;
 inline constexpr std::array<double, 8> twice_artanh{
     1.9999999999999998, 0.6666666666673486, 0.39999999973182804, 0.2857143258165603,
     0.2222192846459124, 0.1819345637926683, 0.15131155731283713, 0.16152981762545976};
-inline constexpr double greatest_exponent = 0.15;
+inline constexpr double max_exponent = 0.15;
 inline constexpr std::array<double, 8> exponential_less_one{1.0,
                                                             0.5000000000000195,
                                                             0.16666666666393407,
@@ -146,7 +146,7 @@ S power_less_one(const S& part, const S& whole, const S& exponent) {
     const S s = part / (whole + whole + part);
     const S square = s * s;
     const S y = exponent * s * detail::polynomial(square, detail::twice_artanh);
-    if (square <= detail::greatest_square && y >= 0.0 && y <= detail::greatest_exponent)
+    if (square <= detail::max_square && y >= 0.0 && y <= detail::max_exponent)
       return y * detail::polynomial(y, detail::exponential_less_one);
   }
   return power(S(1.0) + part / whole, exponent) - S(1.0);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <pcor/flight/flight.hpp>
-#include <pcor/laws/model_file.hpp>
 #include <pcor/model/quality.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/realtime/stages.hpp>
 
 namespace pcor {
@@ -29,7 +29,7 @@ struct ProcessOptions {
   /// Correct what a frozen sensor reads, too; else it is missing. The bit `sensor_frozen` stands either way.
   bool keep_frozen = false;
   std::string suffix{};  ///< added to the name of every derived variable
-  TimeStamp time_stamp = TimeStamp::begin;
+  TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
   std::string history{};  ///< what the output says of its making, e.g. the command line
   std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every block of records
 };
@@ -49,13 +49,13 @@ struct ProcessSummary {
   /// In flight: with a measured dynamic pressure (hPa) of this or more, that of the flying speed of the
   /// aircraft (`RegimeCriteria::flying_speed`) at sea level in the standard atmosphere.
   double flying_dynamic_pressure = 0.0;
-  std::size_t in_flight = 0;     ///< of the corrected samples
-  double mean_defect = 0.0;      ///< of the delta-p applied in flight, hPa; NaN where none was
-  double least_defect = 0.0;     ///< in flight, hPa
-  double greatest_defect = 0.0;  ///< in flight, hPa
-  std::array<std::size_t, quality_facts.size()> flagged{};  ///< samples with each quality bit, flown or not
-  std::vector<std::string> outputs;                         ///< names of the derived variables, in order
-  std::vector<std::string> notes;                           ///< what a user should know, a sentence each
+  std::size_t in_flight = 0;  ///< of the corrected samples
+  double mean_defect = 0.0;   ///< of the delta-p applied in flight, hPa; NaN where none was
+  double min_defect = 0.0;    ///< in flight, hPa
+  double max_defect = 0.0;    ///< in flight, hPa
+  std::array<std::size_t, quality_info.size()> flagged{};  ///< samples with each quality bit, flown or not
+  std::vector<std::string> outputs;                        ///< names of the derived variables, in order
+  std::vector<std::string> notes;                          ///< what a user should know, a sentence each
 };
 
 /// Runs every sample of the flight `input` through the real-time loop of `model` and writes the derived
@@ -87,7 +87,7 @@ struct ProcessSummary {
 /// @throws Error, and leaves `output` as it was, if the flight or a variable that the model needs cannot be
 /// read, a unit is unknown, the model cannot be used, an uncertainty is asked for of which the model states
 /// nothing, a name is taken, or the output cannot be written.
-ProcessSummary process_flight(const std::filesystem::path& input, const ModelFile& model,
+ProcessSummary process_flight(const std::filesystem::path& input, const ModelDefinition& model,
                               const std::filesystem::path& output, const ProcessOptions& options = {});
 
 }  // namespace pcor

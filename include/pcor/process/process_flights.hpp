@@ -23,19 +23,19 @@ struct ProcessTask {
 enum class FlightState { processed, up_to_date, unreadable };
 
 /// "processed", "up to date" or "unreadable".
-std::string_view name_of(FlightState state);
+std::string_view to_string(FlightState state);
 
 struct ProcessedFlight {
   std::filesystem::path input;
   std::filesystem::path output;
   FlightState state = FlightState::processed;
-  ModelFile model{};         ///< by which it was corrected; empty where none could be told
+  ModelDefinition model{};   ///< by which it was corrected; empty where none could be told
   ProcessSummary summary{};  ///< of a flight that was processed
   std::string reason{};      ///< why it could not be read, one line
 };
 
 /// The model that a flight is to be corrected by. It may throw Error where there is none.
-using ModelOfFlight = std::function<ModelFile(const std::filesystem::path& flight)>;
+using ModelSelector = std::function<ModelDefinition(const std::filesystem::path& flight)>;
 
 /// How several flights are processed.
 struct ProcessFlightsOptions {
@@ -60,7 +60,7 @@ std::vector<ProcessTask> tasks_in_folder(const std::vector<std::filesystem::path
 /// @throws Error as `process_flight`; what was done before stays. With `skip_unreadable` an error of a flight
 /// is the `reason` of its entry instead; one of an output is thrown all the same.
 std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks,
-                                             const ModelOfFlight& model_of,
+                                             const ModelSelector& model_of,
                                              const ProcessFlightsOptions& options = {});
 
 }  // namespace pcor

@@ -12,6 +12,6 @@ namespace pcor {
 /// The flight is read whole, unless the model or the options differ. False where there is no output, or one
 /// that does not say, or where something cannot be read.
 bool is_up_to_date(const std::filesystem::path& output, const std::filesystem::path& input,
-                   const ModelFile& model, const ProcessOptions& options);
+                   const ModelDefinition& model, const ProcessOptions& options);
 
 }  // namespace pcor

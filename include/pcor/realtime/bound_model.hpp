@@ -38,16 +38,16 @@ class BoundModel {
   bool derives(Quantity quantity) const { return needs(quantity) && !recorded(quantity); }
 
   /// True where some effect acts at the place.
-  bool acts(Where where) const { return acting_[static_cast<std::size_t>(where)]; }
+  bool acts(EffectLocation location) const { return acting_[static_cast<std::size_t>(location)]; }
 
   /// What the effects at the place read, and at the static ports the domain of the model.
-  std::vector<Quantity> read_at(Where where) const {
+  std::vector<Quantity> read_at(EffectLocation location) const {
     std::vector<Quantity> read;
-    for (std::size_t i = begin_of(where); i < begin_of(where, 1); ++i) {
+    for (std::size_t i = begin_of(location); i < begin_of(location, 1); ++i) {
       const Term& term = terms_[i];
       if (term.effect < catalogue_size) {
-        const EffectFacts& facts = effect_facts[term.effect];
-        read.insert(read.end(), facts.needs.begin(), facts.needs.begin() + facts.need_count());
+        const EffectInfo& info = effect_info[term.effect];
+        read.insert(read.end(), info.needs.begin(), info.needs.begin() + info.need_count());
         if (term.scaling.static_pressure != 0) read.push_back(Quantity::static_pressure);
         if (term.scaling.dynamic_pressure != 0) read.push_back(Quantity::dynamic_pressure);
       } else if (term.effect == Term::is_formula) {
@@ -55,7 +55,7 @@ class BoundModel {
         read.insert(read.end(), variables.begin(), variables.end());
       }
     }
-    if (where == Where::static_defect) {
+    if (location == EffectLocation::static_defect) {
       for (const Range& range : domain_) read.push_back(range.quantity);
     }
     return read;
@@ -73,30 +73,30 @@ class BoundModel {
 
   /// True where a recorded ambient temperature is calibrated, which `Chain::measure` does in its place.
   bool calibrates_recorded_temperature() const {
-    return acts(Where::ambient_temperature) && recorded(Quantity::ambient_temperature);
+    return acts(EffectLocation::ambient_temperature) && recorded(Quantity::ambient_temperature);
   }
 
   /// True where water vapour changes the constants of the air: with moist constants, or by an effect.
-  bool counts_vapor() const { return moist_ || acts(Where::humidity); }
+  bool counts_vapor() const { return moist_ || acts(EffectLocation::humidity); }
 
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
 
   /// How many effects the model has, and of each where it acts and the place of its first coefficient among
   /// `parameters`.
   std::size_t effect_count() const { return effects_.size(); }
-  Where where_of(std::size_t effect) const { return effects_[effect].where; }
+  EffectLocation location_of(std::size_t effect) const { return effects_[effect].location; }
   std::size_t first_parameter_of(std::size_t effect) const { return effects_[effect].first_parameter; }
 
-  /// The time, s, over which the model finds a quantity that remembers (`EffectFacts::memory`): the
+  /// The time, s, over which the model finds a quantity that remembers (`EffectInfo::memory`): the
   /// coefficient of the effect that says so; without it, as for a formula, its neutral value.
   double time_of(Quantity remembered) const {
     for (const Term& term : effects_) {
       if (term.effect >= catalogue_size) continue;
-      const Memory& memory = effect_facts[term.effect].memory;
+      const Memory& memory = effect_info[term.effect].memory;
       if (memory.of == remembered) return parameters_[term.first_parameter + memory.parameter];
     }
-    for (const EffectFacts& facts : effect_facts) {
-      if (facts.memory.of == remembered) return facts.parameters[facts.memory.parameter].neutral;
+    for (const EffectInfo& info : effect_info) {
+      if (info.memory.of == remembered) return info.parameters[info.memory.parameter].neutral;
     }
     return 0.0;
   }
@@ -105,7 +105,7 @@ class BoundModel {
   /// zero.
   bool is_linear(std::size_t effect, std::size_t parameter) const {
     const std::size_t place = effects_[effect].effect;
-    return place < catalogue_size && !effect_facts[place].parameters[parameter].shape;
+    return place < catalogue_size && !effect_info[place].parameters[parameter].shape;
   }
 
   /// What effect number `effect` of the model gives for a state that `Chain::measure` has been through, in
@@ -114,14 +114,14 @@ class BoundModel {
   template <class S, class P>
   Promoted<S, P> effect_value(std::size_t effect, const State<S>& state, const P* own) const {
     const Term& term = effects_[effect];
-    return is_within_reach(term.where) ? value(term, state, own) : Promoted<S, P>(0.0);
+    return is_within_reach(term.location) ? value(term, state, own) : Promoted<S, P>(0.0);
   }
 
  protected:
   // The sum of what acts at a place.
   template <class R, class S, class P>
-  R sum(Where where, const State<S>& state, const P* parameters) const {
-    return acts(where) ? sum_of_terms<R>(where, state, parameters) : R(0.0);
+  R sum(EffectLocation location, const State<S>& state, const P* parameters) const {
+    return acts(location) ? sum_of_terms<R>(location, state, parameters) : R(0.0);
   }
 
   LamsMounting lams_;
@@ -150,7 +150,7 @@ class BoundModel {
     std::size_t effect = is_formula;
     std::size_t formula = 0;
     std::size_t first_parameter = 0;
-    Where where = Where::static_defect;
+    EffectLocation location = EffectLocation::static_defect;
     Scaling scaling{};
   };
 
@@ -161,22 +161,22 @@ class BoundModel {
     std::vector<Quantity> variables;
   };
 
-  std::size_t begin_of(Where where, std::size_t next = 0) const {
-    return where_begin_[static_cast<std::size_t>(where) + next];
+  std::size_t begin_of(EffectLocation location, std::size_t next = 0) const {
+    return where_begin_[static_cast<std::size_t>(location) + next];
   }
 
   // Without a laser nothing acts on its beam.
-  bool is_within_reach(Where where) const {
-    const bool on_beam =
-        where == Where::beam_elevation || where == Where::beam_azimuth || where == Where::beam_speed;
+  bool is_within_reach(EffectLocation location) const {
+    const bool on_beam = location == EffectLocation::beam_elevation ||
+                         location == EffectLocation::beam_azimuth || location == EffectLocation::beam_speed;
     return !on_beam || has_lams();
   }
 
   template <class R, class S, class P>
-  R sum_of_terms(Where where, const State<S>& state, const P* parameters) const {
+  R sum_of_terms(EffectLocation location, const State<S>& state, const P* parameters) const {
     R total(0.0);
-    const Term* const end = terms_.data() + begin_of(where, 1);
-    for (const Term* term = terms_.data() + begin_of(where); term != end; ++term) {
+    const Term* const end = terms_.data() + begin_of(location, 1);
+    for (const Term* term = terms_.data() + begin_of(location); term != end; ++term) {
       total = total + value(*term, state, parameters + term->first_parameter);
     }
     return finite_or_missing(total);
@@ -202,8 +202,8 @@ class BoundModel {
 
   std::vector<Term> effects_;  // in the order of the model
   std::vector<Term> terms_;    // what acts, by place
-  std::array<std::size_t, where_count + 1> where_begin_{};
-  std::bitset<where_count> acting_;  // whether a term acts at each place
+  std::array<std::size_t, location_count + 1> where_begin_{};
+  std::bitset<location_count> acting_;  // whether a term acts at each place
   std::vector<BoundFormula> formulas_;
   std::vector<double> parameters_;
   std::vector<std::string> extra_names_;

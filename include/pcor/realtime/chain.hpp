@@ -21,8 +21,8 @@ namespace pcor {
 ///
 /// Every stage reads and writes a `State`. It is a template over the scalars of the state, `S`, and of the
 /// parameters, `P`, so that the same lines serve the real-time loop (both `double`), batches (`S` a vector
-/// pack) and fits (`P` a dual number). Where effects act before the static ports, `S` must be the promoted
-/// type. After `build` a chain allocates nothing, throws nothing, and holds nothing of a sample.
+/// pack) and fits (`P` a dual number). Where effects act before the static ports, `S` must be the
+/// promoted type. After `build` a chain allocates nothing, throws nothing, and holds nothing of a sample.
 class Chain : public BoundModel {
  public:
   /// Prepares `model` for states in which the roles `recorded` are known. Returns nothing where the model
@@ -48,9 +48,9 @@ class Chain : public BoundModel {
     const S q = state[Quantity::dynamic_pressure];
     flags.set(is_missing(p), Quality::static_pressure_missing);
     flags.set(is_missing(q), Quality::dynamic_pressure_missing);
-    flags.set(p < S(least_static_pressure), Quality::impossible_static_pressure);
+    flags.set(p < S(min_static_pressure), Quality::impossible_static_pressure);
     flags.set(q <= S(0.0), Quality::impossible_dynamic_pressure);
-    flags.set(q < S(policy_.least_dynamic_pressure), Quality::no_airflow);
+    flags.set(q < S(policy_.min_dynamic_pressure), Quality::no_airflow);
 
     if (derives(Quantity::dynamic_ratio)) state[Quantity::dynamic_ratio] = q / p;
     if (derives(Quantity::mach)) state[Quantity::mach] = mach_number(p, q, dry_air<S>());
@@ -58,31 +58,33 @@ class Chain : public BoundModel {
       state[Quantity::vapor_pressure] = recorded_vapor_pressure(state, p);
     }
     flow_angles(state, parameters, flags);
-    if (acts(Where::radome)) {
+    if (acts(EffectLocation::radome)) {
       // What the radome loses at an angle is found from the angles without that loss, which is small.
-      add(Where::radome, Quantity::radome_dynamic_pressure, state, parameters);
+      add(EffectLocation::radome, Quantity::radome_dynamic_pressure, state, parameters);
       flow_angles(state, parameters, flags);
     }
-    add(Where::attack, Quantity::attack, state, parameters);
-    add(Where::sideslip, Quantity::sideslip, state, parameters);
+    add(EffectLocation::attack, Quantity::attack, state, parameters);
+    add(EffectLocation::sideslip, Quantity::sideslip, state, parameters);
     if (calibrates_recorded_temperature()) {
       S& ambient = state[Quantity::ambient_temperature];
       ambient = calibrated(ambient, state, parameters, flags);
     }
 
-    const S line = sum<S>(Where::static_line, state, parameters);
-    state[Quantity::port_static_pressure] = p + sum<S>(Where::static_transducer, state, parameters) + line;
-    state[Quantity::port_dynamic_pressure] = q + sum<S>(Where::dynamic_transducer, state, parameters) - line +
-                                             sum<S>(Where::total_line, state, parameters) +
-                                             sum<S>(Where::pitot, state, parameters);
+    const S line = sum<S>(EffectLocation::static_line, state, parameters);
+    state[Quantity::port_static_pressure] =
+        p + sum<S>(EffectLocation::static_transducer, state, parameters) + line;
+    state[Quantity::port_dynamic_pressure] = q +
+                                             sum<S>(EffectLocation::dynamic_transducer, state, parameters) -
+                                             line + sum<S>(EffectLocation::total_line, state, parameters) +
+                                             sum<S>(EffectLocation::pitot, state, parameters);
     flags.set(!is_missing(p + q) &&
                   is_missing(state[Quantity::port_static_pressure] + state[Quantity::port_dynamic_pressure]),
               Quality::effect_input_missing);
   }
 
   /// Delta-p of the model, hPa: the sum of the effects at the static ports, under the policy. NaN where a
-  /// pressure or an input of an effect is missing. Where the dynamic pressure is below the least of the
-  /// policy, no airflow causes a defect: NaN, but under a taper, which ends in zero. A defect beyond the
+  /// pressure or an input of an effect is missing. Where the dynamic pressure is below the least of
+  /// the policy, no airflow causes a defect: NaN, but under a taper, which ends in zero. A defect beyond the
   /// dynamic pressure is none, NaN: above it the corrected dynamic pressure would be negative; below its
   /// negative the port would feel half of the corrected one, ten times what static ports do.
   template <class S, class P, class Flags>
@@ -90,8 +92,8 @@ class Chain : public BoundModel {
     using R = Promoted<S, P>;
     const S& p = state[Quantity::static_pressure];
     const S& q = state[Quantity::dynamic_pressure];
-    R defect = sum<R>(Where::static_defect, state, parameters);
-    const auto flowing = p >= S(least_static_pressure) && is_flowing(q);
+    R defect = sum<R>(EffectLocation::static_defect, state, parameters);
+    const auto flowing = p >= S(min_static_pressure) && is_flowing(q);
     flags.set(flowing && is_missing(defect), Quality::effect_input_missing);
     for (const Range& range : domain_) {
       const S& value = state[range.quantity];
@@ -107,11 +109,10 @@ class Chain : public BoundModel {
       flags.set(slow, Quality::tapered);
       if (any(slow)) defect = select(slow, taper(defect, q), defect);
     }
-    const auto exceeds =
-        p >= S(least_static_pressure) && q > S(0.0) && exceeds_dynamic_pressure(defect, R(q));
+    const auto exceeds = p >= S(min_static_pressure) && q > S(0.0) && exceeds_dynamic_pressure(defect, R(q));
     flags.set(exceeds, Quality::defect_exceeds_dynamic_pressure);
     defect = select(exceeds, missing<R>(), defect);
-    const auto enough = policy_.taper_below > 0.0 ? p >= S(least_static_pressure) && !is_missing(q) : flowing;
+    const auto enough = policy_.taper_below > 0.0 ? p >= S(min_static_pressure) && !is_missing(q) : flowing;
     return select(enough, defect, missing<R>());
   }
 
@@ -127,14 +128,14 @@ class Chain : public BoundModel {
 
   /// Humidity, Mach number, ambient temperature and airspeed from the corrected pressures. They depend on
   /// each other through the constants of moist air and the limit of saturation over water, so they are found
-  /// together. An ambient temperature that is found from the recovery temperature is calibrated here. Where
-  /// the corrected dynamic pressure is below the least of the policy, as on the ramp, Mach number and
-  /// airspeed would be those of noise: NaN; the temperature, which such a flow hardly heats, stays. A Mach
-  /// number beyond all flights tells of an impossible pair of pressures.
+  /// together. An ambient temperature that is found from the recovery temperature is calibrated here.
+  /// Where the corrected dynamic pressure is below the least of the policy, as on the ramp, Mach
+  /// number and airspeed would be those of noise: NaN; the temperature, which such a flow hardly heats,
+  /// stays. A Mach number beyond all flights tells of an impossible pair of pressures.
   template <class S, class P, class Flags>
   void air(State<S>& state, const P* parameters, Flags& flags) const {
     const S p = state[Quantity::corrected_static_pressure];
-    const S delta = sum<S>(Where::recovery, state, parameters);
+    const S delta = sum<S>(EffectLocation::recovery, state, parameters);
     const S thermometer = recovery_temperature_of(state, parameters);
     if (has_temperature()) {
       const S& ambient = state[Quantity::ambient_temperature];
@@ -145,7 +146,7 @@ class Chain : public BoundModel {
     AirOf<S> air = solve_air(state, parameters, humidity, thermometer, delta, flags);
     if (limit_to_saturation(humidity, p, state[Quantity::ambient_temperature], flags))
       air = solve_air(state, parameters, humidity, thermometer, delta, flags);
-    const auto still = state[Quantity::corrected_dynamic_pressure] < S(policy_.least_dynamic_pressure);
+    const auto still = state[Quantity::corrected_dynamic_pressure] < S(policy_.min_dynamic_pressure);
     flags.set(still, Quality::no_airflow);
     S& mach = state[Quantity::corrected_mach];
     put(Quantity::corrected_mach, select(still, missing<S>(), mach), state, flags,
@@ -166,7 +167,7 @@ class Chain : public BoundModel {
     const S v = lams_airspeed(state, parameters);
     S e = recorded_humidity(state, parameters, p, flags) * p;
     const S thermometer = recovery_temperature_of(state, parameters);
-    const S delta = sum<S>(Where::recovery, state, parameters);
+    const S delta = sum<S>(EffectLocation::recovery, state, parameters);
     const auto recovery = [this, &delta](const S& mach) { return recovery_(mach) + delta; };
     LamsSolution<S> solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
     if (limit_to_saturation(e, S(1.0), solution.temperature, flags))
@@ -174,7 +175,7 @@ class Chain : public BoundModel {
     const S found =
         finite_or_missing(plausible_or_missing(Quantity::lams_static_defect, solution.static_defect));
     const auto exceeds = exceeds_dynamic_pressure(found, q);
-    const auto valid = p >= S(least_static_pressure) && is_flowing(q) && v > S(0.0) && !exceeds;
+    const auto valid = p >= S(min_static_pressure) && is_flowing(q) && v > S(0.0) && !exceeds;
     const S defect = select(valid, found, missing<S>());
     flags.set(is_missing(defect), Quality::lams_missing);
     return defect;
@@ -183,8 +184,8 @@ class Chain : public BoundModel {
   /// The cosine of the angle between the beam of the laser and the wind.
   template <class S, class P>
   S cosine_of_beam(const State<S>& state, const P* parameters) const {
-    const S elevation = S(lams_.elevation) + sum<S>(Where::beam_elevation, state, parameters);
-    const S azimuth = S(lams_.azimuth) + sum<S>(Where::beam_azimuth, state, parameters);
+    const S elevation = S(lams_.elevation) + sum<S>(EffectLocation::beam_elevation, state, parameters);
+    const S azimuth = S(lams_.azimuth) + sum<S>(EffectLocation::beam_azimuth, state, parameters);
     const S sideslip = needs(Quantity::sideslip) ? state[Quantity::sideslip] : S(0.0);
     return beam_cosine(elevation, azimuth, state[Quantity::attack], sideslip);
   }
@@ -205,7 +206,7 @@ class Chain : public BoundModel {
   /// wind.
   template <class S, class P>
   S lams_airspeed(const State<S>& state, const P* parameters) const {
-    const S beam = state[Quantity::lams_airspeed] + sum<S>(Where::beam_speed, state, parameters);
+    const S beam = state[Quantity::lams_airspeed] + sum<S>(EffectLocation::beam_speed, state, parameters);
     return airspeed_from_beam(beam, cosine_of_beam(state, parameters));
   }
 
@@ -237,18 +238,18 @@ class Chain : public BoundModel {
   /// The recovery factor at Mach number `mach`, with the effects that act on it.
   template <class S, class P>
   S recovery_factor(const S& mach, const State<S>& state, const P* parameters) const {
-    return recovery_(mach) + sum<S>(Where::recovery, state, parameters);
+    return recovery_(mach) + sum<S>(EffectLocation::recovery, state, parameters);
   }
 
   /// By how much the ambient temperature changes with what it was before its calibration: 1 without one.
   template <class S, class P>
   S calibration_slope(const State<S>& state, const P* parameters) const {
-    if (!acts(Where::ambient_temperature)) return S(1.0);
+    if (!acts(EffectLocation::ambient_temperature)) return S(1.0);
     State<S> moved = state;
     moved[Quantity::ambient_temperature] = state[Quantity::ambient_temperature] + S(0.5);
-    const S above = sum<S>(Where::ambient_temperature, moved, parameters);
+    const S above = sum<S>(EffectLocation::ambient_temperature, moved, parameters);
     moved[Quantity::ambient_temperature] = state[Quantity::ambient_temperature] - S(0.5);
-    return S(1.0) + above - sum<S>(Where::ambient_temperature, moved, parameters);
+    return S(1.0) + above - sum<S>(EffectLocation::ambient_temperature, moved, parameters);
   }
 
   /// Adds to a quantity of a state that `measure` has been through, and takes along what the laws see of it:
@@ -277,8 +278,8 @@ class Chain : public BoundModel {
 
  private:
   // hPa: that of 48 km height, and far less than any sensor resolves. A ratio to less than that says nothing.
-  static constexpr double least_static_pressure = 1.0;
-  static constexpr double least_radome_pressure = 1e-6;
+  static constexpr double min_static_pressure = 1.0;
+  static constexpr double min_radome_pressure = 1e-6;
 
   explicit Chain(BoundModel bound) : BoundModel(std::move(bound)) {}
 
@@ -302,8 +303,8 @@ class Chain : public BoundModel {
   }
 
   template <class S, class P>
-  void add(Where where, Quantity quantity, State<S>& state, const P* parameters) const {
-    if (acts(where)) state[quantity] = state[quantity] + sum<S>(where, state, parameters);
+  void add(EffectLocation location, Quantity quantity, State<S>& state, const P* parameters) const {
+    if (acts(location)) state[quantity] = state[quantity] + sum<S>(location, state, parameters);
   }
 
   // Adds to a ratio of the radome, and to the angle that is found from it.
@@ -322,7 +323,7 @@ class Chain : public BoundModel {
   template <class S, class P, class Flags>
   void flow_angles(State<S>& state, const P* parameters, Flags& flags) const {
     if (needs(Quantity::attack_ratio) || needs(Quantity::sideslip_ratio)) radome_ratios(state, flags);
-    add(Where::attack_ratio, Quantity::attack_ratio, state, parameters);
+    add(EffectLocation::attack_ratio, Quantity::attack_ratio, state, parameters);
     if (derives(Quantity::attack)) {
       state[Quantity::attack] = radome_angle(attack_radome_, Quantity::attack_ratio, state);
     }
@@ -334,7 +335,7 @@ class Chain : public BoundModel {
   template <class S, class Flags>
   void radome_ratios(State<S>& state, Flags& flags) const {
     const S q = state[Quantity::radome_dynamic_pressure];
-    const auto still = q < S(least_radome_pressure);
+    const auto still = q < S(min_radome_pressure);
     flags.set(still, Quality::impossible_radome_pressure);
     if (needs(Quantity::attack_ratio)) {
       state[Quantity::attack_ratio] =
@@ -354,7 +355,7 @@ class Chain : public BoundModel {
   // True where the dynamic pressure is more than the noise of its sensor.
   template <class S>
   auto is_flowing(const S& q) const {
-    return q > S(0.0) && q >= S(policy_.least_dynamic_pressure);
+    return q > S(0.0) && q >= S(policy_.min_dynamic_pressure);
   }
 
   template <class S>
@@ -372,7 +373,8 @@ class Chain : public BoundModel {
 
   template <class S, class P>
   S recovery_temperature_of(const State<S>& state, const P* parameters) const {
-    const S sensed = state[Quantity::recovery_temperature] + sum<S>(Where::temperature, state, parameters);
+    const S sensed =
+        state[Quantity::recovery_temperature] + sum<S>(EffectLocation::temperature, state, parameters);
     return plausible_or_missing(Quantity::recovery_temperature, sensed);
   }
 
@@ -394,10 +396,10 @@ class Chain : public BoundModel {
     if (!counts_vapor()) return S(0.0);
     const S vapor = recorded_vapor_pressure(state, p);
     S e = moist_ ? vapor : S(0.0);
-    if (acts(Where::humidity)) {
+    if (acts(EffectLocation::humidity)) {
       State<S> here = state;
       here[Quantity::vapor_pressure] = vapor;
-      e = e + sum<S>(Where::humidity, here, parameters);
+      e = e + sum<S>(EffectLocation::humidity, here, parameters);
     }
     const auto unknown = !(e < p) && p > S(0.0);
     const auto negative = e < S(0.0);
@@ -426,7 +428,7 @@ class Chain : public BoundModel {
   S calibrated(const S& temperature, const State<S>& state, const P* parameters, Flags& flags) const {
     State<S> here = state;
     here[Quantity::ambient_temperature] = temperature;
-    const S change = sum<S>(Where::ambient_temperature, here, parameters);
+    const S change = sum<S>(EffectLocation::ambient_temperature, here, parameters);
     flags.set(is_missing(change) && !is_missing(temperature), Quality::effect_input_missing);
     const S calibrated = temperature + change;
     flags.set(is_implausible(Quantity::ambient_temperature, calibrated), Quality::temperature_missing);
@@ -452,7 +454,7 @@ class Chain : public BoundModel {
     if (lams_.approach == LamsApproach::with_temperature)
       return lams_with_temperature(p, q, v, state[Quantity::ambient_temperature], e);
     const bool is_simultaneous = lams_.approach == LamsApproach::simultaneous;
-    if (!acts(Where::ambient_temperature)) {
+    if (!acts(EffectLocation::ambient_temperature)) {
       return is_simultaneous ? lams_simultaneous(p, q, v, thermometer, e, recovery)
                              : lams_iterated(p, q, v, thermometer, e, recovery);
     }
@@ -482,7 +484,7 @@ class Chain : public BoundModel {
               thermometer, heating,
               S(recovery_.at_square(S(constants.degrees_of_freedom * heating)) + delta)),
           state, flags, Quality::temperature_missing);
-      if (acts(Where::ambient_temperature)) ambient = calibrated(ambient, state, parameters, flags);
+      if (acts(EffectLocation::ambient_temperature)) ambient = calibrated(ambient, state, parameters, flags);
     }
     return {constants, heating};
   }

@@ -24,10 +24,10 @@ inline constexpr std::array always_varying{Quantity::static_pressure,
 
 /// Whether a sensor stands still, sample by sample.
 ///
-/// How long it may have one value follows from its resolution, the smallest step that it has made. Where its
-/// noise is at least three such steps it is frozen after 20 samples of one value, or, if that is more, 20
-/// times its usual time at one value, or five times that of a usual sample. Else, and while fewer than 50
-/// values are known, it is frozen after five minutes.
+/// How long it may have one value follows from its resolution, the smallest step that it has made.
+/// Where its noise is at least three such steps it is frozen after 20 samples of one value, or, if
+/// that is more, 20 times its usual time at one value, or five times that of a usual sample. Else, and while
+/// fewer than 50 values are known, it is frozen after five minutes.
 class SteadyValue {
  public:
   /// @param longest samples that any sensor may have one value
@@ -55,10 +55,10 @@ class SteadyValue {
   }
 
  private:
-  static constexpr std::size_t fewest = 20;         // samples
-  static constexpr std::size_t fewest_values = 50;  // that tell what is usual
-  static constexpr double noisy = 3.0;              // steps of resolution in a second difference
-  static constexpr double part = 1.0 / 64.0;        // of a mean, the last
+  static constexpr std::size_t fewest = 20;      // samples
+  static constexpr std::size_t min_values = 50;  // that tell what is usual
+  static constexpr double noisy = 3.0;           // steps of resolution in a second difference
+  static constexpr double part = 1.0 / 64.0;     // of a mean, the last
 
   void end_of_run(double step) noexcept {
     const bool was_frozen = length_ >= fewest && length_ >= limit_;
@@ -73,7 +73,7 @@ class SteadyValue {
   }
 
   std::size_t limit() const noexcept {
-    if (runs_ < fewest_values || is_bent_ < 0.5) return longest_;
+    if (runs_ < min_values || is_bent_ < 0.5) return longest_;
     const std::size_t count = std::min(runs_, lengths_.size());
     double sum = 0.0;
     double squares = 0.0;
@@ -117,8 +117,8 @@ class FrozenWatch {
 
   /// True where one of them is frozen at this sample.
   bool operator()(const State<double>& state) noexcept {
-    constexpr double least_dynamic_pressure = 20.0;  // hPa, 57 m/s at sea level
-    const bool flies = state[Quantity::dynamic_pressure] >= least_dynamic_pressure;
+    constexpr double min_dynamic_pressure = 20.0;  // hPa, 57 m/s at sea level
+    const bool flies = state[Quantity::dynamic_pressure] >= min_dynamic_pressure;
     bool frozen = false;
     for (Sensor& sensor : sensors_) {
       const double value = state[sensor.quantity];

@@ -63,12 +63,13 @@ enum class LaserFilter { with, without };
 class Loop {
  public:
   /// A loop at `rate` samples in a second. A step of more than one and a half samples is a gap.
-  explicit Loop(double rate) : clock_(rate), longest_step_(1.5 / rate) {}
+  explicit Loop(double rate) : clock_(rate), max_step_(1.5 / rate) {}
 
   /// A loop that runs `model` on the roles `recorded`: delta-p, corrected pressures, Mach number, humidity,
   /// ambient temperature, airspeed, and what LAMS says where its airspeed is recorded, its temperature also
   /// filtered (`LowPass`) unless that is left out; where only the model's correction is wanted leave out the
-  /// role, and nothing of the laser is run. Where an uncertainty is stated, those of the results, too
+  /// role, and nothing of the laser is run. Where an uncertainty is stated, those of the results,
+  /// too
   /// (`ResultUncertainty`). Returns nothing where the model cannot be used; `error` says why.
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                    std::string* error, CorrectWith with = CorrectWith::model,
@@ -137,7 +138,7 @@ class Loop {
   /// whose time does not advance.
   bool starts_anew(double time) const noexcept {
     const double step = time - previous_time_;
-    return !started_ || !(step > 0.0 && step <= longest_step_);
+    return !started_ || !(step > 0.0 && step <= max_step_);
   }
 
   /// Runs all functors on the sample at `time`, in seconds.
@@ -175,8 +176,8 @@ class Loop {
   }
 
  private:
-  std::string name_of(Quantity quantity) const {
-    return index(quantity) < quantity_count ? std::string(facts_of(quantity).name)
+  std::string to_string(Quantity quantity) const {
+    return index(quantity) < quantity_count ? std::string(info_of(quantity).name)
                                             : extra_names_[extra_number(quantity)];
   }
 
@@ -190,7 +191,7 @@ class Loop {
   std::vector<std::string> extra_names_;
   State<double> state_;
   QualityFlags quality_;
-  double longest_step_;
+  double max_step_;
   double previous_time_ = missing<double>();
   bool started_ = false;
 };
@@ -204,7 +205,7 @@ inline bool Loop::order(std::string* error) {
   std::array<const Functor*, state_capacity> writer{};
   for (const auto& functor : functors_) {
     for (const Quantity output : functor->outputs()) {
-      if (writer[index(output)] != nullptr) return fail("two functors write '" + name_of(output) + "'");
+      if (writer[index(output)] != nullptr) return fail("two functors write '" + to_string(output) + "'");
       writer[index(output)] = functor.get();
     }
   }
@@ -221,10 +222,10 @@ inline bool Loop::order(std::string* error) {
     const Quantity* quantity = awaited(*functors_[start]);
     for (std::size_t i = 0; i < functors_.size(); ++i) quantity = next(quantity);
     const Quantity first = *quantity;
-    std::string circle = "'" + name_of(first) + "'";
+    std::string circle = "'" + to_string(first) + "'";
     do {
       quantity = next(quantity);
-      circle += " needs '" + name_of(*quantity) + "'";
+      circle += " needs '" + to_string(*quantity) + "'";
       if (*quantity != first) circle += ", which";
     } while (*quantity != first);
     return circle;

@@ -30,10 +30,10 @@ namespace pcor {
 /// Real time knows no later sample, so the value is that of the sample `delay` samples ago, as if every step
 /// had the length of the rate. It is missing where that sample is, which was told at its time. A sample
 /// before and one after it, as far away, count together or, where one of them is missing, not at all, so that
-/// lines still pass exactly. Where the weights that count sum up to less than half, the value is missing, and
-/// the bit `filter_window_incomplete` says so: of that earlier sample, not of the one that is being run. With
-/// part of its window the filter takes away less. Where it overshoots beyond what is believed of the result,
-/// that is missing too. After a reset all earlier samples are missing.
+/// lines still pass exactly. Where the weights that count sum up to less than half, the value is
+/// missing, and the bit `filter_window_incomplete` says so: of that earlier sample, not of the one that is
+/// being run. With part of its window the filter takes away less. Where it overshoots beyond what is
+/// believed of the result, that is missing too. After a reset all earlier samples are missing.
 ///
 /// Source: memo, recommendation 6; window: Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 7.
 class LowPass final : public Functor {

@@ -20,9 +20,9 @@ struct BindingError {
     unknown_effect,
     unknown_quantity,
     parameter_count,
-    formula,         ///< it cannot be read, or uses too many variables
-    role_missing,    ///< `quantity` is a role without a variable
-    known_too_late,  ///< `quantity` is known only after delta-p
+    formula,              ///< it cannot be read, or uses too many variables
+    role_missing,         ///< `quantity` is a role without a variable
+    circular_dependency,  ///< `quantity` is known only after delta-p
   };
 
   Code code = Code::unknown_effect;
@@ -81,7 +81,7 @@ class ModelBinder {
     for (const ModelEffect& effect : model.effects) {
       if (!add(effect)) return false;
     }
-    for (const Where where : model.additions) add_addition(where);
+    for (const EffectLocation location : model.additions) add_addition(location);
     for (const DomainRange& range : model.domain) {
       if (!add_range(range)) return false;
     }
@@ -93,28 +93,28 @@ class ModelBinder {
     return false;
   }
 
-  static std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
+  static std::string quote(std::string_view name) { return "'" + std::string(name) + "'"; }
 
   bool add(const ModelEffect& effect) {
     return effect.is_formula() ? add_formula(effect) : add_catalogued(effect);
   }
 
   bool add_catalogued(const ModelEffect& effect) {
-    const std::string who = "effect " + quoted(effect.id);
+    const std::string who = "effect " + quote(effect.id);
     const std::size_t place = effect_named(effect.id);
     if (place == catalogue_size) return fail(Code::unknown_effect, "", "there is no " + who);
-    const EffectFacts& facts = effect_facts[place];
-    if (!require_count(effect, facts.parameter_count())) return false;
-    if (bound_.is_within_reach(facts.where)) {
-      if (!require_place(facts.where, who)) return false;
-      for (std::size_t i = 0; i < facts.need_count(); ++i) {
-        if (is_at_hand(facts.needs[i], facts.where)) continue;
-        if (!require(facts.needs[i], who)) return false;
+    const EffectInfo& info = effect_info[place];
+    if (!require_count(effect, info.parameter_count())) return false;
+    if (bound_.is_within_reach(info.location)) {
+      if (!require_place(info.location, who)) return false;
+      for (std::size_t i = 0; i < info.need_count(); ++i) {
+        if (is_at_hand(info.needs[i], info.location)) continue;
+        if (!require(info.needs[i], who)) return false;
       }
     }
     Term term;
     term.effect = place;
-    term.where = facts.where;
+    term.location = info.location;
     term.scaling = effect.scaling;
     add_effect(term, effect);
     return true;
@@ -123,7 +123,7 @@ class ModelBinder {
   bool add_formula(const ModelEffect& effect) {
     FormulaError formula_error;
     std::optional<Formula> formula = Formula::parse(effect.formula, effect.parameter_names, &formula_error);
-    const std::string who = "formula of effect " + quoted(effect.id);
+    const std::string who = "formula of effect " + quote(effect.id);
     if (!formula) return fail(Code::formula, who + ":", formula_error.message);
     if (!require_count(effect, effect.parameter_names.size())) return false;
     if (formula->variables().size() > BoundModel::formula_variable_capacity) {
@@ -132,17 +132,17 @@ class ModelBinder {
     }
     Term term;
     term.formula = bound_.formulas_.size();
-    term.where = effect.where;
+    term.location = effect.location;
     BoundModel::BoundFormula bound{std::move(*formula), {}};
-    if (bound_.is_within_reach(effect.where) && !bind_variables(bound, effect.where, "the " + who))
+    if (bound_.is_within_reach(effect.location) && !bind_variables(bound, effect.location, "the " + who))
       return false;
     bound_.formulas_.push_back(std::move(bound));
     add_effect(term, effect);
     return true;
   }
 
-  bool bind_variables(BoundModel::BoundFormula& bound, Where where, const std::string& who) {
-    if (!require_place(where, who)) return false;
+  bool bind_variables(BoundModel::BoundFormula& bound, EffectLocation location, const std::string& who) {
+    if (!require_place(location, who)) return false;
     for (const std::string& name : bound.formula.variables()) {
       Quantity quantity = quantity_named(name);
       if (quantity == Quantity::count && !find_extra(name, quantity)) {
@@ -150,7 +150,7 @@ class ModelBinder {
                     "the formulas of the model use more than " + std::to_string(extra_capacity) +
                         " further variables");
       }
-      if (!is_at_hand(quantity, where) && !require(quantity, who)) return false;
+      if (!is_at_hand(quantity, location) && !require(quantity, who)) return false;
       bound.variables.push_back(quantity);
     }
     return true;
@@ -158,16 +158,16 @@ class ModelBinder {
 
   bool require_count(const ModelEffect& effect, std::size_t count) {
     return effect.parameters.size() == count ||
-           fail(Code::parameter_count, "effect " + quoted(effect.id),
+           fail(Code::parameter_count, "effect " + quote(effect.id),
                 "takes " + std::to_string(count) + " parameter(s), not " +
                     std::to_string(effect.parameters.size()));
   }
 
   // What an effect corrects is there, and is computed.
-  bool require_place(Where where, const std::string& who) {
-    if (where == Where::radome) return require(Quantity::radome_dynamic_pressure, who);
-    if (where == Where::attack_ratio) return require(Quantity::attack_ratio, who);
-    if (where == Where::ambient_temperature && !bound_.has_temperature()) {
+  bool require_place(EffectLocation location, const std::string& who) {
+    if (location == EffectLocation::radome) return require(Quantity::radome_dynamic_pressure, who);
+    if (location == EffectLocation::attack_ratio) return require(Quantity::attack_ratio, who);
+    if (location == EffectLocation::ambient_temperature && !bound_.has_temperature()) {
       return fail(Code::role_missing, who,
                   "needs the role 'recovery_temperature' or 'ambient_temperature': name its variable in the "
                   "table [variables]",
@@ -177,22 +177,22 @@ class ModelBinder {
   }
 
   // What calibrates the ambient temperature is found from it, derived or recorded.
-  static bool is_at_hand(Quantity quantity, Where where) {
-    return where == Where::ambient_temperature && quantity == Quantity::ambient_temperature;
+  static bool is_at_hand(Quantity quantity, EffectLocation location) {
+    return location == EffectLocation::ambient_temperature && quantity == Quantity::ambient_temperature;
   }
 
   void add_effect(Term term, const ModelEffect& effect) {
     term.first_parameter = bound_.parameters_.size();
     bound_.parameters_.insert(bound_.parameters_.end(), effect.parameters.begin(), effect.parameters.end());
     bound_.effects_.push_back(term);
-    if (bound_.is_within_reach(term.where)) add_term(term);
+    if (bound_.is_within_reach(term.location)) add_term(term);
   }
 
   // An amount at a place asks for nothing: where the place is of no use to the model, it changes nothing.
-  void add_addition(Where where) {
+  void add_addition(EffectLocation location) {
     Term term;
     term.effect = Term::is_addition;
-    term.where = where;
+    term.location = location;
     term.first_parameter = bound_.parameters_.size();
     bound_.parameters_.push_back(0.0);
     add_term(term);
@@ -200,10 +200,10 @@ class ModelBinder {
 
   // Behind the others of its place.
   void add_term(const Term& term) {
-    const auto end = static_cast<std::ptrdiff_t>(bound_.begin_of(term.where, 1));
+    const auto end = static_cast<std::ptrdiff_t>(bound_.begin_of(term.location, 1));
     bound_.terms_.insert(bound_.terms_.begin() + end, term);
-    const auto place = static_cast<std::size_t>(term.where);
-    for (std::size_t next = place + 1; next <= where_count; ++next) ++bound_.where_begin_[next];
+    const auto place = static_cast<std::size_t>(term.location);
+    for (std::size_t next = place + 1; next <= location_count; ++next) ++bound_.where_begin_[next];
     bound_.acting_.set(place);
   }
 
@@ -224,7 +224,7 @@ class ModelBinder {
   bool add_range(const DomainRange& range) {
     const Quantity quantity = quantity_named(range.quantity);
     if (quantity == Quantity::count)
-      return fail(Code::unknown_quantity, "", "there is no quantity " + quoted(range.quantity));
+      return fail(Code::unknown_quantity, "", "there is no quantity " + quote(range.quantity));
     if (!require(quantity, "the domain of the model")) return false;
     bound_.domain_.push_back({quantity, range.lower, range.upper});
     return true;
@@ -290,7 +290,7 @@ class ModelBinder {
   bool require_angle(const RadomeCalibration& radome, Quantity angle, Quantity ratio,
                      const std::string& who) {
     if (!radome.is_calibrated()) {
-      const std::string name(facts_of(angle).name);
+      const std::string name(info_of(angle).name);
       return fail(Code::role_missing, who,
                   "needs the role '" + name +
                       "': name its variable in the table [variables], or give [radome] " + name +
@@ -302,9 +302,9 @@ class ModelBinder {
   }
 
   bool fail_missing(Quantity quantity, const std::string& who) {
-    const std::string name = quoted(facts_of(quantity).name);
+    const std::string name = quote(info_of(quantity).name);
     if (!is_role(quantity))
-      return fail(Code::known_too_late, who, "needs " + name + ", which is known only after delta-p",
+      return fail(Code::circular_dependency, who, "needs " + name + ", which is known only after delta-p",
                   quantity);
     return fail(Code::role_missing, who,
                 "needs the role " + name + ": name its variable in the table [variables]", quantity);

@@ -71,8 +71,8 @@ class NimbusSystem {
 
   /// Sets `model` up for both rates (samples in a second), in place of what was installed before. `inputs`
   /// are the names of roles, or of variables in the model's formulas, in the order of the leader's dependency
-  /// line. Where an `uncertainty` is stated entries may fetch those of the results. Returns false, and
-  /// changes nothing, where the model cannot be used; `error` says why.
+  /// line. Where an `uncertainty` is stated entries may fetch those of the results. Returns false,
+  /// and changes nothing, where the model cannot be used; `error` says why.
   static bool install(const Model& model, const std::vector<std::string>& inputs, double low_rate,
                       double high_rate, std::string* error, CorrectWith with = CorrectWith::model,
                       const ModelUncertainty& uncertainty = {}) {
@@ -185,7 +185,7 @@ class NimbusSystem {
   // What the library calls the zero of the host's unit. An uncertainty in K is a difference.
   static constexpr double zero_of(Quantity quantity) {
     if (quantity == Quantity::ambient_temperature_uncertainty) return 0.0;
-    return index(quantity) < quantity_count && facts_of(quantity).unit == "K" ? constants::ice_point : 0.0;
+    return index(quantity) < quantity_count && info_of(quantity).unit == "K" ? constants::ice_point : 0.0;
   }
 
   static Rate& current() { return Host::high_rate() ? high_ : low_; }
@@ -225,8 +225,8 @@ inline std::string default_key(const std::string& prefix, const ModelEffect& eff
   if (number < effect.parameter_names.size()) {
     name = effect.parameter_names[number];
   } else if (const std::size_t place = effect_named(effect.id);
-             place != catalogue_size && number < effect_facts[place].parameter_count()) {
-    name = effect_facts[place].parameters[number].name;
+             place != catalogue_size && number < effect_info[place].parameter_count()) {
+    name = effect_info[place].parameters[number].name;
   }
   return prefix + "." + effect.id + "." + name;
 }

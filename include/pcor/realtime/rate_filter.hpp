@@ -39,10 +39,10 @@ class RateFilter {
   static constexpr double zeros = 6.0;         ///< of the sinc, on either side
 
   /// @param rate samples in a second, above zero and finite @param seconds over which the rate is the mean,
-  /// s; those to come where below zero; finite @param shortest_period of which half the amplitude is left, s
-  explicit RateFilter(double rate, double seconds = 0.0, double shortest_period = usual_period)
-      : shift_(std::abs(seconds) * rate < least_shift ? 0.0 : seconds * rate),
-        band_(std::min(1.0, 2.0 / (shortest_period * rate))),
+  /// s; those to come where below zero; finite @param min_period of which half the amplitude is left, s
+  explicit RateFilter(double rate, double seconds = 0.0, double min_period = usual_period)
+      : shift_(std::abs(seconds) * rate < min_shift ? 0.0 : seconds * rate),
+        band_(std::min(1.0, 2.0 / (min_period * rate))),
         bridge_(static_cast<std::size_t>(std::lround(1.0 / band_))) {
     constexpr double little = 1e-3;  // samples
     const double width = std::round(zeros / band_);
@@ -77,7 +77,7 @@ class RateFilter {
   }
 
  private:
-  static constexpr double least_shift = 0.02;  // samples, below which a mean rate is the derivative
+  static constexpr double min_shift = 0.02;  // samples, below which a mean rate is the derivative
 
   double sum(const double* first) const noexcept {
     // Departures from the sample, so that a constant gives zero; four sums, none of which waits for another.

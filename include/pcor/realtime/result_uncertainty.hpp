@@ -42,9 +42,10 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 /// were found less than two seconds ago at pressures within 5 %: at 25 Hz that is what it can afford.
 /// docs/uncertainty.md says what is in them and what cannot be.
 ///
-/// Where delta-p is raised to the minimum of the law it keeps the uncertainty of the law; where it is tapered
-/// that is tapered, too. Where a result is missing so is its uncertainty. Where LAMS corrects the sample all
-/// but that of delta-p of the model are missing: what the model knows of itself says nothing of the laser.
+/// Where delta-p is raised to the minimum of the law it keeps the uncertainty of the law; where it
+/// is tapered that is tapered, too. Where a result is missing so is its uncertainty. EffectLocation
+/// LAMS corrects the sample all but that of delta-p of the model are missing: what the model knows of itself
+/// says nothing of the laser.
 class ResultUncertainty final : public Functor {
  public:
   /// Null where `uncertainty` is not of the model in `chain`; `error` says why.
@@ -117,8 +118,8 @@ class ResultUncertainty final : public Functor {
       if (chain.derives_temperature()) {
         double rest = temperature / state[Quantity::recovery_temperature];
         double factor = 0.0;
-        if (chain.acts(Where::temperature) || chain.acts(Where::recovery) ||
-            chain.acts(Where::ambient_temperature)) {
+        if (chain.acts(EffectLocation::temperature) || chain.acts(EffectLocation::recovery) ||
+            chain.acts(EffectLocation::ambient_temperature)) {
           const double* parameters = chain.parameters().data();
           factor = is_still ? 1.0 : chain.recovery_factor(mach, state, parameters);
           rest = 1.0 / (1.0 + factor * heating);
@@ -176,7 +177,7 @@ class ResultUncertainty final : public Functor {
 
   /// The uncertain coefficients that act at one place.
   struct Place {
-    Where where;
+    EffectLocation location;
     std::size_t begin;
     std::size_t end;
     Results by_amount{};  // of this sample
@@ -196,15 +197,15 @@ class ResultUncertainty final : public Functor {
         static_defect_(uncertainty.static_defect),
         static_defect_ratio_(uncertainty.static_defect_ratio) {
     for (std::size_t effect = 0; effect < chain_->effect_count(); ++effect) {
-      const Where where = chain_->where_of(effect);
-      if (where == Where::static_defect || is_before_ports(where)) at_ports_.push_back(effect);
+      const EffectLocation location = chain_->location_of(effect);
+      if (location == EffectLocation::static_defect || is_before_ports(location)) at_ports_.push_back(effect);
     }
     if (!uncertainty.covariance.empty()) add_coefficients(uncertainty.covariance);
     Quantities read_at_ports;
-    for (std::size_t place = 0; place < where_count; ++place) {
-      const auto where = static_cast<Where>(place);
-      if (where != Where::static_defect && !is_before_ports(where)) continue;
-      for (const Quantity read : chain_->read_at(where)) {
+    for (std::size_t place = 0; place < location_count; ++place) {
+      const auto location = static_cast<EffectLocation>(place);
+      if (location != EffectLocation::static_defect && !is_before_ports(location)) continue;
+      for (const Quantity read : chain_->read_at(location)) {
         read_at_ports = joined({read_at_ports, MeasuredQuantities::sources(*chain_, read)});
       }
     }
@@ -233,21 +234,22 @@ class ResultUncertainty final : public Functor {
     return written;
   }
 
-  static bool is_before_ports(Where where) {
-    return where == Where::static_transducer || where == Where::dynamic_transducer ||
-           where == Where::static_line || where == Where::total_line || where == Where::pitot;
+  static bool is_before_ports(EffectLocation location) {
+    return location == EffectLocation::static_transducer || location == EffectLocation::dynamic_transducer ||
+           location == EffectLocation::static_line || location == EffectLocation::total_line ||
+           location == EffectLocation::pitot;
   }
 
   /// The quantity that is changed at the place and that laws stand in, or none.
-  static Quantity source_of(Where where) {
-    switch (where) {
-      case Where::radome:
+  static Quantity source_of(EffectLocation location) {
+    switch (location) {
+      case EffectLocation::radome:
         return Quantity::radome_dynamic_pressure;
-      case Where::attack_ratio:
+      case EffectLocation::attack_ratio:
         return Quantity::attack_ratio;
-      case Where::attack:
+      case EffectLocation::attack:
         return Quantity::attack;
-      case Where::sideslip:
+      case EffectLocation::sideslip:
         return Quantity::sideslip;
       default:
         return Quantity::count;
@@ -258,13 +260,14 @@ class ResultUncertainty final : public Functor {
   void add_coefficients(const std::vector<double>& covariance) {
     const std::size_t count = chain_->parameters().size();
     std::vector<std::size_t> order;
-    for (std::size_t place = 0; place < where_count; ++place) {
-      const auto where = static_cast<Where>(place);
-      if (where == Where::beam_elevation || where == Where::beam_azimuth || where == Where::beam_speed)
+    for (std::size_t place = 0; place < location_count; ++place) {
+      const auto location = static_cast<EffectLocation>(place);
+      if (location == EffectLocation::beam_elevation || location == EffectLocation::beam_azimuth ||
+          location == EffectLocation::beam_speed)
         continue;
       const std::size_t begin = order.size();
       for (std::size_t effect = 0; effect < chain_->effect_count(); ++effect) {
-        if (chain_->where_of(effect) != where) continue;
+        if (chain_->location_of(effect) != location) continue;
         const std::size_t first = chain_->first_parameter_of(effect);
         const std::size_t next =
             effect + 1 < chain_->effect_count() ? chain_->first_parameter_of(effect + 1) : count;
@@ -275,7 +278,7 @@ class ResultUncertainty final : public Functor {
           coefficients_.push_back(coefficient(effect, first, next, parameter, std::sqrt(variance)));
         }
       }
-      if (order.size() > begin) places_.push_back({where, begin, order.size()});
+      if (order.size() > begin) places_.push_back({location, begin, order.size()});
     }
     for (const std::size_t i : order) {
       for (const std::size_t j : order) covariance_.push_back(covariance[i * count + j]);
@@ -313,38 +316,38 @@ class ResultUncertainty final : public Functor {
     for (const std::size_t effect : at_ports_) {
       const double value =
           chain_->effect_value(effect, state, parameters + chain_->first_parameter_of(effect));
-      add(sum, chain_->where_of(effect), value);
+      add(sum, chain_->location_of(effect), value);
     }
     return sum;
   }
 
-  static void add(Changes& changes, Where where, double amount) noexcept {
-    switch (where) {
-      case Where::static_defect:
+  static void add(Changes& changes, EffectLocation location, double amount) noexcept {
+    switch (location) {
+      case EffectLocation::static_defect:
         changes.static_defect += amount;
         break;
-      case Where::static_transducer:
+      case EffectLocation::static_transducer:
         changes.static_pressure += amount;
         break;
-      case Where::static_line:
+      case EffectLocation::static_line:
         changes.static_pressure += amount;
         changes.dynamic_pressure -= amount;
         break;
-      case Where::dynamic_transducer:
-      case Where::total_line:
-      case Where::pitot:
+      case EffectLocation::dynamic_transducer:
+      case EffectLocation::total_line:
+      case EffectLocation::pitot:
         changes.dynamic_pressure += amount;
         break;
-      case Where::temperature:
+      case EffectLocation::temperature:
         changes.thermometer += amount;
         break;
-      case Where::recovery:
+      case EffectLocation::recovery:
         changes.recovery += amount;
         break;
-      case Where::ambient_temperature:
+      case EffectLocation::ambient_temperature:
         changes.calibration += amount;
         break;
-      case Where::humidity:
+      case EffectLocation::humidity:
         changes.vapor += amount;
         break;
       default:
@@ -399,13 +402,14 @@ class ResultUncertainty final : public Functor {
     for (Coefficient& each : coefficients_) {
       each.shape = shape_of(each, state);
       // Without a humidity the air counts as dry.
-      if (chain_->where_of(each.effect) == Where::humidity && is_missing(each.shape)) each.shape = 0.0;
+      if (chain_->location_of(each.effect) == EffectLocation::humidity && is_missing(each.shape))
+        each.shape = 0.0;
     }
     for (Place& place : places_) {
-      const Quantity source = source_of(place.where);
+      const Quantity source = source_of(place.location);
       Changes changes;
       if (source != Quantity::count) changes = response(state, source, step_of(source));
-      add(changes, place.where, 1.0);
+      add(changes, place.location, 1.0);
       changes.static_defect *= fraction;
       place.by_amount = sensitivity.of(changes);
     }

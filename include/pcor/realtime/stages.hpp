@@ -46,8 +46,9 @@ inline Quantities known(const Chain& chain, std::initializer_list<Quantity> quan
 /// What temperature and humidity are found from: what is recorded of them, and what their effects read. What
 /// calibrates an ambient temperature takes that temperature from the stage that finds it.
 inline Quantities read_of_air(const Chain& chain) {
-  Quantities read = joined({chain.read_at(Where::temperature), chain.read_at(Where::recovery),
-                            chain.read_at(Where::humidity), chain.read_at(Where::ambient_temperature)});
+  Quantities read =
+      joined({chain.read_at(EffectLocation::temperature), chain.read_at(EffectLocation::recovery),
+              chain.read_at(EffectLocation::humidity), chain.read_at(EffectLocation::ambient_temperature)});
   read.erase(std::remove(read.begin(), read.end(), Quantity::ambient_temperature), read.end());
   for (const Quantity recorded : {Quantity::recovery_temperature, Quantity::ambient_temperature,
                                   Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point}) {
@@ -59,8 +60,8 @@ inline Quantities read_of_air(const Chain& chain) {
 /// What the airspeed from LAMS is found from: the speed along the beam and the angle of the beam to the wind.
 inline Quantities read_of_beam(const Chain& chain) {
   return joined({known(chain, {Quantity::lams_airspeed, Quantity::attack, Quantity::sideslip}),
-                 chain.read_at(Where::beam_speed), chain.read_at(Where::beam_elevation),
-                 chain.read_at(Where::beam_azimuth)});
+                 chain.read_at(EffectLocation::beam_speed), chain.read_at(EffectLocation::beam_elevation),
+                 chain.read_at(EffectLocation::beam_azimuth)});
 }
 
 /// Pressures at the ports, and the quantities in which the laws stand: `Chain::measure`.
@@ -134,13 +135,13 @@ struct MeasuredQuantities {
   // What is recorded and completed by effects.
   static Quantities writes_in_place(const Chain& chain) {
     Quantities completed;
-    const auto completes = [&](Where where, Quantity quantity) {
-      if (chain.acts(where) && chain.recorded(quantity)) completed.push_back(quantity);
+    const auto completes = [&](EffectLocation location, Quantity quantity) {
+      if (chain.acts(location) && chain.recorded(quantity)) completed.push_back(quantity);
     };
-    completes(Where::radome, Quantity::radome_dynamic_pressure);
-    completes(Where::attack, Quantity::attack);
-    completes(Where::sideslip, Quantity::sideslip);
-    completes(Where::ambient_temperature, Quantity::ambient_temperature);
+    completes(EffectLocation::radome, Quantity::radome_dynamic_pressure);
+    completes(EffectLocation::attack, Quantity::attack);
+    completes(EffectLocation::sideslip, Quantity::sideslip);
+    completes(EffectLocation::ambient_temperature, Quantity::ambient_temperature);
     return completed;
   }
 };
@@ -149,7 +150,7 @@ struct MeasuredQuantities {
 struct StaticDefect {
   static Quantities reads(const Correction& correction) {
     return joined({{Quantity::static_pressure, Quantity::dynamic_pressure},
-                   correction.chain.read_at(Where::static_defect)});
+                   correction.chain.read_at(EffectLocation::static_defect)});
   }
   static Quantities writes(const Correction&) { return {Quantity::static_defect}; }
 

@@ -33,27 +33,25 @@ enum class Regime : std::uint8_t {
 inline constexpr std::size_t regime_count = static_cast<std::size_t>(Regime::count);
 
 /// What is known of a regime without a flight.
-struct RegimeFacts {
+struct RegimeInfo {
   std::string_view name;  ///< as files and reports spell it, for example "pitch manoeuvre"
 };
 
 /// All regimes in the order of `Regime`.
-inline constexpr std::array<RegimeFacts, regime_count> regime_facts{{{"ground"},
-                                                                     {"take-off"},
-                                                                     {"climb"},
-                                                                     {"descent"},
-                                                                     {"level"},
-                                                                     {"turn"},
-                                                                     {"pitch manoeuvre"},
-                                                                     {"yaw manoeuvre"},
-                                                                     {"speed run"},
-                                                                     {"reverse heading"},
-                                                                     {"circle"},
-                                                                     {"cloud"}}};
+inline constexpr std::array<RegimeInfo, regime_count> regime_info{{{"ground"},
+                                                                   {"take-off"},
+                                                                   {"climb"},
+                                                                   {"descent"},
+                                                                   {"level"},
+                                                                   {"turn"},
+                                                                   {"pitch manoeuvre"},
+                                                                   {"yaw manoeuvre"},
+                                                                   {"speed run"},
+                                                                   {"reverse heading"},
+                                                                   {"circle"},
+                                                                   {"cloud"}}};
 
-constexpr const RegimeFacts& facts_of(Regime regime) {
-  return regime_facts[static_cast<std::size_t>(regime)];
-}
+constexpr const RegimeInfo& info_of(Regime regime) { return regime_info[static_cast<std::size_t>(regime)]; }
 
 /// The regime of that name; `Regime::count` where there is none.
 Regime regime_named(std::string_view name);
@@ -96,8 +94,8 @@ struct Interval {
 /// The thresholds of the search. The defaults are those of the NSF/NCAR C-130.
 ///
 /// "QAtools" is NCAR's program of data review, whose searches for manoeuvres, and definitions of them, set
-/// most of the numbers; "memo" is Cooper's study of manoeuvres for the calibration of these aircraft. Where
-/// no source is given the number is this library's choice.
+/// most of the numbers; "memo" is Cooper's study of manoeuvres for the calibration of these aircraft.
+/// Where no source is given the number is this library's choice.
 struct RegimeCriteria {
   double flying_speed = 60.0;      ///< m/s: airborne above it, on the ground below it
   double roll_speed = 15.0;        ///< m/s: the take-off roll has begun above it

@@ -45,7 +45,7 @@ struct BinnedPanel {
   std::vector<std::string> x_choices;
   std::size_t bins = 12;
   /// How many samples count as one independent sample, because neighbours in time err alike; at least 1.
-  double samples_per_independent = 1.0;
+  double autocorrelation_time = 1.0;
   std::string axis{};  ///< as for TimePanel
 };
 
@@ -260,7 +260,7 @@ struct WhatIfPanel {
   std::size_t own = 0;                          ///< how many are the model's own
   std::vector<WhatIfEffect> effects;
   std::vector<std::string> x_choices{};  ///< columns that the residual is shown against
-  double samples_per_independent = 1.0;  ///< as of `BinnedPanel`
+  double autocorrelation_time = 1.0;     ///< as of `BinnedPanel`
   /// For fits: with no effect taken off first, with all that were found last.
   std::vector<WhatIfWeights> weights;
   std::vector<WhatIfSums> alike;  ///< of the same parts, of all samples alike but outliers, hPa
@@ -293,11 +293,11 @@ using ReportItem =
 struct Report {
   std::string title;
   std::string subtitle;
-  std::vector<std::string> summary;                        ///< sentences
-  std::vector<std::pair<std::string, std::string>> facts;  ///< a name and what it is, e.g. "Model"
-  std::vector<double> time;                                ///< of the samples, s since 1970 UTC
-  std::vector<std::size_t> flight_starts;                  ///< first sample of each flight; {0} if empty
-  std::vector<std::string> flight_names;                   ///< as many as flights, or none
+  std::vector<std::string> summary;                       ///< sentences
+  std::vector<std::pair<std::string, std::string>> info;  ///< a name and what it is, e.g. "Model"
+  std::vector<double> time;                               ///< of the samples, s since 1970 UTC
+  std::vector<std::size_t> flight_starts;                 ///< first sample of each flight; {0} if empty
+  std::vector<std::string> flight_names;                  ///< as many as flights, or none
   std::vector<ReportColumn> columns;
   std::vector<ReportInterval> intervals;
   std::vector<ReportItem> items;

@@ -31,12 +31,12 @@ enum class Mask : std::uint8_t {
 
 inline constexpr std::size_t mask_count = static_cast<std::size_t>(Mask::count);
 
-struct MaskFacts {
+struct MaskInfo {
   std::string_view name;     ///< as in JSON, for example "low_speed"
   std::string_view meaning;  ///< in words that follow a number of samples
 };
 
-extern const std::array<MaskFacts, mask_count> mask_facts;
+extern const std::array<MaskInfo, mask_count> mask_info;
 
 /// For messages: the reasons why samples are not used, the largest first: "1203 on the ground, 17 laser ...".
 std::string mask_text(const std::array<std::size_t, mask_count>& counts);
@@ -46,13 +46,13 @@ inline constexpr double flaps_in = 5.0;
 
 /// Which samples take part in a comparison.
 struct MaskOptions {
-  double least_airspeed = 60.0;  ///< m/s; an aircraft flies above it
+  double min_airspeed = 60.0;  ///< m/s; an aircraft flies above it
   /// Percent, where the flight records flaps. Not given it is `flaps_in`, but for a model of which an effect
   /// reads the flaps: that describes all samples, and all take part.
-  std::optional<double> most_flaps{};
+  std::optional<double> max_flaps{};
   /// Robust standard deviations of the flight, beside 3 % of the airspeed, between the laser airspeed and
   /// what the pressures let expect; beyond them the laser has lost its lock.
-  double most_laser_departure = 6.0;
+  double max_laser_departure = 6.0;
   std::vector<Regime> exclude{};  ///< regimes that take no part, besides the ground
   std::optional<UserIntervals> intervals{};
 };

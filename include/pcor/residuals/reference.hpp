@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/samples.hpp>
 
 #include <memory>
@@ -42,11 +42,11 @@ class Reference {
 
   /// The model that corrects it, whose parameters can be fitted together with those of the model that is held
   /// against it; null where it has none.
-  virtual const ModelFile* model() const { return nullptr; }
+  virtual const ModelDefinition* model() const { return nullptr; }
 
   /// The same reference with another model of its own; null where it has none. It reads all that the other
   /// model reads.
-  virtual std::shared_ptr<const Reference> with_model(const ModelFile&) const { return nullptr; }
+  virtual std::shared_ptr<const Reference> with_model(const ModelDefinition&) const { return nullptr; }
 
   /// The variables of a flight that it reads for itself, beside those of the model that is held against it.
   virtual std::vector<std::string> variables() const { return {}; }
@@ -64,8 +64,8 @@ class Reference {
   /// True where its residual is of one sample alone, not of many around it.
   virtual bool is_of_one_sample() const { return true; }
 
-  /// Where its residual is a difference over so long a time, s: means over as much tell each something new,
-  /// and what a diagnosis holds against a model. Zero where it is no such difference.
+  /// Where its residual is a difference over so long a time, s: means over as much tell each
+  /// something new, and what a diagnosis holds against a model. Zero where it is no such difference.
   virtual double window() const { return 0.0; }
 
   /// What it says of every sample. Both arguments must outlive the result.
@@ -83,7 +83,7 @@ const Reference& first_of(const References& references);
 std::shared_ptr<const Reference> lams_reference();
 
 /// Another static system of the aircraft, corrected by a model of its own.
-std::shared_ptr<const Reference> static_system_reference(ModelFile system);
+std::shared_ptr<const Reference> static_system_reference(ModelDefinition system);
 
 /// A variable that is a static pressure: of the avionics, or corrected already.
 std::shared_ptr<const Reference> pressure_reference(std::string variable);
@@ -91,7 +91,7 @@ std::shared_ptr<const Reference> pressure_reference(std::string variable);
 /// The total pressure of another pair of the aircraft, corrected by a model of its own: the residual is
 /// (p + q) of the pair less (p + q) of the model, hPa. Static defects cancel; errors of transducers, pitot
 /// tubes and total lines of either remain.
-std::shared_ptr<const Reference> total_pressure_reference(ModelFile system);
+std::shared_ptr<const Reference> total_pressure_reference(ModelDefinition system);
 
 /// The heights of GPS: by how much the height that pressure, temperature and humidity of the model say the
 /// aircraft climbed within a minute (hydrostatic equation) departs from that of GPS, in hPa of the pressure
@@ -99,7 +99,7 @@ std::shared_ptr<const Reference> total_pressure_reference(ModelFile system);
 ///
 /// What it cannot know stays in its noise: the slope of surfaces of one pressure along the track, some metres
 /// in a minute, and the noise of the heights. @param model names altitude and latitude, where it does
-std::shared_ptr<const Reference> height_reference(const ModelFile& model);
+std::shared_ptr<const Reference> height_reference(const ModelDefinition& model);
 
 /// The speed over the ground along the heading: the true airspeed of the model less the speed over the
 /// ground, without what a wind of the quarter of an hour around it makes of that by the headings flown, in
@@ -108,7 +108,7 @@ std::shared_ptr<const Reference> height_reference(const ModelFile& model);
 ///
 /// What it cannot know stays in its noise: how the wind changes within the quarter of an hour. @param model
 /// names heading and ground velocity, where it does
-std::shared_ptr<const Reference> wind_reference(const ModelFile& model);
+std::shared_ptr<const Reference> wind_reference(const ModelDefinition& model);
 
 /// The texts that name a reference, with what each is: "lams (the laser ...), static:OTHER.toml (...) or
 /// ...".
@@ -118,6 +118,6 @@ std::string reference_forms();
 ///
 /// @throws Error if the text is none of these, the file of a static system cannot be read, or the model of a
 /// LAMS comparison has no `lams_airspeed`.
-std::shared_ptr<const Reference> read_reference(const std::string& text, const ModelFile& model);
+std::shared_ptr<const Reference> read_reference(const std::string& text, const ModelDefinition& model);
 
 }  // namespace pcor

@@ -28,11 +28,11 @@ struct Direction {
 class Residuals {
  public:
   /// @throws Error if the model, or that of the reference, cannot be used on the samples.
-  Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model, const Reference& reference,
-            const MaskOptions& options = {});
+  Residuals(std::shared_ptr<const FlightSamples> samples, const ModelDefinition& model,
+            const Reference& reference, const MaskOptions& options = {});
   /// The same with masks that are known: they were found on these samples, or on others of the same flight.
-  Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model, const Reference& reference,
-            std::vector<Mask> mask);
+  Residuals(std::shared_ptr<const FlightSamples> samples, const ModelDefinition& model,
+            const Reference& reference, std::vector<Mask> mask);
   Residuals(Residuals&&) noexcept;
   Residuals& operator=(Residuals&&) noexcept;
   ~Residuals();
@@ -116,7 +116,7 @@ class Residuals {
   std::shared_ptr<const FlightSamples> at_common_pressures() const;
 
   /// Delta-p that the reference asks for, p(reference) - p at the port, hPa; NaN where missing.
-  std::vector<double> wanted_defect(const double* parameters) const;
+  std::vector<double> target_defect(const double* parameters) const;
 
   /// A quantity of the model's chain, for pictures and bands: e.g. mach, attack. NaN everywhere where the
   /// chain does not have it.
@@ -129,6 +129,6 @@ class Residuals {
 
 /// The names of all parameters in the order of `Residuals::parameters`, like "static-qp.a2"; those of the
 /// reference's model begin with "reference:".
-std::vector<std::string> residual_parameter_names(const ModelFile& model, const Reference& reference);
+std::vector<std::string> residual_parameter_names(const ModelDefinition& model, const Reference& reference);
 
 }  // namespace pcor

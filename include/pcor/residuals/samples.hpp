@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pcor/flight/flight.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include <pcor/residuals/masks.hpp>
 #include <pcor/roles/fast_series.hpp>
@@ -23,7 +23,7 @@ struct FrozenSpan {
 
 /// A column that hangs on a coefficient, as the mean rate of the airspeed does on the seconds over which it
 /// is the mean: how it changes with that coefficient.
-struct MovingColumn {
+struct ParameterDependentColumn {
   Quantity quantity = Quantity::count;
   std::string effect{};
   std::size_t parameter = 0;    ///< the number of the coefficient in its effect
@@ -37,7 +37,7 @@ struct ModelSamples {
   std::vector<std::pair<Quantity, std::vector<double>>> columns{};
   std::vector<std::pair<Quantity, std::string>> variables{};  ///< of the file, for what is recorded
   std::vector<FrozenSpan> frozen{};
-  std::vector<MovingColumn> moving{};
+  std::vector<ParameterDependentColumn> moving{};
   FastSeries along_beam{};  ///< airspeed along the laser's beam, m/s, where a rate of it is read
 
   const std::vector<double>* find(Quantity quantity) const;
@@ -68,7 +68,7 @@ struct FlightSamples {
 /// files use (GGALT, ROLL, THDG, PLWCC and the like). Regimes of an aircraft that is not known are found by
 /// the criteria of the C-130, which a note says.
 /// @throws Error if a variable that is needed is absent, has no value, or its unit does not fit.
-FlightSamples read_samples(const Flight& flight, const ModelFile& model, const Reference& reference,
+FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, const Reference& reference,
                            const MaskOptions& options = {});
 
 }  // namespace pcor

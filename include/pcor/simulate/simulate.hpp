@@ -146,10 +146,10 @@ struct Scenario {
     std::string id{};
     std::string on{};  ///< the variable it acts on; empty: all that it can act on
     std::map<std::string, double> parameters{};
-    std::string of{};     ///< of "unknown": the variable that causes it
-    std::string where{};  ///< of "unknown": static, total, lams or temperature
-    std::string shape{};  ///< of "unknown": linear, quadratic, step or sine
-    std::string place{};  ///< where it stands in the file, for messages
+    std::string of{};        ///< of "unknown": the variable that causes it
+    std::string location{};  ///< of "unknown": static, total, lams or temperature
+    std::string shape{};     ///< of "unknown": linear, quadratic, step or sine
+    std::string place{};     ///< where it stands in the file, for messages
   };
 
   /// Spikes in a variable.
@@ -205,15 +205,15 @@ struct SimulateOptions {
 
 /// A leg as it was flown.
 struct LegFlown {
-  std::string kind;          ///< as in the scenario, e.g. "speed-run"
-  double first_time = 0.0;   ///< seconds since 1970 UTC
-  double last_time = 0.0;    ///< seconds since 1970 UTC
-  double altitude = 0.0;     ///< mean, m
-  double pressure = 0.0;     ///< mean, hPa
-  double least_speed = 0.0;  ///< true airspeed, m/s
-  double greatest_speed = 0.0;
-  double least_attack = 0.0;  ///< deg
-  double greatest_attack = 0.0;
+  std::string kind;         ///< as in the scenario, e.g. "speed-run"
+  double first_time = 0.0;  ///< seconds since 1970 UTC
+  double last_time = 0.0;   ///< seconds since 1970 UTC
+  double altitude = 0.0;    ///< mean, m
+  double pressure = 0.0;    ///< mean, hPa
+  double min_speed = 0.0;   ///< true airspeed, m/s
+  double max_speed = 0.0;
+  double min_attack = 0.0;  ///< deg
+  double max_attack = 0.0;
 };
 
 /// What was simulated.

@@ -24,7 +24,7 @@ enum class IsobarSlope {
   geostrophic     ///< from the measured wind: f/g times the wind across the way, as far as that is in balance
 };
 
-std::string_view name_of(IsobarSlope slope);
+std::string_view to_string(IsobarSlope slope);
 /// The option of that name, for example "level-legs"; nothing where there is none.
 std::optional<IsobarSlope> isobar_slope_named(std::string_view name);
 
@@ -45,8 +45,8 @@ struct TemperatureOptions {
   /// errors do not know of them, and `pressure_error_text` says how much the first would move the
   /// coefficients.
   std::optional<double> pressure_error{};
-  double least_climb_rate = 0.0;  ///< m/s: slower parts take no part (memo i)
-  bool skip_returning = false;    ///< flights that end where they began take no part (memo v)
+  double min_climb_rate = 0.0;  ///< m/s: slower parts take no part (memo i)
+  bool skip_returning = false;  ///< flights that end where they began take no part (memo v)
   /// The flights were written by `pcor process --hydrostatic` with the same model, but for its correction of
   /// the temperature: take -(R_a/g0) ln(p_i/p_(i-1)) and the temperature from there.
   bool archived = false;
@@ -109,9 +109,9 @@ struct FlightHeights {
   std::string flight{};
   std::string left_out{};  ///< why it takes no part; empty where it does
   std::size_t samples = 0;
-  std::size_t stretches = 0;          ///< over which the integral goes on without a break
-  double least_temperature = 0.0;     ///< degC
-  double greatest_temperature = 0.0;  ///< degC
+  std::size_t segments = 0;           ///< over which the integral goes on without a break
+  double min_temperature = 0.0;       ///< degC
+  double max_temperature = 0.0;       ///< degC
   double rms_before = 0.0;            ///< of height by GPS less integral about its mean in each stretch, m
   double rms_after = 0.0;             ///< with the correction, m
   std::vector<double> time{};         ///< s since 1970 UTC
@@ -123,12 +123,12 @@ struct FlightHeights {
 };
 
 struct TemperatureResult {
-  ModelFile model;  ///< with the correction as its effect temp-calibration, held in refits
+  ModelDefinition model;  ///< with the correction as its effect temp-calibration, held in refits
   /// Maximum likelihood; sigma is that of the GPS noise, slow and fast, of a sample.
   TemperatureFit likelihood;
   /// Least squares on height, memo eq. 23-24, for comparison: sigma is the rms difference of heights. Its
-  /// errors take heights for independent and are too small. Where the slope of isobars is fitted by the
-  /// likelihood, here it is that of the whole flight (memo iv).
+  /// errors take heights for independent and are too small. Where the slope of isobars is fitted by
+  /// the likelihood, here it is that of the whole flight (memo iv).
   TemperatureFit least_squares;
   /// What least squares would add to the likelihood's correction as a constant, K, once the errors of the law
   /// are taken off too; its error knows that heights remember each other. Beyond three of them the two
@@ -136,9 +136,9 @@ struct TemperatureResult {
   double least_squares_add = 0.0;
   double least_squares_add_error = 0.0;
   std::vector<std::vector<double>> covariance{};  ///< of the likelihood's coefficients
-  /// Where the likelihood, with the noise at its best for each value, has fallen by e^(-1/2), lower and
-  /// upper, with the errors that it cannot see: agrees with value -+ standard error where the likelihood is a
-  /// parabola.
+  /// Where the likelihood, with the noise at its best for each value, has fallen by e^(-1/2), lower
+  /// and upper, with the errors that it cannot see: agrees with value -+ standard error where the likelihood
+  /// is a parabola.
   std::vector<std::array<double, 2>> profile{};
   std::vector<TemperatureCorrection> corrections{};  ///< over the range of temperatures of the flights
   std::vector<DegreeChoice> degrees{};
@@ -185,10 +185,10 @@ struct TemperatureResult {
 /// errors. One in proportion to the static pressure moves no height.
 ///
 /// @throws Error if no flight can be used: the message says why for the first one.
-TemperatureResult fit_temperature(const FlightSet& flights, const ModelFile& model,
+TemperatureResult fit_temperature(const FlightSet& flights, const ModelDefinition& model,
                                   const TemperatureOptions& options = {});
 
-/// One round of `calibrate_in_turn`.
+/// One round of `calibrate_iteratively`.
 struct CalibrationRound {
   double rms_hpa = 0.0;                ///< of the pressure fit
   std::vector<double> coefficients{};  ///< of the temperature correction
@@ -196,7 +196,7 @@ struct CalibrationRound {
   double temperature_change = 0.0;  ///< greatest change of the correction over the range of temperatures, K
 };
 
-struct CalibrationInTurn {
+struct IterativeCalibration {
   RefitResult pressure;           ///< of the last round
   TemperatureResult temperature;  ///< of the last round, degrees of the first; its model has both
   std::vector<CalibrationRound> rounds{};
@@ -207,9 +207,9 @@ struct CalibrationInTurn {
 /// Fits them in turn until neither moves: delta-p by less than 0.001 hPa and the temperature by less than
 /// 0.001 K.
 /// @throws Error as `refit` and `fit_temperature`, and for archived flights, whose pressures are as they are.
-CalibrationInTurn calibrate_in_turn(const FlightSet& flights, const ModelFile& model,
-                                    const References& references, const RefitOptions& refit_options,
-                                    const TemperatureOptions& temperature_options);
+IterativeCalibration calibrate_iteratively(const FlightSet& flights, const ModelDefinition& model,
+                                           const References& references, const RefitOptions& refit_options,
+                                           const TemperatureOptions& temperature_options);
 
 /// "none", "constant", "linear" or "quadratic", for a degree of -1 to 2.
 std::string degree_name(int degree);

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/moist_air.hpp>
-#include <pcor/words/error.hpp>
 #include "residuals/references/neighbours.hpp"
 #include "residuals/samples_key.hpp"
 #include "roles/jumps.hpp"
@@ -97,7 +97,7 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
 
 class HeightReference final : public Reference {
  public:
-  explicit HeightReference(ModelFile model) : model_(std::move(model)) {}
+  explicit HeightReference(ModelDefinition model) : model_(std::move(model)) {}
 
   std::string description() const override { return "hydrostatic height against that of GPS"; }
   std::string name() const override { return "height"; }
@@ -140,7 +140,7 @@ class HeightReference final : public Reference {
   }
 
  private:
-  ModelFile model_;
+  ModelDefinition model_;
 };
 
 }  // namespace pcor::internal

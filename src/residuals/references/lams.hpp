@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/residuals/reference.hpp>
-#include <pcor/words/error.hpp>
 #include "residuals/laser_lock.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/reference_on_samples.hpp"
@@ -46,14 +46,14 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
     return std::isnan(state[Quantity::static_defect]) ? Mask::missing : Mask::reference;
   }
 
-  void mark_not_believed(std::vector<Mask>& masks, const std::vector<double>& airspeed,
-                         const MaskOptions& options) const override {
+  void mark_implausible(std::vector<Mask>& masks, const std::vector<double>& airspeed,
+                        const MaskOptions& options) const override {
     if (airspeed.empty()) return;
     const std::vector<double>& p = *samples_.find(Quantity::static_pressure);
     std::vector<double> ratio = *samples_.find(Quantity::dynamic_pressure);
     for (std::size_t i = 0; i < ratio.size(); ++i) ratio[i] /= p[i];
     for (const std::size_t sample :
-         find_unlocked(beam_, airspeed, ratio, used_samples(masks), options.most_laser_departure))
+         find_unlocked(beam_, airspeed, ratio, used_samples(masks), options.max_laser_departure))
       masks[sample] = Mask::laser_unlocked;
   }
 

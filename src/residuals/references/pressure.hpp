@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
 #include <pcor/residuals/reference.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
 #include "residuals/reference_on_samples.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -65,7 +65,7 @@ class PressureReference final : public Reference {
                               flight.path().string(), variable_, meant.empty() ? "" : "; " + meant));
     }
     const UnitConversion conversion =
-        believed(flight.conversion(variable_, "hPa"), facts_of(Quantity::static_pressure));
+        believed(flight.conversion(variable_, "hPa"), info_of(Quantity::static_pressure));
     flight.require_values(variable_);
     ModelSamples samples;
     samples.columns = {

@@ -17,7 +17,8 @@ namespace pcor::internal {
 /// same whatever of it is held against the model.
 class SecondSystemOnSamples : public ReferenceOnSamples {
  public:
-  SecondSystemOnSamples(const ModelFile& system, const FlightSamples& samples, const ModelOnSamples& model)
+  SecondSystemOnSamples(const ModelDefinition& system, const FlightSamples& samples,
+                        const ModelOnSamples& model)
       : own_(system, samples.reference), model_(model) {}
 
   std::vector<Batch::Input> columns() const override { return own_.columns(); }
@@ -46,9 +47,9 @@ class SecondSystemOnSamples : public ReferenceOnSamples {
 /// A reference that is another pair of pressures of the aircraft, corrected by a model of its own.
 class SecondSystem : public Reference {
  public:
-  explicit SecondSystem(ModelFile system) : system_(std::move(system)) {}
+  explicit SecondSystem(ModelDefinition system) : system_(std::move(system)) {}
 
-  const ModelFile* model() const override { return &system_; }
+  const ModelDefinition* model() const override { return &system_; }
 
   std::vector<std::string> variables() const override {
     std::vector<std::string> names;
@@ -64,10 +65,10 @@ class SecondSystem : public Reference {
   }
 
  protected:
-  const ModelFile& system() const { return system_; }
+  const ModelDefinition& system() const { return system_; }
 
  private:
-  ModelFile system_;
+  ModelDefinition system_;
 };
 
 }  // namespace pcor::internal

@@ -41,7 +41,7 @@ class StaticSystemReference final : public SecondSystem {
   std::string description() const override { return fmt::format("static system '{}'", system().model.name); }
   std::string name() const override { return "static:" + system().model.name; }
 
-  std::shared_ptr<const Reference> with_model(const ModelFile& system) const override {
+  std::shared_ptr<const Reference> with_model(const ModelDefinition& system) const override {
     return std::make_shared<StaticSystemReference>(system);
   }
 

@@ -43,7 +43,7 @@ class TotalPressureReference final : public SecondSystem {
   bool is_static_pressure() const override { return false; }
   bool sees_static_defect() const override { return false; }
 
-  std::shared_ptr<const Reference> with_model(const ModelFile& system) const override {
+  std::shared_ptr<const Reference> with_model(const ModelDefinition& system) const override {
     return std::make_shared<TotalPressureReference>(system);
   }
 

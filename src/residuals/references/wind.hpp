@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/constants.hpp>
-#include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "residuals/references/neighbours.hpp"
@@ -132,8 +132,8 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
 
   /// On the ground wheels make the speed, and slow flow gives none.
   bool is_flying(std::size_t sample) const {
-    constexpr double least_airspeed = 40.0;  // m/s
-    return !motion_.airspeed.empty() && motion_.airspeed[sample] > least_airspeed;
+    constexpr double min_airspeed = 40.0;  // m/s
+    return !motion_.airspeed.empty() && motion_.airspeed[sample] > min_airspeed;
   }
 
   /// The part of the airspeed that is along the heading and level.
@@ -165,7 +165,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
 
 class WindReference final : public Reference {
  public:
-  explicit WindReference(ModelFile model) : model_(std::move(model)) {}
+  explicit WindReference(ModelDefinition model) : model_(std::move(model)) {}
 
   std::string description() const override { return "airspeed against ground speed and a steady wind"; }
   std::string name() const override { return "wind"; }
@@ -208,7 +208,7 @@ class WindReference final : public Reference {
   }
 
  private:
-  ModelFile model_;
+  ModelDefinition model_;
 };
 
 }  // namespace pcor::internal

@@ -1,0 +1,46 @@
+#include <mpi.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <random>
+#include <thread>
+
+#include <pcor/mpi/mpi_communicator.hpp>
+#include "parallel/flight_partition.hpp"
+
+// How evenly flights are shared, and what an exchange costs, without any work of a processor: a visit sleeps,
+// 20 milliseconds for a flight of the usual length. It says nothing of a file system.
+//
+//   mpirun -n 32 team_balance [FLIGHTS OF EACH PROCESS] [PASSES]
+int main(int argc, char** argv) {
+  MPI_Init(&argc, &argv);
+  {
+    pcor::MpiCommunicator comm;
+    const std::size_t flights = (argc > 1 ? std::stoul(argv[1]) : 32) * comm.size();
+    const int passes = argc > 2 ? std::stoi(argv[2]) : 5;
+    std::mt19937 chance(1);
+    std::lognormal_distribution<double> length(0.0, 0.35);  // of the usual one: a tenth is longer than 1.6
+    std::vector<std::uint64_t> microseconds;
+    double all = 0.0;
+    for (std::size_t flight = 0; flight < flights; ++flight) {
+      microseconds.push_back(static_cast<std::uint64_t>(20'000.0 * length(chance)));
+      all += 1e-6 * static_cast<double>(microseconds.back());
+    }
+    const pcor::internal::FlightPartition share(comm, microseconds);
+    MPI_Barrier(MPI_COMM_WORLD);
+    const auto begin = std::chrono::steady_clock::now();
+    for (int pass = 0; pass < passes; ++pass) {
+      share.of_each_flight<std::array<double, 55>>([&](std::size_t flight) {
+        std::this_thread::sleep_for(std::chrono::microseconds(microseconds[flight]));
+        return std::array<double, 55>{};
+      });
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double ideal = passes * all / static_cast<double>(comm.size());
+    if (comm.rank() == 0)
+      std::printf("%zu processes, %zu flights: %.3f s a pass, %.3f of the ideal\n", comm.size(), flights,
+                  seconds / passes, ideal / seconds);
+  }
+  MPI_Finalize();
+}

@@ -1,0 +1,6 @@
+# Which modules (folders of include/pcor, src and tests) make up which library. tests/architecture/layers.txt says which module
+# may include which.
+set(pcor_realtime_modules physics model effects realtime)
+set(pcor_model_modules base units model_io)
+set(pcor_offline_modules numerics parallel regimes report flight simulate batch roles residuals process campaign compare diagnose checks inspect
+  fit improve temperature)

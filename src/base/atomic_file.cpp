@@ -1,0 +1,305 @@
+#include <pcor/base/atomic_file.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+#include <pcor/base/error.hpp>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace pcor {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Where a symbolic link leads, also if nothing is there yet. A circle of links ends where it began.
+fs::path behind_links(fs::path path) {
+  constexpr int max_links = 40;
+  std::error_code code;
+  for (int i = 0; i < max_links && fs::is_symlink(path, code); ++i)
+    path = path.parent_path() / fs::read_symlink(path, code);
+  return path;
+}
+
+// The paths of the files that are not finished, for a signal handler: no memory is asked for or given back.
+struct Unfinished {
+  enum State : int { free, changing, listed };
+
+  std::atomic<int> state{free};
+  char path[PATH_MAX] = {};
+};
+static_assert(std::atomic<int>::is_always_lock_free);
+
+std::array<Unfinished, 128> unfinished_files;  // those of a report's figures appear together
+
+// One that finds no room is not listed; only a signal would leave it behind.
+void list_as_unfinished(const std::string& path) {
+  if (path.size() >= sizeof Unfinished::path) return;
+  for (Unfinished& entry : unfinished_files) {
+    int expected = Unfinished::free;
+    if (!entry.state.compare_exchange_strong(expected, Unfinished::changing)) continue;
+    std::memcpy(entry.path, path.c_str(), path.size() + 1);
+    entry.state = Unfinished::listed;
+    return;
+  }
+}
+
+void take_from_list(const std::string& path) {
+  for (Unfinished& entry : unfinished_files)
+    if (entry.state == Unfinished::listed && path == entry.path) entry.state = Unfinished::free;
+}
+
+// What names the processes among which a number is one of them: the host, and the namespace of processes
+// there.
+std::string neighbourhood() {
+  char host[HOST_NAME_MAX + 1] = {};
+  gethostname(host, HOST_NAME_MAX);
+  std::error_code code;
+  const std::string space = fs::read_symlink("/proc/self/ns/pid", code).string();  // such as pid:[4026531836]
+  const std::size_t digits = space.find_first_of("0123456789");
+  return std::string(host) + "-" +
+         (digits == std::string::npos ? "0"
+                                      : space.substr(digits, space.find_last_of("0123456789") - digits + 1));
+}
+
+// Removes what processes of this neighbourhood that are no more left unfinished in a folder. Those of other
+// hosts may live.
+void remove_stale_files(const fs::path& directory) {
+  const std::string mark = "." + neighbourhood() + "-";
+  std::error_code code;
+  for (fs::directory_iterator entry(directory, code), end; !code && entry != end; entry.increment(code)) {
+    const std::string name = entry->path().filename().string();
+    const std::size_t at = name.rfind(mark);
+    if (name.front() != '.' || at == std::string::npos || entry->path().extension() != ".part") continue;
+    const long process = std::strtol(name.c_str() + at + mark.size(), nullptr, 10);
+    std::error_code ignored;
+    if (process > 0 && ::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH)
+      fs::remove(entry->path(), ignored);
+  }
+}
+
+// A new file ".NAME.HOST-SPACE-PROCESS.XXXXXX.part" that no other program has, also not one on another host
+// or one that was killed. Unlike mkstemp it has the permissions of any new file. It is listed before it is
+// there, so a signal at any moment finds it. Empty if it cannot be made; errno says why.
+fs::path make_hidden_file(const fs::path& directory, const std::string& name) {
+  constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+  const std::string writer = "." + neighbourhood() + "-" + std::to_string(getpid()) + ".";
+  const std::size_t most_of_name = NAME_MAX - std::string_view(".XXXXXX.part").size() - writer.size();
+  constexpr int tries = 100;
+  std::random_device random;
+  std::uniform_int_distribution<std::size_t> letter(0, std::strlen(letters) - 1);
+  for (int i = 0; i < tries; ++i) {
+    std::string chosen = "." + name.substr(0, most_of_name) + writer;
+    for (int j = 0; j < 6; ++j) chosen += letters[letter(random)];
+    fs::path path = directory / (chosen + ".part");
+    list_as_unfinished(path.string());
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) {
+      ::close(file);
+      return path;
+    }
+    const int reason = errno;
+    take_from_list(path.string());
+    errno = reason;
+    if (reason != EEXIST) break;
+  }
+  return {};
+}
+
+// Has the disk hold what was written; false if it cannot, errno says why.
+bool settle(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool settled = ::fsync(file) == 0;
+  const int reason = errno;
+  ::close(file);
+  errno = reason;
+  return settled;
+}
+
+void put_in_place(const fs::path& shown, const fs::path& target, const fs::path& path) {
+  std::error_code code;
+  fs::rename(path, target, code);
+  if (code)
+    throw Error(Error::Code::output,
+                shown.string() + " cannot be put in place: " + code.message() + "; choose another output");
+  take_from_list(path.string());
+}
+
+// While one lives, no signal ends the program in this thread.
+class SignalsWait {
+ public:
+  SignalsWait() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsWait() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+  SignalsWait(const SignalsWait&) = delete;
+  SignalsWait& operator=(const SignalsWait&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+// Keeps what was at some paths on the disk, though its names go: to give back the space of a large file takes
+// the time of many renames.
+class SpaceKept {
+ public:
+  ~SpaceKept() {
+    for (const int file : files_) ::close(file);
+  }
+
+  SpaceKept() = default;
+  SpaceKept(const SpaceKept&) = delete;
+  SpaceKept& operator=(const SpaceKept&) = delete;
+
+  void keep(const fs::path& path) {
+    const int file = ::open(path.c_str(), O_PATH | O_CLOEXEC);
+    if (file >= 0) files_.push_back(file);
+  }
+
+ private:
+  std::vector<int> files_;
+};
+
+OutputTransaction* outputs_together = nullptr;
+
+}  // namespace
+
+void remove_unfinished_files() noexcept {
+  const int before = errno;
+  for (const Unfinished& entry : unfinished_files)
+    if (entry.state == Unfinished::listed) ::unlink(entry.path);
+  for (const Unfinished& entry : unfinished_files)
+    if (entry.state == Unfinished::listed) ::rmdir(entry.path);
+  errno = before;
+}
+
+AtomicFile::AtomicFile(const fs::path& target) : shown_(target) {
+  if (target.empty()) throw Error(Error::Code::output, "the output has no name; name a file");
+  std::error_code code;
+  target_ = fs::weakly_canonical(behind_links(fs::absolute(target)), code);
+  if (code)
+    throw Error(Error::Code::output,
+                shown_.string() + " cannot be written: " + code.message() + "; choose another output");
+  const fs::file_status status = fs::status(target_, code);
+  if (fs::is_directory(status))
+    throw Error(Error::Code::output, shown_.string() + " is a directory; name a file");
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw Error(Error::Code::output, shown_.string() + " is not a regular file; choose another output");
+  const fs::path directory = target_.parent_path();
+  if (!fs::is_directory(directory, code))
+    throw Error(Error::Code::output, shown_.string() + " cannot be written: there is no directory " +
+                                         directory.string() + "; make it first");
+  if (access(directory.c_str(), W_OK | X_OK) != 0)
+    throw Error(Error::Code::output, shown_.string() + " cannot be written: " + directory.string() + ": " +
+                                         std::strerror(errno) + "; choose another output");
+  remove_stale_files(directory);
+  path_ = make_hidden_file(directory, target_.filename().string());
+  if (path_.empty())
+    throw Error(Error::Code::output,
+                shown_.string() + " cannot be written: " + directory.string() + ": " + std::strerror(errno) +
+                    "; check the space and the permissions there, or choose another output");
+}
+
+AtomicFile::~AtomicFile() {
+  if (committed_) return;
+  std::error_code ignored;
+  // HDF5 keeps a file open that it could not complete: emptied first, it gives its space back all the same.
+  fs::resize_file(path_, 0, ignored);
+  fs::remove(path_, ignored);
+  take_from_list(path_.string());
+}
+
+void AtomicFile::commit() {
+  std::error_code code;
+  if (fs::exists(target_, code)) fs::permissions(path_, fs::status(target_).permissions(), code);
+  if (!settle(path_))
+    throw Error(Error::Code::output,
+                shown_.string() + " cannot be written: " + std::strerror(errno) +
+                    "; check the space and the permissions there, or choose another output");
+  if (outputs_together != nullptr) {
+    outputs_together->waiting_.push_back({shown_, target_, path_});
+  } else {
+    put_in_place(shown_, target_, path_);
+  }
+  committed_ = true;
+}
+
+OutputTransaction::OutputTransaction() : whole_(outputs_together != nullptr ? outputs_together : this) {
+  outputs_together = whole_;
+}
+
+OutputTransaction::~OutputTransaction() {
+  if (whole_ != this) return;
+  outputs_together = nullptr;
+  std::error_code ignored;
+  for (const Waiting& file : waiting_) {
+    fs::remove(file.path, ignored);
+    take_from_list(file.path.string());
+  }
+  for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) {
+    ::rmdir(folder->c_str());
+    take_from_list(folder->string());
+  }
+}
+
+void OutputTransaction::make_folder(const fs::path& folder) {
+  std::error_code code;
+  if (fs::is_directory(folder, code)) return;
+  fs::path path = fs::absolute(folder, code).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // of "figures/"
+  if (path.has_relative_path() && !fs::is_directory(path.parent_path(), code))
+    make_folder(path.parent_path());
+  list_as_unfinished(path.string());
+  if (!fs::create_directory(path, code) && !fs::is_directory(path)) {
+    take_from_list(path.string());
+    throw Error(Error::Code::output,
+                fmt::format("{} cannot be a folder of outputs: {}; choose another", folder.string(),
+                            code ? code.message() : "there is something else of that name"));
+  }
+  whole_->folders_.push_back(path);
+}
+
+void OutputTransaction::remove(const fs::path& earlier) { whole_->earlier_.push_back(earlier); }
+
+fs::path readable_output(const fs::path& target) {
+  if (outputs_together != nullptr) {
+    for (const OutputTransaction::Waiting& file : outputs_together->waiting_)
+      if (file.shown == target) return file.path;
+  }
+  return target;
+}
+
+void OutputTransaction::appear() {
+  if (whole_ != this) return;
+  SpaceKept replaced;
+  for (const Waiting& file : waiting_) replaced.keep(file.target);
+  const SignalsWait signals_wait;
+  while (!waiting_.empty()) {
+    const Waiting& file = waiting_.front();
+    put_in_place(file.shown, file.target, file.path);
+    waiting_.erase(waiting_.begin());
+  }
+  for (const fs::path& folder : folders_) take_from_list(folder.string());
+  folders_.clear();
+  std::error_code ignored;
+  for (const fs::path& path : earlier_) fs::remove(path, ignored);
+}
+
+}  // namespace pcor

@@ -1,0 +1,81 @@
+#include <pcor/base/suggest.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <tuple>
+
+namespace pcor {
+namespace {
+
+constexpr std::size_t max_name = 256;  // of netCDF
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& letter : result) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return result;
+}
+
+std::size_t shared_prefix(const std::string& a, const std::string& b) {
+  const std::size_t shorter = std::min(a.size(), b.size());
+  const auto end = a.begin() + static_cast<std::ptrdiff_t>(shorter);
+  return static_cast<std::size_t>(std::mismatch(a.begin(), end, b.begin()).first - a.begin());
+}
+
+// Optimal string alignment: insertions, deletions, substitutions and swaps of neighbours.
+std::size_t changes_between(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before_last.swap(last);
+    last.swap(row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, substituted});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before_last[j - 2] + 1);
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::vector<std::string> suggest(std::string_view wrong, const std::vector<std::string>& known,
+                                 std::size_t most) {
+  struct Candidate {
+    std::size_t changes, prefix;
+    const std::string* name;
+  };
+  const std::string wanted = lower(wrong);
+  if (wanted.empty() || wanted.size() > max_name) return {};
+  std::vector<Candidate> candidates;
+  for (const std::string& name : known) {
+    const std::string candidate = lower(name);
+    if (candidate.empty()) continue;
+    const std::size_t changes = changes_between(wanted, candidate);
+    const std::size_t prefix = shared_prefix(wanted, candidate);
+    const bool one_begins_the_other = prefix >= 2 && prefix == std::min(wanted.size(), candidate.size());
+    if (2 * changes <= std::max(wanted.size(), candidate.size()) || one_begins_the_other)
+      candidates.push_back({changes, prefix, &name});
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return std::tie(a.changes, b.prefix, *a.name) < std::tie(b.changes, a.prefix, *b.name);
+  });
+  std::vector<std::string> result;
+  for (const Candidate& candidate : candidates) {
+    if (result.size() == most) break;
+    result.push_back(*candidate.name);
+  }
+  return result;
+}
+
+std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& known, std::size_t most) {
+  const std::vector<std::string> names = suggest(wrong, known, most);
+  if (names.empty()) return {};
+  std::string text = "did you mean " + names[0];
+  for (std::size_t i = 1; i < names.size(); ++i) text += (i + 1 == names.size() ? " or " : ", ") + names[i];
+  return text + "?";
+}
+
+}  // namespace pcor

@@ -1,0 +1,45 @@
+#include "base/text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <pcor/base/error.hpp>
+
+#include "base/quoting.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr std::uintmax_t max_bytes = std::uintmax_t{16} << 20U;
+
+}  // namespace
+
+std::string text_of_file(const std::filesystem::path& path, std::string_view what) {
+  const auto fail = [&](const std::string& trouble) {
+    throw Error(one_line(fmt::format("{}: {}", path.string(), trouble)));
+  };
+  std::error_code code;
+  if (!std::filesystem::exists(path, code)) {
+    fail(fmt::format("there is no such file; give the path of {}", what));
+  }
+  if (std::filesystem::is_directory(path, code)) {
+    fail(fmt::format("is a directory; give the path of {}", what));
+  }
+  if (!std::filesystem::is_regular_file(path, code)) {
+    fail(fmt::format("is not a regular file; give the path of {}", what));
+  }
+  if (std::filesystem::file_size(path, code) > max_bytes) {
+    fail(fmt::format("has more than {} MB, as no text of this program does; give the path of {}",
+                     max_bytes >> 20U, what));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) fail("cannot be read; check its permissions");
+  return text;
+}
+
+}  // namespace pcor::internal

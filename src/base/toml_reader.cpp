@@ -1,0 +1,246 @@
+#include "base/toml_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <pcor/base/error.hpp>
+
+namespace pcor::internal {
+namespace {
+
+// Days from 1970-01-01 to a date of the Gregorian calendar. The year begins in March, so that the day of leap
+// years is its last (Richards, "Calendars", Explanatory Supplement to the Astronomical Almanac, 2013). It is
+// counted from 400 years, of 146097 days, before the year 0, so that none is negative.
+std::int64_t days_since_1970(const toml::date& date) {
+  const std::int64_t year = date.year + 400 - (date.month <= 2 ? 1 : 0);
+  const std::int64_t month = (date.month + 9) % 12;  // March is 0
+  return 365 * year + year / 4 - year / 100 + year / 400 + (153 * month + 2) / 5 + date.day - 1 - 719468 -
+         146097;
+}
+
+// What a file may hold at most. toml++ goes as deep into its stack as a text goes into tables, and readers
+// look entries up one by one; values it limits to 256 in each other by itself.
+constexpr std::size_t max_dots = 16;  // in a key
+constexpr std::size_t max_entries = 10000;
+
+// Where the text in quotes that begins at `begin` ends; in simple quotes it does not go on in the
+// next line.
+std::size_t end_of_quotes(std::string_view text, std::size_t begin) {
+  const char mark = text[begin];
+  const std::string_view three = text.substr(begin, 3);
+  const std::string_view quotes = three == std::string(3, mark) ? three : three.substr(0, 1);
+  for (std::size_t i = begin + quotes.size(); i < text.size(); ++i) {
+    if (text.substr(i, quotes.size()) == quotes) return i + quotes.size() - 1;
+    if (quotes.size() == 1 && text[i] == '\n') return i;
+    if (mark == '"' && text[i] == '\\') ++i;
+  }
+  return text.size();
+}
+
+// The place of the first key with too many dots, if there is one.
+std::optional<std::size_t> place_of_deep_key(std::string_view text) {
+  std::size_t dots = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char letter = text[i];
+    if (letter == '"' || letter == '\'') i = end_of_quotes(text, i);
+    if (letter == '#') i = std::min(text.find('\n', i), text.size());
+    if (letter == '.' && ++dots > max_dots) return i;
+    if (letter == '=' || letter == ',' || i == text.size() || text[i] == '\n') dots = 0;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<Entry> entries_of(const toml::table& table, const std::string& title) {
+  std::vector<Entry> entries;
+  for (const auto& [key, node] : table) {
+    entries.push_back({std::string(key.str()), key.source().begin, &node, title});
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return a.place < b.place; });
+  return entries;
+}
+
+std::optional<Entry> entry_of(const toml::table& table, std::string_view key) {
+  const auto found = table.find(key);
+  if (found == table.end()) return {};
+  return Entry{std::string(key), found->first.source().begin, &found->second, ""};
+}
+
+std::string_view kind_of(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::string:
+      return "a text";
+    case toml::node_type::integer:
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    default:
+      return "a date or time";
+  }
+}
+
+std::string called(const Entry& entry) {
+  return quote(entry.key) + (entry.title.empty() ? "" : " in " + entry.title);
+}
+
+double seconds_of(const toml::time& time) {
+  return time.hour * 3600.0 + time.minute * 60.0 + time.second + time.nanosecond * 1e-9;
+}
+
+double seconds_of(const toml::date_time& moment) {
+  return static_cast<double>(days_since_1970(moment.date)) * 86400.0 + seconds_of(moment.time);
+}
+
+toml::table TomlReader::parse(std::string_view text) const {
+  if (const std::optional<std::size_t> deep = place_of_deep_key(text)) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(*deep), '\n');
+    fail(Place{static_cast<toml::source_index>(line), 1},
+         fmt::format("a key has more than {} dots; give the table that is meant", max_dots));
+  }
+  try {
+    toml::table root = toml::parse(text, name_);
+    refuse_crowd(root);
+    return root;
+  } catch (const toml::parse_error& error) {
+    fail(error.source().begin, std::string(error.description()) + "; correct the syntax (TOML) here");
+  }
+}
+
+void TomlReader::refuse_crowd(const toml::node& node) const {
+  const auto refuse_above = [&](std::size_t entries) {
+    if (entries > max_entries)
+      fail(node, fmt::format("{} has {} entries; give at most {}", kind_of(node), entries, max_entries));
+  };
+  if (const toml::table* const table = node.as_table()) {
+    refuse_above(table->size());
+    for (const auto& [key, entry] : *table) refuse_crowd(entry);
+  }
+  if (const toml::array* const array = node.as_array()) {
+    refuse_above(array->size());
+    for (const toml::node& entry : *array) refuse_crowd(entry);
+  }
+}
+
+std::string TomlReader::place_of(Place place) const {
+  if (!place) place = {1, 1};
+  return fmt::format("{}:{}:{}", name_, place.line, place.column);
+}
+
+void TomlReader::fail(Place place, const std::string& what) const {
+  throw Error(one_line(place_of(place) + ": " + what));
+}
+
+void TomlReader::fail(const toml::node& node, const std::string& what) const {
+  fail(node.source().begin, what);
+}
+
+void TomlReader::fail(const Entry& entry, const std::string& what) const { fail(*entry.node, what); }
+
+void TomlReader::refuse(const Entry& entry, const Names& known) const {
+  fail(entry.place, fmt::format("there is no {}; {}", unknown(entry), suggestion_text(entry.key, known)));
+}
+
+void TomlReader::each(const toml::table& table, const std::string& title, const Actions& actions) const {
+  for (const Entry& entry : entries_of(table, title)) {
+    const auto action = std::find_if(actions.begin(), actions.end(),
+                                     [&](const auto& candidate) { return candidate.first == entry.key; });
+    if (action == actions.end()) refuse(entry, names_of(actions, &Actions::value_type::first));
+    action->second(entry);
+  }
+}
+
+Entry TomlReader::format_of(const toml::table& root, std::string_view is, std::string_view format) const {
+  if (const std::optional<Entry> entry = entry_of(root, "format")) return *entry;
+  fail(Place{1, 1},
+       fmt::format("the file does not say that it {}; begin it with format = \"{}\"", is, format));
+}
+
+std::string TomlReader::wrong_kind(const Entry& entry, const std::string& wanted) {
+  return fmt::format("{} is {}; give {}", called(entry), kind_of(*entry.node), wanted);
+}
+
+bool TomlReader::boolean(const Entry& entry) const {
+  return as<bool>(*entry.node, wrong_kind(entry, "true or false"));
+}
+
+std::int64_t TomlReader::whole_number(const Entry& entry, const std::string& wanted) const {
+  return as<std::int64_t>(*entry.node, wrong_kind(entry, wanted));
+}
+
+std::string TomlReader::text(const Entry& entry, const std::string& wanted) const {
+  return as<std::string>(*entry.node, wrong_kind(entry, wanted));
+}
+
+const toml::table& TomlReader::table(const Entry& entry, const std::string& wanted) const {
+  return as<toml::table>(*entry.node, wrong_kind(entry, wanted));
+}
+
+const toml::array& TomlReader::array(const Entry& entry, const std::string& wanted) const {
+  return as<toml::array>(*entry.node, wrong_kind(entry, wanted));
+}
+
+double TomlReader::finite(const toml::node& node, const std::string& what) const {
+  if (!node.is_number()) fail(node, fmt::format("{} is {}; give a number", what, kind_of(node)));
+  const auto* whole = node.as_integer();
+  const double value = whole ? static_cast<double>(whole->get()) : node.as_floating_point()->get();
+  if (!std::isfinite(value)) fail(node, what + " is not finite; give a finite number");
+  return value;
+}
+
+double TomlReader::number(const Entry& entry) const { return finite(*entry.node, called(entry)); }
+
+std::vector<double> TomlReader::numbers(const Entry& entry, const std::string& wanted) const {
+  std::vector<double> values;
+  for (const toml::node& node : array(entry, wanted)) {
+    values.push_back(finite(node, "a number of " + called(entry)));
+  }
+  return values;
+}
+
+std::pair<double, double> TomlReader::range(const Entry& entry) const {
+  const std::string wanted = "[lower, upper]";
+  const std::vector<double> ends = numbers(entry, wanted);
+  if (ends.size() != 2) {
+    fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), ends.size(), wanted));
+  }
+  if (!(ends[0] < ends[1])) {
+    fail(entry, fmt::format("{}: the lower end {} is not below the upper end {}; give {}", called(entry),
+                            ends[0], ends[1], wanted));
+  }
+  return {ends[0], ends[1]};
+}
+
+std::vector<std::pair<const toml::node*, std::string>> TomlReader::texts(const Entry& entry,
+                                                                         const std::string& wanted) const {
+  std::vector<std::pair<const toml::node*, std::string>> values;
+  for (const toml::node& node : array(entry, wanted)) {
+    const std::string otherwise = fmt::format("{} holds {}; give {}", called(entry), kind_of(node), wanted);
+    values.emplace_back(&node, as<std::string>(node, otherwise));
+  }
+  return values;
+}
+
+std::string TomlReader::date(const Entry& entry) const {
+  const std::string wanted = "a date like \"2011-11-02\"";
+  std::optional<toml::date> day = entry.node->value<toml::date>();
+  if (!day) {
+    const std::string written = text(entry, wanted);
+    day = moment_in<toml::date>(written);
+    if (!day) {
+      fail(entry, fmt::format("{}: {} is not a date; give {}", called(entry), quote(written), wanted));
+    }
+  }
+  return fmt::format("{:04}-{:02}-{:02}", day->year, day->month, day->day);
+}
+
+}  // namespace pcor::internal

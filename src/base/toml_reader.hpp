@@ -1,0 +1,143 @@
+#pragma once
+
+// Only for the sources of readers, which alone shall know toml++.
+// An assertion of toml++ ends the program on input such as `[ = "x`. Without it the same line is refused.
+#ifndef NDEBUG
+#define NDEBUG
+#endif
+#include <toml++/toml.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/quoting.hpp"
+
+namespace pcor::internal {
+
+/// A key of a table with its value.
+struct Entry {
+  std::string key;
+  toml::source_position place;  // of the key
+  const toml::node* node;
+  std::string title;  // of the table
+};
+
+/// The entries of a table in the order of the text; toml++ sorts them by name.
+std::vector<Entry> entries_of(const toml::table& table, const std::string& title = "");
+
+/// The entry of that key, if the table has it.
+std::optional<Entry> entry_of(const toml::table& table, std::string_view key);
+
+/// What a node is, as messages call it: "a table", "a number".
+std::string_view kind_of(const toml::node& node);
+
+/// A key as messages call it: in quotes, with the title of its table.
+std::string called(const Entry& entry);
+
+/// The date or time that a text holds as TOML writes it, such as 2011-11-02 or 20:10:00.5; nothing if it is
+/// none.
+template <class Moment>
+std::optional<Moment> moment_in(std::string_view text) {
+  if (text.find_first_not_of("0123456789-:.") != std::string_view::npos) return {};
+  try {
+    return toml::parse("moment = " + std::string(text))["moment"].value<Moment>();
+  } catch (const toml::parse_error&) {
+    return {};
+  }
+}
+
+/// Seconds since midnight.
+double seconds_of(const toml::time& time);
+
+/// Seconds since 1970 of a date and time without regard to its offset.
+double seconds_of(const toml::date_time& moment);
+
+/// What the readers of TOML files share: they refuse what has no meaning with the place where it stands.
+class TomlReader {
+ protected:
+  using Place = toml::source_position;
+  using Action = std::function<void(const Entry&)>;
+  using Actions = std::vector<std::pair<std::string, Action>>;
+
+  /// Messages call the file `name`.
+  explicit TomlReader(std::string_view name) : name_(name) {}
+  ~TomlReader() = default;
+
+  /// The tables of a text. Refused are a syntax error, a key of more than 16 dots, and a table or list of
+  /// more than 10,000 entries.
+  toml::table parse(std::string_view text) const;
+
+  /// "file:line:column"; the beginning of the file for a place that is not known.
+  std::string place_of(Place place) const;
+
+  /// What messages call the file.
+  const std::string& name() const { return name_; }
+
+  [[noreturn]] void fail(Place place, const std::string& what) const;
+  [[noreturn]] void fail(const toml::node& node, const std::string& what) const;
+
+  /// An error at the value of `entry`; for one at the key see its place.
+  [[noreturn]] void fail(const Entry& entry, const std::string& what) const;
+
+  /// An error at a key that is not among the `known` ones.
+  [[noreturn]] void refuse(const Entry& entry, const Names& known) const;
+
+  /// What `refuse` calls the key.
+  virtual std::string unknown(const Entry& entry) const { return "key " + called(entry); }
+
+  /// Does for each key what `actions` say; a key that they do not know is an error.
+  void each(const toml::table& table, const std::string& title, const Actions& actions) const;
+
+  /// The entry `format` of a file, which must say that it `is` of that format.
+  Entry format_of(const toml::table& root, std::string_view is, std::string_view format) const;
+
+  /// What a node holds: a table, an array, a text and the like. Any other kind is the error `otherwise`.
+  template <class Value>
+  const Value& as(const toml::node& node, const std::string& otherwise) const {
+    const auto* value = node.as<Value>();
+    if (value == nullptr) fail(node, otherwise);
+    if constexpr (toml::is_container<Value>) {
+      return *value;
+    } else {
+      return value->get();
+    }
+  }
+
+  /// The values of an entry. Any other kind than the one that is `wanted` is an error, which says so.
+  bool boolean(const Entry& entry) const;
+  std::int64_t whole_number(const Entry& entry, const std::string& wanted = "a whole number") const;
+  std::string text(const Entry& entry, const std::string& wanted = "a text in quotes") const;
+  const toml::table& table(const Entry& entry, const std::string& wanted) const;
+  const toml::table& table(const Entry& entry) const { return table(entry, "a table [" + entry.key + "]"); }
+  const toml::array& array(const Entry& entry, const std::string& wanted) const;
+
+  /// A finite number; `what` is what messages call it.
+  double finite(const toml::node& node, const std::string& what) const;
+  double number(const Entry& entry) const;
+  std::vector<double> numbers(const Entry& entry, const std::string& wanted) const;
+
+  /// The two ends of [lower, upper], of which the lower one is below the upper one.
+  std::pair<double, double> range(const Entry& entry) const;
+
+  /// The texts of a list, each with its place.
+  std::vector<std::pair<const toml::node*, std::string>> texts(const Entry& entry,
+                                                               const std::string& wanted) const;
+
+  /// A date such as 2011-11-02, which the file may have in quotes.
+  std::string date(const Entry& entry) const;
+
+  /// That an entry is of the wrong kind, and what is `wanted`.
+  static std::string wrong_kind(const Entry& entry, const std::string& wanted);
+
+ private:
+  void refuse_crowd(const toml::node& node) const;
+
+  std::string name_;
+};
+
+}  // namespace pcor::internal

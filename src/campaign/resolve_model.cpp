@@ -1,0 +1,61 @@
+#include <pcor/campaign/resolve_model.hpp>
+
+#include <fmt/format.h>
+#include <cereal/types/map.hpp>
+
+#include <algorithm>
+#include <map>
+
+#include <pcor/base/error.hpp>
+#include <pcor/flight/flight.hpp>
+#include <pcor/roles/resolve_variables.hpp>
+#include "parallel/flight_partition.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+/// What a flight chooses for a model.
+struct Choice {
+  bool completes = false;
+  std::map<Quantity, std::string> variables{};
+  bool moist = false;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(completes, variables, moist);
+  }
+};
+
+}  // namespace
+
+ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flights,
+                              std::vector<std::string>& notes) {
+  const auto choices = flights.share().of_each_flight<Choice>([&](std::size_t number) {
+    try {
+      std::vector<std::string> unsaid;
+      const ModelDefinition own = resolve_variables(open, flights[number], unsaid);
+      return Choice{true, own.variables, own.model.moist};
+    } catch (const Error&) {
+      // Whether a flight may be left out is for the work to say.
+      return Choice{};
+    }
+  });
+  const auto completes = [](const Choice& choice) { return choice.completes; };
+  const auto first = std::find_if(choices.begin(), choices.end(), completes);
+  const auto number_of = [&](auto choice) { return static_cast<std::size_t>(choice - choices.begin()); };
+  for (auto other = first; other != choices.end(); ++other) {
+    if (other->completes && (other->variables != first->variables || other->moist != first->moist)) {
+      throw Error(fmt::format(
+          "{} and {} record different variables, so that one model for both would be of the first; "
+          "give them apart, or name the variables in the [variables] of the model",
+          flights.path(number_of(first)).string(), flights.path(number_of(other)).string()));
+    }
+  }
+  // All members read that flight: its names, not its samples.
+  return resolve_variables(open, flights[first == choices.end() ? 0 : number_of(first)], notes);
+}
+
+}  // namespace pcor

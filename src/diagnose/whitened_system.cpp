@@ -1,0 +1,165 @@
+#include "diagnose/whitened_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "numerics/triangular_factor.hpp"
+#include "parallel/symmetric_part.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double block_time = 60.0;  // s
+
+Eigen::MatrixXd joined(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {
+  Eigen::MatrixXd all(columns.rows(), columns.cols() + 1);
+  all << columns, residual;
+  return all;
+}
+
+/// Rows' products with each other.
+SymmetricPart squares_of(const Eigen::MatrixXd& rows) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
+  result.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  return SymmetricPart(result.selfadjointView<Eigen::Lower>());
+}
+
+/// What a flight has of the counts of all.
+struct RowCount {
+  std::size_t rows = 0;
+  Eigen::Index blocks = 0;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(rows, blocks);
+  }
+};
+
+/// The number of the minute of each bin, from 0. @return how many there are
+Eigen::Index find_blocks(const Binning& bins, std::vector<Eigen::Index>& block) {
+  Eigen::Index blocks = 0;
+  double begin = -std::numeric_limits<double>::infinity();
+  for (const double time : bins.time()) {
+    if (time >= begin + block_time) {
+      begin = time;
+      ++blocks;
+    }
+    block.push_back(blocks - 1);
+  }
+  return blocks;
+}
+
+}  // namespace
+
+Eigen::VectorXd WhitenedSystem::left(std::size_t flight, const Eigen::VectorXd& coefficients) const {
+  return rows[flight].col(columns()) - rows[flight].leftCols(columns()) * coefficients;
+}
+
+Eigen::VectorXd WhitenedSystem::by_minutes(const std::function<Eigen::VectorXd(std::size_t)>& of_rows) const {
+  const auto parts = share.of_each_flight<Eigen::VectorXd>([&](std::size_t f) {
+    if (block[f].empty()) return Eigen::VectorXd();
+    const Eigen::VectorXd values = of_rows(f);
+    const Eigen::Index first = block[f].front();
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(block[f].back() - first + 1);
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      sums[block[f][static_cast<std::size_t>(i)] - first] += values[i];
+    return sums;
+  });
+  Eigen::VectorXd all(blocks);
+  Eigen::Index first = 0;
+  for (const Eigen::VectorXd& part : parts) {
+    all.segment(first, part.size()) = part;
+    first += part.size();
+  }
+  return all;
+}
+
+void sum_up(WhitenedSystem& scores) {
+  scores.information =
+      scores.share
+          .sum_of_each_flight<SymmetricPart>([&](std::size_t f) { return squares_of(scores.rows[f]); })
+          .matrix;
+}
+
+void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier, std::size_t later,
+                           std::vector<Eigen::VectorXd>& noise, WhitenedSystem& scores) {
+  constexpr double same_time = 2.0;  // s: half a bin
+  constexpr std::size_t fewest = 60;
+  const std::vector<double>& before = bins[earlier].time();
+  const std::vector<double>& after = bins[later].time();
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> pairs;
+  for (std::size_t i = 0, k = 0; i < before.size() && k < after.size();) {
+    if (before[i] < after[k] - same_time) {
+      ++i;
+    } else if (after[k] < before[i] - same_time) {
+      ++k;
+    } else {
+      pairs.emplace_back(as_index(i++), as_index(k++));
+    }
+  }
+  if (pairs.size() < fewest) return;
+  double product = 0.0;
+  double squares = 0.0;
+  double others = 0.0;
+  for (const auto& [i, k] : pairs) {
+    product += noise[earlier][i] * noise[later][k];
+    squares += noise[earlier][i] * noise[earlier][i];
+    others += noise[later][k] * noise[later][k];
+  }
+  const double correlation = product / std::sqrt(squares * others);
+  if (!(std::abs(correlation) < 1.0)) return;
+  const double scale = 1.0 / std::sqrt(1.0 - correlation * correlation);
+  const double slope = product / squares;
+  for (const auto& [i, k] : pairs) {
+    scores.rows[later].row(k) -= slope * scores.rows[earlier].row(i);
+    scores.rows[later].row(k) *= scale;
+    noise[later][k] = scale * (noise[later][k] - slope * noise[earlier][i]);
+  }
+}
+
+WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
+                           const std::vector<Eigen::MatrixXd>& columns,
+                           const std::vector<Eigen::VectorXd>& residuals,
+                           const std::vector<NoiseModel>& noise) {
+  WhitenedSystem scores;
+  scores.share = share;
+  scores.rows.resize(bins.size());
+  scores.block.resize(bins.size());
+  const auto counts = share.of_each_flight<RowCount>([&](std::size_t f) {
+    scores.rows[f] = whitened(joined(columns[f], residuals[f]), bins[f], noise[f], 0);
+    return RowCount{bins[f].size(), find_blocks(bins[f], scores.block[f])};
+  });
+  for (std::size_t f = 0; f < counts.size(); ++f) {
+    for (Eigen::Index& block : scores.block[f]) block += scores.blocks;
+    scores.blocks += counts[f].blocks;
+    scores.row_count += counts[f].rows;
+  }
+  sum_up(scores);
+  scores.plain = scores.information;
+  if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.drifts(); })) {
+    scores.plain = share
+                       .sum_of_each_flight<SymmetricPart>([&](std::size_t f) {
+                         NoiseModel still = noise[f];
+                         still.slow = {};
+                         return squares_of(noise[f].drifts()
+                                               ? whitened(joined(columns[f], residuals[f]), bins[f], still, 0)
+                                               : scores.rows[f]);
+                       })
+                       .matrix;
+  }
+  return scores;
+}
+
+WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
+                           const std::vector<Eigen::MatrixXd>& columns,
+                           const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise) {
+  NoiseModel shared = noise;
+  shared.level.clear();  // one copy of all levels for each flight would grow with the square of their number
+  std::vector<NoiseModel> each(bins.size(), shared);
+  for (std::size_t f = 0; f < bins.size(); ++f) each[f].level = {noise.level[f]};
+  return find_scores(share, bins, columns, residuals, each);
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,153 @@
+#include <pcor/model_io/model_definition.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
+#include <pcor/base/atomic_file.hpp>
+#include <pcor/base/error.hpp>
+#include <pcor/effects/catalogue.hpp>
+
+#include "base/text_file.hpp"
+#include "model_io/model_names.hpp"
+#include "model_io/model_writer.hpp"
+#include "model_io/output_table.hpp"
+#include "model_io/sensor_doubt.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace fs = std::filesystem;
+
+std::vector<Quantity> ModelDefinition::roles() const {
+  std::vector<Quantity> roles;
+  for (const auto& [role, variable] : variables) roles.push_back(role);
+  return roles;
+}
+
+std::string ModelDefinition::output_name(std::string_view standard_name) const {
+  const auto renamed = output.find(std::string(standard_name));
+  if (renamed != output.end()) return renamed->second;
+  const std::string_view result = result_of_uncertainty(standard_name);
+  if (result.empty()) return std::string(standard_name);
+  return output_name(result) + std::string(standard_name.substr(result.size()));
+}
+
+ModelUncertainty uncertainty_of(const ModelDefinition& file) {
+  std::vector<std::string> names;
+  std::vector<double> variances;
+  for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
+    const std::vector<std::string> own = parameter_names(file.model.effects[e]);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const double error = file.fit(e, i).standard_error.value_or(0.0);
+      names.push_back(file.model.effects[e].id + "." + own[i]);
+      variances.push_back(error * error);
+    }
+  }
+  const std::size_t count = names.size();
+  ModelUncertainty uncertainty;
+  uncertainty.covariance.assign(count * count, 0.0);
+  for (std::size_t i = 0; i < count; ++i) uncertainty.covariance[i * count + i] = variances[i];
+  const Covariance& stated = file.covariance;
+  constexpr auto absent = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> places;
+  for (const std::string& name : stated.parameters) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end() && has_doubt(name)) {
+      places.push_back(absent);
+      continue;
+    }
+    if (found == names.end()) {
+      throw Error(
+          fmt::format("model '{}': its covariance names {}, which is no parameter of it; refit the model",
+                      file.model.name, quote(name)));
+    }
+    places.push_back(static_cast<std::size_t>(found - names.begin()));
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t j = 0; j < places.size() && places[i] != absent; ++j) {
+      if (places[j] == absent) continue;
+      uncertainty.covariance[places[i] * count + places[j]] = stated.matrix[i][j];
+    }
+  }
+  for (const auto& [role, size] : file.uncertainty.roles) uncertainty.random[index(role)] = size;
+  uncertainty.static_defect = file.uncertainty.static_defect.value_or(0.0);
+  uncertainty.static_defect_ratio = file.uncertainty.static_defect_ratio.value_or(0.0);
+  return uncertainty;
+}
+
+ParameterFit ModelDefinition::fit(std::size_t effect, std::size_t parameter) const {
+  if (effect >= fits.size() || parameter >= fits[effect].size()) return {};
+  return fits[effect][parameter];
+}
+
+Bounds ModelDefinition::bounds(std::size_t effect, std::size_t parameter) const {
+  const std::optional<Bounds> own = fit(effect, parameter).bounds;
+  if (own) return *own;
+  const ModelEffect& which = model.effects[effect];
+  const std::size_t place = effect_named(which.id);
+  if (which.is_formula() || place == catalogue_size) return {};
+  const ParameterInfo& info = effect_info[place].parameters[parameter];
+  return {info.lower, info.upper};
+}
+
+std::vector<std::string> parameter_names(const ModelEffect& effect) {
+  if (effect.is_formula()) return effect.parameter_names;
+  neutral_effect(effect.id);
+  return names_of_parameters(effect_info[effect_named(effect.id)]);
+}
+
+ModelEffect neutral_effect(std::string_view id) {
+  const std::size_t place = effect_named(id);
+  if (place == catalogue_size) {
+    throw Error(fmt::format("there is no effect {} in the catalogue; {}", quote(id),
+                            suggestion_text(id, names_of(effect_info, &EffectInfo::id))));
+  }
+  ModelEffect effect;
+  effect.id = id;
+  const EffectInfo& info = effect_info[place];
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+    effect.parameters.push_back(info.parameters[i].neutral);
+  }
+  return effect;
+}
+
+ModelDefinition read_model(const fs::path& path) {
+  ModelDefinition file = parse_model(text_of_file(path, "a model file"), path.string());
+  // The names of an aircraft in a file of its own lie beside the model.
+  if (const fs::path roles = file.roles_from; roles.extension() == ".toml" && roles.is_relative())
+    file.roles_from = fs::absolute(path.parent_path() / roles).lexically_normal().string();
+  return file;
+}
+
+std::string write_model(const ModelDefinition& file) {
+  std::string text = model_text(file);
+  try {
+    parse_model(text, "its text");
+  } catch (const Error& error) {
+    throw Error(std::string("the model cannot be written: ") + error.what());
+  }
+  return text;
+}
+
+void save_model(const ModelDefinition& file, const fs::path& path, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    std::error_code code;
+    if (!fs::equivalent(path, input, code)) continue;
+    throw Error(path.string() +
+                ": the model was read from this file, which is never written over; give the output another "
+                "name");
+  }
+  const std::string text = write_model(file);
+  AtomicFile output(path);
+  std::ofstream stream(output.path(), std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw Error(path.string() + ": cannot be written; check the space and the permissions");
+  output.commit();
+}
+
+}  // namespace pcor

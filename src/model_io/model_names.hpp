@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string_view>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/model_io/model_definition.hpp>
+#include <pcor/physics/recovery_factor.hpp>
+
+#include "base/quoting.hpp"
+
+namespace pcor::internal {
+
+/// Names that the reader and the writer of model files share.
+
+inline constexpr std::string_view model_format = "pcor-model/1";
+
+Names names_of_parameters(const EffectInfo& info);
+
+/// The parameter of the model that is named like "static-qp.a2", or nothing.
+const double* parameter_named(const Model& model, std::string_view name);
+
+/// The published law of that name, or nothing.
+const PublishedRecoveryFactor* published_recovery_factor(std::string_view name);
+
+}  // namespace pcor::internal

@@ -1,0 +1,338 @@
+#include "model_io/model_writer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <pcor/base/error.hpp>
+#include <pcor/effects/catalogue.hpp>
+
+#include "model_io/model_names.hpp"
+
+namespace pcor::internal {
+namespace {
+
+// Writes a model file in a layout that does not depend on how it was read.
+class Writer {
+ public:
+  std::string write(const ModelDefinition& file) {
+    write_head(file);
+    write_roles("variables", file.variables);
+    write_roles("units", file.units);
+    write_output(file);
+    write_instrument(file);
+    write_policy(file.model.policy);
+    write_domain(file.model.domain);
+    for (std::size_t i = 0; i < file.model.effects.size(); ++i) write_effect(file, i);
+    write_law(file.law);
+    write_covariance(file);
+    write_uncertainty(file.uncertainty);
+    write_provenance(file.provenance);
+    return text_;
+  }
+
+ private:
+  static constexpr std::size_t max_list = 90;
+
+  // Zero, and not negative zero, which a file restores as well.
+  static bool is_zero(double value) { return value == 0.0 && !std::signbit(value); }
+
+  static std::string number(double value, std::string_view what) {
+    if (!std::isfinite(value)) {
+      throw Error(fmt::format("the model cannot be written: {} is {}; give it a finite value", one_line(what),
+                              value));
+    }
+    std::string digits = fmt::format("{}", value);  // the shortest that reads back as the same number
+    if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
+    return digits;
+  }
+
+  static std::string text(std::string_view value) {
+    std::string escaped = "\"";
+    for (const char letter : value) {
+      const auto code = static_cast<unsigned char>(letter);
+      if (letter == '"' || letter == '\\') {
+        escaped += '\\';
+        escaped += letter;
+      } else if (letter == '\n') {
+        escaped += "\\n";
+      } else if (letter == '\t') {
+        escaped += "\\t";
+      } else if (code < 0x20 || code == 0x7f) {
+        escaped += fmt::format("\\u{:04X}", code);
+      } else {
+        escaped += letter;
+      }
+    }
+    return escaped + '"';
+  }
+
+  static std::string key(std::string_view name) {
+    const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](char letter) {
+      return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+             (letter >= '0' && letter <= '9') || letter == '-' || letter == '_';
+    });
+    return bare ? std::string(name) : text(name);
+  }
+
+  static std::string list(const std::vector<std::string>& items) {
+    std::string one_row = fmt::format("[{}]", fmt::join(items, ", "));
+    if (one_row.size() <= max_list) return one_row;
+    return fmt::format("[\n  {},\n]", fmt::join(items, ",\n  "));
+  }
+
+  static std::string inline_table(const std::vector<std::string>& items) {
+    return items.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(items, ", "));
+  }
+
+  void heading(std::string_view title) { text_ += fmt::format("\n{}\n", title); }
+
+  void line(std::string_view name, std::string_view value) { text_ += fmt::format("{} = {}\n", name, value); }
+
+  void line_unless_empty(std::string_view name, std::string_view value) {
+    if (!value.empty()) line(name, text(value));
+  }
+
+  void write_head(const ModelDefinition& file) {
+    line("format", text(model_format));
+    line_unless_empty("name", file.model.name);
+    line_unless_empty("aircraft", file.model.aircraft);
+    line_unless_empty("roles", file.roles_from);
+  }
+
+  void write_roles(std::string_view title, const std::map<Quantity, std::string>& values) {
+    if (values.empty()) return;
+    heading(fmt::format("[{}]", title));
+    for (const auto& [quantity, value] : values) line(info_of(quantity).name, text(value));
+  }
+
+  void write_output(const ModelDefinition& file) {
+    if (file.output.empty()) return;
+    heading("[output]");
+    for (const auto& [standard_name, name] : file.output) line(key(standard_name), text(name));
+  }
+
+  void write_instrument(const ModelDefinition& file) {
+    const Model& model = file.model;
+    const auto has = [&](Quantity quantity) { return file.variables.count(quantity) != 0; };
+    const LamsMounting& lams = model.lams;
+    if (has(Quantity::lams_airspeed) || !is_zero(lams.elevation) || !is_zero(lams.azimuth) ||
+        lams.approach != LamsApproach::simultaneous) {
+      heading("[lams]");
+      line("elevation", number(lams.elevation, "elevation of LAMS"));
+      line("azimuth", number(lams.azimuth, "azimuth of LAMS"));
+      line("approach", fmt::format("{}", static_cast<int>(lams.approach)));
+    }
+    if (has(Quantity::recovery_temperature) || model.recovery.coefficients != Model().recovery.coefficients ||
+        !file.recovery_factor_name.empty()) {
+      heading("[temperature]");
+      line("recovery_factor", recovery_factor(file));
+    }
+    if (has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point) ||
+        !model.moist) {
+      heading("[humidity]");
+      line("moist", model.moist ? "true" : "false");
+    }
+    write_radome(model);
+  }
+
+  // By its name where it is still the law of that name.
+  static std::string recovery_factor(const ModelDefinition& file) {
+    const std::array<double, 4>& coefficients = file.model.recovery.coefficients;
+    const PublishedRecoveryFactor* law = published_recovery_factor(file.recovery_factor_name);
+    if (law != nullptr && law->law.coefficients == coefficients) return text(law->name);
+    const std::string what = "the recovery factor";
+    if (std::all_of(coefficients.begin() + 1, coefficients.end(), is_zero))
+      return number(coefficients[0], what);
+    std::vector<std::string> numbers;
+    numbers.reserve(coefficients.size());
+    for (const double coefficient : coefficients) numbers.push_back(number(coefficient, what));
+    return list(numbers);
+  }
+
+  void write_radome(const Model& model) {
+    const std::pair<std::string_view, RadomeCalibration> angles[] = {{"attack", model.attack_radome},
+                                                                     {"sideslip", model.sideslip_radome}};
+    bool first = true;
+    for (const auto& [name, radome] : angles) {
+      if (is_zero(radome.offset) && is_zero(radome.slope) && is_zero(radome.slope_mach)) continue;
+      if (first) heading("[radome]");
+      first = false;
+      std::vector<std::string> numbers{number(radome.offset, name), number(radome.slope, name)};
+      if (!is_zero(radome.slope_mach)) numbers.push_back(number(radome.slope_mach, name));
+      line(name, list(numbers));
+    }
+  }
+
+  void write_policy(const Policy& policy) {
+    const Policy none;
+    const bool tapers = !is_zero(policy.taper_below) || policy.taper_power != none.taper_power;
+    const bool limits = policy.minimum != none.minimum;
+    const bool starts = policy.min_dynamic_pressure != none.min_dynamic_pressure;
+    if (!tapers && !limits && !starts) return;
+    heading("[policy]");
+    if (tapers) {
+      line("taper_below", number(policy.taper_below, "taper_below"));
+      line("taper_power", number(policy.taper_power, "taper_power"));
+    }
+    if (limits) line("minimum", number(policy.minimum, "the minimum"));
+    if (starts) {
+      line("least_dynamic_pressure", number(policy.min_dynamic_pressure, "least_dynamic_pressure"));
+    }
+  }
+
+  void write_domain(const std::vector<DomainRange>& domain) {
+    if (domain.empty()) return;
+    heading("[domain]");
+    for (const DomainRange& range : domain) {
+      line(key(range.quantity), bounds({range.lower, range.upper}, "the domain of " + range.quantity));
+    }
+  }
+
+  static std::string bounds(const Bounds& range, const std::string& what) {
+    return fmt::format("[{}, {}]", number(range.lower, what), number(range.upper, what));
+  }
+
+  void write_effect(const ModelDefinition& file, std::size_t effect_number) {
+    const ModelEffect& effect = file.model.effects[effect_number];
+    const Names names = parameter_names(effect);
+    if (names.size() != effect.parameters.size()) {
+      throw Error(
+          fmt::format("the model cannot be written: effect {} has {} parameters, not {}; give one "
+                      "value for each",
+                      quote(effect.id), names.size(), effect.parameters.size()));
+    }
+    std::vector<std::string> values, standard_errors, fixed, ranges;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string what = effect.id + "." + names[i];
+      const ParameterFit fit = file.fit(effect_number, i);
+      if (is_usual_shape(effect, i) && fit.fixed && !fit.standard_error && !fit.bounds) continue;
+      values.push_back(names[i] + " = " + number(effect.parameters[i], what));
+      if (fit.standard_error) {
+        standard_errors.push_back(names[i] + " = " + number(*fit.standard_error, "the stderr of " + what));
+      }
+      if (fit.fixed) fixed.push_back(text(names[i]));
+      if (fit.bounds) ranges.push_back(names[i] + " = " + bounds(*fit.bounds, "a bound of " + what));
+    }
+    heading("[[effect]]");
+    line("id", text(effect.id));
+    if (effect.is_formula()) {
+      line("where", text(info_of(effect.location).name));
+      line("formula", text(effect.formula));
+    }
+    if (!effect.scaling.is_none()) line("scaling", inline_table(powers(effect.scaling)));
+    line("parameters", inline_table(values));
+    if (!standard_errors.empty()) line("stderr", inline_table(standard_errors));
+    if (!fixed.empty()) line("fixed", list(fixed));
+    if (!ranges.empty()) line("bounds", inline_table(ranges));
+    if (effect.is_formula()) {
+      line_unless_empty("unit", effect.unit);
+      line_unless_empty("source", effect.source);
+    }
+  }
+
+  // What a file need not say.
+  static bool is_usual_shape(const ModelEffect& effect, std::size_t parameter) {
+    if (effect.is_formula()) return false;
+    const ParameterInfo& info = effect_info[effect_named(effect.id)].parameters[parameter];
+    const double value = effect.parameters[parameter];
+    return info.shape && value == info.typical && std::signbit(value) == std::signbit(info.typical);
+  }
+
+  static std::vector<std::string> powers(const Scaling& scaling) {
+    std::vector<std::string> powers;
+    if (scaling.static_pressure != 0)
+      powers.push_back(fmt::format("static_pressure = {}", scaling.static_pressure));
+    if (scaling.dynamic_pressure != 0)
+      powers.push_back(fmt::format("dynamic_pressure = {}", scaling.dynamic_pressure));
+    return powers;
+  }
+
+  void write_law(const LawInfo& law) {
+    if (law.source.empty() && law.valid_from.empty() && law.valid_to.empty() && !law.in_processing &&
+        !law.rms_hpa && law.note.empty()) {
+      return;
+    }
+    heading("[law]");
+    line_unless_empty("source", law.source);
+    line_unless_empty("valid_from", law.valid_from);
+    line_unless_empty("valid_to", law.valid_to);
+    if (law.in_processing) line("in_processing", "true");
+    if (law.rms_hpa) line("rms_hpa", number(*law.rms_hpa, "rms_hpa of the law"));
+    line_unless_empty("note", law.note);
+  }
+
+  // With the values that it was found at, so that a later change of them is told.
+  void write_covariance(const ModelDefinition& file) {
+    const Covariance& covariance = file.covariance;
+    if (covariance.parameters.empty() && covariance.matrix.empty()) return;
+    heading("[covariance]");
+    std::vector<std::string> names;
+    names.reserve(covariance.parameters.size());
+    for (const std::string& name : covariance.parameters) names.push_back(text(name));
+    line("parameters", list(names));
+    std::vector<std::string> values;
+    for (const std::string& name : covariance.parameters) {
+      const double* const value =
+          parameter_named(file.model, name);  // null for a sensor: at its neutral value
+      values.push_back(number(value != nullptr ? *value : 0.0, name));
+    }
+    line("values", list(values));
+    std::string rows;
+    for (const std::vector<double>& row : covariance.matrix) {
+      std::vector<std::string> numbers;
+      numbers.reserve(row.size());
+      for (const double value : row) numbers.push_back(number(value, "the covariance"));
+      rows += fmt::format("  [{}],\n", fmt::join(numbers, ", "));
+    }
+    line("matrix", "[\n" + rows + "]");
+  }
+
+  void write_uncertainty(const StatedUncertainty& uncertainty) {
+    if (uncertainty.roles.empty() && uncertainty.sensors.empty() && !uncertainty.static_defect &&
+        !uncertainty.static_defect_ratio)
+      return;
+    heading("[uncertainty]");
+    const auto stated = [this](std::string_view name, double value) {
+      line(name, number(value, fmt::format("the uncertainty of {}", name)));
+    };
+    for (const auto& [role, value] : uncertainty.roles) stated(info_of(role).name, value);
+    for (const auto& [coefficient, value] : uncertainty.sensors) stated(key(coefficient), value);
+    if (uncertainty.static_defect) stated("static_defect", *uncertainty.static_defect);
+    if (uncertainty.static_defect_ratio) stated("static_defect_ratio", *uncertainty.static_defect_ratio);
+  }
+
+  void write_provenance(const Provenance& provenance) {
+    if (provenance.empty()) return;
+    heading("[provenance]");
+    for (const auto& [name, value] : provenance) line(key(name), provenance_value(value));
+  }
+
+  static std::string provenance_value(const ProvenanceValue& value) {
+    if (const auto* words = std::get_if<std::string>(&value)) return text(*words);
+    if (const auto* real = std::get_if<double>(&value)) return number(*real, "a number of its provenance");
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
+    if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "true" : "false";
+    std::vector<std::string> items;
+    if (const auto* values = std::get_if<ProvenanceList>(&value)) {
+      for (const ProvenanceValue& item : *values) items.push_back(provenance_value(item));
+      return list(items);
+    }
+    for (const auto& [name, item] : std::get<Provenance>(value)) {
+      items.push_back(key(name) + " = " + provenance_value(item));
+    }
+    return inline_table(items);
+  }
+
+  std::string text_;
+};
+
+}  // namespace
+
+std::string model_text(const ModelDefinition& file) { return Writer().write(file); }
+
+}  // namespace pcor::internal

@@ -1,0 +1,154 @@
+#include "model_io/output_table.hpp"
+
+#include <algorithm>
+
+namespace pcor::internal {
+namespace {
+
+using Q = Quantity;
+
+Quantities humidity(const Correction& correction) {
+  return correction.chain.counts_vapor() ? Quantities{Q::vapor_pressure, Q::dew_point, Q::frost_point}
+                                         : Quantities{};
+}
+
+Quantities thermometer(const Correction& correction) {
+  return {correction.chain.derives_temperature() ? Q::recovery_temperature : Q::ambient_temperature};
+}
+
+Quantities beam(const Correction&) {
+  return {Q::radome_dynamic_pressure,
+          Q::attack_differential_pressure,
+          Q::sideslip_differential_pressure,
+          Q::attack,
+          Q::sideslip,
+          Q::lams_airspeed};
+}
+
+Quantities delta_p(const Correction& correction) {
+  return correction.with == CorrectWith::lams ? Quantities{Q::static_defect, Q::lams_static_defect}
+                                              : Quantities{Q::static_defect};
+}
+
+/// What these quantities are measured or found from.
+Quantities sources_of(const Correction& correction, const Quantities& quantities) {
+  Quantities recorded;
+  for (const Quantity read : quantities) {
+    const Quantities sources = MeasuredQuantities::sources(correction.chain, read);
+    recorded.insert(recorded.end(), sources.begin(), sources.end());
+  }
+  std::sort(recorded.begin(), recorded.end());
+  return recorded;
+}
+
+Quantities law(const Correction& correction) {
+  return sources_of(correction, StaticDefect::reads(correction));
+}
+
+/// What effects before the ports read.
+Quantities read_before_ports(const Correction& correction, const std::vector<EffectLocation>& places) {
+  Quantities read;
+  for (const EffectLocation place : places) read = joined({read, correction.chain.read_at(place)});
+  return sources_of(correction, read);
+}
+
+Quantities ambient_temperature(const Correction& correction) {
+  return correction.chain.derives_temperature()
+             ? joined({thermometer(correction), {Q::corrected_mach}, humidity(correction)})
+             : thermometer(correction);
+}
+
+constexpr std::string_view uncertainty_ending = "_uncertainty";
+
+/// CF names the standard error of a quantity by a modifier behind its standard name.
+OutputRow uncertainty(const std::string& name, Quantity quantity, Quantity result,
+                      const std::string& long_name, const std::string& standard_name,
+                      const std::string& category) {
+  OutputRow row;
+  row.name = name + std::string(uncertainty_ending);
+  row.quantity = quantity;
+  row.long_name = "Standard uncertainty of " + long_name;
+  if (!standard_name.empty()) row.standard_name = standard_name + " standard_error";
+  row.category = category;
+  row.from = [](const Correction&) { return Quantities{}; };
+  row.uncertainty_of = result;
+  return row;
+}
+
+}  // namespace
+
+const std::vector<OutputRow>& output_table() {
+  static const std::vector<OutputRow> table{
+      {"PCOR", Q::static_defect, "Static defect (delta-p) of the model", "", "Aircraft State", law},
+      {"PCOR_LAMS", Q::lams_static_defect, "Static defect (delta-p) from LAMS", "", "Aircraft State",
+       [](const Correction& c) {
+         return joined({{Q::static_pressure, Q::dynamic_pressure}, beam(c), thermometer(c), humidity(c)});
+       }},
+      {"PSXC", Q::corrected_static_pressure, "Corrected Static Pressure", "air_pressure", "Atmos. State",
+       [](const Correction& c) {
+         return joined(
+             {{Q::static_pressure},
+              delta_p(c),
+              read_before_ports(c, {EffectLocation::static_transducer, EffectLocation::static_line})});
+       }},
+      {"QCXC", Q::corrected_dynamic_pressure, "Corrected Dynamic Pressure", "", "Aircraft State",
+       [](const Correction& c) {
+         return joined({{Q::dynamic_pressure},
+                        delta_p(c),
+                        read_before_ports(c, {EffectLocation::dynamic_transducer, EffectLocation::static_line,
+                                              EffectLocation::total_line, EffectLocation::pitot})});
+       }},
+      {"MACHX", Q::corrected_mach, "Aircraft Mach Number", "", "Aircraft State",
+       [](const Correction& c) {
+         return joined({{Q::corrected_static_pressure, Q::corrected_dynamic_pressure}, humidity(c)});
+       }},
+      {"ATX", Q::ambient_temperature, "Ambient Temperature", "air_temperature", "Atmos. State",
+       ambient_temperature},
+      {"TASX", Q::corrected_airspeed, "Aircraft True Airspeed", "platform_speed_wrt_air", "Aircraft State",
+       [](const Correction& c) {
+         return joined({{Q::corrected_mach, Q::ambient_temperature}, humidity(c)});
+       }},
+      {"ATLAMS", Q::lams_temperature, "Ambient Temperature from LAMS", "air_temperature", "Atmos. State",
+       [](const Correction& c) {
+         return joined({beam(c), {Q::corrected_mach}, humidity(c)});
+       }},
+      {"ATLAMSF", Q::filtered_lams_temperature, "Ambient Temperature from LAMS, without periods under 3 s",
+       "air_temperature", "Atmos. State", [](const Correction&) { return Quantities{Q::lams_temperature}; },
+       true},
+      {"QCLAMS", Q::lams_dynamic_pressure, "Dynamic Pressure from LAMS", "", "Aircraft State",
+       [](const Correction& c) {
+         return joined({beam(c), {Q::corrected_static_pressure, Q::ambient_temperature}, humidity(c)});
+       }},
+      {"HYDSTEP", Q::height_step, "Hydrostatic height step per kelvin, -(R_a/g0) ln(p_i/p_(i-1))", "",
+       "Atmos. State",
+       [](const Correction& c) {
+         return joined({{Q::corrected_static_pressure}, humidity(c)});
+       }},
+      uncertainty("PCOR", Q::static_defect_uncertainty, Q::static_defect,
+                  "Static defect (delta-p) of the model", "", "Aircraft State"),
+      uncertainty("PSXC", Q::corrected_static_pressure_uncertainty, Q::corrected_static_pressure,
+                  "Corrected Static Pressure", "air_pressure", "Atmos. State"),
+      uncertainty("QCXC", Q::corrected_dynamic_pressure_uncertainty, Q::corrected_dynamic_pressure,
+                  "Corrected Dynamic Pressure", "", "Aircraft State"),
+      uncertainty("ATX", Q::ambient_temperature_uncertainty, Q::ambient_temperature, "Ambient Temperature",
+                  "air_temperature", "Atmos. State"),
+      uncertainty("TASX", Q::corrected_airspeed_uncertainty, Q::corrected_airspeed, "Aircraft True Airspeed",
+                  "platform_speed_wrt_air", "Aircraft State")};
+  return table;
+}
+
+std::string_view result_of_uncertainty(std::string_view standard_name) {
+  constexpr std::string_view end = uncertainty_ending;
+  const std::size_t size = standard_name.size();
+  if (size <= end.size() || standard_name.substr(size - end.size()) != end) return {};
+  return standard_name.substr(0, size - end.size());
+}
+
+std::vector<std::string> output_names() {
+  std::vector<std::string> names;
+  for (const OutputRow& row : output_table()) names.push_back(row.name);
+  names.emplace_back(quality_output);
+  return names;
+}
+
+}  // namespace pcor::internal

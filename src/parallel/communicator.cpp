@@ -1,0 +1,129 @@
+#include <pcor/parallel/communicator.hpp>
+
+#include <algorithm>
+#include <new>
+
+#include "parallel/packed.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace internal {
+
+enum class Kind : std::uint8_t { part, failed, left };
+
+struct Message {
+  Kind kind = Kind::part;
+  std::uint64_t state = 0;
+  std::string part{};
+  // Of an error:
+  bool has_error = false;
+  std::uint64_t place = 0;
+  Error::Code code = Error::Code::other;
+  std::string text{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(kind, state, part, has_error, place, code, text);
+  }
+};
+
+}  // namespace internal
+
+namespace {
+
+class Alone final : public Communicator {
+ public:
+  std::size_t rank() const override { return 0; }
+  std::size_t size() const override { return 1; }
+
+ private:
+  std::vector<std::string> exchange(const std::string& own) override { return {own}; }
+};
+
+Message message_of(const Error& error, std::size_t place) {
+  Message message{Kind::failed};
+  message.has_error = true;
+  message.place = place;
+  message.code = error.code();
+  message.text = error.what();
+  return message;
+}
+
+/// Of those that have an error the one in which a member alone would have failed first.
+const Message* first_error(const std::vector<Message>& all) {
+  const Message* first = nullptr;
+  for (const Message& each : all) {
+    if (each.has_error && (first == nullptr || each.place < first->place)) first = &each;
+  }
+  return first;
+}
+
+bool agree(const std::vector<Message>& all) {
+  const Message& first = all.front();
+  return std::all_of(all.begin(), all.end(), [&first](const Message& each) {
+    return each.kind == first.kind && each.state == first.state;
+  });
+}
+
+}  // namespace
+
+std::vector<Message> Communicator::talk(const Message& own) {
+  if (has_parted_) throw parted_with_ ? *parted_with_ : Error("a member of the team has left it before");
+  std::vector<Message> all;
+  for (const std::string& bytes : exchange(packed(own))) all.push_back(unpacked<Message>(bytes));
+  has_parted_ =
+      std::any_of(all.begin(), all.end(), [](const Message& each) { return each.kind == Kind::left; });
+  if (const Message* const error = first_error(all)) {
+    const Error agreed(error->code, error->text);
+    if (has_parted_) parted_with_ = agreed;
+    throw agreed;
+  }
+  if (!agree(all)) {
+    has_parted_ = true;
+    parted_with_ = Error(
+        "the processes of this run came to different numbers: their commands or their files differ, or their "
+        "processors are not of one kind; run one command on nodes of one kind that see the same files");
+    throw *parted_with_;
+  }
+  return all;
+}
+
+std::vector<std::string> Communicator::gather(const std::string& own, std::uint64_t state) {
+  if (size() == 1) return {own};
+  Message message;
+  message.state = state;
+  message.part = own;
+  std::vector<std::string> parts;
+  for (Message& each : talk(message)) parts.push_back(std::move(each.part));
+  return parts;
+}
+
+void Communicator::fail(const Error& error, std::size_t place) {
+  if (size() > 1) talk(message_of(error, place));
+  throw error;
+}
+
+std::optional<Error> Communicator::leave(const std::optional<Error>& error) {
+  if (size() == 1) return error;
+  if (has_parted_) return parted_with_ ? parted_with_ : error;
+  Message last = error ? message_of(*error, 0) : Message{};
+  last.kind = Kind::left;
+  try {
+    talk(last);
+  } catch (const Error& of_all) {
+    return of_all;
+  } catch (const std::bad_alloc&) {
+    // The others see that this member is gone.
+    return error.value_or(Error("the memory is exhausted; give fewer or shorter flights at a time"));
+  }
+  return std::nullopt;
+}
+
+Communicator& serial_communicator() {
+  static Alone comm;
+  return comm;
+}
+
+}  // namespace pcor

@@ -1,0 +1,102 @@
+#include "parallel/distributed_quantile.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "parallel/packed.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using Counts = std::array<std::uint64_t, 256>;
+
+constexpr std::uint64_t sign = std::uint64_t{1} << 63U;
+constexpr unsigned bits_at_a_time = 8;
+
+/// A number that is in the order of the values.
+std::uint64_t number_of(double value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+
+double value_of(std::uint64_t number) {
+  const std::uint64_t bits = (number & sign) != 0 ? number & ~sign : ~number;
+  double value = 0.0;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/// A place that is looked for.
+struct Place {
+  std::uint64_t found = 0;            // bits of the number
+  std::uint64_t below = 0;            // of those that are left, that are to be less
+  std::vector<std::uint64_t> left{};  // of this member
+};
+
+std::vector<Counts> counts_of_all(Communicator& comm, const std::vector<Counts>& own) {
+  std::vector<Counts> all(own.size(), Counts{});
+  for (const std::string& bytes : comm.gather(packed(own))) {
+    const auto more = unpacked<std::vector<Counts>>(bytes);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      for (std::size_t i = 0; i < all[k].size(); ++i) all[k][i] += more[k][i];
+    }
+  }
+  return all;
+}
+
+std::vector<double> values_of_one(std::vector<double> values, const std::vector<std::uint64_t>& places) {
+  std::vector<double> found;
+  auto begin = values.begin();
+  for (const std::uint64_t place : places) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(begin, at, values.end());
+    found.push_back(*at);
+    begin = at;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<double> values_at(Communicator& comm, std::vector<double> values, const WantedPlaces& wanted) {
+  for (double& value : values) value += 0.0;  // there is one zero
+  if (comm.size() == 1) {
+    const std::vector<std::uint64_t> places = wanted(values.size());
+    return values_of_one(std::move(values), places);
+  }
+  std::vector<Place> places(1);
+  for (const double value : values) places[0].left.push_back(number_of(value));
+  for (unsigned shift = 64; shift > 0;) {
+    shift -= bits_at_a_time;
+    const auto digit = [shift](std::uint64_t number) { return (number >> shift) & 0xffU; };
+    std::vector<Counts> own(places.size(), Counts{});
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      for (const std::uint64_t number : places[k].left) ++own[k][digit(number)];
+    }
+    std::vector<Counts> all = counts_of_all(comm, own);
+    if (shift + bits_at_a_time == 64) {
+      std::uint64_t count = 0;
+      for (const std::uint64_t each : all[0]) count += each;
+      const std::vector<std::uint64_t> below = wanted(count);
+      places.resize(below.size(), places[0]);
+      all.resize(below.size(), all[0]);
+      for (std::size_t k = 0; k < places.size(); ++k) places[k].below = below[k];
+    }
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      Place& place = places[k];
+      std::uint64_t chosen = 0;
+      while (place.below >= all[k][chosen]) place.below -= all[k][chosen++];
+      place.found |= chosen << shift;
+      place.left.erase(std::remove_if(place.left.begin(), place.left.end(),
+                                      [&](std::uint64_t number) { return digit(number) != chosen; }),
+                       place.left.end());
+    }
+  }
+  std::vector<double> found;
+  for (const Place& place : places) found.push_back(value_of(place.found));
+  return found;
+}
+
+}  // namespace pcor::internal

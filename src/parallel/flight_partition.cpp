@@ -1,0 +1,62 @@
+#include "parallel/flight_partition.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace pcor::internal {
+
+FlightPartition::FlightPartition(std::size_t flights)
+    : comm_(&serial_communicator()), owner_(flights, 0), own_(flights) {}
+
+FlightPartition::FlightPartition(Communicator& comm, const std::vector<std::uint64_t>& sizes)
+    : comm_(&comm), owner_(sizes.size(), 0) {
+  std::vector<std::size_t> longest_first(sizes.size());
+  std::iota(longest_first.begin(), longest_first.end(), std::size_t{0});
+  std::stable_sort(longest_first.begin(), longest_first.end(),
+                   [&sizes](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
+  std::vector<std::uint64_t> load(comm.size(), 0);
+  for (const std::size_t flight : longest_first) {
+    const auto least = std::min_element(load.begin(), load.end());
+    owner_[flight] = static_cast<std::size_t>(least - load.begin());
+    *least += std::max<std::uint64_t>(sizes[flight], 1);
+  }
+  own_ = static_cast<std::size_t>(std::count(owner_.begin(), owner_.end(), comm.rank()));
+}
+
+FlightPartition FlightPartition::of_entries(const std::vector<std::size_t>& flight_of_each) const {
+  FlightPartition share(flight_of_each.size());
+  share.comm_ = comm_;
+  for (std::size_t entry = 0; entry < share.flights(); ++entry)
+    share.owner_[entry] = owner_[flight_of_each[entry]];
+  share.own_ = static_cast<std::size_t>(std::count(share.owner_.begin(), share.owner_.end(), comm_->rank()));
+  return share;
+}
+
+FlightPartition FlightPartition::with(const FlightPartition& more) const {
+  FlightPartition share = *this;
+  share.owner_.insert(share.owner_.end(), more.owner_.begin(), more.owner_.end());
+  share.own_ += more.own_;
+  return share;
+}
+
+FlightPartition FlightPartition::part(std::size_t first, std::size_t count) const {
+  std::vector<std::size_t> flights(count);
+  std::iota(flights.begin(), flights.end(), first);
+  return of_entries(flights);
+}
+
+FlightPartition partition_flights(Communicator& comm, const std::vector<std::filesystem::path>& paths) {
+  std::vector<std::uint64_t> sizes;
+  std::uint64_t names = paths.size();
+  for (const std::filesystem::path& path : paths) {
+    names = digest_of(path.string(), names);
+    std::error_code unknown;
+    const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+    sizes.push_back(unknown ? 0 : size);
+  }
+  if (comm.size() > 1)
+    sizes = unpacked<std::vector<std::uint64_t>>(comm.gather(packed(sizes), names).front());
+  return {comm, sizes};
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,211 @@
+#pragma once
+
+#include <pcor/parallel/communicator.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <optional>
+#include <string>
+#include <typeinfo>
+#include <utility>
+#include <vector>
+
+#include "parallel/digest.hpp"
+#include "parallel/packed.hpp"
+
+namespace pcor::internal {
+
+/// What one flight failed with.
+class FlightError : public Error {
+ public:
+  FlightError(const Error& error, std::size_t number) : Error(error), flight_(number) {}
+
+  std::size_t flight() const { return flight_; }  ///< its number
+
+ private:
+  std::size_t flight_;
+};
+
+/// Which flights of a list each member of a team owns: it alone reads them, and keeps what is kept of them.
+class FlightPartition {
+ public:
+  /// All flights are of one member.
+  explicit FlightPartition(std::size_t flights);
+
+  /// The longest first, each to the member that has least to read.
+  /// @param sizes of the flights, in bytes or anything that their work is in proportion to; the same on all
+  FlightPartition(Communicator& comm, const std::vector<std::uint64_t>& sizes);
+
+  std::size_t flights() const { return owner_.size(); }
+  bool owns(std::size_t flight) const { return owner_[flight] == comm_->rank(); }
+  std::size_t own() const { return own_; }
+  Communicator& comm() const { return *comm_; }
+
+  /// The share of a list whose entries are each of one of these flights, as is a flight against one of
+  /// several references: an entry is of the owner of its flight.
+  FlightPartition of_entries(const std::vector<std::size_t>& flight_of_each) const;
+
+  /// These flights, then those of another share of the same team.
+  FlightPartition with(const FlightPartition& more) const;
+  FlightPartition part(std::size_t first, std::size_t count) const;
+
+  /// Work on own flights. Where it fails, all members do, at what they gather next.
+  template <class Work>
+  void attempt(const Work& work) const {
+    try {
+      work();
+    } catch (const FlightError& error) {
+      comm_->fail(error, error.flight() + 1);
+    } catch (const Error& error) {
+      comm_->fail(error, 0);
+    }
+  }
+
+  /// What all flights are made to, in their order, on every member: one exchange.
+  /// @param visit gets the list of all parts, and sets those of own flights
+  /// @param state in which the members have to agree
+  /// @throws Error that of the first flight that failed, on any member
+  template <class Part, class Visit>
+  std::vector<Part> gather_flights(const Visit& visit, std::uint64_t state = 0) const {
+    std::vector<Part> parts(flights());
+    attempt([&] { visit(parts); });
+    if (comm_->size() > 1) {
+      gather(own_of(parts), state,
+             [&parts](std::size_t flight, Part part) { parts[flight] = std::move(part); });
+    }
+    return parts;
+  }
+
+  /// Visits own flights in threads. @param chosen tells whether to visit a flight
+  /// @param read gives what is read of a flight; it is called in this thread, in the order of the flights
+  /// @param work gets a flight and what was read of it; it is called by up to `threads` threads
+  /// @throws FlightError of the first flight that failed
+  template <class Read, class Work>
+  void visit(std::size_t threads, const std::function<bool(std::size_t)>& chosen, const Read& read,
+             const Work& work) const {
+    std::deque<std::pair<std::size_t, std::future<void>>> working;
+    const auto finish_first = [&working] {
+      auto first = std::move(working.front());
+      working.pop_front();
+      part_of([&first](std::size_t) { first.second.get(); }, first.first);
+    };
+    const auto how = threads > 1 ? std::launch::async : std::launch::deferred;
+    for (std::size_t flight = 0; flight < flights(); ++flight) {
+      if (!owns(flight) || !chosen(flight)) continue;
+      std::optional<decltype(read(flight))> input;
+      try {
+        input = part_of(read, flight);
+      } catch (const FlightError&) {
+        while (!working.empty()) finish_first();  // an earlier flight fails first
+        throw;
+      }
+      if (working.size() == threads) finish_first();
+      working.emplace_back(flight, std::async(how, work, flight, std::move(*input)));
+      if (threads == 1) finish_first();
+    }
+    while (!working.empty()) finish_first();
+  }
+
+  /// As `gather_flights`, of what was read of each flight, in threads. @param read as in `visit`
+  /// @param make gives the part of a flight from its number and what was read of it
+  template <class Part, class Read, class Make>
+  std::vector<Part> map(std::size_t threads, const Read& read, const Make& make) const {
+    return gather_flights<Part>([&](std::vector<Part>& parts) {
+      visit(
+          threads, [](std::size_t) { return true; }, read,
+          [&](std::size_t flight, auto input) { parts[flight] = make(flight, std::move(input)); });
+    });
+  }
+
+  /// The same of one flight after another. @param make gives the part of a flight
+  template <class Part, class Make>
+  std::vector<Part> of_each_flight(const Make& make, std::uint64_t state = 0) const {
+    return gather_flights<Part>(
+        [&](std::vector<Part>& parts) {
+          for (std::size_t flight = 0; flight < parts.size(); ++flight) {
+            if (owns(flight)) parts[flight] = part_of(make, flight);
+          }
+        },
+        state);
+  }
+
+  /// The sum of the parts of all flights, added in their order, on every member: some at a time are made and
+  /// gathered, so that many need no more memory. @param make gives the part of a flight, which has a +=
+  template <class Part, class Make>
+  Part sum_of_each_flight(const Make& make) const {
+    Part sum{};
+    const auto add = [&sum](std::size_t flight, Part part) {
+      if (flight == 0)
+        sum = std::move(part);
+      else
+        sum += part;
+    };
+    if (comm_->size() == 1) {
+      for (std::size_t flight = 0; flight < flights(); ++flight) add(flight, make(flight));
+      return sum;
+    }
+    // Few enough to be held, enough that members of which one has more to do than another seldom wait.
+    constexpr std::size_t of_each = 4, enough = 64;
+    const std::size_t members = comm_->size();
+    const std::size_t at_a_time = std::min(of_each * members, std::max(enough, members));
+    for (std::size_t first = 0; first < flights(); first += at_a_time) {
+      const FlightPartition some = part(first, std::min(at_a_time, flights() - first));
+      std::vector<Part> own;
+      some.attempt([&] {
+        for (std::size_t k = 0; k < some.flights(); ++k) {
+          if (some.owns(k)) own.push_back(part_of(make, first + k));
+        }
+      });
+      some.gather(std::move(own), 0, [&](std::size_t k, Part part) { add(first + k, std::move(part)); });
+    }
+    return sum;
+  }
+
+ private:
+  template <class Make>
+  static auto part_of(const Make& make, std::size_t flight) {
+    try {
+      return make(flight);
+    } catch (const Error& error) {
+      throw FlightError(error, flight);
+    }
+  }
+
+  template <class Part>
+  std::vector<Part> own_of(std::vector<Part>& parts) const {
+    std::vector<Part> own;
+    for (std::size_t flight = 0; flight < parts.size(); ++flight) {
+      if (owns(flight)) own.push_back(std::move(parts[flight]));
+    }
+    return own;
+  }
+
+  /// @param own parts in the order of their flights
+  /// @param take gets those of all flights in their order, one after another, so that not all need be held
+  template <class Part, class Take>
+  void gather(std::vector<Part> own, std::uint64_t state, const Take& take) const {
+    const std::string bytes = packed(own);
+    own = {};
+    const std::vector<std::string> all =
+        comm_->gather(bytes, digest_of(typeid(Part).name(), state + flights()));
+    std::deque<Unpacking> members(all.begin(), all.end());
+    for (Unpacking& member : members) member.next<cereal::size_type>();  // how many it owns
+    for (std::size_t flight = 0; flight < flights(); ++flight)
+      take(flight, members[owner_[flight]].template next<Part>());
+  }
+
+  Communicator* comm_;
+  std::vector<std::size_t> owner_;
+  std::size_t own_ = 0;
+};
+
+/// The flights of these files, by their sizes as the first member sees them. A file that cannot be looked at
+/// is for its owner to tell of.
+FlightPartition partition_flights(Communicator& comm, const std::vector<std::filesystem::path>& paths);
+
+}  // namespace pcor::internal

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pcor/base/error.hpp>
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/realtime/chain.hpp>
+#include <pcor/roles/add_effects.hpp>
+#include "model_io/model_names.hpp"
+#include "roles/usual_variables.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+/// The first of the usual names among `variables`, be it with the suffix of an instrument as in PLWCD_LWOI.
+std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
+                                          const std::vector<std::string>& variables) {
+  if (variables.empty() && !usual.empty()) return usual.front();
+  for (const char* const suffix : {"", "_"}) {
+    for (const std::string& name : usual) {
+      const std::string wanted = name + suffix;
+      for (const std::string& variable : variables) {
+        if (*suffix == '\0' ? variable == wanted : variable.rfind(wanted, 0) == 0) return variable;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// Parameters that only shape an effect are held until someone frees them.
+EffectFit fit_of(const ModelEffect& effect) {
+  EffectFit fit(effect.parameters.size());
+  if (effect.is_formula()) return fit;
+  const EffectInfo& info = effect_info[effect_named(effect.id)];
+  for (std::size_t i = 0; i < fit.size(); ++i) fit[i].fixed = info.parameters[i].shape;
+  return fit;
+}
+
+void add(ModelDefinition& file, ModelEffect effect) {
+  std::vector<ModelEffect>& effects = file.model.effects;
+  const bool known = std::any_of(effects.begin(), effects.end(),
+                                 [&effect](const ModelEffect& each) { return each.id == effect.id; });
+  if (known) {
+    throw Error(fmt::format("model '{}' has the effect {} already; refit it, or add another",
+                            one_line(file.model.name), quote(effect.id)));
+  }
+  if (effect.is_formula()) {
+    if (effect_named(effect.id) != catalogue_size) {
+      throw Error(fmt::format("effect {} has its formula in the catalogue; give the formula an id of its own",
+                              quote(effect.id)));
+    }
+  } else {
+    const ModelEffect neutral = neutral_effect(effect.id);
+    if (effect.parameters.empty()) effect.parameters = neutral.parameters;
+    if (effect.parameters.size() != neutral.parameters.size()) {
+      throw Error(fmt::format("effect {} takes {} parameter(s), not {}; give one value for each",
+                              quote(effect.id), neutral.parameters.size(), effect.parameters.size()));
+    }
+  }
+  file.fits.resize(effects.size());
+  file.fits.push_back(fit_of(effect));
+  effects.push_back(std::move(effect));
+}
+
+}  // namespace
+
+ModelDefinition add_effects(const ModelDefinition& model, const std::vector<ModelEffect>& effects,
+                            const std::vector<std::string>& variables) {
+  ModelDefinition file = model;
+  file.law.in_processing = false;
+  for (const ModelEffect& effect : effects) add(file, effect);
+  BindingError error;
+  while (!Chain::build(file.model, file.roles(), &error)) {
+    const std::string why =
+        fmt::format("model '{}': {}", one_line(model.model.name), one_line(error.message()));
+    if (error.code != BindingError::Code::role_missing) throw Error(Error::Code::model, why);
+    const std::vector<std::string> usual = usual_variables(error.quantity);
+    const std::optional<std::string> variable = usual_variable(usual, variables);
+    if (!variable) {
+      throw Error(Error::Code::model,
+                  why + (usual.empty() ? fmt::format(" as {} = \"...\"", info_of(error.quantity).name)
+                                       : fmt::format("; the flight has none of its usual names {}",
+                                                     fmt::join(usual, ", "))));
+    }
+    file.variables[error.quantity] = *variable;
+  }
+  return file;
+}
+
+}  // namespace pcor

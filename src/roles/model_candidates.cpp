@@ -1,0 +1,147 @@
+#include <pcor/roles/model_candidates.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <tuple>
+
+#include <pcor/base/error.hpp>
+#include <pcor/base/utc.hpp>
+#include <pcor/roles/resolve_variables.hpp>
+#include "roles/model_inputs.hpp"
+#include "roles/usual_variables.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+std::string day_of(const Flight& flight) { return utc_text(flight.time().first, "%Y-%m-%d"); }
+
+/// Where a model's pressures stand among those of its aircraft, as measured.
+std::size_t place_of_pressures(const ModelDefinition& model, const VariableNaming& family) {
+  const auto variable = [&model](Quantity role) {
+    const auto found = model.variables.find(role);
+    return found == model.variables.end() ? std::string() : found->second;
+  };
+  const auto found =
+      std::find_if(family.measured.begin(), family.measured.end(), [&](const PressurePair& pair) {
+        return pair.static_pressure == variable(Quantity::static_pressure) &&
+               pair.dynamic_pressure == variable(Quantity::dynamic_pressure);
+      });
+  return static_cast<std::size_t>(found - family.measured.begin());
+}
+
+/// What stands first has the least.
+auto rank_of(const ModelCandidate& law, const VariableNaming& family) {
+  return std::make_tuple(!law.fits(), -static_cast<int>(law.lacks.empty()) - static_cast<int>(law.is_in_time),
+                         !law.model.law.in_processing, place_of_pressures(law.model, family));
+}
+
+/// Why a flight cannot be corrected by a model whose variables it has; empty where it can.
+std::string why_not(const Flight& flight, const ModelDefinition& model) {
+  try {
+    std::vector<std::string> notes;
+    const ModelDefinition whole = resolve_variables(model, flight, notes);
+    const auto laser = whole.variables.find(Quantity::lams_airspeed);
+    const std::vector<Quantity> roles =
+        roles_of(whole, laser != whole.variables.end() && flight.has(laser->second));
+    model_inputs(flight, whole, chain_of(whole.model, roles), roles, notes);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+ModelCandidate law_of_model(const std::filesystem::path& path, ModelDefinition model, const Flight& flight) {
+  ModelCandidate law{path, std::move(model)};
+  for (const auto& [role, variable] : law.model.variables) {
+    // A laser may be off.
+    if (role != Quantity::lams_airspeed && !flight.has(variable)) law.lacks.push_back(variable);
+  }
+  law.is_in_time = law.model.law.holds_on(day_of(flight));
+  if (law.fits()) law.why_not = why_not(flight, law.model);
+  return law;
+}
+
+std::string names_of(const std::vector<ModelCandidate>& laws) {
+  std::vector<std::string> names;
+  names.reserve(laws.size());
+  for (const ModelCandidate& law : laws) names.push_back(law.path.stem().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Why none fits.
+std::string reasons_of(const std::vector<ModelCandidate>& laws) {
+  std::vector<std::string> reasons;
+  reasons.reserve(laws.size());
+  for (const ModelCandidate& law : laws) {
+    const std::string name = law.path.stem().string();
+    reasons.push_back(!law.is_in_time      ? fmt::format("{} is of another time", name)
+                      : !law.lacks.empty() ? fmt::format("{} needs {}", name, fmt::join(law.lacks, " and "))
+                                           : fmt::format("{}: {}", name, law.why_not));
+  }
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+}  // namespace
+
+std::vector<ModelCandidate> model_candidates(const Flight& flight,
+                                             const std::vector<std::filesystem::path>& models,
+                                             std::vector<std::string>& notes) {
+  const VariableNaming& family = family_of(flight);
+  std::vector<ModelCandidate> laws;
+  for (const std::filesystem::path& path : models) {
+    try {
+      ModelDefinition model = read_model(path);
+      if (is_of_aircraft(model, flight)) laws.push_back(law_of_model(path, std::move(model), flight));
+    } catch (const Error& error) {
+      notes.emplace_back(error.what());
+    }
+  }
+  std::stable_sort(laws.begin(), laws.end(), [&family](const ModelCandidate& a, const ModelCandidate& b) {
+    return rank_of(a, family) < rank_of(b, family);
+  });
+  return laws;
+}
+
+ModelCandidate model_candidate(const Flight& flight, const std::vector<std::filesystem::path>& models,
+                               std::vector<std::string>& notes) {
+  std::vector<std::string> unread;
+  std::vector<ModelCandidate> laws = model_candidates(flight, models, unread);
+  if (!unread.empty()) throw Error(unread.front());
+  if (flight.aircraft().empty())
+    throw Error(
+        fmt::format("{}: it does not say its aircraft; name its model with --model", flight.path().string()));
+  const std::string who =
+      fmt::format("{}, '{}' of {}", flight.path().string(), flight.aircraft(), day_of(flight));
+  if (laws.empty()) {
+    throw Error(fmt::format("{}: none of the {} models is of this aircraft; name one with --model", who,
+                            models.size()));
+  }
+  const ModelCandidate& first = laws.front();
+  if (!first.fits())
+    throw Error(fmt::format("{}: no model fits it: {}; name one with --model", who, reasons_of(laws)));
+  for (const ModelCandidate& law : laws) {
+    if (!first.model.law.in_processing && law.model.law.in_processing && law.is_in_time)
+      notes.push_back(fmt::format("such flights are processed with {}, which this one does not allow: {}",
+                                  law.path.stem().string(), reasons_of({law})));
+  }
+  const VariableNaming& family = family_of(flight);
+  laws.erase(
+      std::find_if(laws.begin(), laws.end(),
+                   [&](const ModelCandidate& law) { return rank_of(law, family) != rank_of(first, family); }),
+      laws.end());
+  if (laws.size() > 1) {
+    throw Error(fmt::format(
+        "{}: {} fit alike; name one with --model, or state in_processing = true in the [law] of that with "
+        "which such flights are processed",
+        who, names_of(laws)));
+  }
+  return laws.front();
+}
+
+}  // namespace pcor

@@ -1,0 +1,169 @@
+#include <pcor/roles/resolve_variables.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <pcor/base/error.hpp>
+#include "model_io/model_names.hpp"
+#include "roles/recorded_series.hpp"
+#include "roles/usual_variables.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+/// One flight and the model that it completes.
+class Completion {
+ public:
+  Completion(ModelDefinition model, const Flight& flight, const VariableNaming& family)
+      : file_(std::move(model)), flight_(flight), family_(family) {}
+
+  ModelDefinition complete(std::vector<std::string>& notes) {
+    take_pressures();
+    take_temperature();
+    if (!has(Quantity::vapor_pressure) && !has(Quantity::dew_point) && !has(Quantity::frost_point)) {
+      if (!take(Quantity::vapor_pressure) && !take(Quantity::dew_point) && file_.model.moist) {
+        file_.model.moist = false;
+        traps_.emplace_back("no humidity is recorded: the air is taken as dry");
+      }
+    }
+    for (std::size_t i = 0; i < role_count; ++i) {
+      const auto role = static_cast<Quantity>(i);
+      if (!is_chosen_above(role) && !has(role)) take(role);
+    }
+    for (auto unit = file_.units.begin(); unit != file_.units.end();)
+      unit = has(unit->first) ? std::next(unit) : file_.units.erase(unit);
+    notes.push_back(fmt::format("roles by {}: {}", family_.name, fmt::join(taken_, ", ")));
+    for (std::string& trap : traps_) notes.push_back(std::move(trap));
+    return std::move(file_);
+  }
+
+ private:
+  /// Taken already, or found by the model itself.
+  bool is_chosen_above(Quantity role) const {
+    if (role == Quantity::attack) return file_.model.attack_radome.is_calibrated();
+    if (role == Quantity::sideslip) return file_.model.sideslip_radome.is_calibrated();
+    if (role == Quantity::ambient_temperature)
+      return file_.model.lams.approach != LamsApproach::with_temperature;
+    return role == Quantity::vapor_pressure || role == Quantity::dew_point || role == Quantity::frost_point;
+  }
+
+  bool has(Quantity role) const { return file_.variables.count(role) != 0; }
+
+  bool is_there(Quantity role, const std::string& variable) const {
+    return has_values(flight_, variable, std::string(info_of(role).unit), family_.unit_of(variable));
+  }
+
+  void set(Quantity role, const std::string& variable) {
+    file_.variables[role] = variable;
+    if (std::string unit = family_.unit_of(variable); !unit.empty())
+      file_.units.emplace(role, std::move(unit));
+    taken_.push_back(fmt::format("{} = {}", info_of(role).name, variable));
+    const auto trap = family_.traps.find(variable);
+    if (trap != family_.traps.end()) traps_.push_back(fmt::format("{}: {}", variable, trap->second));
+  }
+
+  bool take(Quantity role) {
+    for (const std::string& variable : family_.names_of(info_of(role).name)) {
+      if (!is_there(role, variable)) continue;
+      set(role, variable);
+      return true;
+    }
+    return false;
+  }
+
+  bool take_pair(const std::vector<PressurePair>& pairs) {
+    for (const PressurePair& pair : pairs) {
+      if (!is_there(Quantity::static_pressure, pair.static_pressure) ||
+          !is_there(Quantity::dynamic_pressure, pair.dynamic_pressure))
+        continue;
+      set(Quantity::static_pressure, pair.static_pressure);
+      set(Quantity::dynamic_pressure, pair.dynamic_pressure);
+      return true;
+    }
+    return false;
+  }
+
+  void take_pressures() {
+    if (has(Quantity::static_pressure) && has(Quantity::dynamic_pressure)) return;
+    if (take_pair(family_.measured)) return;
+    if (take_pair(family_.processed)) {
+      traps_.push_back(fmt::format("{} and {} are corrected already by the archive: a fit finds what is left",
+                                   file_.variables.at(Quantity::static_pressure),
+                                   file_.variables.at(Quantity::dynamic_pressure)));
+      return;
+    }
+    std::vector<std::string> looked_for;
+    for (const PressurePair& pair : family_.measured) looked_for.push_back(pair.name());
+    throw Error(fmt::format(
+        "{}: it has no pair of static and dynamic pressure of the names that {} has ({}); name them as "
+        "static_pressure and dynamic_pressure in the [variables] of the model, or another aircraft by roles "
+        "= "
+        "\"...\"; 'pcor inspect' tells what the flight holds",
+        flight_.path().string(), family_.title, fmt::join(looked_for, ", ")));
+  }
+
+  void take_temperature() {
+    if (has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature)) return;
+    for (const Thermometer& thermometer : family_.thermometers) {
+      if (!is_there(Quantity::recovery_temperature, thermometer.variable)) continue;
+      set(Quantity::recovery_temperature, thermometer.variable);
+      const bool states_one = !file_.recovery_factor_name.empty() ||
+                              file_.model.recovery.coefficients != Model().recovery.coefficients;
+      if (!states_one) {
+        file_.model.recovery = published_recovery_factor(thermometer.recovery)->law;
+        file_.recovery_factor_name = thermometer.recovery;
+      }
+      return;
+    }
+    take(Quantity::ambient_temperature);
+  }
+
+  ModelDefinition file_;
+  const Flight& flight_;
+  const VariableNaming& family_;
+  std::vector<std::string> taken_;
+  std::vector<std::string> traps_;
+};
+
+/// With the units that the aircraft's data state of the variables that the model names.
+ModelDefinition with_units(ModelDefinition model, const VariableNaming& family) {
+  for (const auto& [role, variable] : model.variables) {
+    if (std::string unit = family.unit_of(variable); !unit.empty())
+      model.units.emplace(role, std::move(unit));
+  }
+  return model;
+}
+
+}  // namespace
+
+bool names_pressures_alone(const ModelDefinition& model) {
+  return model.variables.size() == 2 && model.variables.count(Quantity::static_pressure) != 0 &&
+         model.variables.count(Quantity::dynamic_pressure) != 0;
+}
+
+ModelDefinition resolve_variables(const ModelDefinition& model, const Flight& flight,
+                                  std::vector<std::string>& notes) {
+  if (!names_pressures_alone(model) && (model.variables.count(Quantity::static_pressure) != 0 ||
+                                        model.variables.count(Quantity::dynamic_pressure) != 0)) {
+    return model.roles_from.empty() ? model : with_units(model, family_named(model.roles_from));
+  }
+  if (model.roles_from.empty()) {
+    const std::vector<const VariableNaming*> like = families_like(flight);
+    if (like.size() > 1) {
+      std::vector<std::string> names;
+      for (const VariableNaming* family : like) names.push_back(family->name);
+      throw Error(fmt::format("{}: it is like the files of {}; say which in the model, roles = \"{}\"",
+                              flight.path().string(), fmt::join(names, " and of "), names.front()));
+    }
+  }
+  return Completion(model, flight, family_of(model, flight)).complete(notes);
+}
+
+}  // namespace pcor

@@ -1,0 +1,45 @@
+#include <gmock/gmock.h>
+#include <pcor/base/suggest.hpp>
+
+using pcor::did_you_mean;
+using pcor::suggest;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(Suggest, OffersTheVariablesOfTheFileThatLookAlike) {
+  EXPECT_THAT(suggest("QCF", {"PSFD", "QCX", "TASX", "QCR", "QCFR", "GGALT"}),
+              ElementsAre("QCFR", "QCR", "QCX"));
+}
+
+TEST(Suggest, IgnoresCase) { EXPECT_THAT(suggest("psfd", {"QCF", "PSFD"}), ElementsAre("PSFD")); }
+
+TEST(Suggest, CountsASwapAsOneChange) {
+  EXPECT_THAT(suggest("imrpove", {"refit", "improve", "compare"}), ElementsAre("improve"));
+}
+
+TEST(Suggest, OffersALongNameOfWhichTheBeginningWasGiven) {
+  EXPECT_THAT(suggest("temp", {"simulate", "temperature"}), ElementsAre("temperature"));
+}
+
+TEST(Suggest, PrefersTheSameBeginningAmongEquals) {
+  EXPECT_THAT(suggest("static-mach4", {"xtatic-mach4", "static-mach3"}),
+              ElementsAre("static-mach3", "xtatic-mach4"));
+}
+
+TEST(Suggest, OffersNothingThatIsFarAway) {
+  EXPECT_THAT(suggest("TASX", {"GGALT", "QCF"}), IsEmpty());
+  EXPECT_THAT(suggest("", {"A", "B"}), IsEmpty());
+  EXPECT_THAT(suggest("A", {}), IsEmpty());
+  EXPECT_THAT(suggest(std::string(257, 'A'), {std::string(256, 'A')}), IsEmpty());
+}
+
+TEST(Suggest, StopsAtTheNumberAskedFor) {
+  EXPECT_THAT(suggest("QC", {"QCA", "QCB", "QCC", "QCD"}, 2), ElementsAre("QCA", "QCB"));
+}
+
+TEST(DidYouMean, IsASentence) {
+  EXPECT_EQ(did_you_mean("QCF", {"QCFR"}), "did you mean QCFR?");
+  EXPECT_EQ(did_you_mean("QCF", {"QCFR", "QCR"}), "did you mean QCFR or QCR?");
+  EXPECT_EQ(did_you_mean("QCF", {"QCFR", "QCR", "QCX"}), "did you mean QCFR, QCR or QCX?");
+  EXPECT_EQ(did_you_mean("QCF", {"TASX"}), "");
+}

@@ -1,0 +1,54 @@
+#include "base/text_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <pcor/base/error.hpp>
+
+#include "support/temporary_directory.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(TextFile, IsReadToTheByte) {
+  const test::TemporaryDirectory directory;
+  const std::string text{"a\r\nb\0c\n", 7};
+  std::ofstream(directory / "text", std::ios::binary) << text;
+  EXPECT_EQ(text_of_file(directory / "text", "a text"), text);
+}
+
+TEST(TextFile, IsRefusedByNameWhereThereIsNone) {
+  const test::TemporaryDirectory directory;
+  EXPECT_THAT([&] { text_of_file(directory / "no\nfile", "a model file"); },
+              ThrowsMessage<Error>(
+                  AllOf(HasSubstr("no\\x0afile: there is no such file"), HasSubstr("a model file"))));
+  EXPECT_THAT([&] { text_of_file(directory / "", "a model file"); },
+              ThrowsMessage<Error>(HasSubstr("is a directory; give the path of a model file")));
+}
+
+// A device may never end, and nobody may ever write into a pipe.
+TEST(TextFile, IsARegularOneOfUsualSize) {
+  const test::TemporaryDirectory directory;
+  ASSERT_EQ(mkfifo((directory / "pipe").c_str(), 0600), 0);
+  for (const std::filesystem::path& path : {std::filesystem::path("/dev/zero"), directory / "pipe"}) {
+    EXPECT_THAT([&] { text_of_file(path, "a model file"); },
+                ThrowsMessage<Error>(HasSubstr("is not a regular file; give the path of a model file")));
+  }
+  std::ofstream(directory / "large") << "x";
+  std::filesystem::resize_file(directory / "large", (16U << 20U) + 1);
+  EXPECT_THAT([&] { text_of_file(directory / "large", "a model file"); },
+              ThrowsMessage<Error>(HasSubstr("has more than 16 MB")));
+}
+
+}  // namespace
+}  // namespace pcor::internal

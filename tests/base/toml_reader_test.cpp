@@ -1,0 +1,85 @@
+#include "base/toml_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include <pcor/base/error.hpp>
+
+namespace pcor::internal {
+namespace {
+
+TEST(MomentIn, TakesADateOfTheCalendar) {
+  EXPECT_EQ(moment_in<toml::date>("2012-02-29"), (toml::date{2012, 2, 29}));
+  for (const char* text :
+       {"2011-02-29", "2011-13-01", "2011-11-00", "2011-11-2", " 2011-11-02", "2011-11-02 ",
+        "2011-11-02T20:00:00", "2011-11-02\nx = 1", "2011-11-02 # day", "2011", "-", ""}) {
+    EXPECT_FALSE(moment_in<toml::date>(text)) << text;
+  }
+}
+
+TEST(MomentIn, TakesATimeOfTheDay) {
+  EXPECT_EQ(moment_in<toml::time>("20:10:00.5"), (toml::time{20, 10, 0, 500000000}));
+  for (const char* text :
+       {"24:00:00", "20:60:00", "20:10:61", "8:00:00", "20:10:00.", "2011-11-02", "20.10"}) {
+    EXPECT_FALSE(moment_in<toml::time>(text)) << text;
+  }
+}
+
+// What all readers share.
+struct AnyReader final : TomlReader {
+  AnyReader() : TomlReader("some.toml") {}
+  using TomlReader::parse;
+};
+
+std::string repeated(const std::string& text, std::size_t times) {
+  std::string all;
+  for (std::size_t i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+// Beyond, toml++ overflows the stack: at 20000 tables in each other.
+TEST(TomlReader, RefusesDeepKeys) {
+  EXPECT_NO_THROW(AnyReader().parse(repeated("a.", 16) + "a = 1"));
+  for (const std::size_t dots : {17U, 100000U}) {
+    for (const std::string& key :
+         {repeated("a.", dots) + "a", repeated("\"a#\".", dots) + "a", repeated("'a' . ", dots) + "a"}) {
+      for (const std::string& text :
+           {"x = 1\n" + key + " = 1", "\n[" + key + "]", "\nx = {" + key + " = 1}"}) {
+        EXPECT_THAT(
+            [&] { AnyReader().parse(text); },
+            testing::ThrowsMessage<Error>(testing::HasSubstr("some.toml:2:1: a key has more than 16 dots")));
+      }
+    }
+  }
+}
+
+TEST(TomlReader, TakesDotsThatAreInNoKey) {
+  const std::string dots(100, '.');
+  EXPECT_NO_THROW(AnyReader().parse("# isn't " + dots + "\na = \"\\\"" + dots + "\" # it's " + dots +
+                                    "\nb = '" + dots + "'\nc = \"\"\"\"\n" + dots + "\"\"\"\nd = [" +
+                                    repeated("1.5, ", 100) + "]"));
+}
+
+TEST(TomlReader, RefusesCrowds) {
+  EXPECT_NO_THROW(AnyReader().parse("a = [" + repeated("1, ", 10000) + "]"));
+  EXPECT_THAT([&] { AnyReader().parse("\nb = [[" + repeated("1, ", 10001) + "]]"); },
+              testing::ThrowsMessage<Error>("some.toml:2:6: a list has 10001 entries; give at most 10000"));
+  EXPECT_THAT([&] { AnyReader().parse(repeated("[[leg]]\n", 10001)); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("a list has 10001 entries")));
+}
+
+TEST(Seconds, GoOnFromDayToDay) {
+  toml::date_time moment{toml::date{1970, 1, 1}, toml::time{0, 0, 0}};
+  EXPECT_EQ(seconds_of(moment), 0.0);
+  moment.date = {2000, 2, 29};
+  const double leap_day = seconds_of(moment);
+  moment.date = {2000, 3, 1};
+  EXPECT_EQ(seconds_of(moment) - leap_day, 86400.0);
+  moment.time = {1, 2, 3, 500000000};
+  EXPECT_EQ(seconds_of(moment) - leap_day, 86400.0 + 3723.5);
+}
+
+}  // namespace
+}  // namespace pcor::internal

@@ -1,0 +1,150 @@
+// Sums over whitened columns against generalised least squares with the covariance written out.
+#include "diagnose/whitened_system.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+using namespace pcor::internal;
+
+using pcor::internal::Binning;
+using pcor::internal::NoiseModel;
+using pcor::internal::WhitenedSystem;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double step = 4.0;  // s: every record is a bin
+constexpr double memory = 0.6;
+
+/// Some bins with gaps, columns and residuals, all at random.
+struct Example {
+  std::vector<Binning> bins;
+  std::vector<Eigen::MatrixXd> columns;
+  std::vector<Eigen::VectorXd> residuals;
+  NoiseModel noise;
+
+  Example(std::vector<std::size_t> sizes, Eigen::Index width, unsigned seed) {
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> normal;
+    const auto draw = [&](Eigen::Index, Eigen::Index) { return normal(engine); };
+    for (const std::size_t size : sizes) {
+      std::vector<double> given(size, 0.0);
+      std::vector<double> time(size);
+      for (std::size_t i = 0; i < size; ++i) {
+        time[i] = step * static_cast<double>(i);
+        if (i % 67 == 40) given[i] = missing;
+      }
+      const Binning& made = bins.emplace_back(given, time, step);
+      const auto rows = static_cast<Eigen::Index>(made.size());
+      columns.emplace_back(Eigen::MatrixXd::NullaryExpr(rows, width, draw));
+      residuals.emplace_back(Eigen::MatrixXd::NullaryExpr(rows, 1, draw));
+      Eigen::VectorXd level(rows);
+      for (Eigen::Index i = 0; i < rows; ++i) level[i] = i < rows / 2 ? 0.2 : 0.5;
+      noise.level.push_back(level);
+    }
+    noise.coefficients = {memory};
+  }
+
+  /// The covariance of the noise of a flight.
+  Eigen::MatrixXd covariance(std::size_t flight) const {
+    const Eigen::VectorXd& level = noise.level[flight];
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(level.size(), level.size());
+    for (const pcor::Segment& segment : bins[flight].segments()) {
+      for (std::size_t i = 0; i < segment.count; ++i) {
+        for (std::size_t j = 0; j < segment.count; ++j) {
+          const auto a = static_cast<Eigen::Index>(segment.first + i);
+          const auto b = static_cast<Eigen::Index>(segment.first + j);
+          result(a, b) = level[a] * level[b] * std::pow(memory, std::abs(static_cast<double>(a - b))) /
+                         (1.0 - memory * memory);
+        }
+      }
+    }
+    const std::vector<double>& time = bins[flight].time();
+    for (Eigen::Index a = 0; a < level.size(); ++a) {
+      for (Eigen::Index b = 0; b < level.size(); ++b) {
+        const double apart = std::abs(time[static_cast<std::size_t>(a)] - time[static_cast<std::size_t>(b)]);
+        for (std::size_t k = 0; k < slow_times.size(); ++k)
+          result(a, b) += noise.slow[k] * noise.slow[k] * std::exp(-apart / slow_times[k]);
+      }
+    }
+    return result;
+  }
+};
+
+}  // namespace
+
+TEST(WhitenedSystem, AreThoseOfGeneralisedLeastSquares) {
+  const auto expected = [](const Example& example) {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(5, 5);
+    for (std::size_t f = 0; f < 2; ++f) {
+      Eigen::MatrixXd all(example.columns[f].rows(), 5);
+      all << example.columns[f], example.residuals[f];
+      sum += all.transpose() * example.covariance(f).ldlt().solve(all);
+    }
+    return sum;
+  };
+  for (const double drift : {0.0, 0.3, 3.0}) {
+    Example example({300, 150}, 4, 1);
+    example.noise.slow = {0.5 * drift, 0.0, drift, 0.2 * drift};
+    const WhitenedSystem scores =
+        pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
+                                    example.columns, example.residuals, example.noise);
+    // Rounding, of matrices whose condition is 1e5 at most.
+    EXPECT_TRUE(scores.information.isApprox(expected(example), 1e-9)) << drift;
+    EXPECT_TRUE(scores.information.isApprox(scores.information.transpose(), 1e-14));
+    example.noise.slow = {};
+    EXPECT_TRUE(scores.plain.isApprox(expected(example), 1e-9)) << drift;
+    EXPECT_TRUE(scores.plain.isApprox(scores.plain.transpose(), 1e-14));
+  }
+}
+
+TEST(WhitenedSystem, OfBlocksAddUpToTheScore) {
+  Example example({300, 150}, 4, 2);
+  example.noise.slow = {0.0, 0.5, 0.0, 0.0};
+  const WhitenedSystem scores =
+      pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
+                                  example.columns, example.residuals, example.noise);
+  // What is left after no coefficients has the score of the residual.
+  Eigen::VectorXd score = Eigen::VectorXd::Zero(4);
+  for (std::size_t f = 0; f < 2; ++f)
+    score += scores.rows[f].leftCols(4).transpose() * scores.left(f, Eigen::VectorXd::Zero(4));
+  EXPECT_TRUE(score.isApprox(scores.information.col(4).head(4), 1e-9));
+  // 20 and 10 minutes, where gaps of a bin may end a minute late.
+  EXPECT_GE(scores.blocks, 28);
+  EXPECT_LE(scores.blocks, 31);
+  for (std::size_t f = 0; f < 2; ++f) {
+    ASSERT_EQ(scores.block[f].size(), example.bins[f].size());
+    for (std::size_t i = 1; i < scores.block[f].size(); ++i)
+      EXPECT_GE(scores.block[f][i], scores.block[f][i - 1]);
+  }
+  EXPECT_GT(scores.block[1].front(), scores.block[0].back());
+  EXPECT_EQ(scores.row_count, example.bins[0].size() + example.bins[1].size());
+}
+
+// What drift can be says nothing any more: a column that is a drift is worth little, one that is fast is
+// worth what it was.
+TEST(WhitenedSystem, WithDriftSlowColumnsAreWorthLittle) {
+  Example example({600}, 2, 3);
+  for (Eigen::Index i = 0; i < example.columns[0].rows(); ++i)
+    example.columns[0](i, 0) = std::cos(3.0 * M_PI * example.bins[0].time()[static_cast<std::size_t>(i)] /
+                                        example.bins[0].time().back());
+  const WhitenedSystem without =
+      pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
+                                  example.columns, example.residuals, example.noise);
+  example.noise.slow = {0.0, 0.0, 1.0, 0.0};
+  const WhitenedSystem with =
+      pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
+                                  example.columns, example.residuals, example.noise);
+  // Forty minutes hold a few pieces of a drift of 800 s and 1 hPa: the coefficient of a wave is known to some
+  // tenths of it.
+  EXPECT_LT(with.information(0, 0), 20.0);
+  EXPECT_GT(without.information(0, 0), 200.0);
+  // Of a column without memory a drift that is slower than two minutes hides a tenth at most.
+  EXPECT_GT(with.information(1, 1), 0.8 * without.information(1, 1));
+  EXPECT_NEAR(with.plain(0, 0), without.information(0, 0), 1e-9 * without.information(0, 0));
+}

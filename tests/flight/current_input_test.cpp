@@ -1,0 +1,41 @@
+#include "flight/current_input.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace pcor::internal {
+namespace {
+
+TEST(FileInHand, IsTheOneThatIsReadLast) {
+  const std::filesystem::path outer = "outer.nc", inner = "inner.nc";
+  EXPECT_EQ(current_input_path(), nullptr);
+  EXPECT_EQ(current_input_seconds(), 0.0);
+  {
+    const FileInHand first(outer);
+    EXPECT_STREQ(current_input_path(), "outer.nc");
+    { const FileInHand again(outer); }
+    EXPECT_FALSE(had_previous_input());
+    {
+      const FileInHand second(inner);
+      EXPECT_STREQ(current_input_path(), "inner.nc");
+      EXPECT_TRUE(had_previous_input());
+    }
+    EXPECT_STREQ(current_input_path(), "outer.nc");
+  }
+  EXPECT_EQ(current_input_path(), nullptr);
+}
+
+TEST(FileInHand, CountsTheTimeThatIsWorkedOnIt) {
+  const std::filesystem::path path = "flight.nc";
+  const FileInHand in_hand(path);
+  const double before = current_input_seconds();
+  EXPECT_GE(before, 0.0);
+  while (current_input_seconds() < before + 0.01) {
+  }
+  const FileInHand again(path);
+  EXPECT_LT(current_input_seconds(), 0.01) << "from the beginning";
+}
+
+}  // namespace
+}  // namespace pcor::internal

@@ -1,0 +1,84 @@
+#include "model_io/sensor_doubt.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <string>
+
+#include <pcor/base/error.hpp>
+
+namespace pcor {
+namespace {
+
+using testing::ElementsAre;
+
+std::string model_text(const std::string& more) {
+  return R"(
+format = "pcor-model/1"
+name = "one term"
+[variables]
+static_pressure = "PSFD"
+dynamic_pressure = "QCF"
+recovery_temperature = "TTRR"
+[temperature]
+recovery_factor = 0.95
+[[effect]]
+id = "static-constant"
+)" + more;
+}
+
+std::vector<std::string> names_of(const std::vector<internal::SensorDoubt>& doubts) {
+  std::vector<std::string> names;
+  for (const internal::SensorDoubt& doubt : doubts) names.push_back(doubt.name());
+  return names;
+}
+
+std::vector<internal::SensorDoubt> thermometer_of(const std::string& more) {
+  return internal::doubts_of(parse_model(model_text(more), "m.toml"), internal::thermometer_calibration);
+}
+
+TEST(SensorDoubt, IsThatOfTheCatalogueUnlessTheModelStatesAnother) {
+  const auto usual = thermometer_of("");
+  EXPECT_THAT(names_of(usual), ElementsAre("temp-offset.offset", "recovery-factor.da"));
+  EXPECT_DOUBLE_EQ(usual[0].size, 0.3);
+  EXPECT_DOUBLE_EQ(usual[1].size, 0.005);
+  const auto stated =
+      thermometer_of("[uncertainty]\n\"temp-offset.offset\" = 0.05\n\"recovery-factor.da\" = 0\n");
+  EXPECT_THAT(names_of(stated), ElementsAre("temp-offset.offset"));
+  EXPECT_DOUBLE_EQ(stated[0].size, 0.05);
+  // An effect of the model is what the model says of the sensor.
+  EXPECT_THAT(names_of(thermometer_of("[[effect]]\nid = \"temp-offset\"\n")),
+              ElementsAre("recovery-factor.da"));
+  EXPECT_THROW(thermometer_of("[uncertainty]\n\"static-constant.a0\" = 0.05\n"), Error);
+}
+
+TEST(SensorDoubt, LeavesTheModelAsItIsAndItsErrorBesideIt) {
+  const ModelDefinition given = parse_model(model_text(""), "m.toml");
+  const ModelDefinition doubted =
+      internal::with_doubts(given, internal::doubts_of(given, internal::thermometer_calibration));
+  ASSERT_EQ(doubted.model.effects.size(), 3U);
+  EXPECT_THAT(doubted.model.effects[1].parameters, ElementsAre(0.0, 0.0));
+  EXPECT_TRUE(doubted.fit(1, 0).fixed);
+  const ModelUncertainty uncertainty = uncertainty_of(doubted);
+  // a0, offset, slope, da
+  EXPECT_DOUBLE_EQ(uncertainty.covariance[1 * 4 + 1], 0.09);
+  EXPECT_DOUBLE_EQ(uncertainty.covariance[2 * 4 + 2], 0.0);
+  EXPECT_DOUBLE_EQ(uncertainty.covariance[3 * 4 + 3], 0.005 * 0.005);
+}
+
+TEST(SensorDoubt, OfACovarianceSurvivesTheFileAndCountsWithItsEffectOnly) {
+  ModelDefinition file = parse_model(model_text(""), "m.toml");
+  file.covariance = {{"static-constant.a0", "temp-offset.offset"}, {{1e-6, 1e-4}, {1e-4, 0.04}}};
+  const ModelDefinition read = parse_model(write_model(file), "m.toml");
+  EXPECT_EQ(read.covariance.parameters, file.covariance.parameters);
+  EXPECT_EQ(read.covariance.matrix, file.covariance.matrix);
+  EXPECT_THAT(uncertainty_of(read).covariance, ElementsAre(1e-6));
+  const ModelDefinition doubted =
+      internal::with_doubts(read, internal::doubts_of(read, internal::thermometer_calibration));
+  const ModelUncertainty uncertainty = uncertainty_of(doubted);
+  EXPECT_DOUBLE_EQ(uncertainty.covariance[0 * 4 + 1], 1e-4);
+  EXPECT_DOUBLE_EQ(uncertainty.covariance[1 * 4 + 1], 0.04);
+}
+
+}  // namespace
+}  // namespace pcor

@@ -1,0 +1,128 @@
+#include "parallel/flight_partition.hpp"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/thread_team.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using test::run_with_communicator;
+using ::testing::Each;
+
+/// What the flights of each member weigh together.
+std::vector<std::uint64_t> loads(std::size_t members, const std::vector<std::uint64_t>& sizes) {
+  std::vector<std::uint64_t> load(members, 0);
+  std::vector<int> owners(sizes.size(), 0);
+  std::mutex counting;
+  run_with_communicator(members, [&](Communicator& comm) {
+    const FlightPartition share(comm, sizes);
+    EXPECT_EQ(share.flights(), sizes.size());
+    std::size_t own = 0;
+    const std::lock_guard lock(counting);
+    for (std::size_t flight = 0; flight < sizes.size(); ++flight) {
+      if (!share.owns(flight)) continue;
+      ++owners[flight];
+      ++own;
+      load[comm.rank()] += sizes[flight];
+    }
+    EXPECT_EQ(share.own(), own);
+  });
+  EXPECT_THAT(owners, Each(1));
+  return load;
+}
+
+TEST(FlightPartition, GivesEveryFlightToOneMemberAndAboutAsMuchToEach) {
+  std::mt19937 chance(1);
+  std::vector<std::uint64_t> sizes;
+  for (int flight = 0; flight < 60; ++flight) sizes.push_back(1'000'000 + chance() % 9'000'000);
+  const std::uint64_t all = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0});
+  for (const std::size_t members : {1, 2, 3, 7}) {
+    const std::vector<std::uint64_t> load = loads(members, sizes);
+    // The longest first is at most a third beyond the best that can be (Graham 1969), far less for so many.
+    EXPECT_LT(*std::max_element(load.begin(), load.end()),
+              1.02 * static_cast<double>(all) / static_cast<double>(members));
+  }
+  EXPECT_EQ(loads(5, {3, 4}).size(), 5U);  // more members than flights
+}
+
+TEST(FlightPartition, FailsWhereTheMembersHaveOtherFlights) {
+  std::vector<std::string> messages(2);
+  test::run_with_communicator(2, [&](Communicator& comm) {
+    try {
+      partition_flights(comm, {"a.nc", comm.rank() == 0 ? "b.nc" : "c.nc"});
+    } catch (const Error& error) {
+      messages[comm.rank()] = error.what();
+    }
+  });
+  EXPECT_THAT(messages, Each(::testing::HasSubstr("different numbers")));
+}
+
+/// A part of everything that is sent.
+struct Part {
+  double number = 0.0;
+  std::vector<Eigen::MatrixXd> matrices{};
+  Eigen::VectorXd vector{};
+  std::string text{};
+  std::optional<int> option{};
+  std::vector<bool> bits{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(number, matrices, vector, text, option, bits);
+  }
+};
+
+Part part_of(std::size_t flight) {
+  const auto n = static_cast<Eigen::Index>(flight);
+  Part part;
+  part.number = flight % 2 == 0 ? -0.0 : std::numeric_limits<double>::denorm_min();
+  part.matrices = {Eigen::MatrixXd::Random(n, 3), Eigen::MatrixXd(0, n)};
+  part.vector = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  part.text = std::string(flight, '\0');
+  if (flight > 1) part.option = -7;
+  part.bits.resize(flight, true);
+  return part;
+}
+
+TEST(FlightPartition, GathersThePartsOfAllFlightsBitByBitInTheirOrder) {
+  constexpr std::size_t flights = 7;
+  std::vector<Part> alone_parts(flights);
+  for (std::size_t flight = 0; flight < flights; ++flight) alone_parts[flight] = part_of(flight);
+  for (const std::size_t members : {1, 2, 3, 11}) {
+    run_with_communicator(members, [&](Communicator& comm) {
+      const FlightPartition share(comm, std::vector<std::uint64_t>(flights, 5));
+      const auto parts = share.of_each_flight<Part>([&](std::size_t flight) { return alone_parts[flight]; });
+      EXPECT_EQ(packed(parts), packed(alone_parts));
+    });
+  }
+}
+
+TEST(FlightPartition, FailsWithTheErrorOfTheFirstFlightThatFails) {
+  std::vector<std::string> messages(3);
+  run_with_communicator(3, [&](Communicator& comm) {
+    const FlightPartition share(comm, std::vector<std::uint64_t>(9, 1));
+    try {
+      share.of_each_flight<int>([](std::size_t flight) {
+        if (flight % 4 == 3) throw Error(Error::Code::file, "flight " + std::to_string(flight));
+        return 0;
+      });
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Error::Code::file);
+      messages[comm.rank()] = error.what();
+    }
+  });
+  EXPECT_THAT(messages, Each("flight 3"));
+}
+
+}  // namespace
+}  // namespace pcor::internal

@@ -1,0 +1,174 @@
+#include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/improve/improve.hpp>
+#include <pcor/roles/add_effects.hpp>
+
+#include <string>
+#include <vector>
+
+#include "support/synthetic_samples.hpp"
+
+using namespace pcor::internal;
+
+using pcor::ModelDefinition;
+using pcor::ModelEffect;
+using pcor::Quantity;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+namespace {
+
+const std::string model_text = R"(format = "pcor-model/1"
+name = "made"
+aircraft = "C-130 N130AR"
+
+[variables]
+static_pressure = "PSFD"
+dynamic_pressure = "QCF"
+
+[units]
+static_pressure = "mbar"
+
+[output]
+PSXC = "MINE"
+
+[[effect]]
+id = "static-constant"
+parameters = { a0 = 0.004 }
+stderr = { a0 = 0.001 }
+fixed = ["a0"]
+bounds = { a0 = [-0.01, 0.01] }
+
+[law]
+source = "the memo"
+
+[provenance]
+flights = ["one.nc"]
+)";
+
+ModelDefinition model() { return pcor::parse_model(model_text, "made.toml"); }
+
+ModelEffect thrust(const std::string& formula = "k * ENGTRQ / 100") {
+  ModelEffect effect;
+  effect.id = "my-thrust";
+  effect.formula = formula;
+  effect.parameter_names = {"k"};
+  effect.parameters = {0.0};
+  effect.unit = "hPa";
+  effect.source = "engine run-up";
+  return effect;
+}
+
+ModelEffect of_catalogue(const std::string& id) {
+  ModelEffect effect;
+  effect.id = id;
+  return effect;
+}
+
+std::string message_of(const std::vector<ModelEffect>& effects,
+                       const std::vector<std::string>& variables = {}) {
+  try {
+    add_effects(model(), effects, variables);
+  } catch (const pcor::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(WithEffects, StartsNeutral) {
+  const ModelDefinition file = add_effects(model(), {of_catalogue("static-qp"), of_catalogue("static-lag")});
+  ASSERT_EQ(file.model.effects.size(), 3U);
+  EXPECT_EQ(file.model.effects[1].id, "static-qp");
+  EXPECT_THAT(file.model.effects[1].parameters, ElementsAre(0.0));
+  EXPECT_THAT(file.model.effects[2].parameters, ElementsAre(0.0));
+}
+
+TEST(WithEffects, KeepsTheParametersThatAnEffectBrings) {
+  ModelEffect effect = of_catalogue("static-lag");
+  effect.parameters = {0.2};
+  EXPECT_THAT(add_effects(model(), {effect}).model.effects.back().parameters, ElementsAre(0.2));
+}
+
+TEST(WithEffects, KeepsEverythingElse) {
+  const std::string text = write_model(add_effects(model(), {of_catalogue("static-qp")}));
+  const std::string added = "\n[[effect]]\nid = \"static-qp\"\nparameters = { a2 = 0.0 }\n";
+  std::string expected = write_model(model());
+  expected.insert(expected.find("\n[law]"), added);
+  EXPECT_EQ(text, expected);
+}
+
+TEST(WithEffects, NamesTheVariablesThatAreNeeded) {
+  const ModelDefinition file =
+      add_effects(model(), {of_catalogue("static-attack"), of_catalogue("static-beta-odd")});
+  EXPECT_EQ(file.variables.at(Quantity::attack), "ATTACK");
+  EXPECT_EQ(file.variables.at(Quantity::sideslip_differential_pressure), "BDIFR");
+  EXPECT_EQ(file.variables.at(Quantity::radome_dynamic_pressure), "QCR");
+  EXPECT_EQ(file.variables.count(Quantity::attack_differential_pressure), 0U);
+}
+
+TEST(WithEffects, NamesNothingThatTheModelDerives) {
+  ModelDefinition file = model();
+  file.variables[Quantity::radome_dynamic_pressure] = "QCR_B";
+  file.variables[Quantity::attack_differential_pressure] = "ADIFR_B";
+  file.model.attack_radome = {5.0, 20.0, 0.0};
+  const ModelDefinition extended = add_effects(file, {of_catalogue("static-attack")});
+  EXPECT_EQ(extended.variables, file.variables);
+}
+
+TEST(WithEffects, ChoosesAmongTheVariablesOfAFlight) {
+  const ModelDefinition file = add_effects(model(), {of_catalogue("static-attack")}, {"PSFD", "AKRD", "QCF"});
+  EXPECT_EQ(file.variables.at(Quantity::attack), "AKRD");
+  const ModelDefinition suffixed =
+      add_effects(model(), {of_catalogue("static-attack")}, {"ATTACKS", "AKRD_RWO"});
+  EXPECT_EQ(suffixed.variables.at(Quantity::attack), "AKRD_RWO");
+}
+
+TEST(WithEffects, TellsWhatTheFlightLacks) {
+  EXPECT_THAT(message_of({of_catalogue("static-attack")}, {"PSFD", "QCF"}),
+              AllOf(HasSubstr("'static-attack'"), HasSubstr("'attack'"), HasSubstr("ATTACK, AKRD")));
+}
+
+TEST(WithEffects, TellsTheRoleThatNobodyCanGuess) {
+  EXPECT_THAT(
+      message_of({thrust("k * lams_airspeed")}),
+      AllOf(HasSubstr("'my-thrust'"), HasSubstr("'lams_airspeed'"), HasSubstr("lams_airspeed = \"...\"")));
+}
+
+TEST(WithEffects, TakesAFormula) {
+  const ModelDefinition file = add_effects(model(), {thrust("k * ENGTRQ * roll")}, {"ENGTRQ", "ROLL"});
+  EXPECT_EQ(file.model.effects.back().formula, "k * ENGTRQ * roll");
+  EXPECT_EQ(file.variables.at(Quantity::roll), "ROLL");
+  EXPECT_EQ(file.variables.size(), 3U);
+  EXPECT_EQ(write_model(pcor::parse_model(write_model(file), "it")), write_model(file));
+}
+
+TEST(WithEffects, RefusesWhatHasNoMeaning) {
+  EXPECT_THAT(message_of({of_catalogue("static-constant")}),
+              HasSubstr("has the effect 'static-constant' already"));
+  EXPECT_THAT(message_of({of_catalogue("static-qp"), of_catalogue("static-qp")}), HasSubstr("already"));
+  EXPECT_THAT(message_of({of_catalogue("static-lg")}), HasSubstr("did you mean static-lag"));
+  EXPECT_THAT(message_of({thrust("k * (ENGTRQ")}), AllOf(HasSubstr("'my-thrust'"), HasSubstr("column")));
+  ModelEffect catalogued = thrust();
+  catalogued.id = "static-lag";
+  EXPECT_THAT(message_of({catalogued}), HasSubstr("formula in the catalogue"));
+  ModelEffect wrong = of_catalogue("static-lag");
+  wrong.parameters = {1.0, 2.0};
+  EXPECT_THAT(message_of({wrong}), HasSubstr("takes 1 parameter(s), not 2"));
+}
+
+TEST(WithEffects, HoldsWhatOnlyShapesAnEffect) {
+  for (const pcor::EffectInfo& info : pcor::effect_info) {
+    ModelDefinition file = made::model({});
+    for (std::size_t i = 0; i < pcor::role_count; ++i) {
+      const auto role = static_cast<Quantity>(i);
+      file.variables.emplace(role, std::string(pcor::info_of(role).name));
+    }
+    const ModelDefinition extended = add_effects(file, {of_catalogue(std::string(info.id))});
+    for (std::size_t i = 0; i < info.parameter_count(); ++i)
+      EXPECT_EQ(extended.fit(0, i).fixed, info.parameters[i].shape) << info.id;
+  }
+}
