@@ -222,4 +222,30 @@ void GpsNoise::maximise(const GpsRows& rows, const Eigen::VectorXd& more, const 
   if (found.allFinite()) logarithms_ = found;
 }
 
+void widen(GpsPrior& prior, const WhiteRows& white) {
+  for (Eigen::Index k = 0; k < prior.deviation.size(); ++k) {
+    if (prior.deviation[k] > 0.0) continue;
+    const double length = white.rows.col(k).norm();
+    prior.deviation[k] = length > 0.0 ? 100.0 / length : 1.0;
+  }
+}
+
+bool find_outliers(const WhiteRows& white, const GpsPrior& prior, Eigen::VectorXd& more) {
+  constexpr double limit = 4.5;
+  constexpr double wider = 100.0;
+  const Eigen::Index count = white.rows.cols() - 1;
+  const auto columns = white.rows.leftCols(count);
+  Eigen::MatrixXd matrix = columns.transpose() * columns;
+  matrix.diagonal() += prior.deviation.cwiseAbs2().cwiseInverse();
+  const Eigen::VectorXd best = matrix.ldlt().solve(columns.transpose() * white.rows.col(count));
+  const Eigen::VectorXd news = white.rows.col(count) - columns * best;
+  bool any = false;
+  for (Eigen::Index i = 0; i < news.size(); ++i) {
+    if (!(std::abs(news[i]) > limit)) continue;
+    more[i] = wider * news[i] * news[i] * white.variance[i];
+    any = true;
+  }
+  return any;
+}
+
 }  // namespace pcor::internal

@@ -68,9 +68,10 @@ struct GpsRows {
 /// sideslip), each component. Height, m: that of GPS less that of the hydrostatic equation.
 ///
 /// In the columns of the wind stands in place of the recorded pressures what they would be without gusts: V
-/// low-passed by a Gaussian of 45 s, its direction by one of 15 s. In those of the height what changes with
-/// the temperature has pressures that are low-passed by 15 s, and so has the rise: a thousandth of the noise
-/// of pressure or GPS in them would be taken for some tenths of a kelvin.
+/// low-passed by a Gaussian of 45 s, its direction by one of 15 s; flow angles, and what else an effect
+/// reads, are low-passed by 1 s. In those of the height what changes with the temperature has pressures that
+/// are low-passed by 15 s, and so has the rise: a thousandth of the noise of pressure or GPS in them would be
+/// taken for some tenths of a kelvin.
 /// @param used the samples that take part
 /// @param parameters of the model, all of them; `wanted` are those of which the rows have derivatives
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,

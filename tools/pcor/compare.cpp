@@ -309,6 +309,14 @@ void run(const Options& options) {
     comparison = compare(flights, contenders, compare_options);
   }
   const Levels levels = levels_by_gps(flights, contenders, options);
+  const bool has_wind = std::any_of(references.used.begin(), references.used.end(),
+                                    [](const auto& reference) { return reference->name() == "wind"; });
+  if (has_wind) {
+    comparison.notes.emplace_back(
+        "residuals by wind are as measured: they contain gusts and the drift of the wind, which are no "
+        "errors "
+        "of a model; what delta-p lacks by GPS is found without them, by compare --reference wind and refit");
+  }
   if (!is_speaker()) return;
   OutputTransaction together;
   if (!options.residuals.empty()) {
