@@ -53,7 +53,7 @@ WhiteRows white_wind(const Eigen::VectorXd& sizes, const GpsRows& rows, const Ei
   LatentFilter<count> filter(variance, rows.rows.cols(), 2 * size);
   const double noise = sizes[white] * sizes[white];
   const double walk = sizes[with_height] * sizes[with_height];
-  std::array<double, 3> gust_sizes{};  // of each process, where a gust of one second is 1 m/s
+  std::array<double, 3> gust_sizes{};  // deviation of each process for gusts of 1 m/s in one second
   for (std::size_t g = 0; g < gust_times.size(); ++g)
     gust_sizes[g] = sizes[gusts] * std::pow(gust_times[g], 1.0 / 3.0);
   States stays = States::Ones();

@@ -91,9 +91,10 @@ Air air_of(const FlightSamples& samples, const ModelOnSamples& law, const double
   return air;
 }
 
-/// What an effect reads beside pressures and temperatures, flow angles above all, without the noise of their
-/// sensors. The row holds that noise, too, by what the law makes of it, and the coefficient would come out
-/// too small: by 2 % for 0.03 hPa in ADIFR, which is several standard errors in an hour of calm air.
+/// Removes the sensor noise from the inputs of effects other than pressures and temperatures, above all flow
+/// angles. The residual contains the same noise, multiplied by the coefficient, and a column that contained
+/// it would make the coefficient too small: by 2 % for 0.03 hPa in ADIFR, several standard errors in an hour
+/// of calm air.
 void low_pass_angles(ModelSamples& samples, double step) {
   constexpr double deviation = 1.0;  // s
   for (auto& [quantity, values] : samples.columns) {

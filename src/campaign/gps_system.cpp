@@ -11,12 +11,12 @@ namespace pcor::internal {
 namespace {
 
 constexpr double minute = 60.0;                // s
-constexpr double prior_in_usual_sizes = 1.25;  // as in a fit
+constexpr double prior_in_usual_sizes = 1.25;  // the same as in a fit
 constexpr Eigen::Index own_nuisances = gps_nuisance_count - gps_shared_nuisances;
 
 const GpsNuisance& nuisance(Eigen::Index n) { return gps_nuisances[static_cast<std::size_t>(n)]; }
 
-/// The model's own coefficients and all nuisances.
+/// Prior of the coefficients of the law and of all nuisances.
 GpsPrior prior_of(const GpsColumns& columns) {
   const Eigen::Index own = as_index(columns.own);
   GpsPrior prior{Eigen::VectorXd::Zero(own + gps_nuisance_count), Eigen::VectorXd(own + gps_nuisance_count)};
@@ -36,8 +36,8 @@ GpsRows without_tested(const GpsRows& rows, const GpsColumns& columns) {
   return result;
 }
 
-/// Coefficients, shared nuisances and residual, without what is best explained by the flight's own nuisances.
-/// Behind the rows stand those of the prior of these: together they are the projection.
+/// Coefficients, shared nuisances and residual after the fit of the nuisances of the flight. The rows of the
+/// prior of these nuisances follow the rows of the flight.
 RowByRow eliminate_own(const RowByRow& white, Eigen::Index coefficients) {
   const Eigen::Index kept = coefficients + gps_shared_nuisances;
   const Eigen::Index size = white.rows();

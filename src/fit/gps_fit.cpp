@@ -284,7 +284,7 @@ class GpsSolver {
     return task_.parameters[wanted_[static_cast<std::size_t>(k)]].bounds;
   }
 
-  /// Sets coefficients beyond a bound to it, and gives the others the values that go with that.
+  /// Sets coefficients beyond a bound to the bound. The others get their best values with the bound held.
   void keep_bounds() {
     at_bound_.assign(wanted_.size(), false);
     const Eigen::MatrixXd level = level_held();
@@ -293,7 +293,7 @@ class GpsSolver {
     covariance.leftCols(count_) = covariance.leftCols(count_).eval() * level.transpose();
     for (Eigen::Index round = 0; round < count_; ++round) {
       Eigen::Index worst = -1;
-      double beyond = 0.0;  // in deviations of the prior
+      double beyond = 0.0;  // standard deviations of the prior
       for (Eigen::Index k = 0; k < count_; ++k) {
         const double value = before_.values[k] + change_[k];
         const double off = std::abs(value - std::clamp(value, bounds_of(k).lower, bounds_of(k).upper));
@@ -334,8 +334,8 @@ class GpsSolver {
     GpsFit fit;
     fit.values = values_(wanted_);
     fit.at_bound = at_bound_;
-    // What the solution changes by without each block of five minutes. A block that decides alone, as the
-    // only climb, counts for more than by its score.
+    // Change of the solution without each block of five minutes. Scores of the blocks would understate the
+    // error if one block decides, for example the only climb.
     Eigen::VectorXd residual_weights(shared() + 1);
     Eigen::VectorXd left = change_;
     left.head(count_).setZero();

@@ -28,7 +28,7 @@ struct GpsFit {
   double held = 0.0;         ///< of it what stands in what was held
   double thermometer = 0.0;  ///< by how much the thermometer is too low, K
   double thermometer_error = 0.0;
-  std::vector<std::string> warnings{};  ///< what is held, and the manoeuvre that would tell
+  std::vector<std::string> warnings{};  ///< held coefficients, and manoeuvres that determine them
   std::vector<std::string> notes{};
 };
 
@@ -41,8 +41,8 @@ bool is_by_gps(const Reference& reference);
 /// delta-p stays there as near to that of the start as the rest allows, and the error is that of the prior,
 /// or as the file states it.
 ///
-/// The stated covariance is that of the model, or that of leaving out one part of five minutes after another
-/// (a jackknife), whichever has the larger error of delta-p.
+/// The stated covariance is that of the likelihood or that of a jackknife over parts of five minutes; of the
+/// two, the one with the larger error of delta-p.
 /// @param flights for each reference of GPS the flights of the fit
 GpsFit fit_gps(const std::vector<FitFlights*>& flights, const Eigen::VectorXd& start, const BeforeGps& before,
                const std::vector<std::size_t>& wanted);

@@ -174,13 +174,13 @@ Fitted prepared_for_gps(const FitTask& task) {
         "--stage: a fit to GPS alone has no stages; give a further reference, or leave the stages out");
   if (task.options.use_prior)
     throw Error(
-        "--prior: a fit to GPS alone has a prior of its own, the typical sizes of the effects about the "
-        "start; "
-        "leave it out, or give a further reference");
+        "--prior: a fit to GPS alone always has a prior about the start, with the typical sizes of the "
+        "effects; "
+        "leave --prior out, or give a further reference");
   if (task.options.loss != RefitOptions().loss)
     throw Error(
-        fmt::format("--loss {}: a fit to GPS alone is no least squares, it gives outliers a larger variance; "
-                    "leave it out, "
+        fmt::format("--loss {}: a fit to GPS alone has no loss function, outliers get a larger variance; "
+                    "leave --loss out, "
                     "or give a further reference",
                     to_string(task.options.loss)));
   Fitted fitted = at_start(task, fit_stages(task.parameters, {}, task.model.model.name));

@@ -150,7 +150,7 @@ std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& 
       masks[i] = residual.reference.why_missing(i);
   }
   residual.reference.mark_implausible(masks, samples.motion.airspeed, options);
-  // A gust is a jump of the pitot and of what is left of the wind; it is no fault of a sensor.
+  // In a gust the dynamic pressure and the residual by wind jump together, although every sensor works.
   if (residual.reference.neighbours() == nullptr) mark_bursts(residual, masks);
   const std::vector<ModelEffect>& effects = residual.model.model().effects;
   const bool describes_flaps = std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {

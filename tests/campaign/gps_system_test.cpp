@@ -40,7 +40,7 @@ std::filesystem::path flight(int seed, const std::string& effect = "") {
 const std::vector<std::string> tested{"static-mach3", "static-beta-odd", "static-alpha-quad", "static-lag",
                                       "roll-static",  "load-factor",     "pitot-angle",       "qcf-zero"};
 
-/// By how much each tested effect lowers chi2, beside the law and the nuisances.
+/// Decrease of chi2 by each tested effect, with law and nuisances fitted.
 std::map<std::string, double> gains(const std::filesystem::path& path, bool with_height) {
   const ModelDefinition law = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
   std::vector<pcor::ModelEffect> effects;

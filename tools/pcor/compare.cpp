@@ -313,9 +313,9 @@ void run(const Options& options) {
                                     [](const auto& reference) { return reference->name() == "wind"; });
   if (has_wind) {
     comparison.notes.emplace_back(
-        "residuals by wind are as measured: they contain gusts and the drift of the wind, which are no "
-        "errors "
-        "of a model; what delta-p lacks by GPS is found without them, by compare --reference wind and refit");
+        "residuals by wind contain gusts and the drift of the wind, which are not errors of a model; "
+        "--reference "
+        "wind also prints the mean error of delta-p by GPS, which does not contain them");
   }
   if (!is_speaker()) return;
   OutputTransaction together;
