@@ -46,4 +46,11 @@ class GpsNoise {
   Eigen::VectorXd logarithms_;  // of the sizes
 };
 
+/// An effect of the user's own has no usual size (a deviation of zero): its prior becomes wide.
+void widen(GpsPrior& prior, const WhiteRows& white);
+
+/// Adds variance for outliers, white residuals of more than 4.5 after a fit of all columns. True if one was
+/// found.
+bool find_outliers(const WhiteRows& white, const GpsPrior& prior, Eigen::VectorXd& more);
+
 }  // namespace pcor::internal

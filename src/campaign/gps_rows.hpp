@@ -10,6 +10,7 @@
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/samples.hpp>
+#include "numerics/latent_filter.hpp"
 
 namespace pcor::internal {
 
@@ -57,7 +58,7 @@ struct GpsRows {
   std::vector<double> north;
   std::vector<double> warmth;  ///< height: 1/T, 1/K
   std::vector<bool> is_break;  ///< height: the height since the sample before is not known
-  Eigen::MatrixXd rows;        ///< wind: of the east, then of the north component of all samples
+  RowByRow rows;               ///< wind: of the east, then of the north component of all samples
   Eigen::MatrixXd defect;      ///< derivatives of the corrected static pressure by the wanted coefficients
 };
 
@@ -67,9 +68,10 @@ struct GpsRows {
 /// sideslip), each component. Height, m: that of GPS less that of the hydrostatic equation.
 ///
 /// In the columns of the wind stands in place of the recorded pressures what they would be without gusts: V
-/// low-passed by a Gaussian of 45 s, its direction by one of 15 s. In those of the height what changes with
-/// the temperature has pressures that are low-passed by 15 s, and so has the rise: a thousandth of the noise
-/// of pressure or GPS in them would be taken for some tenths of a kelvin.
+/// low-passed by a Gaussian of 45 s, its direction by one of 15 s; flow angles, and what else an effect
+/// reads, are low-passed by 1 s. In those of the height what changes with the temperature has pressures that
+/// are low-passed by 15 s, and so has the rise: a thousandth of the noise of pressure or GPS in them would be
+/// taken for some tenths of a kelvin.
 /// @param used the samples that take part
 /// @param parameters of the model, all of them; `wanted` are those of which the rows have derivatives
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,

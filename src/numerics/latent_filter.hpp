@@ -7,9 +7,12 @@
 
 namespace pcor::internal {
 
+/// Rows that are read and written one after another.
+using RowByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Rows that were made white: what is new in each row after those before it, in units of its deviation.
 struct WhiteRows {
-  Eigen::MatrixXd rows;      ///< zero where the row has no value
+  RowByRow rows;             ///< zero where the row has no value
   Eigen::VectorXd variance;  ///< of what is new; zero where the row has no value
   double log_determinant = 0.0;
 };
@@ -28,7 +31,7 @@ class LatentFilter {
   /// @param rows how many there will be
   LatentFilter(const States& variance, Eigen::Index size, Eigen::Index rows)
       : covariance_(variance.asDiagonal()), means_(Processes::Zero(count, size)), change_(size) {
-    white_.rows = Eigen::MatrixXd::Zero(rows, size);
+    white_.rows = RowByRow::Zero(rows, size);
     white_.variance = Eigen::VectorXd::Zero(rows);
   }
 
@@ -55,7 +58,7 @@ class LatentFilter {
     change_.noalias() -= by.transpose() * means_;
     means_.noalias() += (shared / variance) * change_;
     covariance_.noalias() -= (shared / variance) * shared.transpose();
-    white_.rows.row(number) = change_ / std::sqrt(variance);
+    white_.rows.row(number) = change_ * (1.0 / std::sqrt(variance));
     white_.variance[number] = variance;
     white_.log_determinant += std::log(variance);
   }

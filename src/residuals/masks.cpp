@@ -150,7 +150,8 @@ std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& 
       masks[i] = residual.reference.why_missing(i);
   }
   residual.reference.mark_implausible(masks, samples.motion.airspeed, options);
-  mark_bursts(residual, masks);
+  // In a gust the dynamic pressure and the residual by wind jump together, although every sensor works.
+  if (residual.reference.neighbours() == nullptr) mark_bursts(residual, masks);
   const std::vector<ModelEffect>& effects = residual.model.model().effects;
   const bool describes_flaps = std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
     return reads_flaps(effect, samples.flaps_variable);

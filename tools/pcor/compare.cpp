@@ -313,6 +313,14 @@ void run(const Options& options) {
     comparison = compare(flights, contenders, compare_options);
   }
   const Levels levels = levels_by_gps(flights, contenders, options);
+  const bool has_wind = std::any_of(references.used.begin(), references.used.end(),
+                                    [](const auto& reference) { return reference->name() == "wind"; });
+  if (has_wind) {
+    comparison.notes.emplace_back(
+        "residuals by wind contain gusts and the drift of the wind, which are not errors of a model; "
+        "--reference "
+        "wind also prints the mean error of delta-p by GPS, which does not contain them");
+  }
   if (!is_speaker()) return;
   OutputTransaction together;
   if (!options.residuals.empty()) {
