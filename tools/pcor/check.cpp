@@ -195,7 +195,7 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
     say("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
     if (result.ran) {
       say("  {}: {}.\n", to_string(result.verdict), result.decided);
-      say("  cannot see: {}\n", result.cannot_see);
+      say("  limitations: {}\n", result.cannot_see);
     }
     if (!result.tables.empty()) print(result.tables.front());
     for (const std::string& note : result.notes) {
