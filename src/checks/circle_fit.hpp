@@ -19,8 +19,8 @@ struct CircleFit {
 
 /// Fits a turn: the ground velocity is the wind and the airspeed along the heading,
 ///
-/// v_east  = W_east  + (v - d) sin h - v e cos h
-/// v_north = W_north + (v - d) cos h + v e sin h
+///     v_east  = W_east  + (v - d) sin h - v e cos h
+///     v_north = W_north + (v - d) cos h + v e sin h
 ///
 /// with the error d of the airspeed v and the error e of the heading h, rad, which in a turn also includes
 /// the sideslip and the angle of attack times the bank. Least squares over both components; the columns are

@@ -98,7 +98,7 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options = {})
 
 /// Thermometer correction implied by layers: the line that minimizes
 ///
-/// chi2 = sum (T_m + c0 + c1 (T_m - centre) - T_p)^2 / sigma^2,
+///     chi2 = sum (T_m + c0 + c1 (T_m - centre) - T_p)^2 / sigma^2,
 ///
 /// or a constant if there are too few layers for a line, with the full covariance instead of sigma^2: layers
 /// of one climb share an end, and layers of one flight the slope of the pressure surfaces. Four fifths of its

@@ -36,7 +36,7 @@ struct LegPair {
 
 /// Increase of delta-p that raises the true airspeed by 1 m/s, hPa/(m/s):
 ///
-/// -gamma M^2 p / v
+///     -gamma M^2 p / v
 ///
 /// at the same total pressure and the same total temperature, with gamma = 1.4: a higher static pressure is a
 /// lower Mach number. Negative. From M^2 = 5 [(p_t/p)^(2/7) - 1] and T_t = T (1 + 0.2 M^2).

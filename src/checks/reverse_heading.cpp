@@ -101,7 +101,7 @@ std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights,
 /// Error of the airspeed over all pairs. Its variance combines the assumed change of the wind and the scatter
 /// of the pairs, which dominates for many pairs:
 ///
-/// s^2 = (n0 assumed^2 + sum (value - mean)^2)/(n0 + n - 1),  error = s/sqrt(n)
+///     s^2 = (n0 assumed^2 + sum (value - mean)^2)/(n0 + n - 1),  error = s/sqrt(n)
 struct Mean {
   Estimated airspeed{};
   double from_assumption = 0.0;  ///< error from the assumed change of the wind alone

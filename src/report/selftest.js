@@ -1,4 +1,4 @@
-// The page tests itself: what it finds wrong, as sentences. Run by "#selftest" in the address.
+// Test of the page: returns the failures as sentences. Run by "#selftest" in the address.
 
 // Pixels of the plot that are clearly coloured: the frame, the grid and the words are grey, the shades of
 // intervals are faint.
@@ -16,7 +16,7 @@ function colouredPixels(panel, sharpness) {
   return count;
 }
 
-// Drags over the middle half of a time panel, zooms there by a key, and lets go by another.
+// Drags over the middle half of a time panel, zooms there by a key, and clears the selection by another.
 function tryTimePanel(panel, report, expect) {
   const {picture, canvas, drawn: {plot}, item: {title}} = panel;
   const left = canvas.getBoundingClientRect().left + plot.x;
@@ -45,7 +45,7 @@ function tryTimePanel(panel, report, expect) {
 }
 
 function selfTest(report) {
-  const few = 20;  // points, whose halves may be anything
+  const few = 20;  // minimum number of points; halves of fewer points may have any size
   const wrong = [];
   const expect = (holds, sentence) => { if (!holds) wrong.push(sentence); };
   const {panels, samples} = report;

@@ -1,4 +1,4 @@
-// Effects that the reader switches on, with their coefficients on sliders; residual, table, ladder and figures
+// Effects that the reader switches on, with their coefficients on sliders; residual, table, steps and figures
 // follow.
 
 const sliderSteps = 1000;
@@ -16,7 +16,7 @@ class WhatIf {
     this.update();
   }
 
-  // All as it was at first.
+  // Restores the initial state.
   forget() {
     this.on = new Set();
     this.byHand = new Map();
@@ -28,7 +28,7 @@ class WhatIf {
 
   get isChanged() { return this.on.size > 0 || !this.own; }
 
-  // The columns at some samples, and where each sample of the report lies between those.
+  // Columns at some samples, and the position of each sample of the report between them.
   readColumns() {
     const {item, samples} = this;
     const points = unpacked(item.points);
@@ -58,7 +58,7 @@ class WhatIf {
     return column;
   }
 
-  // Fills `result` with what changes of the coefficients take off the residual.
+  // Fills `result` with the change of the residual by changes of the coefficients.
   takenOff(values, result) {
     const sums = new Float64Array(this.points + 1);
     this.columns.forEach((column, c) => {
@@ -117,7 +117,7 @@ class WhatIf {
     for (const c of this.fit.coefficientsOf(e)) this.byHand.delete(c);
   }
 
-  // A slider and a number for coefficient `c` of effect `e`; where they reach stays as it is.
+  // Slider and number for coefficient `c` of effect `e`; their range stays fixed.
   slider(c, e) {
     const {name, unit, given, start, least, greatest} = this.item.coefficients[c];
     const {values, errors} = this.fit.fit([e], new Map(), true, this.fit.weightsOf([e]), false);
@@ -148,7 +148,7 @@ class WhatIf {
     return {c, element, range, number, band, told, fitted, from, to, step, unit};
   }
 
-  // Where a value stands on a track: the thumb is 1rem wide, and its middle tells.
+  // Position of a value on a track: the thumb is 1rem wide, and its middle is the value.
   place(value, from, to) {
     const part = Math.min(Math.max((value - from) / (to - from), 0), 1);
     return `calc(0.5rem + ${part} * (100% - 1rem))`;
@@ -210,7 +210,8 @@ class WhatIf {
     this.report.tables.push({draw: () => this.fillPairTable(), table: this.pairTable});
   }
 
-  // The ladder: with the coefficients of the start, with the model's own fitted, and with one effect after another.
+  // Steps: with the initial coefficients, with the model's coefficients fitted, and with one effect after
+  // another.
   rungs() {
     const {fit, item} = this;
     const bars = [{label: item.start, value: fit.heldOutRms(fit.fit([], new Map(), false))}];
@@ -221,7 +222,7 @@ class WhatIf {
     return [...bars, {label: 'noise', value: item.noise}];
   }
 
-  // After a step that can be undone.
+  // Call after a step that can be undone.
   changed() {
     this.follow();
     this.report.remember();
@@ -231,7 +232,7 @@ class WhatIf {
 
   get names() { return [...this.on].map((e) => this.item.effects[e].id).join(', '); }
 
-  // What the reader did, shown at the next frame; of many moves in one frame the last.
+  // Shows a change at the next frame; only the last of several changes in one frame.
   follow() {
     this.fitNow();
     if (this.asked) return;
@@ -274,7 +275,7 @@ class WhatIf {
     for (let i = 0; i < values.length; ++i) values[i] = this.residual.values[i] - values[i];
   }
 
-  // By how much chi2 falls from the model fitted again to what is shown now.
+  // Decrease of chi2 from the refitted model to the displayed state.
   get fallOfNow() {
     return this.fit.gain(this.fit.fit([], new Map(), this.own, this.now.weights), this.now, [...this.on]);
   }
@@ -307,7 +308,7 @@ class WhatIf {
   showSlider({c, range, number: input, band, told, fitted, from, to, step, unit}, e, isOn, ifOn) {
     const {start} = this.item.coefficients[c];
     const byHand = this.byHand.has(c);
-    // Where the fit would have it, the others as they are.
+    // Fitted value, with the other coefficients unchanged.
     const hand = new Map(this.byHand);
     hand.delete(c);
     const {values, errors} = byHand ? this.fit.fit([...this.on], hand, this.own) : ifOn;
@@ -338,7 +339,7 @@ class WhatIf {
     fillTable(this.coefficients, {headers: ['Coefficient', 'given', 'fitted again', 'what if', 'unit'], rows});
   }
 
-  // The command that adds the effects that are on: one for all of the catalogue, one for each formula.
+  // Command that adds the active effects: one for all of the catalogue, one for each formula.
   get commandText() {
     const {commands, effects, coefficients} = this.item;
     const on = [...this.on].map((e) => effects[e]).filter(({argument}) => argument);
@@ -365,7 +366,7 @@ class WhatIf {
     try {
       await navigator.clipboard.writeText(this.commandText);
     } catch {
-      // A browser that does not let the page write: the reader finds the command marked, ready to be copied.
+      // If the browser does not allow a copy, the command is selected for the reader.
       getSelection().selectAllChildren(this.command);
       this.copy.textContent = 'Marked';
       return;
@@ -412,7 +413,7 @@ class WhatIf {
     fillTable(this.pairTable, {headers: ['Regime', 'Samples', `${a.title}, hPa`, `${b.title}, hPa`, 'Difference, hPa', 'Correlation'], rows});
   }
 
-  // What is in the address, and what it asks for; what it says of another report is passed over.
+  // State in the address, and its restoration; parts of other reports are ignored.
   get state() {
     const {item} = this;
     const state = {};
@@ -445,7 +446,7 @@ class WhatIf {
   }
 }
 
-// How alike two series are at some samples, -1 to 1.
+// Correlation of two series at some samples, -1 to 1.
 function correlationOf(xs, ys, indices) {
   let sx = 0, sy = 0, xx = 0, yy = 0, xy = 0;
   for (const i of indices) {
