@@ -8,8 +8,8 @@ namespace pcor::internal {
 
 /// How texts put sentences, lists and errors.
 
-/// Text with a capital first letter, unless it begins with the name of a file or a parameter, and with a
-/// final full stop. An empty text is unchanged.
+/// Text with an upper-case first character, unless it begins with the name of a file or a parameter, and with
+/// a final full stop. An empty text is unchanged.
 std::string sentence(std::string text);
 
 /// The words of a text, which blanks part.

@@ -43,7 +43,7 @@ struct FlightAir {
   std::vector<double> sideslip_ratio;
   std::optional<LaserAir> laser;
 
-  /// Name of the height; without `height`, a height without unit. Empty if the flight has none.
+  /// Name of the height; without `height`, a height without unit. Empty if the flight has no height.
   std::string height_variable;
   std::vector<double> height;               ///< GPS height, m
   std::vector<double> latitude;             ///< deg

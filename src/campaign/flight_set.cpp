@@ -80,7 +80,7 @@ struct FlightSet::Memory {
 struct FlightSet::Entry {
   std::filesystem::path path{};
   TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
-  std::shared_ptr<const FlightSamples> given{};  // in memory
+  std::shared_ptr<const FlightSamples> given{};  // samples in memory
   std::shared_ptr<Memory> memory{};
   std::optional<FileState> state{};  // state when first opened
   std::optional<Flight> flight{};

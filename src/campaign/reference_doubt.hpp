@@ -36,7 +36,7 @@ class ReferenceDoubt {
  private:
   std::size_t model_parameters_;      // number of parameters of the given model
   std::size_t reference_parameters_;  // number of parameters of the reference's model
-  ModelDefinition model_;             // with the effects of its uncertainties
+  ModelDefinition model_;             // model with the effects of its uncertainties
   std::shared_ptr<const Reference> reference_;
   std::vector<std::string> names_;
   Eigen::VectorXd sizes_;

@@ -34,7 +34,7 @@ bool same(const PressurePair& a, const PressurePair& b) {
 std::string without_values(const Flight& flight, const ModelDefinition& model) {
   const PressurePair pair = pair_of(model);
   for (const std::string& variable : {pair.static_pressure, pair.dynamic_pressure}) {
-    if (!flight.has(variable)) return "";  // for the message with suggestions
+    if (!flight.has(variable)) return "";  // suggestions are part of the message
     if (std::string trouble = value_problem(flight, variable); !trouble.empty()) return trouble;
   }
   return "";

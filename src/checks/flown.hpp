@@ -30,7 +30,7 @@ struct Flown {
 /// All stretches of all flights in the given regime.
 std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime);
 
-/// Minimum and maximum of the known values; NaN if there are none.
+/// Minimum and maximum of the known values; NaN if all are missing.
 std::pair<double, double> range_of(const std::vector<double>& values);
 double mean_value(const std::vector<double>& values);
 double standard_deviation(const std::vector<double>& values);

@@ -26,7 +26,7 @@ struct LegPair {
   /// Part of the sum caused by the wind because the headings are not opposite, m/s; 0 if the cross speeds are
   /// not known.
   double heading_share = 0.0;
-  double pressure_per_airspeed = 0.0;     ///< hPa/(m/s), see the function of this name
+  double pressure_per_airspeed = 0.0;     ///< hPa/(m/s), see the function pressure_per_airspeed
   double temperature_per_airspeed = 0.0;  ///< warming for 1 m/s more airspeed, K/(m/s): 2 T/v
   Estimated airspeed_error{};             ///< error of the true airspeed, too high positive, m/s: -(sum -
                                           ///< share)/2

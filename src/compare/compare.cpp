@@ -91,7 +91,7 @@ struct ModelSums {
   Eigen::VectorXd doubt{};  // change of the residuals by each calibration uncertainty of the reference
   std::array<ResidualSums, regime_count> regimes{};
   std::array<std::map<long, ResidualSums>, bandings.size()> bands{};
-  std::vector<WorstInterval> worst{};  // at most `worst_count`
+  std::vector<WorstInterval> worst{};  // `worst_count` entries at most
 
   void add(const ModelSums& other);
 
@@ -164,7 +164,7 @@ std::vector<WorstInterval> worst_of(const FlightResiduals& flight, const std::ve
 /// Residual of one model on a flight in bins, and the records of each summed part.
 struct SummedRecords {
   BinnedResidual residual{};
-  std::vector<std::vector<std::size_t>> parts{};  // in the order of `ModelSums::each_part`
+  std::vector<std::vector<std::size_t>> parts{};  // order as in `ModelSums::each_part`
 };
 
 /// @param records receives the records of the parts, which the errors require

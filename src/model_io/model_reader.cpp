@@ -37,7 +37,7 @@ bool contains(const Names& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Whether netCDF accepts the name of a variable, as far as this program must know.
+// Whether netCDF accepts the name of a variable; a sufficient check for this program.
 bool is_variable_name(std::string_view name) {
   return !name.empty() && name.front() != ' ' && name.back() != ' ' &&
          std::none_of(name.begin(), name.end(), [](char letter) {

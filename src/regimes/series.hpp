@@ -18,17 +18,17 @@ struct Run {
   std::size_t length() const { return end - first; }
 };
 
-/// Mean of the known values at most `window` / 2 cells from each cell; NaN if there are none.
+/// Mean of the known values at most `window` / 2 cells from each cell; NaN if all are missing.
 std::vector<double> running_mean(const std::vector<double>& values, std::size_t window);
 
 /// Running mean of the running mean: a triangular window, which suppresses oscillations shorter than
 /// `window`.
 std::vector<double> smoothed_twice(const std::vector<double>& values, std::size_t window);
 
-/// Mean of the known values of a run; NaN if there are none.
+/// Mean of the known values of a run; NaN if all are missing.
 double mean(const std::vector<double>& values, Run run);
 
-/// Minimum and maximum of the known values of a run; NaN if there are none.
+/// Minimum and maximum of the known values of a run; NaN if all are missing.
 struct Extent {
   double least;
   double greatest;

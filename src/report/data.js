@@ -77,7 +77,7 @@ class Samples {
   }
 
   setIntervals(intervals) {
-    this.intervals = [];  // on the time axis, once for each flight that they meet
+    this.intervals = [];  // positions on the time axis, once for each flight that they meet
     this.regimes = new Map();  // map from name to its samples, 1 or 0
     for (const {name, begin, end} of intervals) {
       if (!this.regimes.has(name)) this.regimes.set(name, new Uint8Array(this.count));

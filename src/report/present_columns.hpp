@@ -13,7 +13,7 @@ void add_if_present(Report& report, ReportColumn column);
 
 bool has_column(const Report& report, std::string_view name);
 
-/// Adds a panel of its available columns; adds no panel without any.
+/// Adds a panel of its available columns; adds no panel if all are missing.
 void add_if_present(Report& report, TimePanel panel);
 
 }  // namespace pcor::internal

@@ -12,7 +12,7 @@ class ModelOnSamples;
 class ReferenceOnSamples;
 
 /// Masks that are independent of the model, from the motion of the flight and user exclusions: `excluded`,
-/// `ground`, `low_speed`, `flaps`, `regime`, or none.
+/// `ground`, `low_speed`, `flaps`, `regime`, or `none`.
 std::vector<Mask> masks_as_flown(const FlightSamples& samples, const MaskOptions& options);
 
 /// Inputs of the masks of a comparison of a model with a reference.
