@@ -158,7 +158,7 @@ class ReportInBrowser(unittest.TestCase):
 
     def test_without_a_browser_nothing_is_there(self):
         folder = self.folder / "none"
-        for browser, words in (("/nowhere/chromium", "is no program"), (shutil.which("false"), "failed"), (shutil.which("true"), "no pictures")):
+        for browser, words in (("/nowhere/chromium", "/nowhere/chromium"), (shutil.which("false"), "failed"), (shutil.which("true"), "no pictures")):
             found = subprocess.run([SAMPLE_REPORT, "--figures", folder], env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
             self.assertEqual(found.returncode, 1)
             self.assertIn(words, found.stderr)
