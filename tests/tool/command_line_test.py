@@ -97,7 +97,7 @@ class Outputs(ComparisonTest):
             with self.subTest(command[0]):
                 result = self.run_tool(*command, cwd=self.path)
                 self.assertEqual((result.returncode, result.stdout), (2, ""))
-                self.assertRegex(result.stderr, r"^pcor: --\w+: standard output, '-', takes models and JSON alone")
+                self.assertRegex(result.stderr, r"^pcor: --\w+: .*'-'.*models and JSON")
                 self.assert_no_file_called_dash()
 
     def test_every_file_is_announced(self):
