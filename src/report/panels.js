@@ -431,7 +431,7 @@ class SelectionBar {
     this.words = make('span', {role: 'status', class: 'selected'});
     this.hint = make('span', {class: 'hint'}, 'Drag along a picture over time to select, up or down to enlarge it; Ctrl and the wheel zoom');
     this.clear = make('button', {type: 'button', class: 'clear', onclick: () => report.clear()}, 'Show all');
-    this.undo = make('button', {type: 'button', title: 'Back to what was shown before', onclick: () => history.back()}, 'Undo');
+    this.undo = make('button', {type: 'button', title: 'Restore the previous view', onclick: () => history.back()}, 'Undo');
     this.chips = [...report.samples.regimes.keys()].map((name) => make('button', {
       'type': 'button', 'class': 'chip', 'aria-pressed': 'false', 'onclick': () => this.toggle(name),
     }, make('span', {class: 'swatch'}), name));
@@ -456,7 +456,7 @@ class SelectionBar {
       ? `${where}${countText(samples.selectedCount)} of ${plural(samples.count, 'sample')}`
       : `All ${plural(samples.count, 'sample')}`;
     if (!samples.selectedCount && samples.names.size)
-      this.words.textContent += `: ${[...samples.names].join(' or ')} is not in this time`;
+      this.words.textContent += `: ${[...samples.names].join(' or ')} has no samples in this time range`;
     this.clear.hidden = !samples.isFiltered && !this.report.panels.some((panel) => panel.isChanged);
     this.undo.hidden = this.report.steps === 0;
     this.hint.hidden = samples.isFiltered || !this.report.panels.some(({item}) => item.kind === 'time');

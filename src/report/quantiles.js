@@ -69,11 +69,11 @@ function drawQuantiles(pen, width, height, item, samples, theme) {
   return {
     points: all.reduce((sum, {sorted}) => sum + sorted.length, 0),
     plot: box,
-    alternative: `Quantiles against those of a normal distribution; beyond three standard deviations, of which a normal ` +
+    alternative: `Quantiles against the quantiles of a normal distribution; beyond three standard deviations, of which a normal ` +
       `distribution has 0.27 %, lie ${listText(all.map((each) =>
         `${number(100 * beyond(each), 0.01)} % of ${each.title}`))}`,
     table: {
-      headers: ['', 'Samples', 'Median', 'Standard deviation, from the quartiles', 'Beyond 3 of them', 'Of a normal distribution'],
+      headers: ['', 'Samples', 'Median', 'Standard deviation, from the quartiles', 'Beyond 3 standard deviations', 'Normal distribution'],
       rows: all.map((each) => [each.label, countText(each.sorted.length), brief(each.middle), brief(each.spread),
         `${number(100 * beyond(each), 0.01)} %`, '0.27 %']),
     },

@@ -86,12 +86,12 @@ class WhatIf {
     this.rows = item.effects.map((effect, e) => this.effectRow(effect, e));
     this.command = make('code');
     this.copy = make('button', {type: 'button', onclick: () => this.copyCommand()}, 'Copy');
-    this.commandPart = make('div', {class: 'what-if-command'}, make('p', {}, 'To add what is switched on, and refit'), this.copy, this.command);
+    this.commandPart = make('div', {class: 'what-if-command'}, make('p', {}, 'To add the active effects, and refit'), this.copy, this.command);
     this.coefficients = make('table');
     this.controls = make('div', {class: 'what-if-controls'},
       make('div', {class: 'scroll'}, this.figures),
       make('div', {class: 'what-if-general'},
-        make('label', {class: 'switch'}, this.ownSwitch, text('The model’s own coefficients are fitted again')), this.reset),
+        make('label', {class: 'switch'}, this.ownSwitch, text('The model’s coefficients are fitted again')), this.reset),
       this.commandPart,
       make('ul', {class: 'what-if-effects', 'aria-label': 'Effects'}, ...this.rows.map(({element}) => element)),
       make('details', {}, make('summary', {}, 'Coefficients'), make('div', {class: 'scroll'}, this.coefficients)));
@@ -131,7 +131,7 @@ class WhatIf {
                                   min: least ?? null, max: greatest ?? null});
     const band = make('span', {class: 'band'}), zero = make('span', {class: 'zero'});
     const told = make('span', {class: 'told'});
-    const fitted = make('button', {type: 'button', title: 'Let the fit find it again', 'aria-label': `Fit ${label} again`,
+    const fitted = make('button', {type: 'button', title: 'Fit this coefficient again', 'aria-label': `Fit ${label} again`,
                                    onclick: () => { this.byHand.delete(c); this.changed(); }}, 'Fit');
     const move = (value) => {
       this.on.add(e);
@@ -172,17 +172,17 @@ class WhatIf {
       return panel;
     };
     this.panels = [add({kind: 'time', title: 'What if: residual in time', columns, axis: 'residual'},
-      'The scale is that of the residual without the effects, so that it stays where it is.')];
+      'The scale is fixed by the residual without the effects.')];
     this.ladder = {kind: 'bars', title: 'What if: ladder', bars: this.rungs(), axis: this.heldOutWords, unit: 'hPa'};
     this.panels.push(add(this.ladder, this.fit.heldOut
-      ? 'On what is held out, effect by effect as they were switched on.'
-      : 'On parts of the flights that were left out of the fit in turn, without outliers, effect by effect as they were switched on.'));
+      ? 'On the hold-out, for each effect in the order in which they were switched on.'
+      : 'On parts of the flights that were excluded from the fit one at a time, without outliers, for each effect in the order in which they were switched on.'));
     const regimes = {title: 'Bias and rms by regime, what if', columns};
     this.regimes = new Regimes(regimes, part('regimes', 'What if: by regime', 'Bias and rms of the residual of the selected samples.'), report);
     report.tables.push(this.regimes);
     if (item.choices.length)
       this.panels.push(add({kind: 'binned', title: 'What if: residual against a variable', columns, choices: item.choices, bins: 12,
-        samplesPerIndependent: item.samplesPerIndependent, axis: 'residual'}, 'A slope or a bend that is more than the error bars is something that the model still lacks.'));
+        samplesPerIndependent: item.samplesPerIndependent, axis: 'residual'}, 'A slope or a bend larger than the error bars indicates a missing effect.'));
     if (item.effects.length > 1) this.makePair(add, part);
   }
 
@@ -200,12 +200,12 @@ class WhatIf {
     const labels = ['One', 'The other'].map((words, side) => make('label', {class: 'choice'}, words, this.selects[side]));
     this.pairWords = make('div', {class: 'what-if-words'});
     this.pairTable = make('table', {class: 'regime-table'});
-    this.pairPanel = add({kind: 'time', title: 'Two effects side by side', columns: this.sides.map(({name}) => name), axis: 'taken off the residual'},
-      'What each would take off the residual were it alone added and the model fitted again: where the two curves differ, these flights can tell them apart.',
+    this.pairPanel = add({kind: 'time', title: 'Two effects side by side', columns: this.sides.map(({name}) => name), axis: 'change of the residual'},
+      'Reduction of the residual by each effect alone, with the model fitted again: where the two curves differ, these flights distinguish the effects.',
       make('div', {class: 'what-if-pair'}, ...labels));
     this.panels.push(this.pairPanel);
     const scroll = {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Two effects by regime'};
-    part('table', 'Where the two differ', 'Rms of what each takes off the residual, and of the difference, over the selected samples; the correlation is that over these samples.',
+    part('table', 'Where the two differ', 'Rms of the reduction of the residual by each effect, and of the difference, over the selected samples; the correlation covers the same samples.',
       this.pairWords, make('div', scroll, this.pairTable));
     this.report.tables.push({draw: () => this.fillPairTable(), table: this.pairTable});
   }
@@ -301,7 +301,7 @@ class WhatIf {
     const ifOn = isOn ? this.now : fit.fit([...others, e], this.byHand, this.own);
     const fall = fit.fall(others, [...others, e], this.byHand, this.own);
     gain.textContent = `χ² ${number(-fall, fall < 10 ? 0.1 : 1)}`;
-    gain.title = isOn ? 'By how much chi2 falls with it, beside the others that are on' : 'By how much chi2 would fall with it, beside those that are on';
+    gain.title = isOn ? 'Decrease of chi2 by this effect, in addition to the other active ones' : 'Decrease of chi2 if this effect is added to the active ones';
     for (const slider of sliders) this.showSlider(slider, e, isOn, ifOn);
   }
 
@@ -320,8 +320,8 @@ class WhatIf {
     band.hidden = !(error > 0);
     band.style.left = this.place(estimate - error, from, to);
     band.style.right = `calc(100% - ${this.place(estimate + error, from, to)})`;
-    told.textContent = error > 0 ? withError(estimate, error) : this.fit.isAtBound(c, values) ? 'at its bound' : 'not told from the others';
-    told.title = 'What the fit finds, with its standard error';
+    told.textContent = error > 0 ? withError(estimate, error) : this.fit.isAtBound(c, values) ? 'at its bound' : 'not identifiable';
+    told.title = 'Fitted value with its standard error';
     fitted.hidden = !byHand;
   }
 
@@ -393,8 +393,8 @@ class WhatIf {
     const alike = fit.correlation(...changes);
     const separation = item.separations.find(({effect, rival}) => effect === a && rival === b);
     const sentences = a === b ? ['Choose two effects.'] : [
-      `On these flights the two are alike to a correlation of ${number(alike, 0.001)}, in units of the noise and after the model’s own coefficients.`,
-      separation ? `${separation.text[0].toUpperCase()}${separation.text.slice(1)}.` : 'No manoeuvre was tried that would tell them apart.'];
+      `On these flights the two have a correlation of ${number(alike, 0.001)}, in units of the noise and after fitting the model’s coefficients.`,
+      separation ? `${separation.text[0].toUpperCase()}${separation.text.slice(1)}.` : 'No tested manoeuvre distinguishes them.'];
     this.pairWords.replaceChildren(...sentences.map((words) => make('p', {}, words)));
   }
 

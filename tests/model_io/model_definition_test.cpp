@@ -984,8 +984,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\nparameters = { kk = 1 }\n",
                  "8:14",
                  {"does not use its parameter 'kk'", "did you mean k?"}},
-        BadInput{
-            "UnknownPlace", own + "where = \"statc\"\n", "9:9", {"'statc'", "did you mean static"}},
+        BadInput{"UnknownPlace", own + "where = \"statc\"\n", "9:9", {"'statc'", "did you mean static"}},
         BadInput{"WrongUnitOfAFormula", own + "unit = \"Pa\"\n", "9:8", {"'static' is in hPa, not in 'Pa'"}},
         BadInput{"WrongUnitAtAnotherPlace",
                  own + "where = \"attack\"\nunit = \"hPa\"\n",
