@@ -14,7 +14,7 @@
 namespace pcor::internal {
 namespace {
 
-// Median and deviation of the logarithm of a size.
+// Median and standard deviation of the logarithm of a size.
 struct Size {
   double median;
   double deviation;
@@ -37,7 +37,7 @@ const Size& size_of(GpsKind kind, Eigen::Index k) {
 double stays_for(double seconds, double time) { return std::exp(-seconds / time); }
 
 WhiteRows white_wind(const Eigen::VectorXd& sizes, const GpsRows& rows, const Eigen::VectorXd& more) {
-  // Gusts, drift and walk on the height of the east wind, then of the north wind, and the heading.
+  // gusts, drift and height walk of the east wind, then of the north wind, and the heading
   constexpr int of_each = 5;
   constexpr int count = 2 * of_each + 1;
   using States = LatentFilter<count>::States;

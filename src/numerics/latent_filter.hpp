@@ -18,9 +18,9 @@ struct WhiteRows {
 };
 
 /// A Kalman filter for rows that depend on `count` latent processes (Ornstein-Uhlenbeck processes and random
-/// walks): it takes out of a residual, and of columns beside it through the same gains, what the rows before
-/// let expect. Exact for any gaps. Source: Kalman (1960), Journal of Basic Engineering 82, 35; Harvey (1989),
-/// Forecasting, structural time series models and the Kalman filter, section 3.4.
+/// walks): it subtracts the prediction from earlier rows from a residual and, with the same gains, from
+/// further columns. Exact for any gaps. Source: Kalman (1960), Journal of Basic Engineering 82, 35; Harvey
+/// (1989), Forecasting, structural time series models and the Kalman filter, section 3.4.
 template <int count>
 class LatentFilter {
  public:
@@ -35,14 +35,14 @@ class LatentFilter {
     white_.variance = Eigen::VectorXd::Zero(rows);
   }
 
-  /// Goes on in time: every process keeps its share `stays`, and what comes in has the variance `added`.
+  /// Time update: every process keeps its fraction `stays`, and the variance `added` enters.
   void pass(const States& stays, const States& added) {
     covariance_ = stays.asDiagonal() * covariance_ * stays.asDiagonal();
     covariance_.diagonal() += added;
     means_ = stays.asDiagonal() * means_;
   }
 
-  /// Adds so many times the process `from` to the process `to`.
+  /// Adds `times` times the process `from` to the process `to`.
   void couple(Eigen::Index to, Eigen::Index from, double times) {
     covariance_.row(to) += times * covariance_.row(from);
     covariance_.col(to) += times * covariance_.col(from);
