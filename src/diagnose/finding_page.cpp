@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t max_in_a_sentence = 3;
 
-/// What the page says of an effect without any flight.
+/// Text of the page about an effect that needs no flight.
 struct Law {
   std::string formula, unit, added_to, size, look_alikes, manoeuvre, source;
 };
