@@ -41,9 +41,9 @@ class Analysis {
   Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed,
            const std::vector<Eigen::VectorXd>& added = {});
 
-  /// Number of flights against the first reference.
+  /// Partition of the flights against the first reference.
   const FlightPartition& share() const { return first_share_; }
-  /// Number of flights, counted once per reference.
+  /// Partition of all entries, one per flight and reference.
   const FlightPartition& whole_share() const { return share_; }
   const std::vector<FlightColumns>& flights() const { return flights_; }
   std::size_t flight_count() const { return binned_.bins.size(); }
@@ -103,7 +103,7 @@ class Analysis {
   std::vector<Eigen::MatrixXd> find_shape_uncertainty(const std::vector<std::size_t>& chosen);
   /// Whitens the columns, followed by those of uncertain shapes.
   WhitenedSystem whiten(const std::vector<Eigen::MatrixXd>& columns) const;
-  /// Rows against further references are omitted.
+  /// Removes the common noise from the rows against further references.
   void take_out_common_noise(WhitenedSystem& scores) const;
   FlightColumns& flight(std::size_t number) {
     return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];

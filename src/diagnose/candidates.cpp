@@ -164,7 +164,7 @@ bool is_built_alike(EffectLocation location) {
          location == EffectLocation::pitot;
 }
 
-/// Inserts after each candidate its variants outside the chain: the same effect on both systems for tubes and
+/// Inserts after each candidate its variants: the same effect on both systems for tubes and
 /// lines, and other times for the need.
 void add_derived_ones(CandidateSet& set, bool two_systems) {
   std::vector<Candidate> all;
