@@ -62,7 +62,7 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
                                                const Eigen::MatrixXd& covariance,
                                                const std::vector<std::size_t>& fitted, double condition,
                                                const RegimeSet& flown) {
-  const Eigen::Index size = as_index(fitted.size());  // what is held comes after them
+  const Eigen::Index size = as_index(fitted.size());  // fixed parameters follow them
   std::vector<std::string> words;
   // With priors, large standard errors are expected.
   for (Eigen::Index a = 0; a < size && !task.uses_prior(); ++a) {
