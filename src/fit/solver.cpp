@@ -123,7 +123,7 @@ class Solver {
   }
 
  private:
-  /// Projects the unknowns into their bounds.
+  /// Writes the unknowns to their positions in the solution.
   void spread() { solution_.values(wanted_) = unknowns_; }
 
   /// Start with the least squares for each time over which a need is estimated: the sum of squares may have
