@@ -49,9 +49,9 @@ std::string column_of(Quantity quantity) {
 
 ReportTable variables_table(const Unexplained& unexplained) {
   ReportTable table;
-  table.title = "Variables that the unexplained structure goes with";
+  table.title = "Variables that the unexplained structure varies with";
   table.caption =
-      "Share of the residual's variance that goes with the variable in any way and along a straight line, "
+      "Share of the residual's variance that varies with the variable in any way and along a straight line, "
       "with "
       "as much drift beside it as is likeliest then; p is the probability that the best of all variables "
       "does "

@@ -245,14 +245,12 @@ void add_held_out(std::vector<WhatIfFlight>& flights, const FlightColumns& held_
 
 std::string note_of(const Candidate& candidate, const std::string& flaps_variable) {
   if (candidate.is_of_reference())
-    return "It is of the system that the model is held against: the model is not to be changed for it.";
+    return "It is an error of the reference system: do not change the model for it.";
   if (candidate.is_shared)
-    return "It is alike on the system that the model is held against, which no model file can hold: the "
-           "command adds it without that.";
+    return "It is the same on the reference system, which a model file cannot represent: the "
+           "command adds it to the model only.";
   if (reads_flaps(candidate.effect, flaps_variable))
-    return "Here it is held against the samples with flaps in alone; a refit with it uses those with flaps "
-           "out "
-           "too.";
+    return "Here only samples with flaps in are used; a refit with it also uses samples with flaps out.";
   return "";
 }
 
@@ -310,7 +308,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
     if (variable.formula.empty() || traced == max_traced) continue;
     const ModelEffect effect = effect_of(variable, fmt::format("{}", fmt::join(flights, ", ")));
     const bool counts = traced++ == 0 && diagnosis.findings.empty();
-    add({effect.id, "goes with " + variable.name, effect, false, counts ? effect.id : ""});
+    add({effect.id, "varies with " + variable.name, effect, false, counts ? effect.id : ""});
   }
   // Nearest candidates by estimate in units of the error.
   constexpr std::size_t nearest = 4;

@@ -36,9 +36,10 @@ double condition_number(const Reduction& reduction, const FitTask& task,
           to_string(k), to_string(k)));
     }
     if (!(length > lengths[k] / hopeless_condition)) {
-      throw Error(fmt::format(
-          "--stage: {} cannot be told from the offsets of the intervals; leave it to the last stage",
-          to_string(k)));
+      throw Error(
+          fmt::format("--stage: {} is not identifiable together with the offsets of the intervals; move it "
+                      "to the last stage",
+                      to_string(k)));
     }
     scaled.col(k) /= length;
   }
@@ -77,12 +78,13 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
       partners += fmt::format("{}{} ({:+.3f})", partners.empty() ? "" : ", ",
                               task.parameters[fitted[static_cast<std::size_t>(b)]].name, correlation);
     }
-    words.push_back(fmt::format(
-        "{} is {}: {:.3g} +- {:.2g}, where its typical size is {:.2g}{}{}; hold it with --fix "
-        "{}; what would tell: {}",
-        parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
-        solution.values[as_index(place)], error, parameter.typical,
-        partners.empty() ? "" : ", and it goes with ", partners, parameter.name, parameter.manoeuvre));
+    words.push_back(
+        fmt::format("{} is {}: {:.3g} +- {:.2g}, where its typical size is {:.2g}{}{}; hold it with --fix "
+                    "{}; what would tell: {}",
+                    parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
+                    solution.values[as_index(place)], error, parameter.typical,
+                    partners.empty() ? "" : ", and it is correlated with ", partners, parameter.name,
+                    parameter.manoeuvre));
   }
   if (condition > collinear_condition) {
     words.push_back(

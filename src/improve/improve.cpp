@@ -73,8 +73,7 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
   }
   if (verdict == Verdict::partial) {
     candidate.is_named = false;
-    candidate.caution =
-        "; structure is left that it does not explain, so its name is not to be taken for the cause";
+    candidate.caution = "; significant structure remains, so this effect may not be the cause";
   } else if (!candidate.aliases.empty()) {
     candidate.caution =
         fmt::format("; these flights cannot tell it from {}{}{}", fmt::join(candidate.aliases, ", "),
@@ -86,7 +85,7 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
 Candidate candidate_of(const EmpiricalPredictor& variable, const std::string& flights) {
   Candidate candidate;
   candidate.choices = {{{effect_of(variable, flights)}, 1.0}};
-  candidate.title = fmt::format("what goes with {}{}", variable.name,
+  candidate.title = fmt::format("structure that varies with {}{}", variable.name,
                                 variable.description.empty() ? "" : ", " + variable.description);
   candidate.is_named = false;
   candidate.is_sure = true;  // only significant variables are traced
@@ -376,7 +375,7 @@ class Climb {
     for (const Finding& finding : now.findings) {
       if (may_be_of_reference(finding)) {
         return fmt::format(
-            "{} {} of the system that the model is held against, so the model stays as it is (with "
+            "{} {} of the reference system, so the model was left unchanged (with "
             "--trust-reference that system counts as right){}{}",
             finding.id(), is_of_reference(finding) ? "is" : "may be an error",
             finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence);
@@ -387,8 +386,8 @@ class Climb {
     const std::string what =
         fmt::format("{} of structure are left that no effect of the catalogue explains{}{}", shown(left.rms),
                     left.regime.empty() ? "" : ", most of it in ", left.regime);
-    if (left.variables.empty()) return what + ", and that no variable of the files goes with";
-    return fmt::format("{}; it goes with {}, {}", what, left.variables.front().name,
+    if (left.variables.empty()) return what + "; it varies with no variable of the files";
+    return fmt::format("{}; it varies with {}, {}", what, left.variables.front().name,
                        loop_.trace_variables
                            ? "of which no further formula can be added"
                            : "of which --trace-variables would add a formula, wherever its cause lies");

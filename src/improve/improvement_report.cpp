@@ -71,8 +71,8 @@ ReportTable ladder_table(const Improvement& improvement) {
                    "rms in the fit, hPa",
                    improvement.holdout_is_flights ? "rms held out, hPa" : "rms not in the fit, hPa",
                    "noise, hPa",
-                   "not told from",
-                   "what it taught"};
+                   "not separable from",
+                   "conclusion"};
   for (const ImproveStep& step : improvement.steps) {
     table.rows.push_back({rung_name(step), std::to_string(step.terms), cell(step.rms_train, 3),
                           cell(step.rms_holdout, 3), cell(step.noise_rms, 3), join_list(step.aliases),
