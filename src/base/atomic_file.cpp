@@ -34,7 +34,7 @@ fs::path behind_links(fs::path path) {
   return path;
 }
 
-// The paths of the files that are not finished, for a signal handler: no memory is asked for or given back.
+// Paths of the unfinished files, for a signal handler: memory is neither allocated nor freed.
 struct Unfinished {
   enum State : int { free, changing, listed };
 
@@ -43,7 +43,7 @@ struct Unfinished {
 };
 static_assert(std::atomic<int>::is_always_lock_free);
 
-std::array<Unfinished, 128> unfinished_files;  // those of a report's figures appear together
+std::array<Unfinished, 128> unfinished_files;  // figures of a report are committed together
 
 // One that finds no room is not listed; only a signal would leave it behind.
 void list_as_unfinished(const std::string& path) {
@@ -62,8 +62,7 @@ void take_from_list(const std::string& path) {
     if (entry.state == Unfinished::listed && path == entry.path) entry.state = Unfinished::free;
 }
 
-// What names the processes among which a number is one of them: the host, and the namespace of processes
-// there.
+// Name of the set of processes in which a process number is unique: the host and its process namespace.
 std::string neighbourhood() {
   char host[HOST_NAME_MAX + 1] = {};
   gethostname(host, HOST_NAME_MAX);
@@ -75,8 +74,8 @@ std::string neighbourhood() {
                                       : space.substr(digits, space.find_last_of("0123456789") - digits + 1));
 }
 
-// Removes what processes of this neighbourhood that are no more left unfinished in a folder. Those of other
-// hosts may live.
+// Removes unfinished files of terminated processes of this neighbourhood from a folder. Processes of other
+// hosts may still run.
 void remove_stale_files(const fs::path& directory) {
   const std::string mark = "." + neighbourhood() + "-";
   std::error_code code;
@@ -91,9 +90,10 @@ void remove_stale_files(const fs::path& directory) {
   }
 }
 
-// A new file ".NAME.HOST-SPACE-PROCESS.XXXXXX.part" that no other program has, also not one on another host
-// or one that was killed. Unlike mkstemp it has the permissions of any new file. It is listed before it is
-// there, so a signal at any moment finds it. Empty if it cannot be made; errno says why.
+// Creates a file ".NAME.HOST-SPACE-PROCESS.XXXXXX.part" that no other program uses, including programs on
+// other hosts and killed ones. Unlike with mkstemp it has the permissions of any new file. It is listed
+// before it is created, so a signal handler finds it at any time. Returns an empty path on failure, with the
+// reason in errno.
 fs::path make_hidden_file(const fs::path& directory, const std::string& name) {
   constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
   const std::string writer = "." + neighbourhood() + "-" + std::to_string(getpid()) + ".";
@@ -119,7 +119,7 @@ fs::path make_hidden_file(const fs::path& directory, const std::string& name) {
   return {};
 }
 
-// Has the disk hold what was written; false if it cannot, errno says why.
+// Flushes the written data to disk; on failure returns false with the reason in errno.
 bool settle(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return false;
@@ -220,7 +220,7 @@ AtomicFile::AtomicFile(const fs::path& target) : shown_(target) {
 AtomicFile::~AtomicFile() {
   if (committed_) return;
   std::error_code ignored;
-  // HDF5 keeps a file open that it could not complete: emptied first, it gives its space back all the same.
+  // HDF5 keeps a file open that it could not complete: truncating it first releases the disk space anyway.
   fs::resize_file(path_, 0, ignored);
   fs::remove(path_, ignored);
   take_from_list(path_.string());
@@ -271,7 +271,7 @@ void OutputTransaction::make_folder(const fs::path& folder) {
     take_from_list(path.string());
     throw Error(Error::Code::output,
                 fmt::format("{} cannot be a folder of outputs: {}; choose another", folder.string(),
-                            code ? code.message() : "there is something else of that name"));
+                            code ? code.message() : "the path exists and is not a file"));
   }
   whole_->folders_.push_back(path);
 }

@@ -11,7 +11,7 @@ namespace {
 
 unsigned code_of(char byte) { return static_cast<unsigned char>(byte); }
 
-// How many bytes the letter at the beginning of `text` has in UTF-8; 0 where no letter begins so.
+// Number of bytes of the UTF-8 character at the beginning of `text`; 0 if the bytes are not valid UTF-8.
 std::size_t bytes_of_letter(std::string_view text) {
   const unsigned first = code_of(text.front());
   const std::size_t bytes = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
@@ -22,8 +22,8 @@ std::size_t bytes_of_letter(std::string_view text) {
   return bytes;
 }
 
-// Whether it begins a new line (U+2028, U+2029) or has letters shown in another order than they stand in
-// (U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069), or is seen by nobody (U+FEFF).
+// True if the character begins a new line (U+2028, U+2029), changes the order in which characters are shown
+// (U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069), or is invisible (U+FEFF).
 bool is_layout(std::string_view letter) {
   if (letter == "\xd8\x9c" || letter == "\xef\xbb\xbf") return true;
   if (letter.size() != 3) return false;
@@ -38,7 +38,7 @@ bool is_control(std::string_view letter) {
   return first < 0x20 || first == 0x7f || (first == 0xc2 && code_of(letter[1]) < 0xa0) || is_layout(letter);
 }
 
-// Calls `visit` with every letter, and whether it can be shown; a byte that begins none is one by itself.
+// Calls `visit` with every character, and whether it can be shown; an invalid byte is visited alone.
 template <class Visit>
 void each_letter(std::string_view text, Visit visit) {
   while (!text.empty()) {
@@ -69,7 +69,7 @@ std::string shortened(std::string_view text, std::size_t most) {
   each_letter(text, [&](std::string_view letter, bool) {
     if (++letters <= most) first += letter;
   });
-  return letters <= most ? std::string(text) : fmt::format("{}... ({} letters)", first, letters);
+  return letters <= most ? std::string(text) : fmt::format("{}... ({} characters)", first, letters);
 }
 
 std::string quote(std::string_view text) { return "'" + one_line(shortened(text)) + "'"; }

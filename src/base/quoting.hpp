@@ -11,18 +11,17 @@ namespace pcor::internal {
 
 using Names = std::vector<std::string>;
 
-/// A message is one line, read as it stands, whatever is quoted in it: control characters, which a terminal
-/// may obey, those of Unicode that begin a line or turn the direction of writing, and bytes that are no UTF-8
-/// become \x1b and the like.
+/// Text on one line that a terminal shows literally: control characters, Unicode characters that begin a line
+/// or change the direction of writing, and bytes that are not UTF-8 become \x1b and the like.
 std::string one_line(std::string_view text);
 
-/// The first letters of a text; where it has more than `most`, an ellipsis and how many it has.
+/// First characters of a text; a text with more than `most` characters ends with an ellipsis and its length.
 std::string shortened(std::string_view text, std::size_t most = 100);
 
 /// `text` on one line in quotation marks, shortened.
 std::string quote(std::string_view text);
 
-/// What to do about a wrong name: what may have been meant, else all that there is.
+/// Advice for a wrong name: the most similar known names, otherwise all known names.
 std::string suggestion_text(std::string_view wrong, const Names& known);
 
 /// One of the names in each of a list of facts.

@@ -7,7 +7,7 @@
 namespace pcor {
 namespace {
 
-constexpr std::size_t max_name = 256;  // of netCDF
+constexpr std::size_t max_name = 256;  // limit of netCDF
 
 std::string lower(std::string_view text) {
   std::string result(text);

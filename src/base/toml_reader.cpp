@@ -11,9 +11,9 @@
 namespace pcor::internal {
 namespace {
 
-// Days from 1970-01-01 to a date of the Gregorian calendar. The year begins in March, so that the day of leap
-// years is its last (Richards, "Calendars", Explanatory Supplement to the Astronomical Almanac, 2013). It is
-// counted from 400 years, of 146097 days, before the year 0, so that none is negative.
+// Days from 1970-01-01 to a date of the Gregorian calendar. The year begins in March, so that the leap day is
+// its last day (Richards, "Calendars", Explanatory Supplement to the Astronomical Almanac, 2013). Counting
+// begins 400 years, of 146097 days, before the year 0, so that all intermediate values are positive.
 std::int64_t days_since_1970(const toml::date& date) {
   const std::int64_t year = date.year + 400 - (date.month <= 2 ? 1 : 0);
   const std::int64_t month = (date.month + 9) % 12;  // March is 0
@@ -21,13 +21,13 @@ std::int64_t days_since_1970(const toml::date& date) {
          146097;
 }
 
-// What a file may hold at most. toml++ goes as deep into its stack as a text goes into tables, and readers
-// look entries up one by one; values it limits to 256 in each other by itself.
-constexpr std::size_t max_dots = 16;  // in a key
+// Limits of a file. toml++ recurses once for each table level of a key, and readers look entries up one by
+// one; toml++ limits nested values to 256 levels.
+constexpr std::size_t max_dots = 16;  // per key
 constexpr std::size_t max_entries = 10000;
 
-// Where the text in quotes that begins at `begin` ends; in simple quotes it does not go on in the
-// next line.
+// Position of the closing quote of the text that begins at `begin`; a text in single or double quotes ends
+// with its line.
 std::size_t end_of_quotes(std::string_view text, std::size_t begin) {
   const char mark = text[begin];
   const std::string_view three = text.substr(begin, 3);
@@ -161,8 +161,7 @@ void TomlReader::each(const toml::table& table, const std::string& title, const 
 
 Entry TomlReader::format_of(const toml::table& root, std::string_view is, std::string_view format) const {
   if (const std::optional<Entry> entry = entry_of(root, "format")) return *entry;
-  fail(Place{1, 1},
-       fmt::format("the file does not say that it {}; begin it with format = \"{}\"", is, format));
+  fail(Place{1, 1}, fmt::format("is not declared to be {}; begin the file with format = \"{}\"", is, format));
 }
 
 std::string TomlReader::wrong_kind(const Entry& entry, const std::string& wanted) {

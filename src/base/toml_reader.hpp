@@ -22,9 +22,9 @@ namespace pcor::internal {
 /// A key of a table with its value.
 struct Entry {
   std::string key;
-  toml::source_position place;  // of the key
+  toml::source_position place;  // position of the key
   const toml::node* node;
-  std::string title;  // of the table
+  std::string title;  // title of the table
 };
 
 /// The entries of a table in the order of the text; toml++ sorts them by name.
@@ -33,14 +33,14 @@ std::vector<Entry> entries_of(const toml::table& table, const std::string& title
 /// The entry of that key, if the table has it.
 std::optional<Entry> entry_of(const toml::table& table, std::string_view key);
 
-/// What a node is, as messages call it: "a table", "a number".
+/// Kind of a node for messages: "a table", "a number".
 std::string_view kind_of(const toml::node& node);
 
 /// A key as messages call it: in quotes, with the title of its table.
 std::string called(const Entry& entry);
 
-/// The date or time that a text holds as TOML writes it, such as 2011-11-02 or 20:10:00.5; nothing if it is
-/// none.
+/// Date or time written in TOML syntax in a text, such as 2011-11-02 or 20:10:00.5; nullopt if the text is
+/// not one.
 template <class Moment>
 std::optional<Moment> moment_in(std::string_view text) {
   if (text.find_first_not_of("0123456789-:.") != std::string_view::npos) return {};
@@ -57,7 +57,7 @@ double seconds_of(const toml::time& time);
 /// Seconds since 1970 of a date and time without regard to its offset.
 double seconds_of(const toml::date_time& moment);
 
-/// What the readers of TOML files share: they refuse what has no meaning with the place where it stands.
+/// Base of the readers of TOML files: entries without a meaning are refused with their position.
 class TomlReader {
  protected:
   using Place = toml::source_position;
@@ -75,7 +75,7 @@ class TomlReader {
   /// "file:line:column"; the beginning of the file for a place that is not known.
   std::string place_of(Place place) const;
 
-  /// What messages call the file.
+  /// Name of the file for messages.
   const std::string& name() const { return name_; }
 
   [[noreturn]] void fail(Place place, const std::string& what) const;
@@ -87,16 +87,16 @@ class TomlReader {
   /// An error at a key that is not among the `known` ones.
   [[noreturn]] void refuse(const Entry& entry, const Names& known) const;
 
-  /// What `refuse` calls the key.
+  /// Name of the key for `refuse`.
   virtual std::string unknown(const Entry& entry) const { return "key " + called(entry); }
 
-  /// Does for each key what `actions` say; a key that they do not know is an error.
+  /// Calls the action of each key; a key without an action is an error.
   void each(const toml::table& table, const std::string& title, const Actions& actions) const;
 
-  /// The entry `format` of a file, which must say that it `is` of that format.
+  /// Entry `format` of a file, whose value must be the format `is`.
   Entry format_of(const toml::table& root, std::string_view is, std::string_view format) const;
 
-  /// What a node holds: a table, an array, a text and the like. Any other kind is the error `otherwise`.
+  /// Content of a node: a table, an array, a text and the like. Any other kind is the error `otherwise`.
   template <class Value>
   const Value& as(const toml::node& node, const std::string& otherwise) const {
     const auto* value = node.as<Value>();
@@ -108,7 +108,7 @@ class TomlReader {
     }
   }
 
-  /// The values of an entry. Any other kind than the one that is `wanted` is an error, which says so.
+  /// Values of an entry. Any other kind than the `wanted` one is an error.
   bool boolean(const Entry& entry) const;
   std::int64_t whole_number(const Entry& entry, const std::string& wanted = "a whole number") const;
   std::string text(const Entry& entry, const std::string& wanted = "a text in quotes") const;

@@ -87,9 +87,10 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
   std::bitset<state_capacity> wanted;
   for (const Output& output : outputs) {
     if (!finds(output.quantity)) {
-      throw Error(fmt::format(
-          "'{}' is not found over whole arrays: it needs what is not recorded, or samples before its own",
-          to_string(output.quantity)));
+      throw Error(
+          fmt::format("'{}' is not available in batch mode: an input is not recorded or depends on earlier "
+                      "samples; pass it as an input",
+                      to_string(output.quantity)));
     }
     wanted.set(index(output.quantity));
   }

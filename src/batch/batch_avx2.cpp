@@ -1,5 +1,5 @@
-// Compiled for AVX2 and FMA, and run only where the processor has them. Nothing but the kernel belongs here:
-// other inline functions of this file could be chosen by the linker for the whole program.
+// Compiled for AVX2 and FMA, and run only on processors that have them. This file must contain only the
+// kernel: the linker could choose its other inline functions for the whole program.
 #include "batch/batch_kernel.hpp"
 
 #if defined(__AVX2__) && defined(__FMA__)

@@ -1,9 +1,9 @@
-// Compiled for AVX-512 with the extensions that most processors with it have, and run only where the
-// processor has them. As in batch_avx2.cpp, nothing but the kernel belongs here.
+// Compiled for AVX-512 with the extensions of most processors that have it, and run only on these. As in
+// batch_avx2.cpp, this file must contain only the kernel.
 #include "batch/batch_kernel.hpp"
 
 #if defined(__AVX512F__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
-// The headers of g++ 12 warn of what they leave undefined on purpose (GCC bug 105593).
+// Headers of g++ 12 cause warnings on deliberately undefined values (GCC bug 105593).
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"

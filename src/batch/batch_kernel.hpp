@@ -10,12 +10,13 @@
 
 namespace pcor::internal {
 
-/// What a kernel does: plain pointers, because its code may be compiled for another processor than the rest.
+/// Arguments of a kernel: plain pointers, because its code may be compiled for another processor than the
+/// rest.
 struct BatchJob {
   const Chain* chain = nullptr;
   CorrectWith with = CorrectWith::model;
   const double* parameters = nullptr;
-  std::array<bool, Stages::count> runs{};  ///< the stages that what is asked for needs
+  std::array<bool, Stages::count> runs{};  ///< stages required by the outputs
   const Batch::Input* inputs = nullptr;
   std::size_t input_count = 0;
   const Batch::Output* outputs = nullptr;
@@ -25,8 +26,8 @@ struct BatchJob {
 
 using BatchKernel = void (*)(const BatchJob&);
 
-/// The kernel for every processor, and those for x86 with AVX2 and FMA, and with AVX-512 and its extensions
-/// CD, DQ and BW; null where the compiler has none.
+/// Kernel for every processor, and those for x86 with AVX2 and FMA, and with AVX-512 and its extensions CD,
+/// DQ and BW; nullptr if not supported by the compiler.
 void run_batch(const BatchJob& job);
 extern const BatchKernel run_batch_avx2;
 extern const BatchKernel run_batch_avx512;

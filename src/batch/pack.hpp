@@ -41,7 +41,7 @@ class PackMask {
 /// physics, see scalar.hpp. Two registers, so that the processor computes on one while it waits for the
 /// other.
 ///
-/// Being a type of the instruction set, every template that is made of it has a name of its own, so code for
+/// As a type of the instruction set, it gives every template instance a distinct name, so that code for
 /// different processors can be linked together.
 template <class Arch>
 class Pack {
@@ -52,8 +52,8 @@ class Pack {
   static constexpr std::size_t size = 2 * Register::size;
 
   Pack() = default;
-  // Register by register: the copy that g++ 12 makes of such a class goes in pieces of 16 bytes through
-  // memory, and who reads a whole register there waits for it.
+  // Copies register by register: g++ 12 would copy such a class in pieces of 16 bytes through memory, and a
+  // subsequent read of a whole register would stall.
   Pack(const Pack& other) : first_(other.first_.data), second_(other.second_.data) {}
   Pack& operator=(const Pack& other) {
     first_.data = other.first_.data;
@@ -116,8 +116,8 @@ class Pack {
   friend Pack log10(const Pack& a) { return decimal_logarithm(a); }
   friend Pack sqrt(const Pack& a) { return {xsimd::sqrt(a.first_), xsimd::sqrt(a.second_)}; }
   friend Pack abs(const Pack& a) { return {xsimd::abs(a.first_), xsimd::abs(a.second_)}; }
-  // Lane by lane: the reduction of large angles in xsimd is a function of its own, which the kernel for AVX2
-  // may not share with the rest of the program.
+  // Computed lane by lane: the reduction of large angles in xsimd is a separate function, which the kernel
+  // for AVX2 must not share with the rest of the program.
   friend Pack sin(const Pack& a) { return {Pack::by_lane(a.first_), Pack::by_lane(a.second_)}; }
   friend Pack cos(const Pack& a) { return {xsimd::cos(a.first_), xsimd::cos(a.second_)}; }
   friend Pack tan(const Pack& a) { return {xsimd::tan(a.first_), xsimd::tan(a.second_)}; }

@@ -10,8 +10,8 @@
 
 namespace pcor::internal {
 
-/// Powers, exponential and logarithm of a vector register. xsimd has the last two, too, but they take twice
-/// the time where a processor cannot convert between numbers and 64-bit integers, as with AVX2.
+/// Power, exponential and logarithm of a vector register. xsimd provides the last two, but they take twice
+/// the time on processors that cannot convert between numbers and 64-bit integers, as with AVX2.
 
 namespace detail {
 
@@ -56,7 +56,7 @@ template <class Arch>
                                                  1.0 / 6227020800.0};
   const Register half_ln2(0.34657359027997264);
   if (xsimd::all(xsimd::abs(x) <= half_ln2)) return detail::polynomial(x, series);
-  // x = n ln 2 + r with whole n. Added to so large a number, n stands in its last bits.
+  // x = n ln 2 + r with whole n. Adding this number places n in the last bits.
   const Register large(0x1.8p52);
   const Register shifted = xsimd::fma(x, Register(0x1.71547652b82fep0), large);
   const Register n = shifted - large;
@@ -68,8 +68,7 @@ template <class Arch>
                        xsimd::select(x > Register(709.0), infinity, result));
 }
 
-/// ln x within 2 units in the last place; minus infinity at zero and where x is too small for a normal
-/// number.
+/// ln x within 2 units in the last place; minus infinity at zero and for x too small for a normal number.
 template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> logarithm(const xsimd::batch<double, Arch>& x) {
   using Register = xsimd::batch<double, Arch>;
@@ -100,9 +99,9 @@ template <class Arch>
 
 /// (1 + part/whole)^exponent - 1 within a few units in the last place.
 ///
-/// Where all lanes are as in flight, below Mach 0.847, it is two polynomials, as in
-/// `pcor::power_less_one`; that of the exponential goes further here, so that the pressure of a given
-/// airspeed is in it.
+/// If all lanes are in the range of flight, below Mach 0.847, two polynomials are used, as in
+/// `pcor::power_less_one`; that of the exponential has a wider range here, to include the pressure of a given
+/// airspeed.
 template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> power_less_one(
     const xsimd::batch<double, Arch>& part, const xsimd::batch<double, Arch>& whole,

@@ -9,7 +9,7 @@
 namespace pcor::internal {
 namespace {
 
-/// The few of the flights from `first` until `last`.
+/// Flights from `first` until `last` that determine the noise.
 std::vector<std::size_t> few_of(const std::vector<NoiseFlight>& flights, std::size_t first,
                                 std::size_t last) {
   const auto begin = flights.begin();

@@ -14,30 +14,31 @@
 
 namespace pcor::internal {
 
-/// Flights of a team in bins, each against one reference, those against one reference one after another. A
-/// member has the bins of its own flights; of the others it knows which there are, and its bins are none.
+/// Binned flights of all ranks, each against one reference, grouped by reference. A rank has the bins of its
+/// flights; for other flights it has the outline, and their bins are empty.
 struct BinnedFlights {
   std::vector<Binning> bins{};
   std::vector<Eigen::MatrixXd> columns{};    ///< base and candidates, in bins
   std::vector<Eigen::VectorXd> residuals{};  ///< hPa, in bins
-  std::vector<std::size_t> reference{};      ///< of each flight
-  std::vector<NoiseFlight> outlines{};       ///< of all flights
+  std::vector<std::size_t> reference{};      ///< reference of each flight
+  std::vector<NoiseFlight> outlines{};       ///< outlines of all flights
 
-  /// The flights against the first reference: the first so many.
+  /// Number of flights against the first reference, which come first.
   std::size_t first_count() const;
 };
 
-/// The bins in which a residual of each own flight has values, hPa. @param residual_of gives it
+/// Bins in which the residual of each flight of this rank has values, hPa. @param residual_of returns the
+/// residual
 BinnedFlights in_bins(const FlightPartition& share, const std::vector<FlightColumns>& flights,
                       const std::function<std::vector<double>(std::size_t flight)>& residual_of);
 
-/// What a noise is found from, in bins.
+/// Binned inputs of the noise estimate.
 struct BinnedFit {
-  /// The columns that are fitted to an own flight.
+  /// Columns fitted to a flight of this rank.
   std::function<Eigen::MatrixXd(std::size_t flight)> columns;
-  /// What they leave of its residual, hPa.
+  /// Residual after the fit, hPa.
   std::function<Eigen::VectorXd(std::size_t flight)> left;
-  /// Digest of what they leave it at, in which the members have to agree.
+  /// Digest of the parameters of the fit, on which the ranks must agree.
   std::uint64_t state = 0;
 };
 
@@ -45,12 +46,12 @@ using FindNoise =
     std::function<NoiseModel(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                              const std::vector<Eigen::VectorXd>& left)>;
 
-/// The noise of each flight, each reference having one of its own. What flights share of it is found from a
-/// few of them by `find`; the level of an own flight follows from that and its own residual.
+/// Noise of each flight, separate for each reference. The common part is found from a few flights by `find`;
+/// the level of a flight follows from the common part and its residual.
 std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const BinnedFlights& flights,
                                          const BinnedFit& fit, const FindNoise& find);
 
-/// That of the flights against the first reference as one, with the levels of the own.
+/// Common noise of the flights against the first reference, with the levels of the flights of this rank.
 NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vector<NoiseModel>& noise);
 
 }  // namespace pcor::internal

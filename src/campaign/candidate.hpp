@@ -10,66 +10,69 @@
 
 namespace pcor::internal {
 
-/// A parameter of a candidate that is tested.
+/// Tested parameter of a candidate.
 struct CandidateParameter {
-  std::size_t place = 0;  ///< among the parameters of its effect
+  std::size_t place = 0;  ///< index among the parameters of its effect
   std::string name;
   std::string unit;
-  double typical = 0.0;  ///< 0 where nobody knows
-  Bounds bounds{};       ///< of what physics allows, as a change from the neutral value
+  double typical = 0.0;  ///< 0 if unknown
+  Bounds bounds{};       ///< physical bounds, as a change from the neutral value
 };
 
-/// An effect that the model may lack, or that of the system which it is held against.
+/// Effect that the model, or the model of the reference system, may lack.
 struct Candidate {
-  ModelEffect effect;      ///< with its neutral parameters, and shapes as they are tried
-  std::string id;          ///< as that of a finding
-  std::size_t number = 0;  ///< of the effect in the extended model
-  /// On the system of each reference: the number of the effect in its extended model, nothing where it has
-  /// none. Empty for an effect on the own system.
+  ModelEffect effect;      ///< with neutral parameters and tested shapes
+  std::string id;          ///< id as in a finding
+  std::size_t number = 0;  ///< number of the effect in the extended model
+  /// Effect on the system of each reference: its number in the extended model of that system, nullopt if
+  /// absent. Empty for an effect on the model's system.
   std::vector<std::optional<std::size_t>> numbers_in_others{};
-  std::string system{};  ///< which other system, where the references have several: "PSFRD+QCFR"; else empty
-  /// The time over which its need is found that it remembers (`EffectInfo::memory`), s.
+  std::string system{};  ///< name of the other system, if the references have several: "PSFRD+QCFR";
+                         ///< otherwise empty
+  /// Time constant of the history of its input (`EffectInfo::memory`), s.
   double memory = 0.0;
-  /// The same on the other system, built alike: what holds the two against each other does not see it.
+  /// Common mode of both systems: a comparison of the two systems is insensitive to it.
   bool is_shared = false;
   std::string title;
   std::vector<CandidateParameter> tested{};
-  bool is_variant = false;  ///< the same effect as a candidate before it, in another shape
+  bool is_variant = false;  ///< another shape of an earlier candidate
 
   bool is_of_reference() const { return !numbers_in_others.empty(); }
-  /// Whether it acts on what a reference is made of: an effect on the own system in the first of them, which
-  /// tells all figures; one on another system in those that have that system.
+  /// Whether the reference is sensitive to its system. For an effect on the model's system only the first
+  /// reference counts, which determines all statistics; for an effect on another system, the references with
+  /// that system.
   bool is_measured_by(std::size_t reference) const {
     return is_of_reference() ? numbers_in_others[reference].has_value() : reference == 0;
   }
 };
 
-/// A coefficient that is fitted beside every candidate.
+/// Coefficient that is fitted with every candidate.
 struct BaseCoefficient {
-  std::string name;  ///< like "static-qp.a2" and "reference:static-qp.a2"
+  std::string name;  ///< name like "static-qp.a2" or "reference:static-qp.a2"
   std::string unit;
-  double value = 0.0;  ///< in its model
+  double value = 0.0;  ///< value in its model
   Bounds bounds{};
   bool of_reference = false;
-  double usual = 0.0;  ///< the size it usually has, in its unit; 0 where nobody knows
+  double usual = 0.0;  ///< typical size in its unit; 0 if unknown
 };
 
-/// Candidates, and the models that have them.
+/// Candidates, and the models extended by them.
 struct CandidateModels {
-  /// The model with every candidate besides, and the variables of all roles that these need.
+  /// Model extended by every candidate, with the variables that the candidates require.
   ModelDefinition extended;
-  /// The references, each with what candidates on its own system need.
+  /// References, each with the variables that candidates on its system require.
   References references{};
-  /// The model of each reference, with every candidate on its system besides; nothing where it has none.
+  /// Model of each reference, extended by every candidate on its system; nullopt without a model.
   std::vector<std::optional<ModelDefinition>> others{};
-  std::vector<std::size_t> effects_of_others{};  ///< how many effects the law of each has without candidates
+  std::vector<std::size_t> effects_of_others{};  ///< number of effects in the model of each reference without
+                                                 ///< candidates
   std::vector<BaseCoefficient> base{};
-  /// Where those of each reference's own model begin.
+  /// Index of the first base coefficient of each reference's model.
   std::vector<std::size_t> base_of_others{};
   std::vector<Candidate> candidates{};
 
-  /// The first column of a candidate among those of all, one for each tested parameter. @param candidate its
-  /// number; that of all: how many columns there are
+  /// First column of a candidate among all columns, which has one for each tested parameter. @param candidate
+  /// its number; the number of candidates gives the number of columns
   std::size_t first_column(std::size_t candidate) const {
     std::size_t first = 0;
     for (std::size_t c = 0; c < candidate; ++c) first += candidates[c].tested.size();

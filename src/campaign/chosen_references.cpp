@@ -24,7 +24,7 @@ bool names_temperature(const ModelDefinition& model) {
          model.variables.count(Quantity::ambient_temperature) != 0;
 }
 
-/// Whether a flight has a pair of pressures of which none is of the model itself.
+/// Whether a flight has a pressure pair that the model does not use.
 bool has_other_pair(const Flight& flight, const ModelDefinition& model, const PressurePair& pair) {
   return pair.static_pressure != model.variables.at(Quantity::static_pressure) &&
          pair.dynamic_pressure != model.variables.at(Quantity::dynamic_pressure) &&
@@ -33,22 +33,22 @@ bool has_other_pair(const Flight& flight, const ModelDefinition& model, const Pr
 
 std::string why_no_height(const Flight& flight, const ModelDefinition& model) {
   if (!names_temperature(model)) return "the model names no temperature";
-  if (read_role(flight, model, Quantity::altitude).values.empty()) return "there is no height of GPS";
-  if (read_role(flight, model, Quantity::latitude).values.empty()) return "there is no latitude";
+  if (read_role(flight, model, Quantity::altitude).values.empty()) return "the flight has no GPS height";
+  if (read_role(flight, model, Quantity::latitude).values.empty()) return "the flight has no latitude";
   return "";
 }
 
 std::string why_no_wind(const Flight& flight, const ModelDefinition& model) {
   if (!names_temperature(model)) return "the model names no temperature";
-  if (read_role(flight, model, Quantity::heading).values.empty()) return "there is no true heading";
-  if (read_ground_velocity(flight, model).speed.values.empty()) return "there is no velocity over the ground";
+  if (read_role(flight, model, Quantity::heading).values.empty()) return "the flight has no true heading";
+  if (read_ground_velocity(flight, model).speed.values.empty()) return "the flight has no ground velocity";
   return "";
 }
 
-/// What a flight allows beside LAMS, and why not. Empty reasons: it does.
+/// References that a flight allows in addition to LAMS. A reason is empty if the reference is available.
 struct Allowed {
   bool laser = false;
-  std::vector<std::pair<std::string, std::string>> pairs{};  ///< of pressures, in the order of preference
+  std::vector<std::pair<std::string, std::string>> pairs{};  ///< pressure pairs in order of preference
   std::string no_height{};
   std::string no_wind{};
 
@@ -59,7 +59,7 @@ struct Allowed {
 };
 
 Allowed allowed_by(const Flight& flight, const ModelDefinition& model) {
-  constexpr std::string_view filtered_and_late = "PS_A";  // of the avionics
+  constexpr std::string_view filtered_and_late = "PS_A";  // avionics
   Allowed allowed;
   allowed.laser = flight.has(model.variables.at(Quantity::lams_airspeed));
   if (!allowed.laser) return allowed;
@@ -75,7 +75,7 @@ Allowed allowed_by(const Flight& flight, const ModelDefinition& model) {
   return allowed;
 }
 
-/// What all flights allow; of what they do not, why the first does not.
+/// References that all flights allow; for others the reason of the first flight.
 Allowed allowed_by_all(const std::vector<Allowed>& flights) {
   Allowed all = flights.front();
   for (const Allowed& flight : flights) {
@@ -117,7 +117,7 @@ ChosenReferences read_references(const std::vector<std::string>& texts, const Mo
       [&](std::size_t number) { return allowed_by(flights[number], model); }));
   if (!allowed.laser) return chosen;
   if (allowed.pairs.empty()) {
-    chosen.not_used.emplace_back("total: there is no second pair of pressures of a usual name");
+    chosen.not_used.emplace_back("total: no second pressure pair with a standard name was found");
   } else {
     use("total:" + allowed.pairs.front().first + "+" + allowed.pairs.front().second);
   }

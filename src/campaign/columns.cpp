@@ -22,29 +22,29 @@ namespace {
 constexpr int jet_width = 3;
 using Jet = ceres::Jet<double, jet_width>;
 
-/// One evaluation of a candidate: its derivatives by some of the tested parameters.
+/// Evaluation of a candidate: its derivatives with respect to some of the tested parameters.
 struct Evaluation {
   std::size_t effect;            // number in the extended model of its system
-  Eigen::Index place = 0;        // among the places of all candidates
-  std::size_t first_column = 0;  // of the parameters
+  Eigen::Index place = 0;        // index among the locations of all candidates
+  std::size_t first_column = 0;  // first column of the parameters
   std::size_t width = 0;
   std::vector<Jet> parameters{};
-  Quantity memory = Quantity::count;  // what the candidate remembers over a time of its own,
-  std::vector<double> remembered{};   // instead of what the samples have; empty where it is not known
+  Quantity memory = Quantity::count;  // history input of the candidate,
+  std::vector<double> remembered{};   // replaces the column of the samples; empty if unknown
 };
 
-/// One of the systems that a residual is made of, and where its parameters stand among those of the residual:
-/// those of its effects, then one for each place at which candidates add something.
+/// System in a residual, and the indices of its parameters among the parameters of the residual: parameters
+/// of its effects, then one for each location at which candidates act.
 struct System {
   ModelDefinition model{};
   std::vector<std::size_t> free{};
   std::size_t first_place = 0;
-  std::size_t end = 0;  // behind the last place
+  std::size_t end = 0;  // after the last location
 
   const std::vector<EffectLocation>& places() const { return model.model.additions; }
 };
 
-/// The evaluations of the candidates of one system.
+/// Evaluations of the candidates of one system.
 std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t reference, bool of_reference,
                                        const std::vector<EffectLocation>& places,
                                        const FlightSamples& samples) {
@@ -58,7 +58,7 @@ std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t r
     Evaluation evaluation{*number};
     const auto place = std::find(places.begin(), places.end(), location_of(candidate.effect));
     evaluation.place = place - places.begin();
-    if (candidate.memory != 0.0) {  // what is found over none the samples have
+    if (candidate.memory != 0.0) {  // the history starts from the samples' inputs
       evaluation.memory = memory_of(candidate.effect).of;
       evaluation.remembered =
           remembered(evaluation.memory, samples.model, samples.time, samples.step, candidate.memory);
@@ -76,9 +76,9 @@ std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t r
   return evaluations;
 }
 
-/// Gives the few places without a value that of the one before (of the one after at the begin); many stay.
+/// Fills a few missing values with the previous value (at the beginning the next one); longer gaps remain.
 void bridge(Eigen::Ref<Eigen::VectorXf> column, const std::vector<std::size_t>& used) {
-  constexpr double most = 0.1;  // part of the samples
+  constexpr double most = 0.1;  // maximum fraction of the samples
   std::size_t missing = 0;
   for (const std::size_t i : used) missing += std::isfinite(column[as_index(i)]) ? 0 : 1;
   if (missing == 0 || static_cast<double>(missing) > most * static_cast<double>(used.size())) return;
@@ -91,7 +91,7 @@ void bridge(Eigen::Ref<Eigen::VectorXf> column, const std::vector<std::size_t>& 
   }
 }
 
-/// The samples used, and those between them that are not because flaps are out.
+/// Used samples, and the samples between them that are excluded because of the flaps.
 std::vector<std::size_t> with_flaps_out(const LinearRows& rows) {
   if (rows.used().empty()) return {};
   const std::size_t end = rows.held_out().empty() ? rows.mask().size() : rows.used().back() + 1;
@@ -102,7 +102,7 @@ std::vector<std::size_t> with_flaps_out(const LinearRows& rows) {
   return result;
 }
 
-/// The samples and those that are at most `reach` before or after one of them, of `size`.
+/// The samples and their neighbours up to `reach` before or after, limited to `size`.
 std::vector<std::size_t> with_neighbours(const std::vector<std::size_t>& samples, std::size_t reach,
                                          std::size_t size) {
   std::vector<std::size_t> result;
@@ -115,7 +115,7 @@ std::vector<std::size_t> with_neighbours(const std::vector<std::size_t>& samples
   return result;
 }
 
-/// The places of the candidates of one system.
+/// Locations of the candidates of one system.
 std::vector<EffectLocation> places_of(const CandidateModels& set, bool of_reference) {
   std::vector<EffectLocation> places;
   for (const Candidate& candidate : set.candidates) {
@@ -135,11 +135,11 @@ System system_of(ModelDefinition model, const CandidateModels& set, bool of_refe
   return system;
 }
 
-/// Puts the columns of the candidates of one system at some samples: what each coefficient adds at its place,
-/// through the chain of the system.
-/// @param at_places of each place the derivative of the residual by what is added there, at these samples; of
-/// none what is added is wanted itself, with the sign turned
-/// @param see gets the state of each sample
+/// Computes the columns of the candidates of one system at some samples: the amount that each coefficient
+/// adds at its location, through the chain of the system.
+/// @param at_places for each location the derivative of the residual with respect to an amount added there,
+/// at these samples; if empty, the columns are the added amounts with the sign inverted
+/// @param see receives the state of each sample
 template <class See>
 void put_candidates(const Chain& chain, const ModelSamples& inputs,
                     const std::vector<Evaluation>& evaluations, const std::vector<std::size_t>& samples,
@@ -168,8 +168,8 @@ void put_candidates(const Chain& chain, const ModelSamples& inputs,
   }
 }
 
-/// Makes of columns with what each coefficient adds at its place, sample by sample, those of residuals that
-/// are made of their neighbours. @param first_place among the parameters of the residuals
+/// Converts columns of added amounts, sample by sample, to columns of residuals that depend on neighbouring
+/// samples. @param first_place among the parameters of the residuals
 void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluation>& evaluations,
                          std::size_t first_place, const std::vector<std::size_t>& used,
                          const std::vector<std::size_t>& needed, Eigen::MatrixXf& columns) {
@@ -196,7 +196,7 @@ void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluatio
   }
 }
 
-/// The systems of a residual, the own one first.
+/// Systems of a residual, the model's system first.
 std::vector<System> systems_of(const ModelDefinition& model, const CandidateModels& set,
                                std::size_t reference) {
   std::vector<System> systems{system_of(model, set, false, 0)};
@@ -207,12 +207,12 @@ std::vector<System> systems_of(const ModelDefinition& model, const CandidateMode
   return systems;
 }
 
-/// Puts the columns of candidates on both systems where the residual knows one of them alone, and bridges the
-/// others.
+/// Adds the columns of candidates on both systems if the residual depends on one system only, and fills short
+/// gaps of the others.
 void complete(const CandidateModels& set, bool two_systems, const std::vector<std::size_t>& used,
               Eigen::MatrixXf& columns) {
   Eigen::Index column = 0;
-  Eigen::Index source = 0;  // of what both systems share, on the own one
+  Eigen::Index source = 0;  // column of a common-mode effect, on the model's system
   for (const Candidate& candidate : set.candidates) {
     if (!candidate.is_shared) source = column;
     for (Eigen::Index c = 0; c < as_index(candidate.tested.size()); ++c, ++column) {
@@ -300,7 +300,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
        {Quantity::attack, Quantity::sideslip, Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate,
         Quantity::normal_acceleration, Quantity::roll})
     columns.quantities.emplace_back(quantity, std::vector<double>(residuals.size(), nan));
-  Eigen::Index next = 0;  // of what was found
+  Eigen::Index next = 0;  // next evaluated column
   for (const System& system : systems) {
     const bool is_own = &system == &own;
     const std::size_t first = is_own ? 0 : set.base_of_others[reference];

@@ -12,30 +12,30 @@
 
 namespace pcor::internal {
 
-/// What a diagnosis sees of a flight against one reference, one value for each record.
+/// Inputs of a diagnosis from a flight against one reference, one value for each record.
 ///
-/// Columns are changes of the residual, with the sign turned: what a unit of a coefficient takes away. They
-/// are derivatives through the whole chain where the model says that the air is, never at the noisy speed of
-/// the laser, whose noise is that of the residual.
+/// Columns are changes of the residual with the sign inverted: the reduction by a unit of a coefficient. They
+/// are derivatives through the whole chain at the model's prediction, never at the noisy speed of the laser,
+/// whose noise is in the residual.
 struct FlightColumns {
-  std::size_t file = 0;       ///< which of the files
-  std::size_t reference = 0;  ///< which of the references
-  /// Over how long a mean of the residual tells something new, s; zero: of every sample.
+  std::size_t file = 0;       ///< number of the file
+  std::size_t reference = 0;  ///< number of the reference
+  /// Time over which the residual holds one independent mean, s; zero: every sample.
   double window = 0.0;
   std::shared_ptr<const FlightSamples> samples;
   std::vector<Mask> mask;
-  std::vector<double> given;     ///< the residual with the coefficients of the model, hPa; NaN where not used
-  std::vector<double> residual;  ///< the same; in the diagnosis outliers are replaced, hPa
-  /// The residual as it is, not measured at the sensor, of every sample, hPa.
+  std::vector<double> given;     ///< residual with the coefficients of the model, hPa; NaN if not used
+  std::vector<double> residual;  ///< `given` with outliers replaced in the diagnosis, hPa
+  /// Exact residual of every sample, hPa, not measured at the sensor.
   std::vector<double> exact{};
-  /// As `given`, of samples that are not used because flaps are out; NaN at all others. Columns are found for
-  /// them too.
+  /// Like `given`, for samples excluded because of the flaps; NaN at all others. Columns are computed for
+  /// them as well.
   std::vector<double> flaps_out{};
-  Eigen::MatrixXf base;        ///< of the free coefficients of the models, hPa per unit
-  Eigen::MatrixXf candidates;  ///< of the tested parameters of all candidates, one after another
-  /// How the flight was flown, for smooth functions and pictures; NaN everywhere where not known.
+  Eigen::MatrixXf base;        ///< columns of the free coefficients of the models, hPa per unit
+  Eigen::MatrixXf candidates;  ///< columns of the tested parameters of all candidates, one after another
+  /// Motion of the flight, for smooth functions and pictures; NaN everywhere if unknown.
   std::vector<std::pair<Quantity, std::vector<double>>> quantities{};
-  std::vector<double> corrected_pressure{};  ///< static, hPa
+  std::vector<double> corrected_pressure{};  ///< corrected static pressure, hPa
 
   const std::vector<double>& quantity(Quantity quantity) const;
 
@@ -46,19 +46,19 @@ struct FlightColumns {
   }
 };
 
-/// The same without a record: what the members of a team know of a flight that another owns.
+/// Copy without records: the part known on ranks that do not own the flight.
 FlightColumns outline_of(const FlightColumns& flight);
 
-/// Finds the columns of one flight against one of the set's references.
+/// Computes the columns of one flight against one of the set's references.
 ///
-/// @param extended samples that hold what the model, all candidates and the reference read
+/// @param extended samples with the inputs of the model, all candidates and the reference
 /// @param first_part only the first part of the samples is used, 0 to 1
 /// @throws Error if the model cannot be used on the samples.
 FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended, const ModelDefinition& model,
                            const CandidateModels& set, std::size_t reference, const MaskOptions& mask,
                            double first_part);
 
-/// Base and candidates of a flight side by side, in bins.
+/// Base and candidate columns of a flight, in bins.
 Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins);
 
 }  // namespace pcor::internal

@@ -68,7 +68,7 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
   air.gas_constant.resize(count);
   for (std::size_t i = 0; i < count; ++i) air.gas_constant[i] = moist_air(humidity[i]).gas_constant;
   if (!air.laser) return;
-  // Eq. 12 turned round: v = M (gamma R_a T)^(1/2) with the laser's temperature is the laser's airspeed.
+  // Inverse of eq. 12: v = M (gamma R_a T)^(1/2) with the laser temperature is the laser airspeed.
   air.laser->airspeed.resize(count);
   for (std::size_t i = 0; i < count; ++i)
     air.laser->airspeed[i] = true_airspeed(air.mach[i], air.laser->temperature[i], moist_air(humidity[i]));
@@ -130,14 +130,14 @@ FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const Mo
 }
 
 std::string height_problem(const FlightAir& air) {
-  // A height that the model names and gives a unit to.
-  const auto told = [&air](const char* unit) {
+  // Key of the model that sets the unit of the height.
+  const auto unit_setting = [&air](const char* unit) {
     return fmt::format(R"([variables] altitude = "{}" and [units] altitude = "{}" in the model)",
                        air.height_variable, unit);
   };
   if (air.height.empty() && !air.height_variable.empty())
-    return fmt::format("{} has no unit in the file; say it with {}, or give the file a units attribute",
-                       air.height_variable, told("m"));
+    return fmt::format("{} has no unit in the file; set it by {}, or add a units attribute to the file",
+                       air.height_variable, unit_setting("m"));
   if (air.height.empty())
     return "the flight records no GPS height (GGALT; [variables] altitude names another)";
   if (air.latitude.empty())
@@ -148,7 +148,7 @@ std::string height_problem(const FlightAir& air) {
     if (air.flying[i]) height[i] = air.geopotential_height[i];
   }
   const LineFit line = ordinary_fit(air.pressure_altitude, height);
-  constexpr double min_range = 300.0;  // m: with less the slope says little
+  constexpr double min_range = 300.0;  // m, minimum height range for a slope
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   for (std::size_t i = 0; i < air.size(); ++i) {
@@ -159,15 +159,15 @@ std::string height_problem(const FlightAir& air) {
   if (!(highest - lowest > min_range)) return "";
   if (line.slope > 2.9 && line.slope < 3.7) {
     return fmt::format(
-        "{} rises {:.2f} times as fast as the pressure altitude: it is in feet, whatever its unit says; {} "
-        "mend it, or correct its unit in the file",
-        air.height_variable, line.slope, told("ft"));
+        "{}: values increase {:.2f} times as fast as the pressure altitude, so they are in feet; set {}, or "
+        "correct the units attribute in the file",
+        air.height_variable, line.slope, unit_setting("ft"));
   }
   // Real air is within 20 % of the standard atmosphere.
   if (!(line.slope > 0.75 && line.slope < 1.25)) {
     return fmt::format(
-        "{} rises {:.2f} times as fast as the pressure altitude, which no atmosphere does; check both "
-        "variables",
+        "{}: values increase {:.2f} times as fast as the pressure altitude, which is impossible in any "
+        "atmosphere; check both variables",
         air.height_variable, line.slope);
   }
   return "";

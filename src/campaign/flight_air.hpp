@@ -10,7 +10,7 @@
 
 namespace pcor::internal {
 
-/// What the laser says of a flight, one value for each record, NaN where missing.
+/// LAMS-derived series of a flight, one value per record, NaN if missing.
 struct LaserAir {
   std::vector<double> airspeed;       ///< true airspeed from the beam, m/s
   std::vector<double> static_defect;  ///< delta-p from LAMS, hPa
@@ -22,11 +22,11 @@ struct LaserAir {
   }
 };
 
-/// The air along a flight, as a model sees it: what checks and the fit of temperature look at. One value for
-/// each record, NaN where missing; a series that the flight cannot give is empty.
+/// Air along a flight computed with a model: input of checks and of the temperature fit. One value for each
+/// record, NaN if missing; unavailable series are empty.
 struct FlightAir {
-  std::shared_ptr<const FlightSamples> samples;  ///< what was recorded, how it was flown
-  std::vector<bool> flying;                      ///< in the air, fast enough, flaps in, not excluded
+  std::shared_ptr<const FlightSamples> samples;  ///< recorded inputs and motion
+  std::vector<bool> flying;                      ///< airborne, fast enough, flaps in, not excluded
 
   std::vector<double> measured_static;   ///< hPa
   std::vector<double> measured_dynamic;  ///< hPa
@@ -34,31 +34,31 @@ struct FlightAir {
   std::vector<double> pressure;          ///< corrected static pressure, hPa
   std::vector<double> dynamic;           ///< corrected dynamic pressure, hPa
   std::vector<double> mach;
-  std::vector<double> temperature;   ///< ambient, K
-  std::vector<double> airspeed;      ///< true, m/s
-  std::vector<double> gas_constant;  ///< of the moist air, J/(kg K)
+  std::vector<double> temperature;   ///< ambient temperature, K
+  std::vector<double> airspeed;      ///< true airspeed, m/s
+  std::vector<double> gas_constant;  ///< gas constant of the moist air, J/(kg K)
   std::vector<double> attack;        ///< deg
   std::vector<double> sideslip;      ///< deg
   std::vector<double> attack_ratio;  ///< ADIFR/QCR
   std::vector<double> sideslip_ratio;
   std::optional<LaserAir> laser;
 
-  /// Which height it is; without a `height`, one that has no unit. Empty where there is none.
+  /// Name of the height; without `height`, a height without unit. Empty if the flight has no height.
   std::string height_variable;
   std::vector<double> height;               ///< GPS height, m
   std::vector<double> latitude;             ///< deg
-  std::vector<double> geopotential_height;  ///< of the GPS height, m
-  std::vector<double> pressure_altitude;    ///< of the corrected pressure, m
-  /// Geopotential height less pressure altitude, m: how far above that of the standard atmosphere the
-  /// surface of this pressure lies (DVALUE).
+  std::vector<double> geopotential_height;  ///< geopotential height by GPS, m
+  std::vector<double> pressure_altitude;    ///< pressure altitude of the corrected pressure, m
+  /// Geopotential height minus pressure altitude, m: height of the surface of this pressure above the
+  /// standard atmosphere (DVALUE).
   std::vector<double> d_value;
-  std::vector<double> east_speed;   ///< over the ground, m/s
-  std::vector<double> north_speed;  ///< over the ground, m/s
-  /// Wind along the aircraft's axis, m/s, from behind positive: ground speed times cos(track - heading), less
+  std::vector<double> east_speed;   ///< eastward ground velocity, m/s
+  std::vector<double> north_speed;  ///< northward ground velocity, m/s
+  /// Wind along the aircraft's axis, m/s, tail wind positive: ground speed times cos(track - heading), minus
   /// the true airspeed (the memo's UXW).
   std::vector<double> tail_wind;
 
-  std::vector<std::string> notes;  ///< what a user should know, a sentence each
+  std::vector<std::string> notes;  ///< notes for the user, one sentence each
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -73,15 +73,15 @@ struct FlightAir {
   const std::vector<double>& time() const { return samples->time; }
 };
 
-/// Reads an own flight of a set and runs `model` over it. The laser takes part where the model has one and
-/// the flight records it. Heights, positions and angles are those of the model's roles, else of the names
-/// that NCAR's files use.
-/// @throws Error as `read_samples`.
+/// Reads a flight of this rank and evaluates `model` on it. The laser is used if the model has one and the
+/// flight records it. Heights, positions and angles follow the model's roles, otherwise the names of NCAR's
+/// files.
+/// @throws Error as does `read_samples`.
 FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const ModelDefinition& model,
                           const MaskOptions& options = {});
 
-/// Why the height of a flight is none that goes with its pressure, for example because it is in feet; empty
-/// where it is well. Looks at the samples in the air only.
+/// Reason why the height of a flight does not match its pressure, for example because it is in feet; empty if
+/// it matches. Uses the samples in the air only.
 std::string height_problem(const FlightAir& air);
 
 }  // namespace pcor::internal

@@ -23,7 +23,7 @@ using namespace internal;
 
 namespace {
 
-constexpr std::size_t max_open = 16;  // files; HDF5 keeps 5 MB of each
+constexpr std::size_t max_open = 16;  // files; HDF5 keeps 5 MB for each
 
 std::size_t bytes_of(const ModelSamples& samples, std::size_t records) {
   return (samples.columns.size() + samples.moving.size()) * records + samples.along_beam.values.size();
@@ -47,8 +47,7 @@ std::string title_of(const Flight& flight) {
 
 }  // namespace
 
-/// What the flights of a set, and of those that were made of it, have in common. The samples that were used
-/// last come first.
+/// Shared state of a set and of sets derived from it. The most recently used samples come first.
 struct FlightSet::Memory {
   struct Kept {
     const Entry* flight;
@@ -62,9 +61,9 @@ struct FlightSet::Memory {
   std::mutex mutex{};
   std::size_t free;
   std::list<Kept> kept{};
-  std::list<Entry*> open{};  // those that were used last first
+  std::list<Entry*> open{};  // most recently used first
 
-  /// With the mutex locked.
+  /// Requires the locked mutex.
   bool take(std::size_t bytes) {
     for (auto last = kept.end(); bytes > free && last != kept.begin();) {
       --last;
@@ -81,9 +80,9 @@ struct FlightSet::Memory {
 struct FlightSet::Entry {
   std::filesystem::path path{};
   TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
-  std::shared_ptr<const FlightSamples> given{};  // in memory
+  std::shared_ptr<const FlightSamples> given{};  // samples in memory
   std::shared_ptr<Memory> memory{};
-  std::optional<FileState> state{};  // as it was first opened
+  std::optional<FileState> state{};  // state when first opened
   std::optional<Flight> flight{};
   std::optional<FlightOutline> outline{};
 
@@ -103,9 +102,8 @@ struct FlightSet::Entry {
 
   const Flight& open() {
     if (given)
-      throw Error(
-          fmt::format("{}: these samples are in memory, and what is asked for reads the file; give its path",
-                      given->name));
+      throw Error(fmt::format(
+          "{}: these samples are in memory, but the request reads the file; give its path", given->name));
     std::list<Entry*>& others = memory->open;
     if (flight) {
       if (others.front() != this)
@@ -254,14 +252,15 @@ std::string FlightSet::title() const {
 
 void FlightSet::require_one_aircraft() const {
   const std::vector<FlightOutline> known = outlines();
-  std::optional<std::size_t> first;  // that states its aircraft
+  std::optional<std::size_t> first;  // first flight that states its aircraft
   for (std::size_t i = 0; i < size(); ++i) {
     if (known[i].aircraft.empty()) continue;
     if (!first) first = i;
     if (known[i].aircraft == known[*first].aircraft) continue;
-    throw Error(fmt::format(
-        "{} is of the aircraft '{}' and {} of '{}': a model is of one aircraft; give the flights of one",
-        name(*first), known[*first].aircraft, name(i), known[i].aircraft));
+    throw Error(
+        fmt::format("{} is of the aircraft '{}' and {} of '{}', but a model applies to one aircraft; give "
+                    "the flights of one",
+                    name(*first), known[*first].aircraft, name(i), known[i].aircraft));
   }
 }
 
@@ -272,9 +271,8 @@ void FlightSet::require_each_once() const {
     if (entry->given || stat(entry->path.c_str(), &file) != 0 ||
         files.emplace(file.st_dev, file.st_ino).second)
       continue;
-    throw Error(fmt::format(
-        "{} is given twice: its samples are not new ones; give every flight once, to the fit or to --holdout",
-        entry->path.string()));
+    throw Error(fmt::format("{} is given twice; give every flight once, to the fit or to --holdout",
+                            entry->path.string()));
   }
 }
 

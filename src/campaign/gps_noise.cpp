@@ -3,6 +3,7 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -13,7 +14,7 @@
 namespace pcor::internal {
 namespace {
 
-// Median and deviation of the logarithm of a size.
+// Median and standard deviation of the logarithm of a size.
 struct Size {
   double median;
   double deviation;
@@ -36,7 +37,7 @@ const Size& size_of(GpsKind kind, Eigen::Index k) {
 double stays_for(double seconds, double time) { return std::exp(-seconds / time); }
 
 WhiteRows white_wind(const Eigen::VectorXd& sizes, const GpsRows& rows, const Eigen::VectorXd& more) {
-  // Gusts, drift and walk on the height of the east wind, then of the north wind, and the heading.
+  // gusts, drift and height walk of the east wind, then of the north wind, and the heading
   constexpr int of_each = 5;
   constexpr int count = 2 * of_each + 1;
   using States = LatentFilter<count>::States;
@@ -52,8 +53,12 @@ WhiteRows white_wind(const Eigen::VectorXd& sizes, const GpsRows& rows, const Ei
   LatentFilter<count> filter(variance, rows.rows.cols(), 2 * size);
   const double noise = sizes[white] * sizes[white];
   const double walk = sizes[with_height] * sizes[with_height];
-  States stays;
-  States added;
+  std::array<double, 3> gust_sizes{};  // deviation of each process for gusts of 1 m/s in one second
+  for (std::size_t g = 0; g < gust_times.size(); ++g)
+    gust_sizes[g] = sizes[gusts] * std::pow(gust_times[g], 1.0 / 3.0);
+  States stays = States::Ones();
+  States added = States::Zero();
+  double passed_before = 0.0;
   double before = rows.time.empty() ? 0.0 : rows.time.front();
   double risen = 0.0;
   const auto last = rows.rows.cols() - 1;
@@ -64,27 +69,28 @@ WhiteRows white_wind(const Eigen::VectorXd& sizes, const GpsRows& rows, const Ei
     const double passed = rows.time[sample] - before;
     before = rows.time[sample];
     if (passed > 0.0) {
-      for (int component = 0; component < 2; ++component) {
-        const int first = component * of_each;
-        for (int g = 0; g < 3; ++g)
-          stays[first + g] = stays_for(passed, gust_times[static_cast<std::size_t>(g)]);
-        stays[first + 3] = stays_for(passed, sizes[drift_time]);
-        stays[first + 4] = 1.0;
+      // Most steps are of one length.
+      if (passed != passed_before) {
+        passed_before = passed;
+        for (int component = 0; component < 2; ++component) {
+          const int first = component * of_each;
+          for (int g = 0; g < 3; ++g)
+            stays[first + g] = stays_for(passed, gust_times[static_cast<std::size_t>(g)]);
+          stays[first + 3] = stays_for(passed, sizes[drift_time]);
+          stays[first + 4] = 1.0;
+        }
+        stays[count - 1] = stays_for(passed, wander_time);
+        added = variance.cwiseProduct(States::Ones() - stays.cwiseAbs2());
       }
-      stays[count - 1] = stays_for(passed, wander_time);
-      added = variance.cwiseProduct(States::Ones() - stays.cwiseAbs2());
       added[4] = added[of_each + 4] = walk * risen;
       filter.pass(stays, added);
       risen = 0.0;
     }
+    const double gust = std::sqrt(rows.level[sample]);
     for (int component = 0; component < 2; ++component) {
       const int first = component * of_each;
       States by = States::Zero();
-      for (int g = 0; g < 3; ++g) {
-        by[first + g] =
-            sizes[gusts] *
-            std::sqrt(rows.level[sample] * std::pow(gust_times[static_cast<std::size_t>(g)], 2.0 / 3.0));
-      }
+      for (int g = 0; g < 3; ++g) by[first + g] = gust * gust_sizes[static_cast<std::size_t>(g)];
       by[first + 3] = by[first + 4] = 1.0;
       const double across = component == 0 ? rows.north[sample] : -rows.east[sample];
       by[count - 1] = rows.airspeed[sample] * across * constants::radians_per_degree;
@@ -181,7 +187,9 @@ double GpsNoise::cost(const Eigen::VectorXd& logarithms, const GpsRows& rows, co
                       const GpsPrior& prior) const {
   const WhiteRows white = white_at(logarithms, rows, more);
   const Eigen::Index count = white.rows.cols() - 1;
-  const Eigen::MatrixXd products = white.rows.transpose() * white.rows;
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count + 1, count + 1);
+  products.selfadjointView<Eigen::Lower>().rankUpdate(white.rows.transpose());
+  products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
   // In units of the prior the matrix does not depend on the units of the columns.
   const Eigen::VectorXd& unit = prior.deviation;
   Eigen::MatrixXd matrix = unit.asDiagonal() * products.topLeftCorner(count, count) * unit.asDiagonal();
@@ -202,13 +210,42 @@ double GpsNoise::cost(const Eigen::VectorXd& logarithms, const GpsRows& rows, co
 void GpsNoise::maximise(const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior) {
   ceres::GradientProblemSolver::Options options;
   options.max_num_iterations = 15;
-  options.function_tolerance = 1e-6;
+  // Half a unit of the logarithm of the likelihood is one standard deviation of a size.
+  constexpr double enough = 0.02;
+  const double at_start = 0.5 * cost(logarithms_, rows, more, prior);
+  options.function_tolerance = enough / std::max(1.0, std::abs(at_start));
   options.logging_type = ceres::SILENT;
   ceres::GradientProblemSolver::Summary summary;
   Eigen::VectorXd found = logarithms_;
   const ceres::GradientProblem problem(new Likelihood(*this, rows, more, prior));
   ceres::Solve(options, problem, found.data(), &summary);
   if (found.allFinite()) logarithms_ = found;
+}
+
+void widen(GpsPrior& prior, const WhiteRows& white) {
+  for (Eigen::Index k = 0; k < prior.deviation.size(); ++k) {
+    if (prior.deviation[k] > 0.0) continue;
+    const double length = white.rows.col(k).norm();
+    prior.deviation[k] = length > 0.0 ? 100.0 / length : 1.0;
+  }
+}
+
+bool find_outliers(const WhiteRows& white, const GpsPrior& prior, Eigen::VectorXd& more) {
+  constexpr double limit = 4.5;
+  constexpr double wider = 100.0;
+  const Eigen::Index count = white.rows.cols() - 1;
+  const auto columns = white.rows.leftCols(count);
+  Eigen::MatrixXd matrix = columns.transpose() * columns;
+  matrix.diagonal() += prior.deviation.cwiseAbs2().cwiseInverse();
+  const Eigen::VectorXd best = matrix.ldlt().solve(columns.transpose() * white.rows.col(count));
+  const Eigen::VectorXd news = white.rows.col(count) - columns * best;
+  bool any = false;
+  for (Eigen::Index i = 0; i < news.size(); ++i) {
+    if (!(std::abs(news[i]) > limit)) continue;
+    more[i] = wider * news[i] * news[i] * white.variance[i];
+    any = true;
+  }
+  return any;
 }
 
 }  // namespace pcor::internal

@@ -10,17 +10,18 @@
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/samples.hpp>
+#include "numerics/latent_filter.hpp"
 
 namespace pcor::internal {
 
-/// What GPS is held against: the airspeed and a wind, or the hydrostatic height.
+/// Quantity compared with GPS: the airspeed and a wind, or the hydrostatic height.
 enum class GpsKind { wind, height };
 
-/// Nothing for a reference that is not one of GPS.
+/// Kind of a GPS reference; nullopt for any other reference.
 std::optional<GpsKind> gps_kind(const Reference& reference);
 
-/// What else than the law moves the rows, and how well it is known: errors of the instruments, which all
-/// flights share, then what each flight has of its own.
+/// Nuisance parameters of the rows, with their priors: instrument errors, common to all flights, then
+/// parameters of each flight.
 struct GpsNuisance {
   std::string_view name;
   double deviation;
@@ -44,32 +45,33 @@ inline constexpr std::array<GpsNuisance, 11> gps_nuisances{{
 inline constexpr Eigen::Index gps_nuisance_count = gps_nuisances.size();
 inline constexpr Eigen::Index gps_shared_nuisances = 7;
 
-/// The rows of one flight. Each has the derivatives by the wanted coefficients of the law, by all nuisances,
-/// and the residual; NaN where a sample takes no part. Columns hold no gusts, and little noise: noise that a
-/// column shares with its own row would pull the coefficient, however long the flight.
+/// Rows of one flight. Each has the derivatives with respect to the requested coefficients of the model and
+/// all nuisances, and the residual; NaN if a sample is excluded. Columns contain no gusts, and little noise:
+/// noise that a column shares with its row would bias the coefficient for any length of the flight.
 struct GpsRows {
   GpsKind kind = GpsKind::wind;
-  std::vector<double> time;      ///< of each sample, s
-  std::vector<double> rise;      ///< since the sample before, m
-  std::vector<double> level;     ///< wind: variance of a gust of one second that its spectrum lets expect
-  std::vector<double> airspeed;  ///< wind: without gusts, m/s
-  std::vector<double> east;      ///< wind: of the direction of the airspeed, without gusts
+  std::vector<double> time;      ///< time of each sample, s
+  std::vector<double> rise;      ///< height change since the previous sample, m
+  std::vector<double> level;     ///< wind: variance of a gust of one second predicted by its spectrum
+  std::vector<double> airspeed;  ///< wind: airspeed without gusts, m/s
+  std::vector<double> east;      ///< wind: east component of the direction of the airspeed, without gusts
   std::vector<double> north;
   std::vector<double> warmth;  ///< height: 1/T, 1/K
   std::vector<bool> is_break;  ///< height: the height since the sample before is not known
-  Eigen::MatrixXd rows;        ///< wind: of the east, then of the north component of all samples
+  RowByRow rows;               ///< wind: of the east, then of the north component of all samples
   Eigen::MatrixXd defect;      ///< derivatives of the corrected static pressure by the wanted coefficients
 };
 
-/// The rows at these coefficients.
+/// Rows at the given coefficients.
 ///
-/// Wind, m/s: the velocity over the ground less that through the air, V u(heading, pitch, roll, attack,
-/// sideslip), each component. Height, m: that of GPS less that of the hydrostatic equation.
+/// Wind, m/s: ground velocity minus the velocity through the air, V u(heading, pitch, roll, attack,
+/// sideslip), each component. Height, m: GPS height minus height by the hydrostatic equation.
 ///
 /// In the columns of the wind stands in place of the recorded pressures what they would be without gusts: V
-/// low-passed by a Gaussian of 45 s, its direction by one of 15 s. In those of the height what changes with
-/// the temperature has pressures that are low-passed by 15 s, and so has the rise: a thousandth of the noise
-/// of pressure or GPS in them would be taken for some tenths of a kelvin.
+/// low-passed by a Gaussian of 45 s, its direction by one of 15 s; flow angles, and what else an effect
+/// reads, are low-passed by 1 s. In those of the height what changes with the temperature has pressures that
+/// are low-passed by 15 s, and so has the rise: a thousandth of the noise of pressure or GPS in them would be
+/// taken for some tenths of a kelvin.
 /// @param used the samples that take part
 /// @param parameters of the model, all of them; `wanted` are those of which the rows have derivatives
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,

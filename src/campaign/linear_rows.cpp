@@ -9,11 +9,11 @@
 namespace pcor::internal {
 namespace {
 
-/// Takes out the samples that are made of neighbours which are not to be used.
+/// Excludes the samples that depend on excluded neighbours.
 void mask_by_neighbours(std::vector<Mask>& masks, std::size_t reach) {
   const std::vector<Mask> own = masks;
   for (std::size_t i = 0; i < own.size(); ++i) {
-    // Where the residual alone is missing, what it is made of is there.
+    // If only the residual is missing, its inputs are present.
     if (own[i] == Mask::none || own[i] == Mask::reference) continue;
     for (std::size_t k = i - std::min(i, reach); k < std::min(i + reach + 1, own.size()); ++k) {
       if (masks[k] == Mask::none) masks[k] = Mask::reference;
@@ -21,7 +21,8 @@ void mask_by_neighbours(std::vector<Mask>& masks, std::size_t reach) {
   }
 }
 
-/// Parameters behind those of the residual, of a system that it does not know, do not count as linear.
+/// Parameters after the residual's parameters, of a system on which it does not depend, are not counted as
+/// linear.
 bool are_linear(const std::vector<std::size_t>& parameters, const std::vector<bool>& linear) {
   return std::all_of(parameters.begin(), parameters.end(),
                      [&](std::size_t parameter) { return parameter < linear.size() && linear[parameter]; });
@@ -53,11 +54,10 @@ LinearRows::LinearRows(Residuals residuals, const ModelDefinition& model, const 
   if (!setup.regimes.empty()) keep_regimes(setup.regimes);
 }
 
-/// No column should hold noise of its own row. Today that is so of two systems, of which the derivatives are
-/// those at common pressures, and of the laser's noise in a diagnosis. A fit takes its columns at the
-/// recorded samples otherwise, and pressures, temperature and their rates are recorded ones everywhere. The
-/// next step is one kind of inputs for all, predicted from sensors that the residual is not made of: it
-/// belongs here.
+/// Columns should not share noise with their row. This holds for two systems, whose derivatives use common
+/// pressures, and for the laser's noise in a diagnosis. A fit otherwise takes its columns at the recorded
+/// samples, and pressures, temperature and their rates are recorded values everywhere. Inputs predicted from
+/// sensors outside the residual would extend this to all references; implement them here.
 void LinearRows::choose_inputs(const ModelDefinition& model, const Reference& reference, Inputs inputs) {
   if (inputs == Inputs::none) return;
   std::shared_ptr<const FlightSamples> elsewhere = residuals_.at_common_pressures();
@@ -73,7 +73,7 @@ void LinearRows::choose_inputs(const ModelDefinition& model, const Reference& re
   if (elsewhere) derived_.emplace(std::move(elsewhere), model, reference, residuals_.mask());
 }
 
-/// Of the used samples those in wanted regimes stay. The first interval that holds a sample counts.
+/// Keeps the used samples in the requested regimes. The first interval that contains a sample counts.
 void LinearRows::keep_regimes(const std::vector<Regime>& regimes) {
   const std::vector<double>& time = samples().time;
   constexpr auto outside = static_cast<std::size_t>(-1);
@@ -103,7 +103,7 @@ Eigen::MatrixXd LinearRows::evaluate(const std::vector<std::size_t>& samples, co
   };
   const bool elsewhere = derived_ && !as_recorded && !wanted.empty();
   put(elsewhere ? *derived_ : residuals_, wanted);
-  if (elsewhere) put(residuals_, {});  // the residual alone
+  if (elsewhere) put(residuals_, {});  // residual only
   return result;
 }
 

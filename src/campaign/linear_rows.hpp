@@ -11,76 +11,75 @@
 
 namespace pcor::internal {
 
-/// Where derivatives are taken.
+/// Points at which derivatives are evaluated.
 enum class Inputs {
-  none,        ///< nowhere: residuals alone are wanted
-  recorded,    ///< as a fit does it: at the recorded samples
-  noise_free,  ///< as a diagnosis does it: where the sensor of the reference shows what the model says
+  none,        ///< not evaluated: residuals only
+  recorded,    ///< recorded samples, for a fit
+  noise_free,  ///< predicted values at the sensor of the reference, for a diagnosis
 };
 
-/// What is wanted of the rows of a flight.
+/// Options of the rows of a flight.
 struct RowsSetup {
   Inputs inputs = Inputs::none;
-  /// The parameters that are free, where residuals are to be measured as a fit of these measures them.
+  /// Free parameters, if residuals are computed as in a fit of these parameters.
   std::vector<std::size_t> free{};
   double first_part = 1.0;        ///< only the first part of the samples is used, 0 to 1
-  std::vector<Regime> regimes{};  ///< where there are any, only samples of these are used
+  std::vector<Regime> regimes{};  ///< if not empty, only samples of these regimes are used
 };
 
-/// True where derivatives of the residuals of a reference stay the same in a fit: they are those of two
-/// systems at common pressures, or those of no static pressure, which hardly change and take long to find.
+/// True if derivatives of the residuals of a reference are constant in a fit: derivatives of two systems at
+/// common pressures, or of references other than static pressure, which hardly change and are expensive.
 bool keeps_derivatives(const Reference& reference);
 
-/// The means of a series of a flight, NaN where not used, over a few seconds, or over as long as a residual
-/// holds together. @param window `Reference::window`
+/// Means of a series of a flight, NaN if not used, over a few seconds, or over the window of a residual.
+/// @param window `Reference::window`
 Binning bins_of(const FlightSamples& samples, double window, const std::vector<double>& series);
 
-/// One flight, a model, and one reference: residuals of samples, and derivatives by parameters, which a
-/// linear model of the residuals is made of.
+/// Flight, model, and reference: residuals of samples, and derivatives with respect to parameters, which form
+/// a linear model of the residuals.
 ///
-/// Fits, diagnoses, what-ifs and trials of models take their residuals and derivatives from here. How a
-/// residual is measured, and at which values its derivatives are taken, is decided here alone.
+/// Fits, diagnoses, what-ifs and trials of models take their residuals and derivatives from this class, which
+/// alone defines the residual and the evaluation point of its derivatives.
 class LinearRows {
  public:
-  /// @param residuals of the model and the reference; as they are built, their masks are found or known
+  /// @param residuals of the model and the reference; the constructor computes their masks or uses given ones
   LinearRows(Residuals residuals, const ModelDefinition& model, const Reference& reference,
              const RowsSetup& setup);
 
   const Residuals& residuals() const { return residuals_; }
   const FlightSamples& samples() const { return residuals_.samples(); }
-  /// The samples at which derivatives are taken.
+  /// Samples at which derivatives are evaluated.
   const FlightSamples& inputs() const { return derived().samples(); }
 
-  /// Why each sample takes part, or does not. Where derivatives are noise-free and a residual is
-  /// made of its neighbours, all of these have to take part.
+  /// Mask of each sample. If derivatives are noise-free and a residual depends on its neighbours, all of
+  /// these must be usable.
   const std::vector<Mask>& mask() const { return mask_; }
-  /// The samples of the first part, and of the wanted regimes.
+  /// Samples of the first part, and of the requested regimes.
   const std::vector<std::size_t>& used() const { return used_; }
-  /// The samples that would be used were they not behind the first part.
+  /// Samples after the first part that are otherwise usable.
   const std::vector<std::size_t>& held_out() const { return held_out_; }
-  /// Of each sample the number of its interval of a wanted regime, which all used ones have; empty without
+  /// Interval number, in a requested regime, of each sample, defined for all used samples; empty without
   /// regimes.
   const std::vector<std::size_t>& intervals() const { return intervals_; }
-  /// How many such intervals have used samples.
+  /// Number of these intervals with used samples.
   std::size_t interval_count() const { return interval_count_; }
 
-  /// Whether the residual counts as linear in the parameters that are free: derivatives that were taken once
-  /// serve for all values of them.
+  /// Whether the residual counts as linear in the free parameters: derivatives evaluated once apply to all
+  /// their values.
   bool is_linear() const { return linear_; }
 
-  /// Derivatives at some samples by some parameters, a column each, hPa per unit, and behind them the
-  /// residual, hPa. @param as_recorded with the derivatives at the recorded samples, wherever others are
-  /// taken
+  /// Derivatives at some samples with respect to some parameters, a column each, hPa per unit, followed by
+  /// the residual, hPa. @param as_recorded derivatives at the recorded samples in all cases
   Eigen::MatrixXd evaluate(const std::vector<std::size_t>& samples, const double* parameters,
                            const std::vector<std::size_t>& wanted, bool as_recorded = false) const;
 
-  /// The bins of a series that has a value where a sample counts, NaN elsewhere.
+  /// Bins of a series with values at the used samples, NaN elsewhere.
   Binning bins(const std::vector<double>& series) const { return bins_of(samples(), window_, series); }
 
-  /// The means over the bins of columns that have a row for each used sample.
+  /// Bin means of columns that have a row for each used sample.
   Eigen::MatrixXd bin_means(const Binning& bins, const Eigen::MatrixXd& rows) const;
 
-  /// The means over the bins of derivatives by some parameters, and behind them of the residual.
+  /// Bin means of derivatives with respect to some parameters, followed by the residual.
   Eigen::MatrixXd means(const Binning& bins, const double* parameters,
                         const std::vector<std::size_t>& wanted) const;
 
@@ -90,7 +89,7 @@ class LinearRows {
   const Residuals& derived() const { return derived_ ? *derived_ : residuals_; }
 
   Residuals residuals_;
-  std::optional<Residuals> derived_;  // where derivatives are taken elsewhere than at the recorded samples
+  std::optional<Residuals> derived_;  // set if derivatives are evaluated away from the recorded samples
   double window_;
   bool linear_;
   bool at_sensor_;

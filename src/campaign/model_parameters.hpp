@@ -9,16 +9,17 @@
 
 namespace pcor::internal {
 
-/// How many parameters a model has: those of its effects, and behind them one for each place of additions.
+/// Number of parameters of a model: parameters of its effects, followed by one for each location of
+/// additions.
 std::size_t parameter_count(const Model& model);
 
-/// The place of the first parameter of an effect among those of a model; nothing where the model lacks it.
+/// Index of the first parameter of an effect among the parameters of a model; nullopt if the model lacks it.
 std::optional<std::size_t> first_parameter_of(const ModelDefinition& model, std::string_view effect);
 
-/// The places among all parameters of a model of those that are fitted.
+/// Indices of the fitted parameters among all parameters of a model.
 std::vector<std::size_t> free_parameters(const ModelDefinition& model);
 
-/// Where an effect acts.
+/// Location of an effect.
 EffectLocation location_of(const ModelEffect& effect);
 
 }  // namespace pcor::internal

@@ -20,13 +20,13 @@ void add(std::vector<NamedDoubt>& doubts, const std::vector<SensorDoubt>& more,
   for (const SensorDoubt& doubt : more) doubts.push_back({doubt, prefix + doubt.name()});
 }
 
-/// Doubts of the sensors of the model, of its laser, and of a measured pressure.
+/// Calibration uncertainties of the sensors of the model, of its laser, and of a measured pressure.
 std::vector<NamedDoubt> own_doubts(const ModelDefinition& model, const Reference& reference) {
   std::vector<NamedDoubt> doubts;
   if (reference.reads_laser()) add(doubts, doubts_of(model, laser_calibration));
   // A measured pressure has no model. An error of the static transducer of the model changes the residual by
-  // the same amount with the opposite sign. The sizes are those of the catalogue, whatever the model states
-  // of its own transducer.
+  // the same amount with the opposite sign. The sizes come from the catalogue, regardless of the model's
+  // statement about its transducer.
   if (reference.is_static_pressure() && !reference.reads_laser() && reference.model() == nullptr)
     add(doubts, doubts_of(ModelDefinition{}, {"psfd-bias", "psfd-gain", "psfd-drift"}),
         reference.name() + ": ");
@@ -35,7 +35,8 @@ std::vector<NamedDoubt> own_doubts(const ModelDefinition& model, const Reference
   return doubts;
 }
 
-/// Doubts of a second system, and the uncertainty that its law states, as a zero and a gain.
+/// Calibration uncertainties of a second system, and the stated uncertainty of its model, as a zero and a
+/// gain.
 std::vector<NamedDoubt> second_doubts(const ModelDefinition& system, const Reference& reference) {
   const std::string prefix = system.model.name + ": ";
   std::vector<NamedDoubt> doubts;
@@ -65,7 +66,7 @@ std::size_t place_of(const ModelDefinition& model, const SensorDoubt& doubt) {
   return *first_parameter_of(model, doubt.effect) + doubt.parameter;
 }
 
-/// The samples with the time since the first, which drifts need, among the inputs of both models.
+/// Samples with the time since the first, which drifts require, among the inputs of both models.
 std::shared_ptr<const FlightSamples> with_time(const std::shared_ptr<const FlightSamples>& flight) {
   auto result = std::make_shared<FlightSamples>(*flight);
   for (ModelSamples* const samples : {&result->model, &result->reference}) {

@@ -11,37 +11,36 @@
 
 namespace pcor::internal {
 
-/// How far the calibration of a reference, and that of the thermometer, may be wrong, and what that does to
-/// the residuals of a model.
+/// Calibration uncertainty of a reference and of the thermometer, and its effect on the residuals of a model.
 ///
-/// Of the laser: scale and angles of the beam. Of a second static system: zero, gain and drift of its
-/// transducers, and what its law states to leave of delta-p. Of the thermometer: its offset and the recovery
-/// factor. Sizes: `doubts_of`.
+/// Laser: scale and angles of the beam. Second static system: zero, gain and drift of its transducers, and
+/// the stated residual error of delta-p of its model. Thermometer: offset and recovery factor. Sizes:
+/// `doubts_of`.
 class ReferenceDoubt {
  public:
-  /// @param trusted the reference counts as exact: there is no doubt
+  /// @param trusted the reference is assumed exact: the uncertainty is zero
   ReferenceDoubt(const ModelDefinition& model, const Reference& reference, bool trusted);
 
-  /// Like "lams-scale.scale"; of a second system with its name in front. One name is one error, whichever
-  /// reference it is seen in.
+  /// Names like "lams-scale.scale"; for a second system with its name in front. The same name in several
+  /// references denotes the same error.
   const std::vector<std::string>& names() const { return names_; }
   /// Standard uncertainties, each in the unit of its coefficient.
   const Eigen::VectorXd& sizes() const { return sizes_; }
   bool empty() const { return names_.empty(); }
 
-  /// What one standard uncertainty of each does to the residual at some samples, hPa, a column each.
-  /// @param parameters of the residuals of the model held against the reference; null: those of the files
+  /// Change of the residual by one standard uncertainty of each at some samples, hPa, a column each.
+  /// @param parameters of the residuals of the model compared with the reference; null: values in the files
   Eigen::MatrixXd columns(const std::shared_ptr<const FlightSamples>& flight,
                           const std::vector<std::size_t>& samples, const double* parameters = nullptr) const;
 
  private:
-  std::size_t model_parameters_;      // of the model as it came
-  std::size_t reference_parameters_;  // of that of the reference
-  ModelDefinition model_;             // with the effects of its doubts
+  std::size_t model_parameters_;      // number of parameters of the given model
+  std::size_t reference_parameters_;  // number of parameters of the reference's model
+  ModelDefinition model_;             // model with the effects of its uncertainties
   std::shared_ptr<const Reference> reference_;
   std::vector<std::string> names_;
   Eigen::VectorXd sizes_;
-  std::vector<std::size_t> places_;  // among the parameters of residuals with all these effects
+  std::vector<std::size_t> places_;  // indices among the parameters of residuals with all these effects
 };
 
 }  // namespace pcor::internal

@@ -17,7 +17,7 @@ using namespace internal;
 
 namespace {
 
-/// What a flight chooses for a model.
+/// Variables that a flight selects for a model.
 struct Choice {
   bool completes = false;
   std::map<Quantity, std::string> variables{};
@@ -39,7 +39,7 @@ ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flig
       const ModelDefinition own = resolve_variables(open, flights[number], unsaid);
       return Choice{true, own.variables, own.model.moist};
     } catch (const Error&) {
-      // Whether a flight may be left out is for the work to say.
+      // The caller decides whether a flight may be skipped.
       return Choice{};
     }
   });
@@ -48,13 +48,13 @@ ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flig
   const auto number_of = [&](auto choice) { return static_cast<std::size_t>(choice - choices.begin()); };
   for (auto other = first; other != choices.end(); ++other) {
     if (other->completes && (other->variables != first->variables || other->moist != first->moist)) {
-      throw Error(fmt::format(
-          "{} and {} record different variables, so that one model for both would be of the first; "
-          "give them apart, or name the variables in the [variables] of the model",
-          flights.path(number_of(first)).string(), flights.path(number_of(other)).string()));
+      throw Error(
+          fmt::format("{} and {} need different variables; set [variables] in the model or process the "
+                      "flights separately",
+                      flights.path(number_of(first)).string(), flights.path(number_of(other)).string()));
     }
   }
-  // All members read that flight: its names, not its samples.
+  // All ranks read the names, but not the samples, of that flight.
   return resolve_variables(open, flights[first == choices.end() ? 0 : number_of(first)], notes);
 }
 

@@ -14,10 +14,10 @@
 namespace pcor::internal {
 namespace {
 
-/// The smallest change of the residual over the swing of an angle that matters, hPa.
+/// Smallest relevant change of the residual over the swing of an angle, hPa.
 constexpr double size_that_matters = 0.3;
 
-/// From one end of a sine to the other, in its standard deviations.
+/// Peak-to-peak range of a sine in standard deviations.
 const double ends_of_sine = 2.0 * std::sqrt(2.0);
 
 std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {
@@ -47,7 +47,7 @@ std::optional<AngleReference> witness_of(const CheckedFlight& flight,
   return found == witnesses.end() ? std::nullopt : std::optional<AngleReference>(*found);
 }
 
-/// What all manoeuvres say together.
+/// Combined result of all manoeuvres.
 struct Totals {
   Estimated slope, across, bend, bent;
 };
@@ -80,12 +80,12 @@ ReportTable table_of(const std::vector<AngleSensitivity>& manoeuvres, const Angl
   ReportTable table;
   table.title = fmt::format("Each {}", info_of(check.regime).name);
   table.caption = fmt::format(
-      "Slope of the residual against the {}, beside a drift in time, and what it makes from one end of the "
+      "Slope of the residual against the {}, fitted with a drift in time, and its effect from one end of the "
       "swing to the other.",
       check.angle);
   const bool with_ratio = std::any_of(manoeuvres.begin(), manoeuvres.end(),
                                       [](const auto& each) { return std::isfinite(each.per_ratio.value); });
-  table.headers = {"manoeuvre", "held against", "swing, deg", "slope, hPa/deg"};
+  table.headers = {"manoeuvre", "compared with", "swing, deg", "slope, hPa/deg"};
   if (with_ratio) table.headers.emplace_back("per ratio, hPa");
   if (check.with_square) table.headers.emplace_back("square, hPa/deg2");
   table.headers.insert(table.headers.end(), {"across, hPa", "scatter, hPa"});
@@ -116,15 +116,15 @@ void add_pictures(const CheckedFlights& flights, const std::vector<AngleSensitiv
   };
   std::vector<Flown> all;
   for (const AngleSensitivity& each : manoeuvres) all.push_back(each.flown);
-  result.columns.push_back(column_of(flights, residual, "residual less its mean", "hPa", residuals));
+  result.columns.push_back(column_of(flights, residual, "residual minus its mean", "hPa", residuals));
   result.columns.push_back(column_of(flights, angle, check.angle, "deg", [&](const CheckedFlight& flight) {
     return only_in(flight, all, check.angle_of(flight.air));
   }));
   BinnedPanel binned;
   binned.title = fmt::format("Residual against the {} in {}s", check.angle, info_of(check.regime).name);
   binned.caption =
-      "The static pressure that the manoeuvre asks for less that of the model. A slope is a term of the law "
-      "that is wrong or missing.";
+      "Static pressure implied by the manoeuvre minus static pressure of the model. A slope indicates a "
+      "wrong or missing term of the model.";
   binned.y = {residual};
   binned.x_choices = {angle};
   binned.autocorrelation_time = 3.0;
@@ -231,9 +231,8 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
     const std::string height = height_problem(flown.front().flight->air);
     return not_run(
         check.name,
-        fmt::format("a {} was flown, but there is nothing to hold the pressure against: no laser "
-                    "(lams_airspeed), no second static system (--reference static:OTHER.toml) and no GPS "
-                    "height with a temperature{}",
+        fmt::format("a {} was flown, but no reference is available: no laser (lams_airspeed), no second "
+                    "static system (--reference static:OTHER.toml) and no GPS height with a temperature{}",
                     info_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
   }
   if (manoeuvres.empty()) return not_run(check.name, result.notes.front());
@@ -249,15 +248,15 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   if (check.with_square) {
     numbers.push_back(
         judged(totals.bent, size_that_matters, "hPa", "by the square, at the end of the swing"));
-    result.finding += fmt::format(" With its square it changes by {}, {} at the end of the swing.",
+    result.finding += fmt::format(" With its square the residual changes by {}, {} at the end of the swing.",
                                   with_error(totals.bend, "hPa/deg2", 4), with_error(totals.bent, "hPa"));
   }
   decide(std::move(numbers), result);
   if (witness == AngleReference::second_system && !manoeuvres.front().flown.flight->second_corrected) {
     if (result.verdict == CheckVerdict::inconsistent)
-      withhold("the second system is as measured, and a slope may be its own", result);
+      withhold("the second system is uncorrected, and the slope may be its error", result);
     result.notes.push_back(
-        fmt::format("{} is as measured, so a slope may be its own; --reference static:OTHER.toml gives "
+        fmt::format("{} is uncorrected, and the slope may be its error; --reference static:OTHER.toml gives "
                     "its correction",
                     manoeuvres.front().flown.flight->second_name));
   }

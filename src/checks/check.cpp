@@ -29,18 +29,18 @@ bool same(const PressurePair& a, const PressurePair& b) {
   return a.static_pressure == b.static_pressure && a.dynamic_pressure == b.dynamic_pressure;
 }
 
-/// Why nothing can be done with the pressures of a model that has its variables in the flight; empty where
-/// something can.
+/// Reason why the pressures of a model cannot be used although their variables are in the flight; empty if
+/// they can.
 std::string without_values(const Flight& flight, const ModelDefinition& model) {
   const PressurePair pair = pair_of(model);
   for (const std::string& variable : {pair.static_pressure, pair.dynamic_pressure}) {
-    if (!flight.has(variable)) return "";  // for the message that says what may have been meant
+    if (!flight.has(variable)) return "";  // suggestions are part of the message
     if (std::string trouble = value_problem(flight, variable); !trouble.empty()) return trouble;
   }
   return "";
 }
 
-/// The pair that the model's pressures come from, and another one of the flight.
+/// Pressure pair of the model, and another pair of the flight.
 struct Systems {
   std::optional<PressurePair> own{};
   std::optional<PressurePair> other{};
@@ -60,7 +60,7 @@ Systems systems_of(const Flight& flight, const PressurePair& of_model) {
   } else if (!pairs.empty()) {
     systems.own = pairs.front();
   }
-  // Of two pairs with one pitot the total pressures would not be redundant.
+  // Two pairs with one pitot have no redundant total pressures.
   const auto other = std::find_if(pairs.begin(), pairs.end(), [&](const PressurePair& pair) {
     return systems.own && !same(pair, *systems.own) && pair.static_pressure != systems.own->static_pressure &&
            pair.dynamic_pressure != systems.own->dynamic_pressure;
@@ -92,7 +92,7 @@ CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelD
   if (!second) return result;
   if (same(pair_of(*second), of_model)) {
     throw Error(
-        fmt::format("the model '{}' is of {}, as the one to be checked; give as second system one of "
+        fmt::format("the model '{}' has the pressures {} of the model under test; give a second system with "
                     "other pressures",
                     second->model.name, of_model.name()));
   }
@@ -102,10 +102,10 @@ CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelD
   return result;
 }
 
-/// What a member of a team tells of a flight of its own.
+/// Result of one flight, shared between ranks.
 struct FlightPart {
-  std::string unusable{};  ///< why; empty where it is not
-  std::string model{};     ///< its name
+  std::string unusable{};  ///< reason; empty if the flight is usable
+  std::string model{};     ///< name of the model
   std::optional<CheckedFlight> flight{};
   std::vector<std::string> notes{};
 
@@ -132,8 +132,8 @@ FlightPart part_of(const FlightSet& flights, std::size_t number, const std::opti
   part.notes = part.flight->air.notes;
   if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
     part.notes.push_back(fmt::format(
-        "without a model the recovery factor of {} is taken as {:g}, by what is published of such "
-        "thermometers; a model (-m) gives its own",
+        "without a model the recovery factor of {} is assumed to be {:g}, the published value of such "
+        "thermometers; give another by a model (-m)",
         its_model->variables.at(Quantity::recovery_temperature), its_model->model.recovery.coefficients[0]));
   }
   return part;
@@ -145,11 +145,11 @@ void add_note_on_small(CheckResult& result) {
   const double deviations = std::abs(result.key.value) / result.key.standard_error;
   const bool is_small = result.ran && std::abs(result.key.value) <= result.key.matters;
   if (!is_small || !(deviations > significant) || result.name == "spectrum") return;
-  result.notes.push_back(fmt::format(
-      "the number is {:.0f} standard errors from zero: significant, but too small to matter", deviations));
+  result.notes.push_back(
+      fmt::format("the number is {:.0f} standard errors from zero: significant, but negligible", deviations));
 }
 
-/// The samples and intervals that all pictures share.
+/// Samples and intervals shared by all pictures.
 Report pictures_of(const CheckedFlights& flights) {
   Report report;
   for (const CheckedFlight& flight : flights) {
@@ -183,7 +183,7 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
   flights.require_each_once();
   if (options.second && options.second->variables.count(Quantity::static_pressure) == 0) {
     throw Error(Error::Code::model,
-                fmt::format("model '{}': the model of a second system has to name its pressures; add "
+                fmt::format("model '{}': the model of a second system must name its pressures; add "
                             "static_pressure and dynamic_pressure to [variables]",
                             options.second->model.name));
   }

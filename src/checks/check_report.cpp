@@ -21,7 +21,7 @@ using namespace internal;
 
 namespace {
 
-/// "+-", which a terminal can show, as a page does: "±".
+/// Replaces "+-" of the terminal by "±".
 std::string typeset(std::string text) {
   for (std::size_t at = text.find("+-"); at != std::string::npos; at = text.find("+-", at))
     text.replace(at, 2, "±");
@@ -34,7 +34,7 @@ ReportTable typeset(ReportTable table) {
   return table;
 }
 
-/// "total-pressure" as a heading: "Total pressure".
+/// Converts "total-pressure" to the heading "Total pressure".
 std::string heading(std::string name) {
   if (name == "lams-temperature") return "LAMS temperature";
   std::replace(name.begin(), name.end(), '-', ' ');
@@ -42,12 +42,12 @@ std::string heading(std::string name) {
   return name;
 }
 
-/// Whether a picture would show anything: a report refuses an empty one.
+/// Whether a picture has values: a report refuses an empty one.
 class Shows {
  public:
   explicit Shows(const std::vector<ReportColumn>& columns) : columns_(columns) {}
 
-  // Of what has columns, one is enough.
+  // One column with values is enough.
   template <class Panel>
   bool operator()(const Panel& panel) const {
     return std::any_of(panel.columns.begin(), panel.columns.end(),
@@ -83,9 +83,9 @@ ReportTable verdicts(const Checks& checks) {
   ReportTable table;
   table.title = "Verdicts";
   table.caption =
-      "Inconsistent: beyond what matters and beyond three standard errors. Consistent: within what matters, "
-      "by two standard errors. In between it cannot be told.";
-  table.headers = {"check", "verdict", "number", "matters", "what was found"};
+      "Inconsistent: larger than the tolerance and than three standard errors. Consistent: within the "
+      "tolerance by two standard errors. Otherwise the check is inconclusive.";
+  table.headers = {"check", "verdict", "number", "matters", "result"};
   for (const CheckResult& result : checks.results) {
     if (!result.ran) {
       table.rows.push_back({heading(result.name), "not run", "", "", typeset(sentence(result.reason))});
@@ -100,17 +100,16 @@ ReportTable verdicts(const Checks& checks) {
   return table;
 }
 
-/// The number that decided each check, in units of what matters, with its verdict.
+/// Deciding number of each check, in units of its tolerance, with its verdict.
 DotPanel forest(const Checks& checks) {
   DotPanel panel;
   panel.title = "Checks at a glance";
   panel.caption =
-      "The number that decides each check over the smallest that matters, with its standard error. A square "
-      "in the "
-      "band is consistent, a cross inconsistent, an open square cannot tell.";
+      "Deciding number of each check divided by its tolerance, with its standard error. A square in the band "
+      "is consistent, a cross inconsistent, an open square inconclusive.";
   panel.series = {""};
-  panel.axis = "number / what matters";
-  panel.band = "too small to matter";
+  panel.axis = "number / tolerance";
+  panel.band = "negligible";
   for (const CheckResult& result : checks.results) {
     const TestStatistic& key = result.key;
     if (!result.ran || !(key.matters > 0.0) || !std::isfinite(key.value)) continue;
@@ -131,8 +130,8 @@ DotPanel forest(const Checks& checks) {
 ReportTable numbers_of(const CheckResult& result) {
   ReportTable table;
   table.title = heading(result.name) + ": numbers";
-  table.caption = "As in the JSON result, with the unit at the end of each name.";
-  constexpr std::size_t across = 3;  // of a row
+  table.caption = "Names as in the JSON result, with the unit at the end of each name.";
+  constexpr std::size_t across = 3;  // cells per row
   for (std::size_t i = 0; i < across; ++i) {
     table.headers.emplace_back("number");
     table.headers.emplace_back("value");
@@ -196,7 +195,7 @@ Report check_report(const Checks& checks) {
     ReportText text;
     text.title = fmt::format("{}: {}", heading(result.name), to_string(result.verdict));
     text.paragraphs = {typeset(fmt::format("Decided by this number: {}.", result.decided)),
-                       typeset(sentence(result.finding)), "What it cannot see: " + result.cannot_see};
+                       typeset(sentence(result.finding)), "Limitations: " + result.cannot_see};
     for (const std::string& note : result.notes) text.paragraphs.push_back(typeset(sentence(note)));
     report.items.emplace_back(std::move(text));
     for (const ReportItem& picture : result.pictures) {

@@ -10,7 +10,7 @@
 
 namespace pcor::internal {
 
-/// A pair of pressures as measured, hPa, one value for each record.
+/// Pair of measured pressures, hPa, one value for each record.
 struct MeasuredPair {
   std::string name{};  ///< for example "PSFRD/QCFR"
   std::vector<double> static_pressure{};
@@ -22,14 +22,14 @@ struct MeasuredPair {
   }
 };
 
-/// A flight as the checks see it.
+/// Inputs of the checks from one flight.
 struct CheckedFlight {
   FlightAir air;
-  std::optional<FlightAir> second{};  ///< the second static system, where there is one
-  std::string second_name{};          ///< of it, for example "PSFRD/QCFR"
-  bool second_corrected = false;      ///< by a model of its own; else it is as measured
-  /// The pairs of the two systems as measured: where the pressures of the first were corrected by the
-  /// flight's own processing, its pair is the first that was measured. Fewer where they are not recorded.
+  std::optional<FlightAir> second{};  ///< second static system, if available
+  std::string second_name{};          ///< name of the second system, for example "PSFRD/QCFR"
+  bool second_corrected = false;      ///< corrected by its model; otherwise uncorrected
+  /// Measured pairs of the two systems: if the flight's processing corrected the pressures of the first
+  /// system, its first measured pair. Fewer if they are not recorded.
   std::vector<MeasuredPair> measured{};
 
   template <class Archive>
@@ -40,7 +40,7 @@ struct CheckedFlight {
 
 using CheckedFlights = std::vector<CheckedFlight>;
 
-/// Each check gets all flights, and returns a result with its name whether it could run or not.
+/// Each check receives all flights, and returns a named result whether it was run or not.
 CheckResult check_total_pressure(const CheckedFlights& flights);
 CheckResult check_static_pressure(const CheckedFlights& flights);
 CheckResult check_reverse_heading(const CheckedFlights& flights);
@@ -57,7 +57,7 @@ struct NamedCheck {
   CheckResult (*run)(const CheckedFlights& flights);
 };
 
-/// All checks, in the order of the memo. A new one is declared and listed here.
+/// All checks, in the order of the memo. Declare and list new checks here.
 inline constexpr std::array all_checks{
     NamedCheck{"total-pressure", check_total_pressure},
     NamedCheck{"static-pressure", check_static_pressure},

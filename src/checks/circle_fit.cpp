@@ -30,7 +30,7 @@ CircleFit fit_circle(const std::vector<double>& airspeed, const std::vector<doub
     left[i] = east_speed[i] - airspeed[i] * sine;
     left[north] = north_speed[i] - airspeed[i] * cosine;
     both_times[i] = time[i];
-    // Shifted in time, so that the noise model treats it as a series of its own.
+    // Shifted in time, so that the noise model treats it as a separate series.
     both_times[north] = time[i] + 2.0 * (time.back() - time.front()) + 1000.0 * step;
     if (std::isfinite(heading[i])) {
       if (std::isfinite(before)) circle.turned += std::remainder(heading[i] - before, 360.0);

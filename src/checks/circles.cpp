@@ -11,15 +11,14 @@
 namespace pcor::internal {
 namespace {
 
-/// As for the reverse heading, m/s.
+/// Tolerance as for the reverse heading, m/s.
 constexpr double size_that_matters = 0.3;
 
-/// Less of a turn cannot tell the wind from the airspeed well.
+/// A smaller turn cannot separate the wind from the airspeed.
 constexpr double min_turn = 300.0;  // deg
 
-/// Noise of one circle that its samples cannot show, m/s: the wind drifts while the heading goes round once.
-/// A quarter of the change between the legs of a reverse heading: so much less it is in simulated air, for
-/// all its drifts.
+/// Noise of one circle that its samples cannot show, m/s: the wind drifts during the circle. A quarter of the
+/// change between the legs of a reverse heading, as in simulated air with all its drifts.
 constexpr double drift_of_wind = 0.25 * change_of_wind;
 
 struct Circle {
@@ -41,8 +40,8 @@ ReportTable table_of(const std::vector<Circle>& circles) {
   ReportTable table;
   table.title = "Circles";
   table.caption =
-      "Wind, error of the airspeed (too high positive) and error of the heading less the sideslip, from the "
-      "ground velocity around one turn. Errors are without the drift of the wind.";
+      "Wind, error of the airspeed (too high positive) and error of the heading minus the sideslip, from the "
+      "ground velocity around one turn. Errors exclude the drift of the wind.";
   table.headers = {"circle",        "turn, deg",    "wind from, deg", "wind, m/s",
                    "airspeed, m/s", "heading, deg", "rms, m/s"};
   for (const Circle& circle : circles) {
@@ -61,8 +60,8 @@ ReportTable table_of(const std::vector<Circle>& circles) {
 void add_pictures(const CheckedFlights& flights, const std::vector<Circle>& circles, CheckResult& result) {
   BarPanel bars;
   bars.title = "Error of the airspeed from each circle";
-  bars.caption = "Error bars have the usual drift of the wind during a circle in them.";
-  bars.axis = "airspeed less that of the circle";
+  bars.caption = "Error bars include the typical drift of the wind during a circle.";
+  bars.axis = "airspeed minus airspeed of the circle";
   bars.unit = "m/s";
   for (const Circle& circle : circles) {
     const Estimated error = with_drift(circle.fit.airspeed_error);
@@ -84,14 +83,14 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Circle>& circ
     return values;
   };
   result.columns.push_back(
-      column_of(flights, "circles left", "ground speed along the heading that is left", "m/s", left_over));
+      column_of(flights, "circles left", "residual ground speed along the heading", "m/s", left_over));
   result.columns.push_back(column_of(
       flights, "circles heading", "heading", "deg",
       [&](const CheckedFlight& flight) { return only_in(flight, all, flight.air.samples->motion.heading); }));
   BinnedPanel binned;
-  binned.title = "What a circle leaves";
+  binned.title = "Residual of the circle fit";
   binned.caption =
-      "Ground speed along the heading less that of wind, airspeed and its error. A wave over the heading is "
+      "Ground speed along the heading minus wind, airspeed and its error. A wave over the heading indicates "
       "a wind that changed during the circle.";
   binned.y = {"circles left"};
   binned.x_choices = {"circles heading"};
@@ -115,7 +114,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
     if (!std::isfinite(circle.fit.airspeed_error.value)) {
       result.notes.push_back(flown.location() + ": the circle has too few values");
     } else if (std::abs(circle.fit.turned) < min_turn) {
-      result.notes.push_back(fmt::format("{}: a turn of {:.0f} deg in use, where {:.0f} are needed",
+      result.notes.push_back(fmt::format("{}: usable turn of {:.0f} deg, at least {:.0f} deg required",
                                          flown.location(), std::abs(circle.fit.turned), min_turn));
     } else {
       circles.push_back(std::move(circle));
@@ -145,9 +144,9 @@ CheckResult check_circles(const CheckedFlights& flights) {
       circles.size() - static_cast<std::size_t>(to_port), error.value < 0.0 ? "low" : "high",
       std::abs(error.value), error.error, with_error(hpa, "hPa"));
   result.cannot_see =
-      "Which of pressure, temperature and laser is wrong: it sees the airspeed alone, in a bank. Sideslip, "
-      "an offset of the heading and the angle of attack times the bank look alike, and a wind that drifts "
-      "while the heading goes round looks like an error of the airspeed.";
+      "The check cannot separate errors of pressure, temperature and laser: it depends on the airspeed only, "
+      "in a bank. Sideslip, an offset of the heading and the angle of attack times the bank are "
+      "indistinguishable, and a wind that drifts during the turn appears as an error of the airspeed.";
   result.numbers = {{"circles", static_cast<double>(circles.size())},
                     {"airspeed_error_m_s", error.value},
                     {"airspeed_error_stderr_m_s", error.error},

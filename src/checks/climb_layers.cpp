@@ -20,18 +20,19 @@ namespace {
 constexpr double usual_height_noise = 1.0;    // m: GPS of 2004, without differential corrections
 constexpr double min_height_noise = 0.15;     // m: differential GPS of today
 constexpr double usual_gradient = 5.0;        // m per 100 km
-constexpr double metres_per_gradient = 1e-5;  // of height per metre of way, of 1 m per 100 km
-constexpr double share_of_flight = 0.8;       // of the variance of the gradient; the rest is of each climb
+constexpr double metres_per_gradient = 1e-5;  // height per metre of distance for 1 m per 100 km
+constexpr double share_of_flight = 0.8;       // fraction of the variance of the gradient that is common to a
+                                              // flight; the rest varies between climbs
 constexpr double rate_time = 15.0;            // s before and after a sample
 constexpr double min_step = 2.0;              // m between the GPS height and the pressure, in one sample
 constexpr double max_level_rate = 0.5;        // m/s
-constexpr double piece_time = 300.0;          // s: the time of a layer, about
-constexpr double band = 500.0;                // m: delta-p may err otherwise in the next
-constexpr double min_swing = 2.0;             // m/s of the climb rate, to tell a lag
+constexpr double piece_time = 300.0;          // s, typical duration of a layer
+constexpr double band = 500.0;                // m: delta-p may have another error in the next band
+constexpr double min_swing = 2.0;             // m/s of the climb rate, required to estimate a lag
 constexpr double lag_that_matters = 0.5;      // s: 2.5 m in a climb of 5 m/s
 constexpr double min_range = 5.0;             // K of temperature for a line
 
-/// The samples where pressure, height, temperature and humidity are known, in flight.
+/// Heights of the samples in flight with known pressure, height, temperature and humidity.
 std::vector<double> usable_heights(const FlightAir& air) {
   std::vector<double> heights(air.size(), nan);
   for (std::size_t i = 0; i < air.size(); ++i) {
@@ -42,14 +43,14 @@ std::vector<double> usable_heights(const FlightAir& air) {
   return heights;
 }
 
-/// Geopotential height from one sample to the next, m, by pressure and temperature.
+/// Geopotential height difference between successive samples, m, from pressure and temperature.
 double predicted_step(const FlightAir& air, std::size_t i) {
   return hydrostatic_step(air.pressure[i - 1], air.pressure[i],
                           0.5 * (air.gas_constant[i - 1] + air.gas_constant[i])) *
          0.5 * (air.temperature[i - 1] + air.temperature[i]);
 }
 
-/// The stretches without gaps, missing values and steps of the GPS height.
+/// Stretches without gaps, missing values and steps of the GPS height.
 std::vector<Segment> steady_stretches(const FlightAir& air, const std::vector<double>& heights) {
   const std::vector<Segment> segments = contiguous_segments(heights, air.time(), air.step());
   std::vector<double> departures(air.size(), nan);
@@ -88,7 +89,7 @@ std::vector<double> climb_rates(const FlightAir& air, const std::vector<double>&
   return rates;
 }
 
-/// The parts of the stretches where `within` holds of every sample.
+/// Parts of the stretches in which `within` is true for every sample.
 template <class Condition>
 std::vector<Segment> parts_where(const std::vector<Segment>& segments, const Condition& within) {
   std::vector<Segment> parts;
@@ -108,17 +109,18 @@ double speed_at(const std::vector<double>& speed, std::size_t i) {
   return speed.empty() || std::isnan(speed[i]) ? 0.0 : speed[i];
 }
 
-/// How the GPS height departs from that which pressure and temperature ask for, within five minutes.
+/// Deviation of the GPS height from the height implied by pressure and temperature, within five minutes.
 struct Piece {
-  double squares = 0.0;     ///< of what a line in time and one in height leave, m2
-  double freedom = 0.0;     ///< samples less what was fitted
-  double gradient = 0.0;    ///< the line in time, m per 100 km of way
-  Estimated lag{nan, nan};  ///< of the pressure behind the height, s; NaN where the climb rate hardly changes
+  double squares = 0.0;     ///< sum of squares after the fit of a line in time and one in height, m2
+  double freedom = 0.0;     ///< degrees of freedom
+  double gradient = 0.0;    ///< slope of the line in time, m per 100 km of distance
+  Estimated lag{nan, nan};  ///< lag of the pressure relative to the height, s; NaN if the climb rate hardly
+                            ///< changes
 };
 
-/// The line in time is the slope of the pressure surfaces, the one in height an error of the thermometer, and
-/// what goes with the climb rate a lag. The rest is the error of height and pressure, and what the air does
-/// itself within five minutes.
+/// The line in time is the slope of the pressure surfaces, the line in height an error of the thermometer,
+/// and the term proportional to the climb rate a lag. The remainder is the error of height and pressure, and
+/// variation of the air within five minutes.
 Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights,
                     const std::vector<double>& climb_rate, std::size_t first, std::size_t samples) {
   Eigen::MatrixXd columns(samples, 4);
@@ -161,21 +163,21 @@ std::vector<Piece> look_at_pieces(const FlightAir& air, const std::vector<double
   return pieces;
 }
 
-/// Says where the pressure lags behind the height: layers in which a climb begins or ends are then wrong by
-/// some kelvins, with opposite signs.
+/// Reports a lag of the pressure relative to the height: layers in which a climb begins or ends then have
+/// errors of several kelvins, with opposite signs.
 void note_lag(const std::vector<Piece>& pieces, std::vector<std::string>& notes) {
   constexpr double significant = 4.0;  // standard errors
   std::vector<Estimated> lags;
   for (const Piece& piece : pieces) lags.push_back(piece.lag);
   const Estimated lag = combined(lags);
   if (!(std::abs(lag.value) > std::max(lag_that_matters, significant * lag.error))) return;
-  notes.push_back(fmt::format(
-      "the static pressure is {:.1f} +- {:.1f} s {} the GPS height, where the climb rate changes: a lag of "
-      "the static line or a clock, which makes layers wrong where a climb begins or ends",
-      std::abs(lag.value), lag.error, lag.value > 0.0 ? "behind" : "ahead of"));
+  notes.push_back(
+      fmt::format("the static pressure is {:.1f} +- {:.1f} s {} the GPS height during changes of the climb "
+                  "rate: a lag of the static line or of a clock; layers at the ends of climbs are wrong",
+                  std::abs(lag.value), lag.error, lag.value > 0.0 ? "behind" : "ahead of"));
 }
 
-/// @param all pieces of the flight; @param level those in level flight
+/// @param all pieces of the flight; @param level pieces in level flight
 LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<Piece>& all,
                                 const std::vector<Piece>& level, std::vector<std::string>& notes) {
   LayerUncertainty uncertainty;
@@ -193,13 +195,13 @@ LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<P
   } else if (all.empty()) {
     uncertainty.height_noise = usual_height_noise;
     notes.push_back(fmt::format(
-        "there is no stretch of {:.0f} s to tell the error of the GPS height from; it is taken as {} m",
+        "no stretch of {:.0f} s is available to estimate the error of the GPS height; {} m is assumed",
         piece_time, usual_height_noise));
   } else {
     uncertainty.height_noise = std::max(min_height_noise, std::sqrt(squares / freedom));
     notes.push_back(
-        fmt::format("the error of the GPS height is taken as {:.2f} m: so much it wavers about the height of "
-                    "the pressure (rms) within {} stretches of {:.0f} s",
+        fmt::format("the error of the GPS height is estimated as {:.2f} m: rms deviation from the height of "
+                    "the pressure within {} stretches of {:.0f} s",
                     uncertainty.height_noise, all.size(), piece_time));
   }
   note_lag(all, notes);
@@ -211,8 +213,8 @@ LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<P
   if (gradient > usual_gradient) {
     uncertainty.gradient = gradient;
     notes.push_back(
-        fmt::format("along level legs the pressure surfaces slope by {:.1f} m per 100 km (rms), which is "
-                    "taken for climbs",
+        fmt::format("along level legs the pressure surfaces slope by {:.1f} m per 100 km (rms); the same "
+                    "slope is assumed for climbs",
                     gradient));
   }
   return uncertainty;
@@ -240,7 +242,7 @@ Layer make_layer(const FlightAir& air, const std::vector<double>& heights, std::
     layer.north += passed * speed_at(air.north_speed, i);
   }
   if (!air.east_speed.empty()) return layer;
-  // Without a ground velocity the way is that through the air, and its direction that of the nose.
+  // Without a ground velocity, distance and direction are computed from airspeed and heading.
   for (std::size_t i = first + 1; i <= last; ++i) {
     const std::vector<double>& headings = air.samples->motion.heading;
     const double angle = speed_at(headings, i) * constants::radians_per_degree;
@@ -254,7 +256,7 @@ Layer make_layer(const FlightAir& air, const std::vector<double>& heights, std::
 /// dT_p for an error of 1 m in S2, K/m.
 double per_metre(const Layer& layer) { return layer.hydrostatic_temperature() / layer.s2; }
 
-/// dT_p for an error of 1 hPa in the pressure at the end, K/hPa; at the begin it is the other way round.
+/// dT_p for an error of 1 hPa in the pressure at the end, K/hPa; the sign is reversed at the beginning.
 double per_pressure(const Layer& layer, double pressure) {
   return -layer.hydrostatic_temperature() / std::log(layer.pressure_end / layer.pressure_begin) / pressure;
 }
@@ -272,7 +274,7 @@ LayerErrors errors_of(const Layer& layer, const LayerUncertainty& uncertainty) {
   return errors;
 }
 
-/// What errors of layers come from, one unknown with unit variance each: how much each layer errs by it.
+/// Sources of layer errors, one unknown with unit variance each: the error of each layer by each source.
 class Causes {
  public:
   enum class Kind { height, pressure, bias, change, east, north, climb_east, climb_north };
@@ -337,7 +339,7 @@ void require(bool well, const char* what) {
 }  // namespace
 
 FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
-  require(options.min_climb_rate > 0.0, "the least climb rate must be above zero");
+  require(options.min_climb_rate > 0.0, "the minimum climb rate must be above zero");
   require(options.min_thickness > 0.0 && options.thickness > 0.0, "thicknesses must be above zero");
   require(options.height_noise.value_or(1.0) > 0.0, "the noise of the height must be above zero");
   require(options.pressure_noise >= 0.0 && options.static_bias >= 0.0 && options.static_change >= 0.0 &&
@@ -391,7 +393,7 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
   }
   if (impossible > 0)
     found.notes.push_back(
-        fmt::format("in {} layers the pressure rises with height; they do not count", impossible));
+        fmt::format("in {} layers the pressure rises with height; they are not used", impossible));
   return found;
 }
 

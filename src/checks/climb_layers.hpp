@@ -10,25 +10,25 @@
 
 namespace pcor::internal {
 
-/// Which climbs and descents make layers, and how well pressure and height are known.
+/// Selection of climbs and descents for layers, and uncertainty of pressure and height.
 struct LayerOptions {
   double min_climb_rate = 2.0;   ///< m/s up or down, over 30 s
-  double min_thickness = 500.0;  ///< m: a thinner climb says too little
-  double thickness = 1000.0;     ///< m: a longer climb is cut into layers of about this
+  double min_thickness = 500.0;  ///< m: thinner climbs have too large errors
+  double thickness = 1000.0;     ///< m: a longer climb is divided into layers of about this thickness
 
-  /// Rms error of one GPS height, m. Absent: how much the height wavers about that of the pressure within
-  /// five minutes of the flight, at least 0.15 m, which is differential GPS of today; 1 m, which is GPS of
-  /// 2004, where there are no five minutes without a gap.
+  /// Rms error of one GPS height, m. Absent: rms deviation from the height of the pressure within five
+  /// minutes of the flight, at least 0.15 m, the error of current differential GPS; 1 m, the error of GPS in
+  /// 2004, if five minutes without a gap are not available.
   std::optional<double> height_noise{};
   double pressure_noise = 0.03;  ///< rms error of one pressure, hPa
-  double static_bias = 0.3;      ///< standard error of delta-p that is the same at all heights, hPa
+  double static_bias = 0.3;      ///< standard error of delta-p that is constant over height, hPa
   double static_change = 0.1;    ///< standard error of delta-p that differs between heights, hPa
   /// Standard deviation of the slope of the pressure surfaces in any direction, m per 100 km. Absent: 5, half
-  /// of what the memo has as an upper limit, or the slope found along level legs where it is more.
+  /// of the upper limit of the memo, or the slope found along level legs if it is larger.
   std::optional<double> gradient{};
 };
 
-/// How well a flight's pressures and heights are known: standard deviations.
+/// Uncertainty of the pressures and heights of a flight: standard deviations.
 struct LayerUncertainty {
   double height_noise = 0.0;    ///< m
   double pressure_noise = 0.0;  ///< hPa
@@ -37,14 +37,14 @@ struct LayerUncertainty {
   double gradient = 0.0;        ///< m per 100 km
 };
 
-/// Standard errors of T_p, K, by cause. The sums telescope: noise counts at both ends of a layer, not
-/// in between, and does not fall with the number of samples (the memo takes it to).
+/// Standard errors of T_p, K, by cause. The sums telescope: noise counts at both ends of a layer, not in
+/// between, and does not decrease with the number of samples (the memo assumes that it does).
 struct LayerErrors {
-  double height_noise = 0.0;    ///< of the GPS height at both ends
-  double pressure_noise = 0.0;  ///< of the pressure at both ends
-  double static_bias = 0.0;     ///< a constant error of delta-p, of which the two ends cancel a part
-  double static_change = 0.0;   ///< an error of delta-p that differs between both ends
-  double gradient = 0.0;        ///< the pressure surfaces slope along the track
+  double height_noise = 0.0;    ///< noise of the GPS height at both ends
+  double pressure_noise = 0.0;  ///< noise of the pressure at both ends
+  double static_bias = 0.0;     ///< constant error of delta-p, which partly cancels between the two ends
+  double static_change = 0.0;   ///< error of delta-p that differs between both ends
+  double gradient = 0.0;        ///< slope of the pressure surfaces along the track
 
   double total() const {
     return std::sqrt(height_noise * height_noise + pressure_noise * pressure_noise +
@@ -52,10 +52,10 @@ struct LayerErrors {
   }
 };
 
-/// A layer of air that the aircraft climbed or descended through (as in the table of the memo's Determining
+/// Layer of air through which the aircraft climbed or descended (as in the table of the memo's Determining
 /// the Air Temperature).
 struct Layer {
-  std::size_t climb = 0;  ///< the number of its climb or descent in the flight
+  std::size_t climb = 0;  ///< index of its climb or descent in the flight
   std::size_t first = 0;  ///< records at its ends
   std::size_t last = 0;
   double begin = 0.0;           ///< s since 1970 UTC
@@ -71,63 +71,66 @@ struct Layer {
   double s3 = 0.0;              ///< sum of (z_i - z_(i-1))/T, m/K
   LayerErrors errors{};
 
-  /// T_p = -S2/S1, K: what height and pressure say. The memo prints the reciprocal.
+  /// T_p = -S2/S1, K: temperature from height and pressure. The memo prints the reciprocal.
   double hydrostatic_temperature() const { return -s2 / s1; }
-  /// T_m = S2/S3, K: what the thermometer says. Both are harmonic means over the height.
+  /// T_m = S2/S3, K: temperature of the thermometer. Both are harmonic means over the height.
   double measured_temperature() const { return s2 / s3; }
-  /// T_p - T_m, K: what the thermometer lacks.
+  /// T_p - T_m, K: correction required by the thermometer.
   double difference() const { return hydrostatic_temperature() - measured_temperature(); }
 };
 
-/// The layers of a flight, in the order of time.
+/// Layers of a flight, in the order of time.
 struct FlightLayers {
   std::string flight;
   LayerUncertainty uncertainty{};
   std::vector<Layer> layers{};
-  std::vector<std::string> notes{};  ///< what a user should know, a sentence each
+  std::vector<std::string> notes{};  ///< notes for the user, one sentence each
 };
 
-/// Finds the climbs and descents of a flight and cuts them into layers of equal thickness. Heights are
-/// geopotential and gravity the standard one, which is the same as R_a/g(latitude, height) with geometric
-/// ones. A sum ends at a gap in time, a missing value, a sample not in flight, and where the GPS height steps
-/// away from the pressure by more than 2 m (or eight times what it usually does) within a sample.
+/// Finds the climbs and descents of a flight and divides them into layers of equal thickness. Heights are
+/// geopotential and gravity is standard gravity, which is equivalent to R_a/g(latitude, height) with
+/// geometric heights. A sum ends at a gap in time, a missing value, a sample not in flight, and at a step of
+/// the GPS height relative to the pressure by more than 2 m (or eight times its typical step) within a
+/// sample.
 /// @throws Error if the flight has no temperature or no GPS height, a thickness or rate is not positive, or a
 /// standard deviation is negative or, for the height, zero.
 FlightLayers find_layers(const FlightAir& air, const LayerOptions& options = {});
 
-/// The correction that layers ask of a thermometer: the line that makes
+/// Thermometer correction implied by layers: the line that minimizes
 ///
-///     chi2 = sum (T_m + c0 + c1 (T_m - centre) - T_p)^2 / sigma^2
+///     chi2 = sum (T_m + c0 + c1 (T_m - centre) - T_p)^2 / sigma^2,
 ///
-/// least, or a constant where there are too few layers for a line, with the full covariance in the place of
-/// sigma^2: layers of one climb share an end, and layers of one flight the slope of the pressure surfaces.
-/// Four fifths of its variance are taken as that of the flight, the rest as that of each climb, so climbs and
-/// descents on one heading cancel most of it (iii of the memo's steps against the gradient). An error of
-/// delta-p that differs between heights is the same for all flights at one height.
+/// or a constant if there are too few layers for a line, with the full covariance instead of sigma^2: layers
+/// of one climb share an end, and layers of one flight the slope of the pressure surfaces. Four fifths of its
+/// variance are assigned to the flight, the rest to each climb, so climbs and descents on one heading cancel
+/// most of it (iii of the memo's steps against the gradient). An error of delta-p that differs between
+/// heights is the same for all flights at one height.
 struct LayerFit {
   std::size_t layers = 0;
-  double mean_temperature = 0.0;  ///< of the layers, K
-  /// What has to be added to the thermometer's at the mean temperature, K, by the line or the constant.
+  double mean_temperature = 0.0;  ///< mean temperature of the layers, K
+  /// Correction of the thermometer at the mean temperature, K, by the line or the constant.
   double offset = 0.0;
   double offset_error = 0.0;  ///< standard error, K
-  double centre = 0.0;        ///< K: where the errors of c0 and c1 are independent; may be outside the layers
-  double c0 = 0.0;        ///< at the centre, K; NaN like all of the line with fewer than three layers or 5 K
+  double centre = 0.0;        ///< K: the temperature at which the errors of c0 and c1 are independent; may be
+                              ///< outside the layers
+  double c0 = 0.0;        ///< correction at the centre, K; NaN, like c1, with fewer than three layers or a
+                          ///< range below 5 K
   double c0_error = 0.0;  ///< K
   double c1 = 0.0;        ///< K per K
   double c1_error = 0.0;
-  double chi_squared = 0.0;  ///< of the line, or of the mean where there is no line
+  double chi_squared = 0.0;  ///< chi2 of the line, or of the mean if there is no line
   std::size_t degrees_of_freedom = 0;
-  double error_scale = 1.0;  ///< all errors have been multiplied by it: chi2 per degree is not above 1 then
+  double error_scale = 1.0;  ///< factor on all errors that reduces chi2 per degree of freedom to at most 1
 
-  /// The correction of the line at a temperature, K: at 273.15 K it is the c0 of a line in degC, at 0 K that
-  /// of the memo's, whose temperatures are absolute.
+  /// Correction of the line at a temperature, K: at 273.15 K it is the c0 of a line in degC, at 0 K the c0 of
+  /// the memo, whose temperatures are absolute.
   double correction_at(double temperature) const { return c0 + c1 * (temperature - centre); }
   double correction_error_at(double temperature) const {
     return std::hypot(c0_error, c1_error * (temperature - centre));
   }
 };
 
-/// The fit over the layers of some flights. NaN where there is no layer.
+/// Fit over the layers of some flights. NaN if there are no layers.
 LayerFit fit_layers(const std::vector<FlightLayers>& flights);
 
 }  // namespace pcor::internal

@@ -12,22 +12,23 @@
 namespace pcor::internal {
 namespace {
 
-/// The smallest difference that matters, K: the typical error of the thermometer (memo, after eq. 22).
+/// Smallest relevant difference, K: the typical error of the thermometer (memo, after eq. 22).
 constexpr double size_that_matters = 0.3;
 constexpr double boundary_layer = 1000.0;  // m above the field
 constexpr double altitude_band = 1000.0;   // m
-constexpr std::size_t min_in_cloud = 30;   // samples: fewer do not tell their own scatter
-constexpr std::size_t min_samples = 60;    // to say something of a part
+constexpr std::size_t min_in_cloud = 30;   // minimum number of samples to estimate a scatter
+constexpr std::size_t min_samples = 60;    // minimum number of samples of a part
 constexpr double max_period = 256.0;       // s
-constexpr double suspect_share = 0.5;      // of the laser's values missing in a cloud: an iced window
+constexpr double suspect_share = 0.5;      // fraction of missing laser values in a cloud that indicates an
+                                           // iced window
 
-/// The difference of all flights, one flight after another.
+/// Difference of all flights, one flight after another.
 struct Differences {
   std::vector<double> time{};
-  std::vector<double> values{};  ///< ATLAMS less the thermometer, K; NaN where either may not be used
+  std::vector<double> values{};  ///< ATLAMS minus the thermometer, K; NaN if either is unusable
   std::vector<double> altitude{};
   std::vector<bool> in_cloud{};
-  std::vector<bool> near_ground{};  ///< in the lowest kilometre above the field
+  std::vector<bool> near_ground{};  ///< samples in the lowest kilometre above the field
   double step = 1.0;
 };
 
@@ -38,7 +39,7 @@ std::vector<bool> in_cloud(const FlightAir& air) {
   return cloud;
 }
 
-/// The pressure altitude where the flight began, m: on the ground, or the lowest flown.
+/// Pressure altitude at the beginning of the flight, m: on the ground, or the minimum.
 double field_of(const FlightAir& air) {
   if (!air.pressure_altitude.empty() && !air.flying.front() && std::isfinite(air.pressure_altitude.front()))
     return air.pressure_altitude.front();
@@ -86,7 +87,7 @@ std::vector<double> location(const Differences& all, const Condition& condition)
   return values;
 }
 
-/// Mean, error and scatter of a part of the samples.
+/// Mean, error and scatter of a subset of the samples.
 struct Part {
   std::string name;
   LeastSquares fit;
@@ -99,8 +100,8 @@ Part part_of(const Differences& all, std::string name, const Condition& conditio
 
 ReportTable part_table(const std::vector<Part>& parts) {
   ReportTable table;
-  table.title = "The laser's temperature less the thermometer's";
-  table.caption = "Errors allow for memory and slow drift of the differences.";
+  table.title = "Laser temperature minus thermometer";
+  table.caption = "Errors include autocorrelation and slow drift of the differences.";
   table.headers = {"where", "samples", "mean, K", "std. error", "scatter, K"};
   for (const Part& part : parts) {
     if (part.fit.samples < min_samples) continue;
@@ -111,9 +112,8 @@ ReportTable part_table(const std::vector<Part>& parts) {
   return table;
 }
 
-/// The rms of what changes between neighbouring means of `width` samples, over the square root of two: the
-/// noise of one mean, which is that at periods of about twice the width (Allan's deviation). NaN for fewer
-/// than ten differences.
+/// Rms difference between neighbouring means of `width` samples, divided by the square root of two: the noise
+/// of one mean, at periods of about twice the width (Allan deviation). NaN for fewer than ten differences.
 double allan_deviation(const std::vector<double>& values, const std::vector<Segment>& segments,
                        std::size_t width) {
   double squares = 0.0;
@@ -155,7 +155,7 @@ std::vector<PeriodNoise> noise_by_period(const Differences& all) {
   return noise;
 }
 
-/// The clouds of a flight, with what the laser did there. Returns how many look suspect.
+/// Tabulates the clouds of a flight, with the state of the laser there. Returns the number of suspect clouds.
 std::size_t look_at_clouds(const FlightAir& air, double outside, ReportTable& table) {
   std::size_t suspect = 0;
   const std::vector<double> difference = difference_of(air);
@@ -210,7 +210,7 @@ void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>&
       flights, "lams-temperature thermometer", "thermometer", "degC",
       [&celsius](const CheckedFlight& flight) { return celsius(flight.air.temperature, flight.air); }));
   TimePanel temperatures;
-  temperatures.title = "Temperature by the laser and by the thermometer";
+  temperatures.title = "Temperature from the laser and from the thermometer";
   temperatures.caption =
       "ATLAMS from the pressures of the model, and the thermometer (Cooper 2012, figure 3).";
   temperatures.columns = {"lams-temperature laser", "lams-temperature thermometer"};
@@ -218,7 +218,7 @@ void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>&
   result.pictures.emplace_back(std::move(temperatures));
   BinnedPanel binned;
   binned.title = "The difference against altitude";
-  binned.caption = "ATLAMS less the thermometer: a slope is an error that one of them has and the other not.";
+  binned.caption = "ATLAMS minus the thermometer: a slope is an error of one of them.";
   binned.y = {"lams-temperature difference"};
   binned.x_choices = {"lams-temperature altitude"};
   binned.autocorrelation_time = 10.0;
@@ -226,8 +226,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>&
   BarPanel bars;
   bars.title = "Noise of the difference by period";
   bars.caption =
-      "Noise of means over half the period. Below 3 s it is the air at the laser's volume that is not the "
-      "air at the pitot tube.";
+      "Noise of means over half the period. Below 3 s the air at the laser's volume differs from the air at "
+      "the pitot tube.";
   bars.axis = "noise";
   bars.unit = "K";
   for (const PeriodNoise& each : noise) {
@@ -255,7 +255,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   });
   if (!has_thermometer)
     return not_run(
-        name, "no thermometer is known to hold the laser against; a model names it as recovery_temperature");
+        name, "no thermometer is known to compare with the laser; a model names it as recovery_temperature");
   const Differences all = all_differences(flights);
   const auto clear = [&](std::size_t i) { return !all.in_cloud[i]; };
   const Part outside = part_of(all, "out of cloud", clear);
@@ -272,8 +272,8 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   const double noise =
       noise_floor(clear_values, contiguous_segments(clear_values, all.time, all.step), all.step).rms;
   result.finding = fmt::format(
-      "Out of cloud the laser's temperature less the thermometer's is {}, with a scatter of {:.2f} K, of "
-      "which {:.2f} K is noise",
+      "Out of cloud the laser temperature minus the thermometer temperature is {}, with a scatter of {:.2f} "
+      "K, of which {:.2f} K is noise",
       with_error(offset, "K"), outside.fit.rms, noise);
   result.numbers = {{"offset_k", offset.value},
                     {"offset_stderr_k", offset.error},
@@ -289,8 +289,8 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
                            std::hypot(in_cloud_offset.error, offset.error)};
     if (judge(change, size_that_matters) == CheckVerdict::inconsistent) {
       result.notes.emplace_back(
-          "in cloud the difference is another one: the thermometer gets wet (it reads low), or the laser's "
-          "window ices or its light is scattered by drops");
+          "the difference changes in cloud: the thermometer is wet (reads low), or the laser's window is "
+          "iced or drops scatter its light");
     }
   }
   result.finding += ".";
@@ -299,8 +299,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   ReportTable periods;
   periods.title = "Noise of the difference by period: numbers";
   periods.caption =
-      "K, of means over half the period: out of cloud, in the lowest kilometre above the field, and above "
-      "it.";
+      "K, means over half the period: out of cloud, in the lowest kilometre above the field, and above it.";
   periods.headers = {"period, s", "lowest km", "above"};
   const auto text = [](double kelvin) { return std::isnan(kelvin) ? "" : fmt::format("{:.3f}", kelvin); };
   for (const PeriodNoise& each : by_period)
@@ -324,23 +323,23 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   std::size_t suspect = 0;
   ReportTable clouds;
   clouds.title = "Clouds";
-  clouds.caption = "ATLAMS less the thermometer in each cloud of 30 samples or more.";
-  clouds.headers = {"flight", "begin (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"};
+  clouds.caption = "ATLAMS minus the thermometer in each cloud of 30 samples or more.";
+  clouds.headers = {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"};
   for (const CheckedFlight& flight : flights) {
     if (flight.air.laser && !flight.air.temperature.empty())
       suspect += look_at_clouds(flight.air, offset.value, clouds);
   }
   if (suspect > 0) {
-    result.notes.push_back(fmt::format("{} of {} clouds look suspect: the table of clouds names them",
-                                       suspect, clouds.rows.size()));
+    result.notes.push_back(
+        fmt::format("{} of {} clouds are suspect: see the table of clouds", suspect, clouds.rows.size()));
   }
   if (!clouds.rows.empty()) result.tables.push_back(std::move(clouds));
   result.cannot_see =
-      "It is independent of the thermometer as far as the fit of delta-p is: the thermometer took part in "
-      "that, so an error that the whole fit shares is hidden, and with delta-p from LAMS sample by sample "
-      "the laser's temperature would be the thermometer's exactly, whatever is wrong. An offset of the "
-      "thermometer, a wrong recovery factor, the scale of the laser and the elevation of its beam look "
-      "alike.";
+      "The check is independent of the thermometer only to the extent that the fit of delta-p is: the fit "
+      "used the thermometer, so an error common to the whole fit is hidden, and with delta-p from LAMS "
+      "sample by sample the laser temperature equals the thermometer temperature exactly. An offset of the "
+      "thermometer, a wrong recovery factor, the scale of the laser and the elevation of its beam are "
+      "indistinguishable.";
   add_pictures(flights, by_period, result);
   return result;
 }

@@ -13,13 +13,13 @@
 namespace pcor::internal {
 namespace {
 
-/// The smallest error of the thermometer that matters, K: the typical one (memo, after eq. 22).
+/// Smallest relevant error of the thermometer, K: the typical error (memo, after eq. 22).
 constexpr double size_that_matters = 0.3;
 
-/// A line with more error at 0 degC, K, is not worth telling.
+/// A line with a larger error at 0 degC, K, is not reported.
 constexpr double max_useful_error = 1.0;
 
-/// Why a flight has no layers; empty where it has.
+/// Reason why a flight has no layers; empty if it has layers.
 std::string trouble_with(const FlightAir& air, const FlightLayers& found) {
   if (air.temperature.empty())
     return "no thermometer is known; a model names it as recovery_temperature or ambient_temperature (-m)";
@@ -36,9 +36,9 @@ ReportTable layer_table(const std::vector<FlightLayers>& flights) {
   ReportTable table;
   table.title = "Layers";
   table.caption =
-      "T_p is what height and pressure say, T_m what the thermometer says; both are means over the height of "
-      "the layer. The error is that of T_p.";
-  table.headers = {"flight",    "begin (UTC)", "end",          "from, m", "to, m",
+      "T_p is the temperature from height and pressure, T_m the temperature of the thermometer; both are "
+      "means over the height of the layer. The error applies to T_p.";
+  table.headers = {"flight",    "start (UTC)", "end",          "from, m", "to, m",
                    "T_p, degC", "T_m, degC",   "T_p - T_m, K", "error, K"};
   for (const FlightLayers& flight : flights) {
     for (const Layer& layer : flight.layers) {
@@ -55,11 +55,11 @@ ReportTable layer_table(const std::vector<FlightLayers>& flights) {
 
 ReportTable error_table(const std::vector<FlightLayers>& flights) {
   ReportTable table;
-  table.title = "Where the error of a layer comes from";
+  table.title = "Sources of the error of a layer";
   table.caption =
       "Standard errors of T_p, K. Noise counts at the two ends of a layer alone, because the steps between "
       "them cancel, and does not fall with the number of samples.";
-  table.headers = {"flight",         "begin (UTC)",       "GPS height",
+  table.headers = {"flight",         "start (UTC)",       "GPS height",
                    "pressure noise", "delta-p, constant", "delta-p, changing",
                    "isobars"};
   const auto kelvin = [](double error) { return fmt::format("{:.2f}", error); };
@@ -73,7 +73,7 @@ ReportTable error_table(const std::vector<FlightLayers>& flights) {
   return table;
 }
 
-/// A number of each layer at the records of its flight that are in it.
+/// Number of each layer at the records of its flight in the layer.
 std::vector<double> spread(const CheckedFlight& flight, const FlightLayers& found,
                            double (Layer::*number)() const, double less) {
   std::vector<double> values(flight.air.size(), nan);
@@ -87,9 +87,9 @@ std::vector<double> spread(const CheckedFlight& flight, const FlightLayers& foun
 
 void add_pictures(const CheckedFlights& flights, const std::vector<FlightLayers>& all, CheckResult& result) {
   BarPanel bars;
-  bars.title = "What the thermometer lacks";
+  bars.title = "Correction required by the thermometer";
   bars.caption =
-      "T_p - T_m of every layer. Errors are shared: layers of one climb have an end in common, and those of "
+      "T_p - T_m of every layer. Errors are shared: layers of one climb have an end in common, and layers of "
       "one flight the slope of the isobars.";
   bars.axis = "T_p - T_m";
   bars.unit = "K";
@@ -122,8 +122,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<FlightLayers>
   TimePanel heights;
   heights.title = "D-value";
   heights.caption =
-      "Geopotential height less pressure altitude. In level flight its slope is that of the isobars along "
-      "the track; in a climb it follows the temperature of the air.";
+      "Geopotential height minus pressure altitude. In level flight its slope is the slope of the isobars "
+      "along the track; in a climb it follows the temperature of the air.";
   heights.columns = {"layers d-value"};
   result.pictures.emplace_back(std::move(heights));
 }
@@ -157,8 +157,8 @@ CheckResult check_layers(const CheckedFlights& flights) {
   std::vector<TestStatistic> numbers{
       judged({fit.offset, fit.offset_error}, size_that_matters, "K", "of the thermometer")};
   result.finding =
-      fmt::format("Over {} layer{} the hydrostatic equation asks for {} on the thermometer", fit.layers,
-                  fit.layers == 1 ? "" : "s", with_error({fit.offset, fit.offset_error}, "K"));
+      fmt::format("Over {} layer{} the hydrostatic equation implies a thermometer correction of {}",
+                  fit.layers, fit.layers == 1 ? "" : "s", with_error({fit.offset, fit.offset_error}, "K"));
   double coldest = std::numeric_limits<double>::infinity();
   double warmest = -coldest;
   for (const FlightLayers& flight : all) {
@@ -169,12 +169,12 @@ CheckResult check_layers(const CheckedFlights& flights) {
   }
   if (std::isnan(fit.c1)) {
     result.finding += fmt::format(
-        "; the layers are too few or too alike ({:.0f} to {:.0f} degC) to tell how it changes with "
+        "; the layers are too few or too similar ({:.0f} to {:.0f} degC) to determine a slope with "
         "temperature.",
         coldest - constants::ice_point, warmest - constants::ice_point);
   } else {
     const double range = warmest - coldest;
-    // A range that is not sure leaves open what the mean has said.
+    // An uncertain slope leaves the verdict to the mean.
     TestStatistic change =
         judged({fit.c1 * range, fit.c1_error * range}, size_that_matters, "K",
                fmt::format("from {:.0f} to {:.0f} degC, by the slope with temperature",
@@ -187,33 +187,32 @@ CheckResult check_layers(const CheckedFlights& flights) {
                                 fit.correction_error_at(constants::ice_point)};
     result.finding +=
         at_freezing.error > max_useful_error
-            ? fmt::format("; how it changes from {:.0f} to {:.0f} degC they leave open ({} for each degree).",
+            ? fmt::format("; its slope from {:.0f} to {:.0f} degC is undetermined ({} per degree).",
                           coldest - constants::ice_point, warmest - constants::ice_point,
                           with_error(slope, "K", 3))
-            : fmt::format("; as a line, {} at 0 degC and {} for each degree.", with_error(at_freezing, "K"),
+            : fmt::format("; as a line, {} at 0 degC and {} per degree.", with_error(at_freezing, "K"),
                           with_error(slope, "K", 4));
     const double absolute = fit.correction_at(0.0);
     result.notes.push_back(
         fmt::format("in the form of Cooper (2012), T_m + c0 + c1 T_m with absolute temperatures, c0 is {} "
-                    "and c1 {}; their errors "
-                    "are all but the same error",
+                    "and c1 {}; their errors are almost fully correlated",
                     with_error({absolute, fit.correction_error_at(0.0)}, "K"),
                     with_error({fit.c1, fit.c1_error}, "K/K", 4)));
   }
   decide(std::move(numbers), result);
   if (fit.error_scale > 1.0) {
-    result.notes.push_back(fmt::format(
-        "the layers scatter {:.2f} times as much as their errors allow; the errors of the fit have been made "
-        "larger by that",
-        fit.error_scale));
+    result.notes.push_back(
+        fmt::format("the layers scatter {:.2f} times as much as their errors predict; the errors of the fit "
+                    "were multiplied by this factor",
+                    fit.error_scale));
   }
   result.cannot_see =
-      "Which of thermometer, pressure and height is wrong: an error of delta-p that grows with height, and "
-      "isobars that slope along the track, look like a warmer or colder layer; of a constant error of "
-      "delta-p "
-      "the ends of a layer leave little, some tenths of a kelvin for 1 hPa. An offset of the thermometer, a "
-      "wrong recovery factor, heat of de-icing and neglected humidity look alike. A thermometer or a static "
-      "line that lags errs up and down with opposite signs.";
+      "The check cannot separate errors of thermometer, pressure and height: an error of delta-p that grows "
+      "with height, and isobars that slope along the track, look like a warmer or colder layer; a constant "
+      "error of delta-p largely cancels between the ends of a layer (a few tenths of a kelvin for 1 hPa). An "
+      "offset of the thermometer, a wrong recovery factor, heat of de-icing and neglected humidity are "
+      "indistinguishable. A lag of a thermometer or a static line causes errors of opposite signs in climb "
+      "and descent.";
   result.numbers.insert(result.numbers.begin(),
                         {{"offset_k", fit.offset},
                          {"offset_stderr_k", fit.offset_error},

@@ -7,7 +7,7 @@
 namespace pcor::internal {
 namespace {
 
-/// A wind from what a leg sees along its nose and to starboard of it, m/s.
+/// Wind from the components along the nose of a leg and to its starboard side, m/s.
 struct Wind {
   double east;
   double north;

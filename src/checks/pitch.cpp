@@ -12,9 +12,9 @@ CheckResult check_pitch(const CheckedFlights& flights) {
   check.ratio_of = [](const FlightAir& air) -> const std::vector<double>& { return air.attack_ratio; };
   check.variables = "ATTACK or AKRD; [variables] attack names another";
   check.cannot_see =
-      "What goes with the angle of attack in a pitch manoeuvre and is not it: the load factor, and with a "
-      "lag the change of pressure as the aircraft rises and sinks. An error of the elevation of the laser's "
-      "beam looks like a slope too.";
+      "The check cannot separate the angle of attack from quantities that vary with it in a pitch manoeuvre: "
+      "the load factor, and with a lag the pressure change as the aircraft rises and sinks. An error of the "
+      "elevation of the laser's beam also looks like a slope.";
   return run_angle_check(flights, check);
 }
 

@@ -10,7 +10,7 @@
 namespace pcor::internal {
 namespace {
 
-/// The records in the air at which the pressure does not change faster than `fastest_of_avionics`.
+/// Airborne records at which the pressure changes no faster than `fastest_of_avionics`.
 std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>& pressure) {
   const std::vector<double>& time = flight.air.time();
   const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(2.5 / flight.air.step())));
@@ -47,7 +47,7 @@ RedundantFit fit_of(const Redundant& both) {
   RedundantFit fit;
   fit.ordinary = ordinary_fit(both.first, both.second);
   fit.orthogonal = orthogonal_fit(both.first, both.second);
-  // Of pressures that vary by hundreds of times their differences the two lines have the same errors.
+  // For pressures that vary by hundreds of times their differences the two lines have the same errors.
   const LeastSquares line = least_squares({std::vector<double>(both.first.size(), 1.0), both.first},
                                           both.second, both.time, both.step);
   for (LineFit* const each : {&fit.ordinary, &fit.orthogonal}) {
@@ -85,15 +85,13 @@ std::vector<bool> comparable(const CheckedFlight& flight) {
 
 std::string note_on_avionics() {
   return fmt::format(
-      "The avionics smooth their pressures, so samples in which the pressure changes by more than {} hPa/s "
-      "are "
-      "left out",
+      "The avionics smooth their pressures; samples with a pressure change above {} hPa/s are excluded",
       fastest_of_avionics);
 }
 
 std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size) {
   return {judged(fit.difference, size, "hPa", "between the systems"),
-          judged(fit.across, size, "hPa", "from the least to the greatest pressure, by the slope")};
+          judged(fit.across, size, "hPa", "from the minimum to the maximum pressure, by the slope")};
 }
 
 void add_numbers(const RedundantFit& fit, CheckResult& result) {
@@ -119,7 +117,8 @@ ReportTable table_of(const RedundantFit& fit, const std::string& title) {
   ReportTable table;
   table.title = title;
   table.caption =
-      "Standard errors allow for memory and slow drift of the differences. The offset is that at 0 hPa.";
+      "Standard errors include autocorrelation and slow drift of the differences. The offset is the value at "
+      "0 hPa.";
   table.headers = {"fit", "slope", "std. error", "offset, hPa", "std. error", "rms, hPa"};
   const auto row = [&](const char* name, const LineFit& line) {
     table.rows.push_back({name, fmt::format("{:.6f}", line.slope), fmt::format("{:.6f}", line.slope_error),

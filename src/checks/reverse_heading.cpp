@@ -13,19 +13,19 @@
 namespace pcor::internal {
 namespace {
 
-/// The smallest error of the airspeed that matters, m/s: that of the GV in the memo's
-/// tests with manoeuvres, some 0.3 hPa.
+/// Smallest relevant error of the airspeed, m/s: the error of the GV in the memo's tests with manoeuvres,
+/// about 0.3 hPa.
 constexpr double size_that_matters = 0.3;
 
-/// Pilots aim at headings that are opposite to five degrees.
+/// Pilots aim at headings opposite within five degrees.
 constexpr double aimed_heading = 5.0;  // deg
-/// Legs that are further from opposite are no reverse heading.
+/// Legs with a larger deviation are not a reverse heading.
 constexpr double max_heading = 30.0;  // deg
 
-/// How many pairs the assumed change of the wind is worth beside the scatter of those that were flown.
+/// Weight of the assumed change of the wind, in pairs, relative to the observed scatter.
 constexpr double pairs_of_assumption = 2.0;
 
-/// With fewer pairs the error is mostly that of the assumption, and a note says so.
+/// With fewer pairs the assumption dominates the error, and a note reports it.
 constexpr std::size_t min_for_scatter = 3;
 
 struct Pair {
@@ -48,7 +48,7 @@ double mean_direction(const std::vector<double>& angles) {
   return direction < 0.0 ? direction + 360.0 : direction;
 }
 
-/// The mean direction of the ground velocity, deg.
+/// Mean direction of the ground velocity, deg.
 double track_of(const Flown& leg) {
   const FlightAir& air = leg.flight->air;
   const double direction =
@@ -72,7 +72,7 @@ LegMean mean_of_leg(const Flown& leg, const std::vector<double>& tail_wind) {
   return mean;
 }
 
-/// The legs that belong together; what is no pair goes to the notes.
+/// Pairs of legs; legs without a partner are reported in the notes.
 std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights,
                                               std::vector<std::string>& notes) {
   std::map<std::pair<const CheckedFlight*, int>, std::vector<Flown>> legs;
@@ -86,8 +86,7 @@ std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights,
       pairs.emplace_back(std::move(group[0]), std::move(group[1]));
     } else {
       notes.push_back(
-          fmt::format("{}: {} of a pair, where two are needed; give both the same number with "
-                      "'pair' in --intervals",
+          fmt::format("{}: {} of a pair instead of two; give both the same number with 'pair' in --intervals",
                       group.front().location(),
                       group.size() == 1 ? "a single leg" : std::to_string(group.size()) + " legs"));
     }
@@ -99,14 +98,14 @@ std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights,
   return pairs;
 }
 
-/// The error of the airspeed over all pairs. Its variance is that of the assumed change of the wind, in which
-/// the scatter of the pairs takes over the more of them there are:
+/// Error of the airspeed over all pairs. Its variance combines the assumed change of the wind and the scatter
+/// of the pairs, which dominates for many pairs:
 ///
 ///     s^2 = (n0 assumed^2 + sum (value - mean)^2)/(n0 + n - 1),  error = s/sqrt(n)
 struct Mean {
   Estimated airspeed{};
-  double from_assumption = 0.0;  ///< the error if the assumed change of the wind were all
-  double from_scatter = 0.0;     ///< if the scatter were; NaN for fewer than three pairs
+  double from_assumption = 0.0;  ///< error from the assumed change of the wind alone
+  double from_scatter = 0.0;     ///< error from the scatter alone; NaN for fewer than three pairs
 };
 
 Mean mean_over(const std::vector<Pair>& pairs) {
@@ -134,7 +133,7 @@ Mean mean_over(const std::vector<Pair>& pairs) {
 ReportTable table_of_legs(const std::vector<Pair>& pairs) {
   ReportTable table;
   table.title = "Legs of reverse headings";
-  table.caption = "Tail wind: ground speed along the heading less true airspeed, with its scatter.";
+  table.caption = "Tail wind: ground speed along the heading minus true airspeed, with its scatter.";
   table.headers = {"leg", "heading, deg", "track, deg", "airspeed, m/s", "tail wind, m/s"};
   const auto add = [&](const Flown& flown, const LegMean& mean) {
     table.rows.push_back({flown.location(), fmt::format("{:.1f}", mean.heading),
@@ -152,10 +151,10 @@ ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
   ReportTable table;
   table.title = "Reverse headings";
   table.caption =
-      "The sum of the tail winds of both legs would be zero. What is left of it, but for the share of "
-      "headings that are not opposite, is minus twice the error of the airspeed; delta-p and temperature are "
-      "what would make that error alone. Errors of the pairs are without changes of the wind between the "
-      "legs.";
+      "Without errors the sum of the tail winds of both legs is zero. After subtraction of the part due to "
+      "headings that are not opposite, the sum is minus twice the error of the airspeed; delta-p and "
+      "temperature are the errors that alone would cause it. Errors of the pairs exclude changes of the wind "
+      "between the legs.";
   table.headers = {"first leg",     "sum, m/s",     "of the headings",
                    "airspeed, m/s", "delta-p, hPa", "temperature, K"};
   for (const Pair& pair : pairs) {
@@ -168,7 +167,7 @@ ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
   return table;
 }
 
-/// What the legs would be with the airspeed of the laser.
+/// Legs evaluated with the airspeed of the laser.
 std::vector<Pair> with_laser(std::vector<Pair> pairs) {
   std::vector<Pair> result;
   for (Pair& pair : pairs) {
@@ -188,8 +187,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Pair>& pairs,
   std::vector<Flown> legs;
   BarPanel bars;
   bars.title = "Error of the airspeed from each reverse heading";
-  bars.caption = "Error bars have the usual change of the wind between two legs in them.";
-  bars.axis = "airspeed less that of the headings";
+  bars.caption = "Error bars include the typical change of the wind between two legs.";
+  bars.axis = "airspeed minus airspeed of the headings";
   bars.unit = "m/s";
   for (const Pair& pair : pairs) {
     legs.push_back(pair.first);
@@ -206,8 +205,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Pair>& pairs,
   TimePanel time;
   time.title = "Tail wind on the legs";
   time.caption =
-      "The wind along the aircraft's axis. On the two legs of a pair it has opposite signs; the airspeed's "
-      "error does not.";
+      "Wind along the aircraft's axis. It has opposite signs on the two legs of a pair; an error of the "
+      "airspeed has the same sign.";
   time.columns = {"reverse-heading tail wind"};
   result.pictures.emplace_back(std::move(time));
 }
@@ -231,14 +230,13 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
                              ": the tail wind has too few values on a leg of this pair");
     } else if (off > max_heading) {
       result.notes.push_back(
-          fmt::format("{}: the headings of this pair are {:.0f} deg from opposite, so it is "
-                      "none",
+          fmt::format("{}: headings differ from opposite by {:.0f} deg; not used as a reverse-heading pair",
                       pair.first.location(), off));
     } else {
       if (off > aimed_heading)
         result.notes.push_back(
-            fmt::format("{}: the headings of this pair are {:.1f} deg from opposite; the "
-                        "wind's share of {:+.2f} m/s is taken out, as well as the sideslip allows",
+            fmt::format("{}: headings differ from opposite by {:.1f} deg; the wind component of {:+.2f} m/s "
+                        "was subtracted, with an error due to the sideslip",
                         pair.first.location(), off, pair.result.heading_share));
       pairs.push_back(std::move(pair));
     }
@@ -261,17 +259,16 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   const Estimated kelvin = as_other(&LegPair::temperature_per_airspeed);
   decide({judged(error, size_that_matters, "m/s", "of airspeed")}, result);
   result.finding = fmt::format(
-      "Over {} pair{} the tail winds of both legs add up to {}, where the wind alone would give zero: the "
-      "true airspeed is too {} by {:.2f} +- {:.2f} m/s, as if delta-p were off by {} or the temperature by "
-      "{}.",
+      "Over {} pair{} the tail winds of both legs add up to {} instead of zero: the true airspeed is too {} "
+      "by {:.2f} +- {:.2f} m/s, as if delta-p were off by {} or the temperature by {}.",
       pairs.size(), pairs.size() == 1 ? "" : "s", with_error({-2.0 * error.value, 2.0 * error.error}, "m/s"),
       error.value < 0.0 ? "low" : "high", std::abs(error.value), error.error, with_error(hpa, "hPa"),
       with_error(kelvin, "K", 1));
   result.cannot_see =
-      "Which of pressure, temperature and laser is wrong: it sees the airspeed alone. Where pressures were "
-      "corrected sample by sample with LAMS, or a law was fitted to it, the airspeed is that of LAMS "
-      "whatever the temperature, and this is a test of LAMS alone. An error of the airspeed that has "
-      "opposite signs on the two legs cancels.";
+      "The check cannot separate errors of pressure, temperature and laser: it depends on the airspeed only. "
+      "If pressures were corrected sample by sample with LAMS, or the model was fitted to LAMS, the airspeed "
+      "is the LAMS airspeed for any temperature, and the check tests LAMS alone. An error of the airspeed "
+      "that has opposite signs on the two legs cancels.";
   result.numbers = {{"pairs", static_cast<double>(pairs.size())},
                     {"sum_m_s", -2.0 * error.value},
                     {"sum_stderr_m_s", 2.0 * error.error},
@@ -288,14 +285,14 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
     result.numbers.emplace_back("laser_airspeed_error_m_s", laser.value);
     result.numbers.emplace_back("laser_airspeed_error_stderr_m_s", laser.error);
     result.notes.push_back(
-        "The same legs with the laser's airspeed, which is what pressures corrected sample by sample with "
-        "LAMS would give: it is off by " +
+        "With the airspeed of the laser, equivalent to a correction sample by sample with LAMS, the airspeed "
+        "is off by " +
         with_error(laser, "m/s"));
   }
   if (pairs.size() < min_for_scatter)
     result.notes.push_back(
-        fmt::format("With fewer than {} pairs the error rests on an assumed change of the "
-                    "wind of {} m/s between the legs; some 18 pairs reach +-0.2 m/s in the sum",
+        fmt::format("With fewer than {} pairs the error depends on an assumed change of the wind of {} m/s "
+                    "between the legs; about 18 pairs reach +-0.2 m/s in the sum",
                     min_for_scatter, change_of_wind));
   result.tables = {table_of_pairs(pairs), table_of_legs(pairs)};
   add_pictures(flights, pairs, result);

@@ -16,14 +16,14 @@
 namespace pcor::internal {
 namespace {
 
-/// The largest noise of delta-p that does no harm, hPa: the rms of the memo's fits (eq. 18 and 20).
+/// Largest acceptable noise of delta-p, hPa: the rms of the memo's fits (eq. 18 and 20).
 constexpr double size_that_matters = 0.3;
 constexpr std::size_t segment_length = 256;  // samples
-constexpr std::size_t min_segments = 8;      // for a slope with an error
+constexpr std::size_t min_segments = 8;      // minimum for a slope with an error
 constexpr double flattest_fall = -0.8;       // half of -5/3: nearer to a white floor than to turbulence
 constexpr double margin = 2.0;               // standard errors
 
-/// What the spectrum is of.
+/// Series of the spectrum.
 struct Source {
   std::string name;  ///< "delta-p from LAMS"
   std::vector<double> (*series)(const CheckedFlight& flight);
@@ -41,7 +41,7 @@ std::vector<double> second_system(const CheckedFlight& flight) {
   return masked(std::move(difference), flight.air.flying);
 }
 
-/// What D-value is as a pressure: rho g for each metre.
+/// D-value as a pressure: rho g for each metre.
 std::vector<double> d_value_as_pressure(const CheckedFlight& flight) {
   const FlightAir& air = flight.air;
   if (air.d_value.empty() || air.temperature.empty() || !height_problem(air).empty()) return {};
@@ -65,7 +65,7 @@ struct Spectrum {
   }
 };
 
-/// One-sided periodogram of a segment without its line, through Hann's window. Sums to the variance.
+/// One-sided periodogram of a detrended segment with Hann's window. It sums to the variance.
 std::vector<double> periodogram(const double* values, double step) {
   const auto [amplitudes, power] = windowed_transform(values, segment_length);
   std::vector<double> density(segment_length / 2);
@@ -90,9 +90,8 @@ Spectrum spectrum_of(const CheckedFlights& flights, const Source& source) {
   return spectrum;
 }
 
-/// The slope of log power over log frequency in the last two octaves, from the segments one by one: their
-/// scatter is its error. (Half of each segment is that of the next, which through Hann's window are all but
-/// independent.)
+/// Slope of log power over log frequency in the last two octaves, from single segments: their scatter gives
+/// its error. (Segments overlap by half, but are almost independent through Hann's window.)
 Estimated fall_of(const Spectrum& spectrum) {
   std::vector<double> slopes;
   for (const std::vector<double>& each : spectrum.periodograms) {
@@ -116,8 +115,8 @@ std::string in_words(const Estimated& fall) {
   if (fall.value - margin * fall.error > flattest_fall)
     return "so the spectrum flattens towards a floor of noise or resolution";
   if (fall.value + margin * fall.error < flattest_fall)
-    return "so it still falls, as that of turbulence (-5/3) does, and the noise is below this";
-  return "which is too uncertain to tell a floor of noise from turbulence (-5/3)";
+    return "so the spectrum still falls like turbulence (-5/3), and the noise is below this";
+  return "which is too uncertain to separate a noise floor from turbulence (-5/3)";
 }
 
 struct Octave {
@@ -130,7 +129,7 @@ struct Octave {
 std::vector<Octave> octaves_of(const Spectrum& spectrum) {
   std::vector<Octave> octaves;
   for (std::size_t last = segment_length / 2; last >= 2; last /= 2) {
-    // Places of the frequencies above last/2 and up to last.
+    // Indices of the frequencies above last/2 and up to last.
     std::vector<double> power;
     for (const std::vector<double>& each : spectrum.periodograms) {
       double sum = 0.0;
@@ -149,14 +148,14 @@ std::vector<Octave> octaves_of(const Spectrum& spectrum) {
   return octaves;
 }
 
-/// The white noise that has the density of the highest octave at all frequencies: its rms, hPa.
+/// Rms, hPa, of white noise with the density of the highest octave at all frequencies.
 Estimated floor_of(const Octave& highest) {
   // The octave is the upper half of all frequencies.
   return {std::sqrt(2.0) * highest.rms, std::sqrt(2.0) * highest.error};
 }
 
-/// How much delta-p from LAMS changes with the airspeed at the same total temperature, hPa per m/s without
-/// sign: the mean of all that was flown.
+/// Magnitude of the change of delta-p from LAMS with the airspeed at the same total temperature, hPa per m/s:
+/// mean over all flights.
 double pressure_per_speed(const CheckedFlights& flights) {
   std::vector<double> sensitivities;
   for (const CheckedFlight& flight : flights) {
@@ -169,7 +168,7 @@ double pressure_per_speed(const CheckedFlights& flights) {
   return mean_value(sensitivities);
 }
 
-/// The coarsest step in which a static pressure was recorded, hPa.
+/// Coarsest recording resolution of a static pressure, hPa.
 double coarsest_step(const CheckedFlights& flights) {
   double step = 0.0;
   for (const CheckedFlight& flight : flights)
@@ -208,32 +207,30 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   decide({judged(floor, size_that_matters, "hPa", "of white noise")}, result);
   const double step = coarsest_step(flights);
   if (step >= coarse_pressure) {
-    withhold(
-        fmt::format(
-            "the static pressure is recorded in steps of {:.2g} hPa, which alone make {:.2g} hPa of noise: "
-            "what its sensor adds cannot be seen",
-            step, rounding_of(step)),
-        result);
+    withhold(fmt::format("the static pressure is recorded in steps of {:.2g} hPa, which cause {:.2g} hPa of "
+                         "noise: the noise of its sensor cannot be determined",
+                         step, rounding_of(step)),
+             result);
   }
   result.finding =
       fmt::format("At the highest frequencies {} has the power of white noise of {:.3f} +- {:.3f} hPa",
                   source->name, floor.value, floor.error);
   if (std::isfinite(per_speed))
-    result.finding += fmt::format(" (that of {:.2f} m/s of airspeed)", floor.value / per_speed);
-  result.finding += fmt::format("; over the last two octaves power goes as frequency to the {}, {}.",
+    result.finding += fmt::format(" (equivalent to {:.2f} m/s of airspeed)", floor.value / per_speed);
+  result.finding += fmt::format("; over the last two octaves power varies as frequency to the {}, {}.",
                                 with_error(fall, ""), in_words(fall));
   const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
     return flight.air.step() != spectrum.step;
   });
   if (other_steps > 0) {
-    result.notes.push_back(fmt::format("{} of {} flights take no part: their records are not {:g} s apart",
+    result.notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s",
                                        other_steps, flights.size(), spectrum.step));
   }
   result.cannot_see =
-      "Which sensor the noise is of: pressures, thermometer, laser and the air between laser and pitot tube "
-      "add up. Noise of the transducers and small eddies look alike where the spectrum does not flatten, and "
-      "means over the sample interval hide part of both. It says nothing of errors that last longer than two "
-      "minutes.";
+      "The check cannot identify the noisy sensor: pressures, thermometer, laser and the air between laser "
+      "and pitot tube add up. Noise of the transducers and small eddies are indistinguishable unless the "
+      "spectrum flattens, and means over the sample interval hide part of both. Errors that last longer than "
+      "two minutes are not tested.";
   result.numbers = {{"floor_hpa", floor.value},
                     {"floor_stderr_hpa", floor.error},
                     {"floor_m_s", floor.value / per_speed},
@@ -242,14 +239,14 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
                     {"segments", static_cast<double>(spectrum.periodograms.size())}};
   ReportTable table;
   table.title = "Power by period: numbers";
-  table.caption = fmt::format("Of {}, over {} segments of {} samples.", source->name,
+  table.caption = fmt::format("Spectrum of {}, over {} segments of {} samples.", source->name,
                               spectrum.periodograms.size(), segment_length);
   table.headers = {"periods, s", "rms, hPa", "std. error"};
   BarPanel bars;
   bars.title = "Power by period";
   bars.caption =
-      "Rms in octaves of the period. White noise has bars that fall by the square root of two from one "
-      "octave to the next longer one; turbulence has bars that grow.";
+      "Rms in octaves of the period. For white noise the bars fall by the square root of two from one octave "
+      "to the next longer one; for turbulence they grow.";
   bars.axis = "rms";
   bars.unit = "hPa";
   for (const Octave& octave : octaves) {
@@ -260,10 +257,10 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   result.tables.push_back(std::move(table));
   result.pictures.emplace_back(std::move(bars));
   result.columns.push_back(
-      column_of(flights, "spectrum series", "what the spectrum is of", "hPa",
+      column_of(flights, "spectrum series", "analysed series", "hPa",
                 [source](const CheckedFlight& flight) { return source->series(flight); }));
   TimePanel series;
-  series.title = "What the spectrum is of";
+  series.title = "Analysed series";
   series.caption = fmt::format("In time: {}.", source->name);
   series.columns = {"spectrum series"};
   result.pictures.emplace_back(std::move(series));

@@ -12,41 +12,41 @@
 namespace pcor::internal {
 namespace {
 
-/// The smallest error of delta-p from the slow to the fast end of a run that matters, hPa.
+/// Smallest relevant error of delta-p from the slow to the fast end of a run, hPa.
 constexpr double size_that_matters = 0.3;
 
-/// What changes between the slow and the fast end of a run and is too slow for its samples to show as noise:
-/// the wind of the scale of a run, m/s, half the change between the legs of a reverse heading; and the error
-/// of a GPS height, m, at least that of differential GPS. Neither is below the scatter that the line leaves.
+/// Changes between the slow and the fast end of a run that are too slow for its samples to show as noise: the
+/// wind on the scale of a run, m/s, half the change between the legs of a reverse heading; and the error of a
+/// GPS height, m, at least the error of differential GPS. Neither is below the scatter about the line.
 /// Simulated flights show drifts of this size.
 constexpr double drift_of_wind = 0.5 * change_of_wind;
 constexpr double min_drift_of_height = 0.15;
 constexpr double drift_in_scatter = 1.0;
 
-/// How a series goes with the airspeed in a run.
+/// Dependence of a series on the airspeed in a run.
 struct Trend {
   double scatter = 0.0;        ///< standard deviation
-  double range = 0.0;          ///< greatest less least
-  Estimated slope{};           ///< per m/s of airspeed, beside a drift in time
-  Estimated pressure_error{};  ///< what delta-p is off by at the fast end if right at the slow end, hPa
+  double range = 0.0;          ///< maximum minus minimum
+  Estimated slope{};           ///< slope per m/s of airspeed, fitted with a drift in time
+  Estimated pressure_error{};  ///< error of delta-p at the fast end if correct at the slow end, hPa
 };
 
 struct Run {
   Flown flown;
   double airspeed_range = 0.0;  ///< m/s
-  Estimated dynamic_slope{};    ///< of DVALUE, m per hPa of dynamic pressure
+  Estimated dynamic_slope{};    ///< slope of DVALUE, m per hPa of dynamic pressure
   Trend height;                 ///< DVALUE, m
   Trend wind;                   ///< UXW, m/s
 };
 
-/// A straight line against `x` with a drift in time beside it.
+/// Straight line against `x` with a drift in time.
 LeastSquares line_against(const std::vector<double>& x, const std::vector<double>& y, const Flown& flown) {
   const std::vector<double> time = flown.time();
   return least_squares({std::vector<double>(y.size(), 1.0), less_mean(time), less_mean(x)}, y, time,
                        flown.step());
 }
 
-/// @param per_unit what delta-p is off by for one unit of the series, hPa
+/// @param per_unit error of delta-p for one unit of the series, hPa
 /// @param min_drift of the series from end to end that its samples do not show as noise
 Trend trend_of(const std::vector<double>& series, const Flown& flown, double airspeed_range, double per_unit,
                double min_drift) {
@@ -76,7 +76,7 @@ Run run_of(const Flown& flown) {
   const std::vector<double> d_value = height_problem(air).empty() ? air.d_value : std::vector<double>{};
   run.height = trend_of(d_value, flown, run.airspeed_range, weight, min_drift_of_height);
   run.dynamic_slope = line_against(flown.of(air.dynamic), flown.of(d_value), flown).coefficients[2];
-  // The tail wind is too low where the airspeed is too high.
+  // The tail wind is too low if the airspeed is too high.
   run.wind = trend_of(air.tail_wind, flown, run.airspeed_range,
                       -pressure_per_airspeed(pressure, flown.mean(air.mach), flown.mean(air.airspeed)),
                       drift_of_wind);
@@ -91,8 +91,8 @@ std::vector<Estimated> errors_of(const std::vector<Run>& runs, Trend Run::*trend
   return errors;
 }
 
-/// Height and wind are blind to different errors, so one that is inconsistent is enough; else the one that is
-/// known better decides.
+/// Height and wind are blind to different errors, so one inconsistent result is enough; otherwise the more
+/// accurate one decides.
 Estimated decisive(const Estimated& height, const Estimated& wind) {
   for (const Estimated& each : {height, wind}) {
     if (judge(each, size_that_matters) == CheckVerdict::inconsistent) return each;
@@ -104,9 +104,9 @@ ReportTable table_of_heights(const std::vector<Run>& runs) {
   ReportTable table;
   table.title = "DVALUE in speed runs";
   table.caption =
-      "Scatter and range of DVALUE (GPS height less pressure altitude), its slopes against the airspeed and "
-      "the dynamic pressure beside a drift in time, and the error of delta-p from the slow to the fast end "
-      "that the first slope stands for.";
+      "Scatter and range of DVALUE (GPS height minus pressure altitude), its slopes against the airspeed and "
+      "the dynamic pressure fitted with a drift in time, and the error of delta-p from the slow to the fast "
+      "end that the first slope implies.";
   table.headers = {"run",         "airspeed, m/s",    "sd, m",
                    "range, m",    "slope, m per m/s", "slope, m per hPa of q",
                    "delta-p, hPa"};
@@ -124,8 +124,8 @@ ReportTable table_of_winds(const std::vector<Run>& runs) {
   ReportTable table;
   table.title = "Tail wind in speed runs";
   table.caption =
-      "Scatter and range of the tail wind, its slope against the airspeed beside a drift in time, and the "
-      "error of delta-p from the slow to the fast end that it stands for.";
+      "Scatter and range of the tail wind, its slope against the airspeed fitted with a drift in time, and "
+      "the error of delta-p from the slow to the fast end that it implies.";
   table.headers = {"run", "airspeed, m/s", "sd, m/s", "range, m/s", "slope, m/s per m/s", "delta-p, hPa"};
   for (const Run& run : runs) {
     if (!known(run.wind)) continue;
@@ -164,11 +164,11 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Run>& runs, C
     binned.autocorrelation_time = 10.0;
     result.pictures.emplace_back(std::move(binned));
   };
-  panel("speed-run height", "DVALUE less its mean", "m",
-        "A pressure that errs with the speed makes a slope; the isobars that the aircraft crosses, a drift.",
+  panel("speed-run height", "DVALUE minus its mean", "m",
+        "A pressure error that depends on the speed causes a slope; sloping isobars cause a drift.",
         &FlightAir::d_value);
-  panel("speed-run wind", "Tail wind less its mean", "m/s",
-        "The wind does not know how fast the aircraft flies: a slope is an error of the airspeed.",
+  panel("speed-run wind", "Tail wind minus its mean", "m/s",
+        "The wind is independent of the airspeed: a slope is an error of the airspeed.",
         &FlightAir::tail_wind);
 }
 
@@ -209,25 +209,26 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   result.finding = fmt::format("Over {} speed run{}", runs.size(), runs.size() == 1 ? "" : "s");
   if (has_height) {
     result.finding += fmt::format(
-        " DVALUE scatters by {:.1f} m and goes with the airspeed as if delta-p were off by {} from the slow "
-        "to the fast end",
+        " DVALUE scatters by {:.1f} m and varies with the airspeed as if delta-p were off by {} from the "
+        "slow to the fast end",
         average(&Run::height, &Trend::scatter), with_error(height, "hPa"));
   } else {
-    result.notes.push_back("DVALUE takes no part: " + height_problem(runs.front().flown.flight->air));
+    result.notes.push_back("DVALUE not used: " + height_problem(runs.front().flown.flight->air));
   }
   if (has_wind) {
     result.finding += fmt::format(
-        "{} the tail wind scatters by {:.2f} m/s, over a range of {:.1f} m/s, and goes with the airspeed as "
-        "if it were {}",
+        "{} the tail wind scatters by {:.2f} m/s, over a range of {:.1f} m/s, and varies with the airspeed "
+        "as if delta-p were off by {}",
         has_height ? ";" : "", average(&Run::wind, &Trend::scatter), average(&Run::wind, &Trend::range),
         with_error(wind, "hPa"));
   } else {
-    result.notes.push_back("the tail wind takes no part: no flight " + missing_for_tail_wind(flights));
+    result.notes.push_back("the tail wind is not used: no flight " + missing_for_tail_wind(flights));
   }
   result.finding += ".";
   result.cannot_see =
-      "Errors that are the same at all speeds, such as an offset of a transducer; and what goes with the "
-      "speed in these runs alone: angle of attack, thrust and dynamic pressure change together.";
+      "The check does not detect errors that are constant over the speed, such as an offset of a transducer, "
+      "and cannot separate angle of attack, thrust and dynamic pressure, which change together in these "
+      "runs.";
   result.numbers = {{"runs", static_cast<double>(runs.size())},
                     {"d_value_sd_m", average(&Run::height, &Trend::scatter)},
                     {"d_value_range_m", average(&Run::height, &Trend::range)},

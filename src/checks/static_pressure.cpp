@@ -8,8 +8,8 @@
 namespace pcor::internal {
 namespace {
 
-/// The smallest difference of two corrected static pressures that matters, hPa: the rms with which the memo's
-/// eq. 18 meets LAMS.
+/// Smallest relevant difference of two corrected static pressures, hPa: the rms difference of the memo's eq.
+/// 18 and LAMS.
 constexpr double size_that_matters = 0.3;
 
 bool has_second(const CheckedFlight& flight) { return flight.second.has_value(); }
@@ -42,26 +42,25 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   result.ran = true;
   decide(judged_of(fit, size_that_matters), result);
   result.finding = fmt::format(
-      "The static pressure of {} less that of the model is {} in the mean, with slope {:.6f} +- {:.6f} and "
-      "rms {:.3f} hPa about the orthogonal line.",
+      "The static pressure of {} minus static pressure of the model is {} on average, with slope {:.6f} +- "
+      "{:.6f} and rms {:.3f} hPa about the orthogonal line.",
       first->second_name, with_error(fit.difference, "hPa", 3), fit.orthogonal.slope,
       fit.orthogonal.slope_error, fit.orthogonal.rms);
   if (!first->second_corrected) {
-    // What its own defect is nobody said, so a difference is no fault of the model.
-    withhold("the second system is as measured, so it tells nothing of the model", result);
+    // The defect of the second system is unknown, so a difference does not contradict the model.
+    withhold("the second system is uncorrected, so it does not test the model", result);
     result.finding += fmt::format(
-        " The pressure of {} is as measured, so the difference is its own defect too: --reference "
-        "static:OTHER.toml "
-        "gives its correction.",
+        " The pressure of {} is uncorrected, so the difference includes its defect: --reference "
+        "static:OTHER.toml gives its correction.",
         first->second_name);
   }
   result.cannot_see =
-      "Errors that both systems have: what both laws were fitted to (the scale of LAMS, the temperature), "
-      "and all that acts on both ports alike.";
+      "The check does not detect errors common to both systems: errors of the reference of both fits (the "
+      "scale of LAMS, the temperature), and effects that act equally on both ports.";
   add_numbers(fit, result);
   if (std::any_of(flights.begin(), flights.end(), with_avionics)) result.notes.push_back(note_on_avionics());
-  result.tables.push_back(
-      table_of(fit, fmt::format("Static pressure of {} against the model's", first->second_name)));
+  result.tables.push_back(table_of(
+      fit, fmt::format("Static pressure of {} against static pressure of the model", first->second_name)));
   result.columns.push_back(column_of(flights, "static-pressure one", "static pressure of the model", "hPa",
                                      [](const CheckedFlight& f) { return masked(own(f), comparable(f)); }));
   result.columns.push_back(column_of(flights, "static-pressure two",
@@ -69,8 +68,8 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
                                      [](const CheckedFlight& f) { return masked(other(f), comparable(f)); }));
   PairPanel panel;
   panel.title = first->second_corrected ? "Corrected static pressures of the two systems"
-                                        : "Static pressure of the model and of a second system as measured";
-  panel.caption = "The line makes the distances perpendicular to it small.";
+                                        : "Static pressure of the model and of an uncorrected second system";
+  panel.caption = "The line is an orthogonal fit.";
   panel.x = "static-pressure one";
   panel.y = "static-pressure two";
   panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};

@@ -8,8 +8,8 @@
 namespace pcor::internal {
 namespace {
 
-/// The smallest difference of two total pressures that matters, hPa: twice what the transducers of two
-/// pairs are good for together (memo, Background: 0.1 hPa of PSF, 0.05 hPa of QCF).
+/// Smallest relevant difference of two total pressures, hPa: twice the combined uncertainty of the
+/// transducers of two pairs (memo, Background: 0.1 hPa of PSF, 0.05 hPa of QCF).
 constexpr double size_that_matters = 0.3;
 
 bool has_two(const CheckedFlight& flight) { return flight.measured.size() > 1; }
@@ -56,14 +56,14 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   result.ran = true;
   decide(judged_of(fit, size_that_matters), result);
   result.finding = fmt::format(
-      "The total pressure of {} less that of {} is {} in the mean, with slope {:.6f} +- {:.6f} and rms "
-      "{:.3f} hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter of "
-      "{:.2f} hPa.",
+      "The total pressure of {} minus total pressure of {} is {} on average, with slope {:.6f} +- {:.6f} and "
+      "rms {:.3f} hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter "
+      "of {:.2f} hPa.",
       two, one, with_error(fit.difference, "hPa", 3), fit.ordinary.slope, fit.ordinary.slope_error,
       fit.ordinary.rms, statics.difference.value, statics.scatter);
   result.cannot_see =
-      "Static defects, which cancel in the total pressure, and what both pitots lose alike, at large angles "
-      "for example.";
+      "The check does not detect static defects, which cancel in the total pressure, and losses common to "
+      "both pitots, for example at large angles.";
   add_numbers(fit, result);
   result.numbers.emplace_back("static_mean_difference_hpa", statics.difference.value);
   result.numbers.emplace_back("static_mean_difference_stderr_hpa", statics.difference.error);
@@ -80,8 +80,8 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   PairPanel panel;
   panel.title = "Total pressures of the two systems";
   panel.caption =
-      "Static defects cancel in the total pressure, so what is left is of the transducers, the pitots and "
-      "the lines.";
+      "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
+      "pitots and the lines.";
   panel.x = "total-pressure one";
   panel.y = "total-pressure two";
   panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};

@@ -12,27 +12,27 @@ namespace {
 constexpr double significant = 3.0;  // standard errors
 constexpr double likely = 2.0;
 
-/// How large a number may be, in units of what matters: where it is inconsistent its error is no excuse.
+/// Relative size of a number, in tolerances; for an inconsistent number the error is not subtracted.
 double reach_of(const TestStatistic& key) {
   const double doubt = key.verdict == CheckVerdict::inconsistent ? 0.0 : likely * key.standard_error;
   return (std::abs(key.value) + doubt) / key.matters;
 }
 
-/// How the verdict follows from the number.
+/// Reason for the verdict on a number.
 std::string reason_of(const TestStatistic& key) {
   const double magnitude = std::abs(key.value);
   std::string why;
   if (key.verdict == CheckVerdict::inconsistent) {
-    why = fmt::format("beyond the {:g} {} that matter and beyond three standard errors, {:.3f}", key.matters,
+    why = fmt::format("above the tolerance of {:g} {} and above three standard errors, {:.3f}", key.matters,
                       key.unit, significant * key.standard_error);
   } else if (key.verdict == CheckVerdict::consistent) {
-    why = fmt::format("with two standard errors {:.3f}, within the {:g} {} that matter",
+    why = fmt::format("with two standard errors {:.3f}, within the tolerance of {:g} {}",
                       magnitude + likely * key.standard_error, key.matters, key.unit);
   } else if (magnitude > key.matters) {
-    why = fmt::format("beyond the {:g} {} that matter, but not beyond three standard errors, {:.3f}",
+    why = fmt::format("above the tolerance of {:g} {}, but not above three standard errors, {:.3f}",
                       key.matters, key.unit, significant * key.standard_error);
   } else {
-    why = fmt::format("with two standard errors {:.3f}, not within the {:g} {} that matter",
+    why = fmt::format("with two standard errors {:.3f}, not within the tolerance of {:g} {}",
                       magnitude + likely * key.standard_error, key.matters, key.unit);
   }
   return fmt::format("{:+.3f} +- {:.3f} {} {} is {}", key.value, key.standard_error, key.unit, key.what, why);

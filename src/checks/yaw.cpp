@@ -13,8 +13,9 @@ CheckResult check_yaw(const CheckedFlights& flights) {
   check.ratio_of = [](const FlightAir& air) -> const std::vector<double>& { return air.sideslip_ratio; };
   check.variables = "SSLIP or SSRD; [variables] sideslip names another";
   check.cannot_see =
-      "An error of the azimuth of the laser's beam, which looks like a slope; an offset of the sideslip, "
-      "which shares it out between the slope and the square; and what both static systems have alike.";
+      "The check cannot separate an error of the azimuth of the laser's beam, which looks like a slope, and "
+      "an offset of the sideslip, which contributes to the slope and the square. It does not detect errors "
+      "common to both static systems.";
   return run_angle_check(flights, check);
 }
 

@@ -49,15 +49,15 @@ namespace {
 
 constexpr double worst_length = 60.0;  // s
 constexpr std::size_t worst_count = 5;
-// hPa2: a reference delta-p that varies less than the rounding of a file leaves nothing to explain.
+// hPa2: for a reference delta-p that varies less than the rounding of a file, R2 is undefined.
 constexpr double min_variance = 1e-10;
 constexpr std::size_t min_in_band = 30;
 
-/// Bands of a variable: all samples with the same `floor(value / width)`.
+/// Bands of a variable: all samples with equal `floor(value / width)`.
 struct Banding {
   const char* name;
   double width;
-  const char* format;  // of the limits
+  const char* format;  // format of the limits
   double (*value)(const FlightResiduals&, std::size_t);
 };
 
@@ -84,7 +84,7 @@ std::string regimes_text(const RegimeSet& regimes) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Sums over the residuals of one model, of a flight or of several.
+/// Sums over the residuals of one model, for one or several flights.
 struct ModelSums {
   ResidualSums all{};
   ResidualSums flaps_out{};
@@ -94,7 +94,7 @@ struct ModelSums {
   Eigen::VectorXd doubt{};  // what each doubt of the reference does to the residuals
   std::array<ResidualSums, regime_count> regimes{};
   std::array<std::map<long, ResidualSums>, bandings.size()> bands{};
-  std::vector<WorstInterval> worst{};  // at most `worst_count`
+  std::vector<WorstInterval> worst{};  // `worst_count` entries at most
 
   void add(const ModelSums& other);
 
@@ -155,7 +155,7 @@ std::vector<WorstInterval> worst_of(const FlightResiduals& flight, const std::ve
       flown |= regimes[i];
     }
     if (sums.samples > 0 && sums.samples >= enough) {
-      sums.sum_variance = nan;  // no error is stated of a minute
+      sums.sum_variance = nan;  // the error of a minute is not reported
       worst.push_back({samples.name, samples.time[first] - 0.5 * samples.step,
                        samples.time[i - 1] + 0.5 * samples.step, sums.statistics(), regimes_text(flown)});
     }
@@ -165,13 +165,13 @@ std::vector<WorstInterval> worst_of(const FlightResiduals& flight, const std::ve
   return worst;
 }
 
-/// A residual of one model on a flight in bins, and the records of each part that is summed.
+/// Residual of one model on a flight in bins, and the records of each summed part.
 struct SummedRecords {
   BinnedResidual residual{};
-  std::vector<std::vector<std::size_t>> parts{};  // in the order of `ModelSums::each_part`
+  std::vector<std::vector<std::size_t>> parts{};  // order as in `ModelSums::each_part`
 };
 
-/// @param records gets those of the parts, without which there are no errors
+/// @param records receives the records of the parts, which the errors require
 ModelSums sums_of(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise,
                   SummedRecords& records) {
   const std::vector<double>& values = flight.values[model];
@@ -206,7 +206,7 @@ ModelSums sums_of(const FlightResiduals& flight, std::size_t model, const NoiseF
   return sums;
 }
 
-/// @param flights the residuals of each, with its name
+/// @param flights the residuals of each flight, with its name
 ModelComparison comparison_of(const std::string& name, const Reference& reference, ModelSums sums,
                               std::vector<PartStatistics> flights) {
   ModelComparison result;
@@ -248,7 +248,7 @@ std::vector<double> total_pressure(const ModelSamples& samples) {
   return total;
 }
 
-/// The noise of a flight is one, whatever the models: where one of them fails quickly, another shows it.
+/// The noise of a flight is common to all models: the model with the lowest noise determines it.
 NoiseFloor min_noise(const FlightResiduals& flight) {
   NoiseFloor lowest;
   for (const std::vector<double>& values : flight.values) {
@@ -258,7 +258,7 @@ NoiseFloor min_noise(const FlightResiduals& flight) {
   return lowest;
 }
 
-/// A contender and one of its references.
+/// Compared model and one of its references.
 struct Pairing {
   const ComparedModel& contender;
   const Reference& reference;
@@ -267,8 +267,8 @@ struct Pairing {
 
 /// All contenders that have one reference, in the order in which they are given.
 struct Field {
-  std::string name;        // of the reference
-  std::size_t number = 0;  // among those of that name that a contender has
+  std::string name;        // name of the reference
+  std::size_t number = 0;  // index among the references with this name of one model
   std::vector<Pairing> pairings{};
 };
 
@@ -368,7 +368,7 @@ FlightResiduals residuals_on(const std::vector<std::shared_ptr<const FlightSampl
   return result;
 }
 
-/// What a member of a team tells of a flight of its own.
+/// Result of one flight, shared between ranks.
 struct FlightPart {
   std::string name{};
   double begin = 0.0;  // s since 1970 UTC
@@ -385,7 +385,7 @@ struct FlightPart {
   }
 };
 
-/// @param records gets those of each model
+/// @param records receives the records of each model
 FlightPart part_of(FlightResiduals flight, bool with_series, std::vector<SummedRecords>& records) {
   FlightPart part;
   part.name = flight.samples->name;
@@ -405,7 +405,7 @@ FlightPart part_of(FlightResiduals flight, bool with_series, std::vector<SummedR
   return part;
 }
 
-/// The flights that a report shows.
+/// Flights that a report shows.
 std::vector<std::size_t> to_show(const std::vector<FlightPart>& parts, std::size_t most) {
   std::vector<FlightToShow> flights;
   for (const FlightPart& part : parts) {
@@ -416,7 +416,7 @@ std::vector<std::size_t> to_show(const std::vector<FlightPart>& parts, std::size
   return flights_to_show(flights, most);
 }
 
-/// The first of every so many.
+/// Every n-th entry.
 template <class Entry>
 std::vector<Entry> thinned_out(const std::vector<Entry>& all, std::size_t every) {
   std::vector<Entry> some;
@@ -424,9 +424,9 @@ std::vector<Entry> thinned_out(const std::vector<Entry>& all, std::size_t every)
   return some;
 }
 
-/// Adds to the sums of one model the variances that the noise gives them. Its slow parts are those of
-/// all flights, found from six of them at most, its level that of each.
-/// @param records of own flights, of each model
+/// Adds the variances by the noise to the sums of one model. The drift components are common to all flights,
+/// from at most six of them; the level is the level of each flight.
+/// @param records of the flights of this rank, for each model
 void add_variances(std::size_t model, const FlightPartition& share,
                    const std::vector<std::vector<SummedRecords>>& records, std::size_t threads,
                    std::vector<FlightPart>& parts) {
@@ -470,7 +470,7 @@ void add_variances(std::size_t model, const FlightPartition& share,
   }
 }
 
-/// Holds contenders against a reference. Without samples there are no models in the result.
+/// Compares models with a reference. Without samples the result has no models.
 Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& flights,
                         const CompareOptions& options, const std::function<void()>& tell) {
   const Reference& first = pairings[by_rank(pairings).front()].reference;
@@ -558,14 +558,14 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& c
   Comparison result = compare_with(fields.front().pairings, flights, options, progress);
   if (result.masks[0] == 0) {
     throw Error(
-        fmt::format("{}: no sample is left to compare: {}; see the variables of the model and "
+        fmt::format("{}: no samples remain to compare: {}; see the variables of the model and "
                     "--min-airspeed, --max-flaps, --exclude",
                     flights.size() == 1 ? flights.path(0).string() : "the flights", mask_text(result.masks)));
   }
   for (auto field = fields.begin() + 1; field != fields.end(); ++field) {
     Comparison further = compare_with(field->pairings, flights, options, progress);
     if (further.masks[0] == 0) {
-      result.notes.push_back(fmt::format("no sample is left to compare with the {}: {}", further.reference,
+      result.notes.push_back(fmt::format("no samples remain to compare with the {}: {}", further.reference,
                                          mask_text(further.masks)));
       continue;
     }
@@ -596,14 +596,14 @@ void write_residuals(const Comparison& comparison, std::size_t number, const Fli
   };
   for (std::size_t m = 0; m < residuals.values.size(); ++m) {
     define(fmt::format("RESIDUAL_{}", m + 1),
-           fmt::format("Static pressure of {} less that of the model {}", comparison.reference,
+           fmt::format("Static pressure of {} minus static pressure of the model {}", comparison.reference,
                        comparison.models[m].name),
            residuals.values[m]);
     define(fmt::format("PCOR_{}", m + 1),
            fmt::format("Static defect (delta-p) of the model {}", comparison.models[m].name),
            residuals.model_defects[m]);
     define(fmt::format("PCOR_REFERENCE_{}", m + 1),
-           fmt::format("Static defect (delta-p) that the reference asks of the model {}",
+           fmt::format("Static defect (delta-p) that the reference implies for the model {}",
                        comparison.models[m].name),
            residuals.reference_defects[m]);
   }
@@ -624,7 +624,8 @@ void write_residuals(const Comparison& comparison, std::size_t number, const Fli
   std::vector<double> masks;
   for (const Mask mask : residuals.mask)
     masks.push_back(mask == Mask::none ? 0.0 : static_cast<double>(1 << (static_cast<int>(mask) - 1)));
-  flags("MASK", "Why a sample takes no part in the comparison", std::move(mask_flags), std::move(masks));
+  flags("MASK", "Reason why a sample is excluded from the comparison", std::move(mask_flags),
+        std::move(masks));
   std::vector<Flag> regime_flags;
   for (std::size_t i = 0; i < regime_count; ++i) {
     std::string name(regime_info[i].name);

@@ -17,14 +17,14 @@
 namespace pcor::internal {
 namespace {
 
-// A regime with fewer samples is not called the one where a model fails most.
+// Minimum number of samples of a regime that is named as the worst one.
 constexpr std::size_t min_in_regime = 60;
-// Times the noise: less is hardly a failure.
+// Ratio to the noise; smaller ratios are not reported.
 constexpr double notable_failure = 1.2;
 
 std::string residual_column(std::size_t model) { return fmt::format("residual{}", model + 1); }
 
-/// The samples of a flight that take part: a report shows no others.
+/// Used samples of a flight: a report shows no others.
 std::vector<std::size_t> used(const FlightResiduals& flight) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < flight.mask.size(); ++i) {
@@ -33,7 +33,7 @@ std::vector<std::size_t> used(const FlightResiduals& flight) {
   return places;
 }
 
-/// One series of every flight, one after another; NaN for a flight that does not have it.
+/// Concatenated series of all flights; NaN for a flight without the series.
 template <class Series>
 std::vector<double> joined(const Comparison& comparison, const Series& series) {
   std::vector<double> values;
@@ -84,12 +84,12 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
   using F = FlightResiduals;
   using V = std::vector<double>;
   variable("mach", "Mach number", "", [](const F& f) -> const V& { return f.mach; });
-  variable("pressure", "static pressure as measured", "hPa",
+  variable("pressure", "measured static pressure", "hPa",
            [](const F& f) -> const V& { return f.static_pressure; });
   variable("attack", "angle of attack", "deg",
            [](const F& f) -> const V& { return f.samples->motion.attack; });
   variable("sideslip", "sideslip", "deg", [](const F& f) -> const V& { return f.samples->motion.sideslip; });
-  variable("ratio", "q/p as measured", "", [](const F& f) -> const V& { return f.dynamic_ratio; });
+  variable("ratio", "measured q/p", "", [](const F& f) -> const V& { return f.dynamic_ratio; });
   variable("airspeed", "true airspeed", "m/s",
            [](const F& f) -> const V& { return f.samples->motion.airspeed; });
   variable("altitude", "altitude", "m", [](const F& f) -> const V& { return f.samples->motion.altitude; });
@@ -118,8 +118,8 @@ void ComparisonPanels::add_panels() {
   TimePanel time;
   time.title = "Residual in time";
   time.caption =
-      "The reference less the model; regimes are shaded. Drag over a time "
-      "range, or choose a regime, and every picture shows its samples alone.";
+      "Residual: reference minus model; regimes are shaded. Drag over a time range, or choose a regime, to "
+      "restrict every picture to its samples.";
   time.columns = residuals_;
   time.axis = "residual";
   report_.items.emplace_back(std::move(time));
@@ -133,8 +133,8 @@ void ComparisonPanels::add_panels() {
   BinnedPanel binned;
   binned.title = "Residual against a variable";
   binned.caption =
-      "A slope or a bend that is more than the error bars is an effect that the model does not have, or "
-      "has with a wrong coefficient.";
+      "A slope or a bend larger than the error bars is an effect that the model lacks, or has with a wrong "
+      "coefficient.";
   binned.y = residuals_;
   binned.axis = "residual";
   binned.x_choices = variables_;
@@ -144,7 +144,7 @@ void ComparisonPanels::add_panels() {
   plane.title = comparison_.models.size() == 1 ? "Residual over Mach number and pressure"
                                                : fmt::format("Residual over Mach number and pressure, {}",
                                                              comparison_.models.back().name);
-  plane.caption = "Where in the envelope the model fails: one colour over a region is a bias there.";
+  plane.caption = "Errors of the model over its envelope: a region of one colour has a bias.";
   plane.x = "mach";
   plane.y = "pressure";
   plane.colour = residuals_.back();
@@ -156,18 +156,18 @@ void ComparisonPanels::add_panels() {
     const std::vector<ReportBarb> part = wind_of(*flight.samples);
     wind.insert(wind.end(), part.begin(), part.end());
   }
-  add_track(
-      report_,
-      comparison_.models.size() == 1 ? "Residual on the map"
-                                     : "Residual on the map, " + comparison_.models.back().name,
-      "The track over the ground: one colour over a leg, or with a heading, tells of a place or a direction.",
-      residuals_.back(), std::move(wind));
+  add_track(report_,
+            comparison_.models.size() == 1 ? "Residual on the map"
+                                           : "Residual on the map, " + comparison_.models.back().name,
+            "Ground track: one colour over a leg, or for one heading, indicates a dependence on the place or "
+            "the direction.",
+            residuals_.back(), std::move(wind));
   if (!comparison_.is_static_pressure) return;
   TimePanel defect;
   defect.title = comparison_.models.size() == 1 ? "Delta-p of the reference and of the model"
                                                 : "Delta-p of the reference and of the models";
   defect.caption =
-      fmt::format("What the reference ({}) asks for, and what the model gives.", comparison_.reference);
+      fmt::format("Delta-p implied by the reference ({}), and delta-p of the model.", comparison_.reference);
   defect.columns = defects_;
   defect.axis = "delta-p";
   report_.items.emplace_back(std::move(defect));
@@ -187,7 +187,7 @@ void ComparisonPanels::add_pairs() {
   const auto note = [](const LineFit& fit) {
     return fmt::format(
         "Slope {:.5f} +- {:.5f}, offset {:.3f} hPa, rms {:.3f} hPa, mean difference {:+.3f} hPa over {} "
-        "samples; the errors are those of independent samples.",
+        "samples; the errors assume independent samples.",
         fit.slope, fit.slope_error, fit.offset, fit.rms, fit.mean_difference, fit.samples);
   };
   const auto pair = [&](const char* title, const std::string& caption, const char* x, const char* y,
@@ -211,8 +211,8 @@ void ComparisonPanels::add_pairs() {
     column("reference_total", "total pressure of the reference",
            [](const F& f) -> const V& { return f.reference_total_pressure; });
     pair("Total pressures of the two systems",
-         "Static defects cancel in the total pressure, so what is left is of the transducers, the pitots "
-         "and the lines. ",
+         "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
+         "pitots and the lines. ",
          "total", "reference_total", *comparison_.total_pressure);
   }
   if (!comparison_.is_static_pressure) return;
@@ -231,7 +231,7 @@ void ComparisonPanels::add_pairs() {
 void ComparisonPanels::add_tables() {
   ReportTable masks;
   masks.title = "Samples";
-  masks.caption = "Every sample counts under the first reason that holds.";
+  masks.caption = "Each sample is counted under the first reason that applies.";
   masks.headers = {"samples", "why"};
   for (std::size_t i = 0; i < mask_count; ++i) {
     if (comparison_.masks[i] > 0)
@@ -242,7 +242,7 @@ void ComparisonPanels::add_tables() {
   for (const ModelComparison& model : comparison_.models) {
     ReportTable worst;
     worst.title = comparison_.models.size() == 1 ? "The worst minutes" : "The worst minutes, " + model.name;
-    worst.caption = "The minutes with the largest rms residual, and what was flown.";
+    worst.caption = "The minutes with the largest rms residual, and their regimes.";
     worst.headers = {"flight", "begin (UTC)", "end", "bias, hPa", "rms, hPa", "regimes"};
     for (const WorstInterval& interval : model.worst) {
       worst.rows.push_back({interval.flight, utc_text(interval.begin), utc_text(interval.end, "%H:%M:%S"),
@@ -252,7 +252,7 @@ void ComparisonPanels::add_tables() {
     report_.items.emplace_back(std::move(worst));
     ReportTable bands;
     bands.title = comparison_.models.size() == 1 ? "By band" : "By band, " + model.name;
-    bands.caption = "Bands with fewer than 30 samples are left out.";
+    bands.caption = "Bands with fewer than 30 samples are omitted.";
     bands.headers = {"band", "samples", "bias, hPa", "std. error", "rms, hPa", "rms / noise"};
     for (const PartStatistics& band : model.bands) {
       bands.rows.push_back(
@@ -284,10 +284,11 @@ void ComparisonPanels::summarise() {
     if (worst == nullptr || fails_more(part.statistics, worst->statistics)) worst = &part;
   }
   if (worst != nullptr) {
-    report_.summary.push_back(fmt::format(
-        "{} fails most in the regime {}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} times the noise there.",
-        comparison_.models.size() == 1 ? "It" : "The last", worst->name, worst->statistics.bias,
-        worst->statistics.rms, worst->statistics.rms_over_noise()));
+    report_.summary.push_back(
+        fmt::format("{} has its largest errors in the regime {}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} "
+                    "times the noise there.",
+                    comparison_.models.size() == 1 ? "It" : "The last", worst->name, worst->statistics.bias,
+                    worst->statistics.rms, worst->statistics.rms_over_noise()));
   }
   report_.info.emplace_back("Reference", comparison_.reference);
   for (const FlightResiduals& flight : comparison_.flights) {

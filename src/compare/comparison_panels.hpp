@@ -8,7 +8,7 @@
 
 namespace pcor::internal {
 
-/// The columns that all pictures of a comparison share, and the panels of every report of one.
+/// Columns that all pictures of a comparison share, and the panels common to all its reports.
 class ComparisonPanels {
  public:
   explicit ComparisonPanels(const Comparison& comparison);
@@ -16,7 +16,7 @@ class ComparisonPanels {
   Report& report() { return report_; }
 
   void add_panels();
-  /// The systems against each other: figures 1 and 2 of the memo.
+  /// Comparison of the two systems: figures 1 and 2 of the memo.
   void add_pairs();
   void add_tables();
   void summarise();
@@ -29,7 +29,7 @@ class ComparisonPanels {
   Report report_;
   std::vector<std::string> residuals_;
   std::vector<std::string> variables_;
-  std::vector<std::string> defects_;  // delta-p of the reference and of every model
+  std::vector<std::string> defects_;  // names of delta-p of the reference and of every model
 };
 
 }  // namespace pcor::internal

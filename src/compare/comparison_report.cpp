@@ -9,7 +9,7 @@ using namespace internal;
 Report comparison_report(const Comparison& comparison) {
   ComparisonPanels panels(comparison);
   panels.report().title = "Pressure corrections against " + comparison.reference;
-  panels.report().subtitle = "Where the model fails";
+  panels.report().subtitle = "Errors of the model by regime";
   panels.summarise();
   panels.add_panels();
   panels.add_pairs();

@@ -21,7 +21,7 @@ Provenance provenance_of(const RefitResult& fit, Loss loss) {
   add("program", std::string("pcor " PCOR_VERSION));
   add("date", utc_text(static_cast<double>(std::time(nullptr)), "%Y-%m-%dT%H:%M:%SZ"));
   add("reference", fit.reference_text);
-  add("loss", std::string(to_string(loss)));
+  if (fit.estimator != refit_estimator_of_gps) add("loss", std::string(to_string(loss)));
   ProvenanceList flights;
   for (const FlightFit& flight : fit.flights) {
     if (!flight.holdout) flights.emplace_back(flight.flight);

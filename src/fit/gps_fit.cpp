@@ -114,15 +114,6 @@ class GpsSolver {
     return prior;
   }
 
-  /// An effect of the user's own has no typical size: its prior is wide.
-  void widen(GpsPrior& prior, const Eigen::MatrixXd& white) const {
-    for (Eigen::Index k = 0; k < count_; ++k) {
-      if (prior.deviation[k] > 0.0) continue;
-      const double length = white.col(k).norm();
-      prior.deviation[k] = length > 0.0 ? 100.0 / length : 1.0;
-    }
-  }
-
   Part part_of(GpsKind kind, FitFlight& fit, FlightState& state, bool with_noise, bool with_outliers) const {
     const Eigen::VectorXd own = own_parameters(fit.residuals(), task_, values_);
     const FlightSamples& samples = fit.residuals().samples();
@@ -134,10 +125,11 @@ class GpsSolver {
     if (state.outliers.size() != rows.rows.rows()) state.outliers = Eigen::VectorXd::Zero(rows.rows.rows());
     GpsPrior prior = flight_prior();
     if (!state.noise) state.noise.emplace(kind);
-    if ((prior.deviation.array() <= 0.0).any()) widen(prior, state.noise->white(rows, state.outliers).rows);
+    if ((prior.deviation.array() <= 0.0).any()) widen(prior, state.noise->white(rows, state.outliers));
     if (with_noise) state.noise->maximise(rows, state.outliers, prior);
     WhiteRows white = state.noise->white(rows, state.outliers);
-    if (with_outliers && mark_outliers(white, prior, state)) white = state.noise->white(rows, state.outliers);
+    if (with_outliers && find_outliers(white, prior, state.outliers))
+      white = state.noise->white(rows, state.outliers);
     std::map<std::int64_t, Eigen::MatrixXd> blocks;
     const std::size_t size = rows.time.size();
     for (Eigen::Index first = 0; first < white.rows.rows(); first += as_index(size)) {
@@ -156,25 +148,6 @@ class GpsSolver {
       if (sum.cwiseAbs().maxCoeff() > 0.0) part.blocks.push_back({block, packed(sum)});
     }
     return part;
-  }
-
-  /// True where there are any: rows whose news no normal noise brings.
-  static bool mark_outliers(const WhiteRows& white, const GpsPrior& prior, FlightState& state) {
-    constexpr double limit = 4.5;
-    constexpr double wider = 100.0;
-    const Eigen::Index count = white.rows.cols() - 1;
-    const auto columns = white.rows.leftCols(count);
-    Eigen::MatrixXd matrix = columns.transpose() * columns;
-    matrix.diagonal() += prior.deviation.cwiseAbs2().cwiseInverse();
-    const Eigen::VectorXd best = matrix.ldlt().solve(columns.transpose() * white.rows.col(count));
-    const Eigen::VectorXd news = white.rows.col(count) - columns * best;
-    bool any = false;
-    for (Eigen::Index i = 0; i < news.size(); ++i) {
-      if (!(std::abs(news[i]) > limit)) continue;
-      state.outliers[i] = wider * news[i] * news[i] * white.variance[i];
-      any = true;
-    }
-    return any;
   }
 
   void read(bool with_noise, bool with_outliers) {
@@ -303,11 +276,47 @@ class GpsSolver {
     from.head(count_) = now - before_.values;
     change_ = posterior_ * (equations_.right + equations_.matrix * from);
     change_.head(count_) = level_held() * change_.head(count_);
-    for (Eigen::Index k = 0; k < count_; ++k) {
-      const std::size_t p = wanted_[static_cast<std::size_t>(k)];
-      const Bounds& bounds = task_.parameters[p].bounds;
-      const double value = before_.values[k] + change_[k];
-      if (std::isfinite(value)) values_[as_index(p)] = std::clamp(value, bounds.lower, bounds.upper);
+    keep_bounds();
+    values_(wanted_) = before_.values + change_.head(count_);
+  }
+
+  const Bounds& bounds_of(Eigen::Index k) const {
+    return task_.parameters[wanted_[static_cast<std::size_t>(k)]].bounds;
+  }
+
+  /// Sets coefficients beyond a bound to the bound. The others get their best values with the bound held.
+  void keep_bounds() {
+    at_bound_.assign(wanted_.size(), false);
+    const Eigen::MatrixXd level = level_held();
+    Eigen::MatrixXd covariance = posterior_;
+    covariance.topRows(count_) = level * covariance.topRows(count_).eval();
+    covariance.leftCols(count_) = covariance.leftCols(count_).eval() * level.transpose();
+    for (Eigen::Index round = 0; round < count_; ++round) {
+      Eigen::Index worst = -1;
+      double beyond = 0.0;  // standard deviations of the prior
+      for (Eigen::Index k = 0; k < count_; ++k) {
+        const double value = before_.values[k] + change_[k];
+        const double off = std::abs(value - std::clamp(value, bounds_of(k).lower, bounds_of(k).upper));
+        if (off / prior_deviation_[k] > beyond && !at_bound_[static_cast<std::size_t>(k)]) {
+          beyond = off / prior_deviation_[k];
+          worst = k;
+        }
+      }
+      if (worst < 0) break;
+      at_bound_[static_cast<std::size_t>(worst)] = true;
+      const double value = before_.values[worst] + change_[worst];
+      const double missing = std::clamp(value, bounds_of(worst).lower, bounds_of(worst).upper) - value;
+      const double variance = covariance(worst, worst);
+      if (variance > 0.0) {
+        const Eigen::VectorXd with = covariance.col(worst) / variance;
+        change_ += with * missing;
+        covariance -= (with * covariance.row(worst)).eval();
+      }
+      for (Eigen::Index k = 0; k < count_; ++k) {
+        if (!at_bound_[static_cast<std::size_t>(k)]) continue;
+        const double held = before_.values[k] + change_[k];
+        change_[k] = std::clamp(held, bounds_of(k).lower, bounds_of(k).upper) - before_.values[k];
+      }
     }
   }
 
@@ -324,23 +333,24 @@ class GpsSolver {
     step();
     GpsFit fit;
     fit.values = values_(wanted_);
-    // WhitenedSystem of the blocks at the solution.
+    fit.at_bound = at_bound_;
+    // Change of the solution without each block of five minutes. Scores of the blocks would understate the
+    // error if one block decides, for example the only climb.
     Eigen::VectorXd residual_weights(shared() + 1);
     Eigen::VectorXd left = change_;
     left.head(count_).setZero();
     residual_weights << -left, 1.0;
-    Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(shared(), shared());
+    const Eigen::MatrixXd prior = prior_covariance();
+    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(shared(), shared());
+    const Eigen::MatrixXd drawn = identity - posterior_ * equations_.matrix;
+    Eigen::MatrixXd sandwich = drawn * prior * drawn.transpose();
     for (const Eigen::MatrixXd& products : equations_.products) {
+      const Eigen::MatrixXd others = equations_.matrix - products.topLeftCorner(shared(), shared());
       const Eigen::VectorXd score = (products * residual_weights).head(shared());
-      scores += score * score.transpose();
+      const Eigen::VectorXd without = (identity + prior * others).partialPivLu().solve(prior * score);
+      sandwich += without * without.transpose();
     }
     fit.parts = equations_.products.size();
-    const Eigen::MatrixXd prior = prior_covariance();
-    // A^-1 (scores + prior information) A^-1, where the information of what is held is none.
-    const Eigen::MatrixXd gain = posterior_ * equations_.matrix;
-    const Eigen::MatrixXd drawn = Eigen::MatrixXd::Identity(shared(), shared()) - gain;
-    const Eigen::MatrixXd sandwich =
-        posterior_ * scores * posterior_.transpose() + drawn * prior * drawn.transpose();
     const Eigen::MatrixXd level = level_held();
     fit.by_noise = level * posterior_.topLeftCorner(count_, count_) * level.transpose();
     fit.kept = drawn.topLeftCorner(count_, count_);
@@ -403,7 +413,7 @@ class GpsSolver {
             : "--reference wind with circles or reverse headings, for the level; a speed run or a pitch "
               "manoeuvre for the rest";
     if (held_.cols() > 0) {
-      fit.notes.push_back(fmt::format(
+      fit.warnings.push_back(fmt::format(
           "the flights do not determine {}: there delta-p is held as near to that of the start as "
           "the rest allows, with an error of {:.2f} hPa; what would tell: {}",
           names_of(held_), fit.held, what_tells));
@@ -435,7 +445,8 @@ class GpsSolver {
   Eigen::MatrixXd held_{};       // the others
   Eigen::MatrixXd weak_{};       // those of the first that hardly leave the start
   Eigen::MatrixXd posterior_{};  // covariance of coefficients and shared nuisances
-  Eigen::VectorXd change_{};     // of the coefficients from before; of nuisances their values
+  std::vector<bool> at_bound_{};
+  Eigen::VectorXd change_{};  // of the coefficients from before; of nuisances their values
 };
 
 }  // namespace

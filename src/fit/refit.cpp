@@ -172,6 +172,17 @@ Fitted prepared_for_gps(const FitTask& task) {
   if (!task.options.stages.empty())
     throw Error(
         "--stage: a fit to GPS alone has no stages; give a further reference, or leave the stages out");
+  if (task.options.use_prior)
+    throw Error(
+        "--prior: a fit to GPS alone always has a prior about the start, with the typical sizes of the "
+        "effects; "
+        "leave --prior out, or give a further reference");
+  if (task.options.loss != RefitOptions().loss)
+    throw Error(
+        fmt::format("--loss {}: a fit to GPS alone has no loss function, outliers get a larger variance; "
+                    "leave --loss out, "
+                    "or give a further reference",
+                    to_string(task.options.loss)));
   Fitted fitted = at_start(task, fit_stages(task.parameters, {}, task.model.model.name));
   fitted.flights = std::make_unique<FitFlights>(task, FitSetup{task.start, fitted.parameters});
   if (fitted.flights->samples() == 0) {
@@ -199,6 +210,10 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
   if (!is_alone) before.covariance = covariance.matrix.topLeftCorner(count, count);
   GpsFit gps = fit_gps(by_gps, solution.values, before, fitted.parameters);
   solution.values(fitted.parameters) = gps.values;
+  for (std::size_t k = 0; k < fitted.parameters.size(); ++k)
+    solution.at_bound[fitted.parameters[k]] = gps.at_bound[k];
+  covariance.jackknife = gps.jackknife;
+  covariance.blocks = gps.parts;
   if (is_alone && !is_masked_again && fitted.flights->masks_change_at(solution.values)) {
     // The masks are those of the solution, so that the start does not decide.
     fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
@@ -209,8 +224,6 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
     covariance.matrix = gps.covariance;
     covariance.by_noise = gps.by_noise;
     covariance.by_flights = gps.covariance;
-    covariance.jackknife = gps.jackknife;
-    covariance.blocks = gps.parts;
     const Eigen::Index all = count + as_index(fitted.held.size());
     covariance.matrix.conservativeResizeLike(Eigen::MatrixXd::Zero(all, all));
     for (std::size_t h = 0; h < fitted.held.size(); ++h) {
@@ -403,6 +416,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.least_squares_rms = gps ? result.rms : sums.rms_of(squares.least());
   // Gusts and drifts of the wind are no faults of the model.
   if (!by_gps_alone) result.warnings = fit_warnings(flights, result, solution.values);
+  if (gps) result.warnings.insert(result.warnings.begin(), gps->warnings.begin(), gps->warnings.end());
   result.notes = notes_of(result, task, fitted, covariance.by_noise, gps, compared);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights.title());
   if (options.fit_reference) {
@@ -426,8 +440,9 @@ RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const 
   } catch (const Error& error) {
     // The others are fitted before GPS, and have to determine all coefficients.
     const bool has_both = gps != in_order.begin() && gps != in_order.end();
-    if (!has_both || error.code() != Error::Code::other || !options.stages.empty() || options.fit_reference)
-      throw;
+    const bool is_for_others = !options.stages.empty() || options.fit_reference || options.use_prior ||
+                               options.loss != RefitOptions().loss;
+    if (!has_both || error.code() != Error::Code::other || is_for_others) throw;
     result = fit(flights, model, References(gps, in_order.end()), options);
     result.notes.insert(result.notes.begin(),
                         fmt::format("fitted to {} alone, since the other references do not determine the "

@@ -80,6 +80,7 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   report.title = fmt::format("Refit of {} to {}", unfitted_name(fit.model), fit.reference_text);
   report.subtitle = "Before and after";
   add_held_out(report, fit.flights);
+  for (const std::string& warning : fit.warnings) report.summary.push_back(sentence(warning));
   report.summary.push_back(fmt::format(
       "The fit brings the rms residual from {:.3f} to {:.3f} hPa over {} samples; the noise is {:.3f} hPa.",
       fit.rms_before, fit.rms, fit.samples, fit.noise_rms));

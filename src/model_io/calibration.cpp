@@ -54,7 +54,8 @@ ModelDefinition with_calibration(ModelDefinition file, const std::vector<double>
   file.model.effects.push_back(std::move(effect));
   file.fits.push_back(std::move(fit));
 
-  // Pressure and temperature are fitted apart: their errors are not known to go together.
+  // Pressure and temperature are fitted separately: the correlation of their errors is unknown and set to
+  // zero.
   Covariance correction;
   correction.matrix = covariance;
   for (std::size_t i = 0; i < coefficients.size(); ++i)

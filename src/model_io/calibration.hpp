@@ -15,8 +15,8 @@ double correction_at(double temperature, const std::vector<double>& coefficients
 /// The model without its correction of the ambient temperature.
 ModelDefinition without_calibration(ModelDefinition file);
 
-/// The model with that correction in the place of one that it had: a0, a1, a2, of which there may be fewer.
-/// Its coefficients are held in refits, since delta-p cannot tell them.
+/// Model whose temperature correction is replaced by up to three coefficients a0, a1, a2. The coefficients
+/// are fixed in refits, since delta-p does not determine them.
 ModelDefinition with_calibration(ModelDefinition file, const std::vector<double>& coefficients,
                                  const std::vector<double>& standard_errors,
                                  const std::vector<std::vector<double>>& covariance);

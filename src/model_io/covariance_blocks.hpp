@@ -7,10 +7,10 @@
 
 namespace pcor::internal {
 
-/// The rows and columns of the parameters that are `kept`, in their order.
+/// Rows and columns of the parameters that are `kept`, in their order.
 Covariance part_of(const Covariance& covariance, const std::function<bool(const std::string&)>& kept);
 
-/// Adds parameters that nothing ties to those that are there: with covariances of zero between both.
+/// Adds parameters without correlation with the existing ones: their covariances are zero.
 void add_independent(Covariance& covariance, const Covariance& more);
 
 }  // namespace pcor::internal

@@ -70,15 +70,16 @@ class EffectReader final : TomlReader {
   ModelEffect catalogue_effect(const std::string& id, const EffectEntries& given) const {
     if (effect_named(id) == catalogue_size) {
       fail(*given.id->node,
-           fmt::format("there is no effect {} in the catalogue; {} Or give a formula for an "
-                       "effect of your own",
-                       quote(id), full_stop(suggestion_text(id, names_of(effect_info, &EffectInfo::id)))));
+           fmt::format(
+               "there is no effect {} in the catalogue; {} Or give a formula for a user-defined effect",
+               quote(id), full_stop(suggestion_text(id, names_of(effect_info, &EffectInfo::id)))));
     }
     for (const std::optional<Entry>* entry : {&given.location, &given.unit, &given.source}) {
       if (!*entry) continue;
-      fail((*entry)->place, fmt::format("effect {} of the catalogue takes no '{}'; remove it, or give a "
-                                        "formula and an id of your own",
-                                        quote(id), (*entry)->key));
+      fail(
+          (*entry)->place,
+          fmt::format("effect {} of the catalogue has no key '{}'; remove it, or give a formula and a new id",
+                      quote(id), (*entry)->key));
     }
     ModelEffect effect = neutral_effect(id);
     if (given.scaling) effect.scaling = scaling(*given.scaling);
@@ -111,7 +112,7 @@ class EffectReader final : TomlReader {
   int whole_power(const Entry& entry) const {
     const double power = number(entry);
     if (std::abs(power) > max_power || power != std::floor(power)) {
-      fail(entry, fmt::format("the power {} of a scaling is none; give a whole number within [{}, {}]", power,
+      fail(entry, fmt::format("scaling exponent {} is invalid; use an integer from {} to {}", power,
                               -max_power, max_power));
     }
     return static_cast<int>(power);
@@ -136,13 +137,13 @@ class EffectReader final : TomlReader {
 
   ModelEffect formula_effect(const std::string& id, const EffectEntries& given) const {
     if (effect_named(id) != catalogue_size) {
-      fail(given.formula->place, fmt::format("effect {} has its formula in the catalogue; drop 'formula', or "
-                                             "give an id of your own",
-                                             quote(id)));
+      fail(given.formula->place,
+           fmt::format("effect {} has its formula in the catalogue; remove 'formula', or give a new id",
+                       quote(id)));
     }
     if (given.scaling) {
       fail(given.scaling->place,
-           fmt::format("effect {} has a formula of its own; write the scaling into it", quote(id)));
+           fmt::format("effect {} is defined by a formula; write the scaling into it", quote(id)));
     }
     ModelEffect effect;
     effect.id = id;
@@ -192,7 +193,7 @@ class EffectReader final : TomlReader {
     const EffectLocation location = location_named(name);
     if (location == EffectLocation::count) {
       fail(entry,
-           fmt::format("there is no place {} where an effect acts; {}", quote(name),
+           fmt::format("there is no location {} of an effect; {}", quote(name),
                        suggestion_text(name, names_of(effect_location_info, &EffectLocationInfo::name))));
     }
     return location;
@@ -202,9 +203,10 @@ class EffectReader final : TomlReader {
     std::string unit = text(entry, "a unit in quotes");
     const std::string wanted(info_of(location).unit);
     if (standard_unit(unit) != standard_unit(wanted)) {
-      fail(entry, fmt::format("what acts at '{}' is in {}, not in {}; write the formula in {} and say "
-                              "unit = \"{}\"",
-                              info_of(location).name, wanted, quote(unit), wanted, wanted));
+      fail(entry,
+           fmt::format(
+               "the quantity at '{}' is in {}, not in {}; write the formula in {} and set unit = \"{}\"",
+               info_of(location).name, wanted, quote(unit), wanted, wanted));
     }
     return unit;
   }
@@ -226,7 +228,7 @@ class EffectReader final : TomlReader {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) {
       fail(place, fmt::format("effect {} has no parameter {}; {}", quote(effect.id), quote(name),
-                              known.empty() ? "it has none" : suggestion_text(name, known)));
+                              known.empty() ? "the effect has no parameters" : suggestion_text(name, known)));
     }
     return static_cast<std::size_t>(found - known.begin());
   }
@@ -261,7 +263,7 @@ class EffectReader final : TomlReader {
     return fit;
   }
 
-  // A shape that the file does not speak of is the usual one, which a refit leaves as it is.
+  // A shape that the file does not mention has its default value, and a refit keeps it fixed.
   void hold_shapes(const ModelEffect& effect, const EffectEntries& given, EffectFit& fit) const {
     std::vector<bool> is_given(fit.size());
     if (given.parameters) {
@@ -273,14 +275,15 @@ class EffectReader final : TomlReader {
     }
   }
 
-  // A refit must not find what the reader would refuse.
+  // A refit must stay within the bounds that the reader accepts.
   void check_bounds(const Bounds& bounds, const ModelEffect& effect, std::size_t number,
                     const Entry& entry) const {
     if (effect.is_formula()) return;
     const ParameterInfo& info = effect_info[effect_named(effect.id)].parameters[number];
     if (bounds.lower >= info.lower && bounds.upper <= info.upper) return;
-    fail(entry, fmt::format("the bounds of {} go beyond those of the catalogue; give bounds within [{}, {}]",
-                            quote(entry.key), info.lower, info.upper));
+    fail(entry,
+         fmt::format("the bounds of {} exceed the bounds of the catalogue; give bounds within [{}, {}]",
+                     quote(entry.key), info.lower, info.upper));
   }
 
   void read_fixed(const Entry& entry, const ModelEffect& effect, EffectFit& fit) const {

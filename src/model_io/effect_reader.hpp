@@ -8,8 +8,8 @@
 
 namespace pcor::internal {
 
-/// Adds the list [[effect]] of a model file, which messages call `name`, to `file`: the effects, and what is
-/// said of the fit of their parameters. @throws Error
+/// Adds the list [[effect]] of the model file `name` to `file`: the effects and the fit settings of their
+/// parameters. @throws Error
 void read_effects(const Entry& effects, std::string_view name, ModelDefinition& file);
 
 }  // namespace pcor::internal

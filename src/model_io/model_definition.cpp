@@ -61,9 +61,9 @@ ModelUncertainty uncertainty_of(const ModelDefinition& file) {
       continue;
     }
     if (found == names.end()) {
-      throw Error(
-          fmt::format("model '{}': its covariance names {}, which is no parameter of it; refit the model",
-                      file.model.name, quote(name)));
+      throw Error(fmt::format(
+          "model '{}': its covariance names {}, which is not a parameter of the model; refit the model",
+          file.model.name, quote(name)));
     }
     places.push_back(static_cast<std::size_t>(found - names.begin()));
   }
@@ -117,7 +117,7 @@ ModelEffect neutral_effect(std::string_view id) {
 
 ModelDefinition read_model(const fs::path& path) {
   ModelDefinition file = parse_model(text_of_file(path, "a model file"), path.string());
-  // The names of an aircraft in a file of its own lie beside the model.
+  // A file with the variable names of an aircraft lies in the folder of the model.
   if (const fs::path roles = file.roles_from; roles.extension() == ".toml" && roles.is_relative())
     file.roles_from = fs::absolute(path.parent_path() / roles).lexically_normal().string();
   return file;
@@ -137,9 +137,9 @@ void save_model(const ModelDefinition& file, const fs::path& path, const std::ve
   for (const fs::path& input : inputs) {
     std::error_code code;
     if (!fs::equivalent(path, input, code)) continue;
-    throw Error(path.string() +
-                ": the model was read from this file, which is never written over; give the output another "
-                "name");
+    throw Error(
+        path.string() +
+        ": the model was read from this file, which is never overwritten; give the output another name");
   }
   const std::string text = write_model(file);
   AtomicFile output(path);

@@ -16,10 +16,10 @@ inline constexpr std::string_view model_format = "pcor-model/1";
 
 Names names_of_parameters(const EffectInfo& info);
 
-/// The parameter of the model that is named like "static-qp.a2", or nothing.
+/// Parameter of the model with a name like "static-qp.a2", or nullptr.
 const double* parameter_named(const Model& model, std::string_view name);
 
-/// The published law of that name, or nothing.
+/// Published recovery factor with this name, or nullptr.
 const PublishedRecoveryFactor* published_recovery_factor(std::string_view name);
 
 }  // namespace pcor::internal

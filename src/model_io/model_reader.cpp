@@ -37,7 +37,7 @@ bool contains(const Names& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// What netCDF takes as the name of a variable, as far as this program should know.
+// Whether netCDF accepts the name of a variable; a sufficient check for this program.
 bool is_variable_name(std::string_view name) {
   return !name.empty() && name.front() != ' ' && name.back() != ' ' &&
          std::none_of(name.begin(), name.end(), [](char letter) {
@@ -46,7 +46,7 @@ bool is_variable_name(std::string_view name) {
          });
 }
 
-// Reads a parsed file into a model, and refuses what has no meaning with the place where it stands.
+// Converts a parsed file to a model; entries without a meaning are refused with their position.
 class Reader final : TomlReader {
  public:
   explicit Reader(std::string_view name) : TomlReader(name) {}
@@ -76,7 +76,7 @@ class Reader final : TomlReader {
     const Quantity quantity = quantity_named(entry.key);
     if (quantity != Quantity::count && is_role(quantity)) return quantity;
     if (quantity != Quantity::count) {
-      fail(entry.place, fmt::format("{} is computed, not recorded, so it is no role; remove it from {}",
+      fail(entry.place, fmt::format("{} is computed, not recorded, so it is not a role; remove it from {}",
                                     quote(entry.key), entry.title));
     }
     fail(entry.place,
@@ -89,8 +89,8 @@ class Reader final : TomlReader {
     if (format == model_format) return;
     const std::string wanted = fmt::format("format = \"{}\"", model_format);
     if (format.rfind("pcor-model/", 0) == 0) {
-      fail(entry, fmt::format("the file has the format {}, this program reads {} only; use the pcor "
-                              "that wrote it, or write {}",
+      fail(entry, fmt::format("the file has the format {}, but this program reads {} only; use the pcor "
+                              "version that wrote it, or write {}",
                               quote(format), quote(model_format), wanted));
     }
     fail(entry, fmt::format("{} is not a format of model files; write {}", quote(format), wanted));
@@ -150,7 +150,7 @@ class Reader final : TomlReader {
     }
   }
 
-  // A model without pressures takes those of the flight's aircraft.
+  // A model without pressure variables uses the variables of the flight's aircraft.
   void require_pressures(Place place) const {
     if (!names_pressures()) return;
     for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
@@ -165,7 +165,7 @@ class Reader final : TomlReader {
            file_.variables.count(Quantity::dynamic_pressure) != 0;
   }
 
-  // What the variables say together. The place of an error is that of the later one.
+  // Checks across variables. The position of an error is that of the later variable.
   void check_variables() const {
     if (names_pressures() &&
         file_.variables.at(Quantity::static_pressure) == file_.variables.at(Quantity::dynamic_pressure)) {
@@ -181,7 +181,7 @@ class Reader final : TomlReader {
     }
   }
 
-  // An error where more than one of `roles` has a variable.
+  // Error if more than one of `roles` has a variable.
   void give_one(std::initializer_list<Quantity> roles, std::string_view what) const {
     std::vector<Quantity> given;
     for (const Quantity role : roles) {
@@ -213,15 +213,15 @@ class Reader final : TomlReader {
     const Quantity quantity = role(entry);
     const std::string unit = text(entry, "a unit in quotes");
     const std::string wanted(info_of(quantity).unit);
-    // Without pressures the variables are those of the flight's aircraft.
+    // Without pressure variables the names follow from the flight's aircraft.
     if (file_.variables.count(quantity) == 0 && file_.variables.count(Quantity::static_pressure) != 0) {
       fail(entry.place, fmt::format("the role {} has a unit but no variable; name its variable in "
                                     "[variables], or remove it from [units]",
                                     quote(entry.key)));
     }
     if (!is_known_unit(unit)) {
-      fail(entry, fmt::format("{}: the unit {} is not known; give one that converts to {}", called(entry),
-                              quote(unit), wanted));
+      fail(entry, fmt::format("{}: unknown unit {}; give one that converts to {}", called(entry), quote(unit),
+                              wanted));
     }
     try {
       UnitConversion::between(unit, wanted, {});
@@ -231,7 +231,7 @@ class Reader final : TomlReader {
                               quote(unit), wanted));
     }
     if (!file_.units.emplace(quantity, unit).second) {
-      fail(entry.place, fmt::format("the unit of {} is stated twice; remove one", quote(entry.key)));
+      fail(entry.place, fmt::format("the unit of {} is given twice; remove one", quote(entry.key)));
     }
   }
 
@@ -248,7 +248,7 @@ class Reader final : TomlReader {
     for (const Entry& entry : entries) {
       for (const std::string& other : known) {
         if (other == entry.key || file_.output_name(other) != file_.output[entry.key]) continue;
-        fail(entry, fmt::format("{} and '{}' would both be written as {}; give one another name",
+        fail(entry, fmt::format("{} and '{}' would both be written as {}; rename one of them",
                                 quote(entry.key), other, quote(file_.output[entry.key])));
       }
     }
@@ -304,8 +304,8 @@ class Reader final : TomlReader {
     }
     const double constant = recovery.coefficients[0];
     if (!(constant > 0.0 && constant <= max_recovery_factor)) {
-      fail(entry, fmt::format("a recovery factor of {} is impossible; give one above 0, not above {}",
-                              constant, max_recovery_factor));
+      fail(entry, fmt::format("recovery factor {} is out of range (0, {}]; correct it", constant,
+                              max_recovery_factor));
     }
   }
 
@@ -367,8 +367,8 @@ class Reader final : TomlReader {
           {"rms_hpa", [&](const Entry& entry) { law.rms_hpa = not_negative(entry); }},
           {"note", [&](const Entry& entry) { law.note = text(entry); }}});
     if (last != nullptr && law.valid_to < law.valid_from) {
-      fail(*last, fmt::format("the law ends on {}, before it begins on {}; change one of them", law.valid_to,
-                              law.valid_from));
+      fail(*last, fmt::format("the domain of the law ends at {}, before its start {}; change one of them",
+                              law.valid_to, law.valid_from));
     }
   }
 
@@ -395,7 +395,7 @@ class Reader final : TomlReader {
     check_standard_errors(*matrix);
   }
 
-  // A covariance belongs to the values that it was found with.
+  // The covariance applies only to the values at which it was found.
   void check_values(const Entry& entry) const {
     const Names& names = file_.covariance.parameters;
     const std::string wanted = fmt::format("{} numbers, one for each parameter", names.size());
@@ -406,13 +406,13 @@ class Reader final : TomlReader {
       const double* const own = parameter_named(file_.model, names[i]);
       const double value = own != nullptr ? *own : 0.0;
       if (std::abs(value - values[i]) <= 1e-9 * std::abs(value)) continue;
-      fail(entry, fmt::format("the covariance is of another model: {} was {} there and is {} here; refit the "
-                              "model, or remove [covariance] and the stderr of its effects",
+      fail(entry, fmt::format("[covariance] does not match the coefficients: {} = {} in values, {} in its "
+                              "effect; refit the model or remove [covariance] and stderr",
                               names[i], values[i], value));
     }
   }
 
-  // What an effect says of its own parameter agrees with the matrix, as far as rounded numbers do.
+  // The standard error in an effect must agree with the matrix within rounding.
   void check_standard_errors(const Entry& entry) const {
     const Names& names = file_.covariance.parameters;
     for (std::size_t e = 0; e < file_.model.effects.size(); ++e) {
@@ -425,10 +425,9 @@ class Reader final : TomlReader {
         const auto place = static_cast<std::size_t>(found - names.begin());
         const double here = std::sqrt(file_.covariance.matrix[place][place]);
         if (std::abs(here - *stated) <= 0.02 * std::max(here, *stated)) continue;
-        fail(entry,
-             fmt::format("the covariance is of another model: the standard error of {} is {:.3g} there "
-                         "and {:.3g} in its effect; refit the model, or remove one of the two",
-                         name, here, *stated));
+        fail(entry, fmt::format("[covariance] does not match the effect: standard error of {} is {:.3g} in "
+                                "the matrix, {:.3g} in the effect; refit the model or remove one",
+                                name, here, *stated));
       }
     }
   }
@@ -502,9 +501,7 @@ class Reader final : TomlReader {
     std::vector<double> rows;
     for (const std::vector<double>& row : matrix) rows.insert(rows.end(), row.begin(), row.end());
     if (!is_covariance(rows, size)) {
-      fail(entry,
-           "the matrix is no covariance: it gives some combination of the parameters a negative "
-           "variance; refit the model");
+      fail(entry, "the matrix is not positive semidefinite; refit the model");
     }
   }
 

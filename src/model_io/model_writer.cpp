@@ -16,7 +16,7 @@
 namespace pcor::internal {
 namespace {
 
-// Writes a model file in a layout that does not depend on how it was read.
+// Writes a model file in a layout that is independent of the layout of the file it was read from.
 class Writer {
  public:
   std::string write(const ModelDefinition& file) {
@@ -38,7 +38,7 @@ class Writer {
  private:
   static constexpr std::size_t max_list = 90;
 
-  // Zero, and not negative zero, which a file restores as well.
+  // Positive zero only: a file restores negative zero as well.
   static bool is_zero(double value) { return value == 0.0 && !std::signbit(value); }
 
   static std::string number(double value, std::string_view what) {
@@ -46,7 +46,7 @@ class Writer {
       throw Error(fmt::format("the model cannot be written: {} is {}; give it a finite value", one_line(what),
                               value));
     }
-    std::string digits = fmt::format("{}", value);  // the shortest that reads back as the same number
+    std::string digits = fmt::format("{}", value);  // shortest text that restores the same number
     if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
     return digits;
   }
@@ -140,7 +140,7 @@ class Writer {
     write_radome(model);
   }
 
-  // By its name where it is still the law of that name.
+  // Name of the published law if the coefficients still equal it.
   static std::string recovery_factor(const ModelDefinition& file) {
     const std::array<double, 4>& coefficients = file.model.recovery.coefficients;
     const PublishedRecoveryFactor* law = published_recovery_factor(file.recovery_factor_name);
@@ -235,7 +235,7 @@ class Writer {
     }
   }
 
-  // What a file need not say.
+  // Whether a shape has its default value, which the file omits.
   static bool is_usual_shape(const ModelEffect& effect, std::size_t parameter) {
     if (effect.is_formula()) return false;
     const ParameterInfo& info = effect_info[effect_named(effect.id)].parameters[parameter];
@@ -266,7 +266,7 @@ class Writer {
     line_unless_empty("note", law.note);
   }
 
-  // With the values that it was found at, so that a later change of them is told.
+  // Includes the values at which the covariance was found, so that a later change of them is detected.
   void write_covariance(const ModelDefinition& file) {
     const Covariance& covariance = file.covariance;
     if (covariance.parameters.empty() && covariance.matrix.empty()) return;

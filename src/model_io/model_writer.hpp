@@ -6,8 +6,8 @@
 
 namespace pcor::internal {
 
-/// The text of a model file, in a layout that does not depend on how it was read. It may say what the reader
-/// refuses.
+/// Text of a model file, in a layout that is independent of the layout of the file it was read from. The
+/// reader may refuse the text of an invalid model.
 /// @throws Error for numbers that are not finite and for effects that do not exist.
 std::string model_text(const ModelDefinition& file);
 

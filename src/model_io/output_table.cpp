@@ -30,7 +30,7 @@ Quantities delta_p(const Correction& correction) {
                                               : Quantities{Q::static_defect};
 }
 
-/// What these quantities are measured or found from.
+/// Quantities from which the given ones are measured or computed.
 Quantities sources_of(const Correction& correction, const Quantities& quantities) {
   Quantities recorded;
   for (const Quantity read : quantities) {
@@ -45,7 +45,7 @@ Quantities law(const Correction& correction) {
   return sources_of(correction, StaticDefect::reads(correction));
 }
 
-/// What effects before the ports read.
+/// Inputs of the effects that act before the ports.
 Quantities read_before_ports(const Correction& correction, const std::vector<EffectLocation>& places) {
   Quantities read;
   for (const EffectLocation place : places) read = joined({read, correction.chain.read_at(place)});
@@ -60,7 +60,7 @@ Quantities ambient_temperature(const Correction& correction) {
 
 constexpr std::string_view uncertainty_ending = "_uncertainty";
 
-/// CF names the standard error of a quantity by a modifier behind its standard name.
+/// CF marks the standard error of a quantity by a modifier after its standard name.
 OutputRow uncertainty(const std::string& name, Quantity quantity, Quantity result,
                       const std::string& long_name, const std::string& standard_name,
                       const std::string& category) {

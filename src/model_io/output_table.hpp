@@ -8,26 +8,28 @@
 
 namespace pcor::internal {
 
-/// A result as `process_flight` writes it: wherever the loop finds its quantity, in the unit of the library,
-/// or degC for a temperature.
+/// Result as written by `process_flight`: quantity of the loop, in the unit of the library, or degC for a
+/// temperature.
 struct OutputRow {
-  std::string name;  ///< the standard name, which the [output] table of a model may change
+  std::string name;  ///< default name, which the [output] table of a model may change
   Quantity quantity = Quantity::count;
   std::string long_name;
-  std::string standard_name;                  ///< of the CF table; empty if it has none
-  std::string category;                       ///< of the NCAR conventions
-  Quantities (*from)(const Correction&);      ///< what it is found from, recorded or another result
-  bool is_filtered = false;                   ///< it leaves the loop as late as the filter is
-  Quantity uncertainty_of = Quantity::count;  ///< the result that it is the standard uncertainty of
+  std::string standard_name;                  ///< CF standard name; empty if it has no entry in the CF table
+  std::string category;                       ///< category of the NCAR conventions
+  Quantities (*from)(const Correction&);      ///< quantities from which it is computed, recorded or other
+                                              ///< results
+  bool is_filtered = false;                   ///< delayed by the filter
+  Quantity uncertainty_of = Quantity::count;  ///< quantity of which it is the standard uncertainty
 };
 
-/// All results but the quality bits, each after those that it is found from.
+/// All results except the quality bits, each after the results from which it is computed.
 const std::vector<OutputRow>& output_table();
 
 /// The standard name of the quality bits.
 inline constexpr std::string_view quality_output = "PCORFLAG";
 
-/// Of "PSXC_uncertainty" the "PSXC"; empty where the name is not one of an uncertainty.
+/// Result of an uncertainty: "PSXC" for "PSXC_uncertainty"; empty if the name is not the name of an
+/// uncertainty.
 std::string_view result_of_uncertainty(std::string_view standard_name);
 
 /// The standard names of all results.

@@ -9,15 +9,14 @@
 
 namespace pcor::internal {
 
-/// A sensor that is not calibrated exactly: a coefficient that would correct it, and its standard
-/// uncertainty.
+/// Calibration uncertainty of a sensor: a coefficient that would correct it, and its standard uncertainty.
 struct SensorDoubt {
   std::string effect;
   std::size_t parameter = 0;
-  double size = 0.0;     ///< in the unit of the coefficient
-  bool is_usual = true;  ///< the model states no other
+  double size = 0.0;     ///< standard uncertainty in the unit of the coefficient
+  bool is_usual = true;  ///< default value; the model does not state one
 
-  /// Like "lams-scale.scale".
+  /// Name like "lams-scale.scale".
   std::string name() const;
 };
 
@@ -27,17 +26,17 @@ inline const std::vector<std::string_view> thermometer_calibration{"temp-offset"
 inline const std::vector<std::string_view> pressure_calibration{"psfd-bias", "psfd-gain", "psfd-drift",
                                                                 "qcf-zero"};
 
-/// Whether the coefficient, like "temp-offset.offset", has a doubt by default (`ParameterInfo::doubt`).
+/// Whether the coefficient, like "temp-offset.offset", has a default uncertainty (`ParameterInfo::doubt`).
 bool has_doubt(std::string_view coefficient);
 
-/// The doubts of these effects: the usual ones, or those that `[uncertainty]` of the model states. An effect
-/// that the model has is what the model states of that sensor; there is no doubt by default beside it. A
-/// calibration of the thermometer (temp-calibration) stands for its offset.
+/// Uncertainties of these effects: the defaults, or the values in `[uncertainty]` of the model. If the model
+/// has an effect, its stated uncertainty applies and no default is added. A calibration of the thermometer
+/// (temp-calibration) represents its offset.
 std::vector<SensorDoubt> doubts_of(const ModelDefinition& model,
                                    const std::vector<std::string_view>& effects);
 
-/// The model with those effects of these doubts that it lacks, fixed at their neutral values, with the doubts
-/// as standard errors. A covariance of the model that names their coefficients belongs to them.
+/// Model extended by the missing effects of these uncertainties, fixed at their neutral values, with the
+/// uncertainties as standard errors. A covariance of the model that names their coefficients applies to them.
 ModelDefinition with_doubts(ModelDefinition model, const std::vector<SensorDoubt>& doubts);
 
 }  // namespace pcor::internal

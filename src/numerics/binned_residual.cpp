@@ -10,7 +10,7 @@
 namespace pcor::internal {
 namespace {
 
-/// Short series have shorter bins: so many at least, but none shorter than a record.
+/// Short series have shorter bins: at least this number of bins, but each at least as long as a record.
 constexpr double usual_bins = 200.0;
 
 double used_records(const std::vector<double>& residual) {
@@ -52,7 +52,7 @@ Eigen::MatrixXd BinnedResidual::covariance_of_sums(const std::vector<const doubl
     sums.row(bin) += row.transpose();
     within += variance_[bin] * row * row.transpose();
   }
-  // Of the columns, only what departs from their means over the bins.
+  // Only the deviations of the columns from their bin means.
   within -= sums.transpose() * variance_.cwiseQuotient(bins_.counts()).asDiagonal() * sums;
   return outside_ * outside_ * (within + noise_covariance(sums, bins_, noise, flight));
 }
@@ -64,7 +64,7 @@ double BinnedResidual::variance_of_sum(const std::vector<std::size_t>& records, 
   for (const std::size_t record : records) {
     if (bin_of_[record] >= 0) sums[bin_of_[record]] += 1.0;
   }
-  if (sums.sum() == 0.0) sums[0] = 1.0;  // as if they stood in one bin
+  if (sums.sum() == 0.0) sums[0] = 1.0;  // treated as one bin
   const double scale = static_cast<double>(records.size()) / sums.sum();
   const double within =
       (variance_.array() * sums.array() * (1.0 - sums.array() / bins_.counts().array())).sum();

@@ -9,10 +9,10 @@
 
 namespace pcor::internal {
 
-/// A residual of a flight in bins, with what the variances of sums over its records follow from.
+/// Binned residual of a flight, with the quantities that determine the variances of sums over its records.
 class BinnedResidual {
  public:
-  BinnedResidual() = default;  // of nothing
+  BinnedResidual() = default;  // empty
   /// @param residual one value for each record, NaN where not used; @param time s; @param step s
   BinnedResidual(const std::vector<double>& residual, const std::vector<double>& time, double step);
 
@@ -20,15 +20,15 @@ class BinnedResidual {
   /// The residual in bins.
   const Eigen::VectorXd& means() const { return means_; }
 
-  /// The covariance matrix of the sums (column . noise) over the records: that of the bins' means by the
-  /// noise model, and that of the records about the means of their bins, in which they are independent.
-  /// Records outside the bins count as those inside.
+  /// Covariance matrix of the sums (column . noise) over the records: the covariance of the bin means by the
+  /// noise model, plus the covariance of the records about the means of their bins, in which they are
+  /// independent. Records outside the bins are treated like records inside.
   ///
   /// @param columns one value for each record @param flight its number among the levels of the noise
   Eigen::MatrixXd covariance_of_sums(const std::vector<const double*>& columns, const NoiseModel& noise,
                                      std::size_t flight) const;
 
-  /// The variance of the sum of the noise over some records; NaN where there is no bin.
+  /// Variance of the sum of the noise over the given records; NaN if there are no bins.
   double variance_of_sum(const std::vector<std::size_t>& records, const NoiseModel& noise,
                          std::size_t flight) const;
 
@@ -36,8 +36,8 @@ class BinnedResidual {
   double outside_ = 1.0;  ///< records that are used for each one in a bin
   Binning bins_{};
   Eigen::VectorXd means_{};
-  std::vector<Eigen::Index> bin_of_{};  ///< of each record; -1 for none
-  Eigen::VectorXd variance_{};          ///< of the records about the mean of each bin
+  std::vector<Eigen::Index> bin_of_{};  ///< bin of each record; -1 outside the bins
+  Eigen::VectorXd variance_{};          ///< variance of the records about the mean of each bin
 };
 
 /// The noise of residuals of flights about their common mean. @param residuals in bins

@@ -23,7 +23,7 @@ class Binning {
  public:
   static constexpr double usual_width = 4.0;  ///< s
 
-  Binning() = default;  // of nothing
+  Binning() = default;  // empty
   /// @param residual one value for each record, NaN where not used; @param time s; @param step s
   /// @param width s, to the next number of records
   Binning(const std::vector<double>& residual, const std::vector<double>& time, double step,
@@ -47,10 +47,10 @@ class Binning {
   /// The records that are in bins, and the bin of each.
   const std::vector<std::size_t>& records() const { return record_; }
   const std::vector<Eigen::Index>& bins() const { return bin_; }
-  /// How many records each bin has.
+  /// Number of records in each bin.
   const Eigen::VectorXd& counts() const { return count_; }
 
-  /// Without the records: with what is a mean over a bin already, nobody needs them.
+  /// The records are not archived: columns that are already bin means do not use them.
   template <class Archive>
   void serialize(Archive& archive) {
     archive(time_, segments_);

@@ -35,8 +35,8 @@ struct Sums {
   double coherence() const {
     return first > 0.0 && second > 0.0 ? std::min(1.0, std::norm(product) / (first * second)) : 0.0;
   }
-  /// How many independent ones the sums are of. Segments overlap by half and neighbouring frequencies share
-  /// what Hann's window leaks.
+  /// Number of independent products in the sums. Segments overlap by half, and neighbouring frequencies share
+  /// the leakage of Hann's window.
   double independent() const { return count / (frequencies > 1.0 ? 1.06 * 1.9 : 1.06); }
   /// Whether two series that do not know of each other reach that coherence too rarely.
   bool is_coherent() const {
@@ -74,8 +74,8 @@ std::vector<Sums> sums_of(const std::vector<double>& first, const std::vector<do
   return sums;
 }
 
-/// The delay, in samples, that the phases of neighbouring frequencies have in common: with it taken out a
-/// band can be summed without its phases cancelling.
+/// Delay, in samples, that the phases of neighbouring frequencies have in common: after its removal a band
+/// can be summed without cancellation of its phases.
 double common_delay(const std::vector<Sums>& sums) {
   std::complex<double> turn{};
   for (std::size_t k = 1; k + 2 < sums.size(); ++k) turn += sums[k + 1].product * std::conj(sums[k].product);

@@ -30,7 +30,7 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least);
 Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen::VectorXd& right,
                                 double least);
 
-/// The Moore-Penrose inverse, with directions left out that rounding cannot tell from zero.
+/// Moore-Penrose inverse, without the directions whose singular values are zero within rounding errors.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 
 /// The x with matrix x = right, for a symmetric positive definite matrix.

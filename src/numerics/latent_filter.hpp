@@ -7,17 +7,20 @@
 
 namespace pcor::internal {
 
+/// Rows that are read and written one after another.
+using RowByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Rows that were made white: what is new in each row after those before it, in units of its deviation.
 struct WhiteRows {
-  Eigen::MatrixXd rows;      ///< zero where the row has no value
+  RowByRow rows;             ///< zero where the row has no value
   Eigen::VectorXd variance;  ///< of what is new; zero where the row has no value
   double log_determinant = 0.0;
 };
 
 /// A Kalman filter for rows that depend on `count` latent processes (Ornstein-Uhlenbeck processes and random
-/// walks): it takes out of a residual, and of columns beside it through the same gains, what the rows before
-/// let expect. Exact for any gaps. Source: Kalman (1960), Journal of Basic Engineering 82, 35; Harvey (1989),
-/// Forecasting, structural time series models and the Kalman filter, section 3.4.
+/// walks): it subtracts the prediction from earlier rows from a residual and, with the same gains, from
+/// further columns. Exact for any gaps. Source: Kalman (1960), Journal of Basic Engineering 82, 35; Harvey
+/// (1989), Forecasting, structural time series models and the Kalman filter, section 3.4.
 template <int count>
 class LatentFilter {
  public:
@@ -28,18 +31,18 @@ class LatentFilter {
   /// @param rows how many there will be
   LatentFilter(const States& variance, Eigen::Index size, Eigen::Index rows)
       : covariance_(variance.asDiagonal()), means_(Processes::Zero(count, size)), change_(size) {
-    white_.rows = Eigen::MatrixXd::Zero(rows, size);
+    white_.rows = RowByRow::Zero(rows, size);
     white_.variance = Eigen::VectorXd::Zero(rows);
   }
 
-  /// Goes on in time: every process keeps its share `stays`, and what comes in has the variance `added`.
+  /// Time update: every process keeps its fraction `stays`, and the variance `added` enters.
   void pass(const States& stays, const States& added) {
     covariance_ = stays.asDiagonal() * covariance_ * stays.asDiagonal();
     covariance_.diagonal() += added;
     means_ = stays.asDiagonal() * means_;
   }
 
-  /// Adds so many times the process `from` to the process `to`.
+  /// Adds `times` times the process `from` to the process `to`.
   void couple(Eigen::Index to, Eigen::Index from, double times) {
     covariance_.row(to) += times * covariance_.row(from);
     covariance_.col(to) += times * covariance_.col(from);
@@ -55,7 +58,7 @@ class LatentFilter {
     change_.noalias() -= by.transpose() * means_;
     means_.noalias() += (shared / variance) * change_;
     covariance_.noalias() -= (shared / variance) * shared.transpose();
-    white_.rows.row(number) = change_ / std::sqrt(variance);
+    white_.rows.row(number) = change_ * (1.0 / std::sqrt(variance));
     white_.variance[number] = variance;
     white_.log_determinant += std::log(variance);
   }

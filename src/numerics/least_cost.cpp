@@ -30,7 +30,7 @@ void minimize_objective(nlopt::opt& search, const Cost& cost, std::vector<double
   try {
     search.optimize(x, least);
   } catch (const nlopt::roundoff_limited&) {
-    // What was found by then is what counts.
+    // The best point so far is used.
   } catch (const nlopt::forced_stop&) {
     std::rethrow_exception(guarded.thrown);
   }

@@ -6,11 +6,11 @@
 
 namespace pcor::internal {
 
-/// What NLopt makes as small as it can.
+/// Objective that NLopt minimizes.
 using Cost = std::function<double(const std::vector<double>&)>;
 
-/// Runs a search from `x` on, and leaves there where it ends: where it cannot go on for rounding too. What
-/// the cost throws ends the search and comes out as it is.
+/// Runs a search from `x` and stores its end point there, also if rounding errors stop it. An exception of
+/// the cost ends the search and is rethrown unchanged.
 void minimize_objective(nlopt::opt& search, const Cost& cost, std::vector<double>& x);
 
 }  // namespace pcor::internal

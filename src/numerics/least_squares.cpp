@@ -18,8 +18,8 @@ bool takes_part(const std::vector<std::vector<double>>& columns, const std::vect
          std::all_of(columns.begin(), columns.end(), [i](const auto& c) { return std::isfinite(c[i]); });
 }
 
-/// The series of flights that follow each other: where the time goes back, or on by more than an hour,
-/// another flight begins. What ends each.
+/// End of each flight in a series of consecutive flights: a new flight begins if the time decreases, or
+/// increases by more than an hour.
 std::vector<std::size_t> ends_of_flights(const std::vector<double>& time) {
   constexpr double max_gap = 3600.0;  // s
   std::vector<std::size_t> ends;

@@ -14,15 +14,15 @@ struct Estimated {
 /// Least squares of a few columns, with errors that know the memory and the slow drift of the noise.
 struct LeastSquares {
   std::vector<Estimated> coefficients{};  ///< one for each column; NaN where the fit is not possible
-  std::vector<double> residuals{};        ///< of each sample; NaN where it took no part
-  double rms = 0.0;                       ///< of the residuals
+  std::vector<double> residuals{};        ///< residual of each sample; NaN if the sample was not used
+  double rms = 0.0;                       ///< rms of the residuals
   std::size_t samples = 0;
 };
 
 /// Fits y = c_1 x_1 + c_2 x_2 + ... over the samples at which all have a value. The covariance of the
-/// coefficients is (X'X)^-1 X'C X (X'X)^-1 with the covariance C of the noise that the residuals show, memory
-/// and slow drift included (`expected_noise`). Where the time goes back, or on by more than an hour,
-/// another flight begins, whose noise is independent. NaN where the columns are not independent or there are
+/// coefficients is (X'X)^-1 X'C X (X'X)^-1 with the covariance C of the noise of the residuals, including
+/// autocorrelation and slow drift (`expected_noise`). If the time decreases, or increases by more than an
+/// hour, a new flight begins, whose noise is independent. NaN if the columns are not independent or there are
 /// fewer than three samples more than columns.
 LeastSquares least_squares(const std::vector<std::vector<double>>& columns, const std::vector<double>& y,
                            const std::vector<double>& time, double step);
@@ -30,8 +30,8 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& columns, cons
 /// The mean of a series, with its error and its scatter (`rms`): `least_squares` with a column of ones.
 LeastSquares mean_of(const std::vector<double>& values, const std::vector<double>& time, double step);
 
-/// The mean of independent estimates, weighted by their errors. Where they scatter more than their
-/// errors allow, the error is that of the scatter. Estimates that are no numbers are left out; NaN for none.
+/// Mean of independent estimates, weighted by their errors. If their scatter exceeds their errors, the error
+/// follows from the scatter. NaN estimates are excluded; the mean of zero estimates is NaN.
 Estimated combined(const std::vector<Estimated>& estimates);
 
 }  // namespace pcor::internal

@@ -82,7 +82,7 @@ LineFit ordinary_fit(const PairMoments& m) {
 LineFit orthogonal_fit(const PairMoments& m) {
   const double difference = m.yy - m.xx;
   const double root = std::hypot(difference, 2.0 * m.xy);
-  // Of the two forms of the root the one that does not cancel.
+  // The form of the root without cancellation.
   const double slope =
       difference > 0.0 ? (difference + root) / (2.0 * m.xy) : 2.0 * m.xy / (root - difference);
   // The smaller principal moment: (xx + yy - root) / 2.

@@ -14,8 +14,8 @@ inline std::size_t local_noise_samples(double step) {
   return std::max<std::size_t>(1, static_cast<std::size_t>(local_noise_time / step));
 }
 
-/// The level of five minutes in which `here` was measured, brought by 15 % (of its logarithm) towards that of
-/// the whole series; that of the whole where there is none here.
+/// Noise level of the five minutes with the measured level `here`, shrunk by 15 % (of its logarithm) towards
+/// the level of the whole series; the level of the whole series if `here` is NaN.
 inline double local_noise_level(double here, double whole) {
   constexpr double own_share = 0.85;
   if (!(here > 0.0)) here = whole;

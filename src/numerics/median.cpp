@@ -10,8 +10,7 @@
 namespace pcor::internal {
 namespace {
 
-/// Keeps those that meet a condition. Without a branch: one whose way nobody can foresee costs more than all
-/// else here.
+/// Keeps the values that meet a condition. Without a branch: mispredicted branches would dominate the cost.
 template <class Condition>
 void keep(std::vector<double>& values, const Condition& condition) {
   std::size_t kept = 0;
@@ -42,7 +41,7 @@ double pivot(const std::vector<double>& values, std::size_t rank) {
 double median(std::vector<double> values) {
   keep(values, [](double value) { return !std::isnan(value); });
   if (values.empty()) return nan;
-  constexpr std::size_t many = 100;  // of fewer a sample of 31 is no saving
+  constexpr std::size_t many = 100;  // below this size, selection from a sample of 31 saves no time
   constexpr int max_rounds = 50;     // ten million values take about twelve
   std::size_t rank = values.size() / 2;
   for (int round = 0; round < max_rounds && values.size() >= many; ++round) {

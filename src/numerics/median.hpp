@@ -8,7 +8,8 @@ namespace pcor::internal {
 /// quantile at 0.75.
 inline constexpr double deviation_of_median = 1.482602218505602;
 
-/// Of an even number of values the upper of the middle two. NaN are left out; NaN where nothing is left.
+/// For an even count, returns the upper of the two middle values. NaN values are excluded; NaN if no values
+/// remain.
 double median(std::vector<double> values);
 
 }  // namespace pcor::internal

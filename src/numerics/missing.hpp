@@ -7,7 +7,7 @@
 
 namespace pcor::internal {
 
-/// What stands where a series has no value.
+/// Missing value in a series.
 inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Whether a series has a value anywhere.

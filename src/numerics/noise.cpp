@@ -34,17 +34,17 @@ std::vector<double> differences(const std::vector<double>& values, const std::ve
   return result;
 }
 
-/// The variances of the differences over 1, 2, 4 ... samples, up to the lag at which they level off: the
-/// noise has forgotten itself. NaN where there are too few.
+/// Variances of the differences over 1, 2, 4 ... samples, up to the lag at which they level off: there the
+/// autocorrelation has vanished. NaN if there are too few differences.
 std::vector<double> difference_variances(const std::vector<double>& values,
                                          const std::vector<Segment>& segments) {
-  // So many tell the variance to 2 %.
+  // This number of differences determines the variance to 2 %.
   constexpr std::size_t enough = 8192;
   const std::size_t every = 1 + values.size() / enough;
   std::vector<double> result;
   for (const std::size_t lag : lags) {
     std::vector<double> change = differences(values, segments, lag, 0, values.size(), every);
-    // Segments that are shorter than the lag have none: what there is up to it has to do.
+    // Segments shorter than the lag have no differences; the lags up to it are used.
     if (change.size() < min_differences) break;
     const double deviation = robust_standard_deviation(std::move(change));
     result.push_back(deviation * deviation);
@@ -148,7 +148,7 @@ Autoregression autoregression(const std::vector<double>& values, const std::vect
   std::vector<double> backward = kept;
   std::vector<double> coefficients;
   double best_criterion = count * std::log(power);
-  // Ten values for a coefficient: of fewer a process takes up the noise itself.
+  // At least ten values per coefficient: with fewer the process would fit the noise.
   const std::size_t most = std::min(max_order, kept.size() / 10);
   for (std::size_t order = 1; order <= most; ++order) {
     double across = 0.0;

@@ -13,9 +13,9 @@ namespace pcor::internal {
 Eigen::MatrixXd covariance_of_sums(const Autoregression& noise, const Eigen::MatrixXd& columns,
                                    const std::vector<Segment>& segments);
 
-/// The covariance matrix of sums over the bins of a flight, U' C U, with the covariance C of the noise: the
-/// autoregression at the level of each bin, within stretches, and the slow parts, which go on over gaps.
-/// O(bins x columns^2).
+/// Covariance matrix of sums over the bins of a flight, U' C U, with the covariance C of the noise: the
+/// autoregression at the level of each bin, within stretches, and the drift components, which continue over
+/// gaps. O(bins x columns^2).
 ///
 /// @param columns U, one row for each bin
 /// @param flight the number of the flight among the levels of the noise

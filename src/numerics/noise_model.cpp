@@ -175,11 +175,11 @@ class RestrictedLikelihood {
     white_.resize(count_, rows_.front().cols());
   }
 
-  /// What a noise model comes to.
+  /// Value of a noise model.
   struct Value {
     double restricted = 0.0;  ///< minus twice the logarithm of the restricted likelihood, without constants
     double plain = 0.0;       ///< the same of the likelihood with the columns at their best
-    double variance = 1.0;    ///< of the innovations, robustly
+    double variance = 1.0;    ///< robust variance of the innovations
   };
 
   Value operator()(const NoiseModel& noise) {
@@ -220,7 +220,8 @@ class RestrictedLikelihood {
   }
 
  private:
-  static constexpr double clipped_variance = 0.9950;  // of a normal variable, squares cut off at nine
+  static constexpr double clipped_variance = 0.9950;  // variance of a standard normal variable with squares
+                                                      // limited to nine
 
   std::size_t threads_;
   const std::vector<Binning>& bins_;
@@ -234,7 +235,7 @@ class RestrictedLikelihood {
 std::vector<double> least_of(const Cost& cost, std::size_t parts) {
   constexpr double most = 5.0;
   std::vector<double> sizes(parts, 0.0);
-  if (parts < 2) return sizes;  // in minutes there is no drift to be found
+  if (parts < 2) return sizes;  // minutes are too short to show a drift
   std::fill(sizes.begin(), sizes.end(), 0.25);
   nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(parts));
   search.set_lower_bounds(0.0);
@@ -253,7 +254,7 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   FoundNoise found{estimate_noise(bins, residuals)};
   NoiseModel& noise = found.model;
   std::vector<double> all;
-  double longest = 0.0;  // of the flights, s
+  double longest = 0.0;  // duration of the longest flight, s
   for (std::size_t f = 0; f < bins.size(); ++f) {
     all.insert(all.end(), residuals[f].data(), residuals[f].data() + residuals[f].size());
     if (bins[f].size() > 0) longest = std::max(longest, bins[f].time().back() - bins[f].time().front());
@@ -266,11 +267,11 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
     return likelihood(noise);
   };
   const auto cost = [&](const std::vector<double>& sizes) { return with(sizes).restricted; };
-  // What is slower than half a flight, no flight tells from its mean.
+  // Drift slower than half a flight is indistinguishable from the mean of the flight.
   const auto parts = static_cast<std::size_t>(
       std::count_if(slow_times.begin(), slow_times.end(), [&](double time) { return time < 0.5 * longest; }));
   std::vector<double> sizes = least_of(cost, parts);
-  // A part that is worth nothing is left out, the slowest first: it is what a flight tells least of.
+  // Parts that do not reduce the cost are removed, slowest first: flights determine the slowest part least.
   double least = cost(sizes);
   for (std::size_t k = sizes.size(); k-- > 0;) {
     if (sizes[k] == 0.0) continue;
@@ -292,16 +293,16 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
 
 namespace {
 
-/// Sizes of the slow parts, of the rms of the residuals, and how probable they are before the residuals are
-/// seen. The two parts that a flight tells badly have any of five sizes, or none, which is four times as
-/// probable; beside the slower one that which is slower still has the same size, or, three times as probable,
-/// is absent.
+/// Sizes of the drift components, relative to the rms of the residuals, and their prior probability. The two
+/// components that a flight determines poorly have any of five sizes, or are absent, which is four times as
+/// probable; in addition to the slower one, the next slower component has the same size or, three times as
+/// probable, is absent.
 struct SlowSizes {
   std::array<double, 3> slowest{};
   double prior = 1.0;
 };
 
-constexpr std::size_t first_uncertain = 2;  // among the slow parts
+constexpr std::size_t first_uncertain = 2;  // index among the drift components
 
 std::vector<SlowSizes> possible_sizes() {
   constexpr std::array<double, 6> sizes{0.0, 0.1, 0.2, 0.4, 0.8, 1.6};
@@ -343,7 +344,7 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
     if (flight.size() > 0) longest = std::max(longest, flight.time().back() - flight.time().front());
   }
   for (const SlowSizes& sizes : possible_sizes()) {
-    // A drift slower than the flights is a zero in each of them: the flights say nothing of its size.
+    // A drift slower than the flights is a constant in each of them: the flights do not determine its size.
     bool is_seen = true;
     for (std::size_t k = 0; k < sizes.slowest.size(); ++k)
       is_seen = is_seen && (sizes.slowest[k] == 0.0 || slow_times[first_uncertain + k] <= longest);
@@ -352,7 +353,8 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
       tried.slow[first_uncertain + k] = sizes.slowest[k] * rms;
     const RestrictedLikelihood::Value value = likelihood(tried);
     const double logarithm = std::log(sizes.prior) - 0.5 * value.restricted;
-    const double before = logarithm > most ? std::exp(most - logarithm) : 1.0;  // in units of the likeliest
+    const double before = logarithm > most ? std::exp(most - logarithm) : 1.0;  // relative to the most likely
+                                                                                // one
     most = std::max(most, logarithm);
     const double weight = std::exp(logarithm - most);
     sum = before * sum + weight;

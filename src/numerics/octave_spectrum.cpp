@@ -43,7 +43,7 @@ OctaveSpectrum octave_spectrum(const std::vector<double>& values, const std::vec
       variance[k] += sides * std::norm(amplitudes[k]) / (power * static_cast<double>(length) * count);
     }
   }
-  // The first frequency has what is left of the line that was taken out.
+  // The first frequency contains the remainder of the subtracted line.
   for (std::size_t from = 2; from < variance.size();) {
     const std::size_t to = std::min(variance.size(), std::max(from + 1, from + from / 4));
     double sum = 0.0;

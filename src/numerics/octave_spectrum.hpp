@@ -4,17 +4,18 @@
 
 namespace pcor::internal {
 
-/// How much of a series lies at which period.
+/// Distribution of the variance of a series over periods.
 struct OctaveSpectrum {
   std::vector<double> period{};  ///< s, longest first: the middles of bands of a fifth of an octave or more
-  std::vector<double> rms{};     ///< of the part within an octave about the period, in the unit of the series
+  std::vector<double> rms{};     ///< rms of the part within an octave about the period, in the unit of the
+                                 ///< series
   std::vector<double> error{};   ///< its standard error
 };
 
-/// The spectrum is a mean over segments without their lines, through Hann's window, of the longest length,
-/// from 64 to 1024 samples, of which there are at least eight. NaN parts the series.
-/// @param time s, increasing in each flight @param step of the samples, s
-/// @returns nothing in its series where there are not eight segments
+/// The spectrum is a mean over detrended segments, with Hann's window, of the longest length, from 64 to 1024
+/// samples, that gives at least eight segments. NaN splits the series.
+/// @param time s, increasing in each flight @param step sampling interval, s
+/// @returns empty series if there are fewer than eight segments
 OctaveSpectrum octave_spectrum(const std::vector<double>& values, const std::vector<double>& time,
                                double step);
 

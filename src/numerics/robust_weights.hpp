@@ -7,8 +7,8 @@ namespace pcor::internal {
 
 // Losses of residuals in units of their robust deviation (Huber and Ronchetti 2009, Robust Statistics).
 
-/// From here on Huber's loss is linear: wide, since what a law lacks is no outlier, and its coefficients are
-/// to be those of least squares over all that was flown.
+/// Residual, in standard deviations, above which Huber's loss is linear: wide, because errors of a model are
+/// not outliers, and its coefficients must be the least-squares values over all samples.
 inline constexpr double huber_width = 4.0;
 
 /// The weight of a residual in a fit with Huber's loss, 0 to 1.

@@ -31,7 +31,7 @@ std::vector<double> without_outliers(const std::vector<double>& residual,
     return value;
   };
 
-  // The level of the innovations, from the series as it is: robust against the outliers in it.
+  // Level of the innovations, from the unmodified series: robust against its outliers.
   std::vector<double> innovation(left.size(), std::nan(""));
   for (const Segment& segment : segments) {
     for (std::size_t t = 0; t < segment.count; ++t)
@@ -60,7 +60,7 @@ std::vector<double> without_outliers(const std::vector<double>& residual,
         continue;
       }
       if (in_a_row == max_in_a_row) {
-        // What goes on is no outlier: the residual has moved, and the values before are given back.
+        // A lasting change is not an outlier: the residual has moved, and the earlier values are restored.
         for (std::size_t back = i - in_a_row; back < i; ++back) {
           left[back] = residual[back] - predicted[back];
           result[back] = residual[back];

@@ -4,12 +4,12 @@
 
 namespace pcor::internal {
 
-/// Replaces outliers of a residual by what the values before them predict. An outlier is a sample whose
-/// innovation is beyond 4.5 robust deviations of its five minutes: a sudden departure, never a large value
-/// that its neighbours share, so that an effect is not cut where it is strongest.
+/// Replaces outliers of a residual by predictions from earlier values. An outlier is a sample whose
+/// innovation exceeds 4.5 robust standard deviations of its five minutes: a sudden departure, not a large
+/// value that its neighbours share, so that an effect is not cut where it is strongest.
 ///
 /// @param residual NaN where not used; @param predicted by model and effects, likewise; @param time s
-/// @return the residual with its outliers replaced; `count` becomes how many there were
+/// @return the residual with its outliers replaced; `count` receives their number
 std::vector<double> without_outliers(const std::vector<double>& residual,
                                      const std::vector<double>& predicted, const std::vector<double>& time,
                                      double step, std::size_t& count);

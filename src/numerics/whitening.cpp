@@ -72,11 +72,11 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
   deviation_.resize(count);
 
   const std::vector<double> stationary = autocovariance(coefficients_);
-  Covariance now(size);  // of the state
+  Covariance now(size);  // covariance of the state
   Covariance next(size);
   for (std::size_t j = 0; j < slow; ++j) now.column(order_ + j)[order_ + j] = slow_variance[j];
   std::vector<double> seen(size);   // covariance of state and observation
-  std::vector<double> ahead(size);  // of the next value of the autoregression and the state
+  std::vector<double> ahead(size);  // covariance of the next value of the autoregression with the state
   std::vector<double> decay(slow, 1.0);
   for (const Segment& segment : bins.segments()) begins_.push_back(as_index(segment.first));
   std::size_t segment = 0;
@@ -155,7 +155,7 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
 
 namespace {
 
-/// How many columns the filter takes at a time: what they wait for, each for itself, they wait for together.
+/// Number of columns filtered at a time: their latencies overlap.
 constexpr Eigen::Index columns_at_a_time = 8;
 
 }  // namespace
@@ -204,7 +204,7 @@ Eigen::VectorXd Whitening::transposed(const Eigen::VectorXd& values) const {
   const auto order = static_cast<Eigen::Index>(order_);
   const Eigen::Index slow = decay_.rows();
   Eigen::VectorXd result(values.size());
-  // What all that comes later makes of the state, backwards step by step.
+  // Effect of all later values on the state, backwards step by step.
   Eigen::VectorXd later = Eigen::VectorXd::Zero(order + slow);
   std::size_t segment = begins_.size();
   for (Eigen::Index t = values.size(); t-- > 0;) {
@@ -228,7 +228,7 @@ Eigen::VectorXd Whitening::slow_parts(const Eigen::VectorXd& residuals) const {
   const Eigen::VectorXd weighted = transposed((*this)(residuals));
   Eigen::VectorXd result = Eigen::VectorXd::Zero(residuals.size());
   for (Eigen::Index j = 0; j < decay_.rows(); ++j) {
-    double before = 0.0;  // sums of what was and what comes, each with what is left of it here
+    double before = 0.0;  // sums of past and of future values, each with its remaining fraction
     for (Eigen::Index t = 0; t < result.size(); ++t) {
       before = decay_(j, t) * before + weighted[t];
       result[t] += slow_variance_[j] * before;

@@ -8,7 +8,7 @@ namespace pcor::internal {
 
 /// The Fourier transform of a segment of a series, without its line, through Hann's window.
 struct WindowedTransform {
-  std::vector<std::complex<double>> amplitudes;  ///< at 0 to half of the rate of the samples
+  std::vector<std::complex<double>> amplitudes;  ///< amplitudes from 0 to half of the sampling rate
   double power = 0.0;                            ///< sum of the squares of the window
 };
 

@@ -17,7 +17,7 @@ struct Message {
   Kind kind = Kind::part;
   std::uint64_t state = 0;
   std::string part{};
-  // Of an error:
+  // Fields of an error:
   bool has_error = false;
   std::uint64_t place = 0;
   Error::Code code = Error::Code::other;
@@ -51,7 +51,7 @@ Message message_of(const Error& error, std::size_t place) {
   return message;
 }
 
-/// Of those that have an error the one in which a member alone would have failed first.
+/// Error in which a single process would have failed first.
 const Message* first_error(const std::vector<Message>& all) {
   const Message* first = nullptr;
   for (const Message& each : all) {
@@ -83,8 +83,8 @@ std::vector<Message> Communicator::talk(const Message& own) {
   if (!agree(all)) {
     has_parted_ = true;
     parted_with_ = Error(
-        "the processes of this run came to different numbers: their commands or their files differ, or their "
-        "processors are not of one kind; run one command on nodes of one kind that see the same files");
+        "processes obtained different results; use identical command lines, input files and CPU models on "
+        "all nodes");
     throw *parted_with_;
   }
   return all;

@@ -6,10 +6,10 @@
 
 namespace pcor::internal {
 
-/// The median of the absolute values that all members of a team have together, as `median` finds it of one
-/// list: exact, so it does not depend on who has which. Found bit by bit from counts, in eight exchanges of
-/// 2 kB a member, however many values there are.
-/// @param values NaN are left out @return NaN where no member has a value
+/// Median of the absolute values of all ranks together, equal to `median` of one list: exact and independent
+/// of the distribution of the values. Found bit by bit from counts, in eight exchanges of 2 kB per rank, for
+/// any number of values.
+/// @param values NaN values are excluded @return NaN if all ranks have no values
 double median_of_absolute_values(Communicator& comm, std::vector<double> values);
 
 }  // namespace pcor::internal

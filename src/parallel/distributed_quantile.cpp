@@ -31,8 +31,8 @@ double value_of(std::uint64_t number) {
 /// A place that is looked for.
 struct Place {
   std::uint64_t found = 0;            // bits of the number
-  std::uint64_t below = 0;            // of those that are left, that are to be less
-  std::vector<std::uint64_t> left{};  // of this member
+  std::uint64_t below = 0;            // number of remaining values that must be smaller
+  std::vector<std::uint64_t> left{};  // values of this rank
 };
 
 std::vector<Counts> counts_of_all(Communicator& comm, const std::vector<Counts>& own) {

@@ -20,7 +20,7 @@
 
 namespace pcor::internal {
 
-/// What one flight failed with.
+/// Error of one flight.
 class FlightError : public Error {
  public:
   FlightError(const Error& error, std::size_t number) : Error(error), flight_(number) {}
@@ -37,8 +37,8 @@ class FlightPartition {
   /// All flights are of one member.
   explicit FlightPartition(std::size_t flights);
 
-  /// The longest first, each to the member that has least to read.
-  /// @param sizes of the flights, in bytes or anything that their work is in proportion to; the same on all
+  /// Flights by decreasing size, each to the rank with the least to read.
+  /// @param sizes of the flights, in bytes or any measure proportional to their work; identical on all ranks
   FlightPartition(Communicator& comm, const std::vector<std::uint64_t>& sizes);
 
   std::size_t flights() const { return owner_.size(); }
@@ -54,7 +54,7 @@ class FlightPartition {
   FlightPartition with(const FlightPartition& more) const;
   FlightPartition part(std::size_t first, std::size_t count) const;
 
-  /// Work on own flights. Where it fails, all members do, at what they gather next.
+  /// Work on the flights of this rank. If it fails, all ranks fail at their next exchange.
   template <class Work>
   void attempt(const Work& work) const {
     try {
@@ -66,10 +66,10 @@ class FlightPartition {
     }
   }
 
-  /// What all flights are made to, in their order, on every member: one exchange.
-  /// @param visit gets the list of all parts, and sets those of own flights
-  /// @param state in which the members have to agree
-  /// @throws Error that of the first flight that failed, on any member
+  /// Results of all flights, in their order, on every rank: one exchange.
+  /// @param visit gets the list of all parts, and sets the parts of the flights of this rank
+  /// @param state on which the ranks must agree
+  /// @throws Error of the first flight that failed, on any rank
   template <class Part, class Visit>
   std::vector<Part> gather_flights(const Visit& visit, std::uint64_t state = 0) const {
     std::vector<Part> parts(flights());
@@ -81,9 +81,9 @@ class FlightPartition {
     return parts;
   }
 
-  /// Visits own flights in threads. @param chosen tells whether to visit a flight
-  /// @param read gives what is read of a flight; it is called in this thread, in the order of the flights
-  /// @param work gets a flight and what was read of it; it is called by up to `threads` threads
+  /// Visits the flights of this rank in threads. @param chosen returns whether to visit a flight
+  /// @param read returns the content of a flight; it is called in this thread, in the order of the flights
+  /// @param work gets a flight and its content; it is called by up to `threads` threads
   /// @throws FlightError of the first flight that failed
   template <class Read, class Work>
   void visit(std::size_t threads, const std::function<bool(std::size_t)>& chosen, const Read& read,
@@ -111,8 +111,8 @@ class FlightPartition {
     while (!working.empty()) finish_first();
   }
 
-  /// As `gather_flights`, of what was read of each flight, in threads. @param read as in `visit`
-  /// @param make gives the part of a flight from its number and what was read of it
+  /// Like `gather_flights`, with threads, from the content of each flight. @param read as in `visit`
+  /// @param make returns the part of a flight from its number and content
   template <class Part, class Read, class Make>
   std::vector<Part> map(std::size_t threads, const Read& read, const Make& make) const {
     return gather_flights<Part>([&](std::vector<Part>& parts) {
@@ -122,7 +122,7 @@ class FlightPartition {
     });
   }
 
-  /// The same of one flight after another. @param make gives the part of a flight
+  /// Gathers parts of flights one after another. @param make returns the part of a flight
   template <class Part, class Make>
   std::vector<Part> of_each_flight(const Make& make, std::uint64_t state = 0) const {
     return gather_flights<Part>(
@@ -149,7 +149,7 @@ class FlightPartition {
       for (std::size_t flight = 0; flight < flights(); ++flight) add(flight, make(flight));
       return sum;
     }
-    // Few enough to be held, enough that members of which one has more to do than another seldom wait.
+    // Few enough to be kept in memory, enough that ranks with unequal work rarely wait.
     constexpr std::size_t of_each = 4, enough = 64;
     const std::size_t members = comm_->size();
     const std::size_t at_a_time = std::min(of_each * members, std::max(enough, members));
@@ -194,7 +194,7 @@ class FlightPartition {
     const std::vector<std::string> all =
         comm_->gather(bytes, digest_of(typeid(Part).name(), state + flights()));
     std::deque<Unpacking> members(all.begin(), all.end());
-    for (Unpacking& member : members) member.next<cereal::size_type>();  // how many it owns
+    for (Unpacking& member : members) member.next<cereal::size_type>();  // number of its flights
     for (std::size_t flight = 0; flight < flights(); ++flight)
       take(flight, members[owner_[flight]].template next<Part>());
   }
@@ -204,8 +204,8 @@ class FlightPartition {
   std::size_t own_ = 0;
 };
 
-/// The flights of these files, by their sizes as the first member sees them. A file that cannot be looked at
-/// is for its owner to tell of.
+/// Partition of the flights of these files, by their sizes on the first rank. An unreadable file is reported
+/// by the rank that owns it.
 FlightPartition partition_flights(Communicator& comm, const std::vector<std::filesystem::path>& paths);
 
 }  // namespace pcor::internal

@@ -21,7 +21,7 @@ ForkCommunicator::ForkCommunicator(std::size_t size) : size_(size) {
     if (!copied) {
       const std::string why = std::strerror(errno);
       let_go(true);
-      throw Error(fmt::format("{} processes cannot be begun: {}; ask for fewer", size, why));
+      throw Error(fmt::format("cannot start {} processes ({}); use a smaller --processes", size, why));
     }
     if (!copied->is_copy) {
       others_.push_back(copied->other);
@@ -84,7 +84,7 @@ void ForkCommunicator::receive_of_all(std::vector<std::string>& all) {
     for (std::size_t i = 0; i < awaited.size(); ++i) {
       if (awaited[i].revents == 0) continue;
       require(receive_text(others_[i].connection, all[i + 1]), others_[i]);
-      awaited[i].fd = -1;  // which poll passes over
+      awaited[i].fd = -1;  // poll ignores it
       --left;
     }
   }
@@ -92,7 +92,7 @@ void ForkCommunicator::receive_of_all(std::vector<std::string>& all) {
 
 std::vector<std::string> ForkCommunicator::exchange(const std::string& own) {
   if (loss_) throw *loss_;
-  // Until all is said and heard: what ends it halfway is no Error of ours.
+  // Until all messages are sent and received: an interruption is not an Error of this process.
   loss_ = Error(
       "the processes of this run lost each other where the memory is short; give fewer processes, or fewer "
       "flights at a time");

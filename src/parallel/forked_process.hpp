@@ -10,30 +10,29 @@ namespace pcor::internal {
 /// A process and the descriptor by which this one talks to it.
 struct PeerProcess {
   int process = -1;     ///< its number
-  int connection = -1;  ///< to be closed by who made it
+  int connection = -1;  ///< closed by the caller
 };
 
-/// What comes of a copy: in the process that makes it the copy, in the copy the process that it is of.
+/// Result of a fork: the child in the parent process, the parent in the child process.
 struct ForkedProcess {
   PeerProcess other{};
   bool is_copy = false;
 };
 
-/// Makes a copy of this process, which goes on from the same place. To be called while it has one thread.
-/// Both have to close the connection, and the first to wait for the copy (`end_of`). A copy that is not to do
-/// what is left to be done at the exit ends by `_exit`.
+/// Forks this process. The process must have one thread. Both sides must close the connection, and the parent
+/// must wait for the child (`end_of`). A child that must skip the exit handlers ends with `_exit`.
 ///
-/// @param when_alone the signal that the copy gets where this process ends before it
-/// @return nothing where the system begins no more processes, and errno says why
+/// @param when_alone signal sent to the child if the parent ends first
+/// @return nullopt if the system starts no more processes, with the reason in errno
 std::optional<ForkedProcess> fork_process(int when_alone);
 
-/// Sends and receives whole texts. False where that fails; errno is 0 then where the other process has ended.
-/// @param most letters that are believed of a text
+/// Send and receive complete texts. On failure they return false; errno is 0 if the other process has ended.
+/// @param most maximum accepted length of a text, characters
 bool send_text(int connection, const std::string& text);
 bool receive_text(int connection, std::string& text,
                   std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
-/// What the process ended with, as waitpid has it; nothing where the system has forgotten it.
+/// Exit status of the process, as from waitpid; nullopt if the system no longer has it.
 std::optional<int> end_of(int process);
 
 }  // namespace pcor::internal

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t max_letters = 10000;
 
-/// What this process does where it is stopped is not for a copy of it; what it ignores the copy does, too.
+/// Handlers of this process for terminating signals are reset in the child process; ignored signals remain
+/// ignored.
 void reset_signals() {
   for (int signal = 1; signal < NSIG; ++signal) {
     if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
@@ -27,7 +28,7 @@ void reset_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// A crash that is told by who made the copy is not told by the system, too.
+/// A crash that the parent process reports is not reported by the system as well.
 void crash_in_silence() {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
@@ -79,7 +80,8 @@ std::vector<std::optional<std::string>> in_a_copy(std::size_t count, int max_sec
       results[i] = work(i);
       ++i;
     } else if (i == first) {
-      ++i;  // what came before in one copy may have spoilt it, so only the first of a copy is told of
+      ++i;  // an earlier task in the same child process may be the cause, so only the first task of a child
+            // is reported
     }
   }
   return results;

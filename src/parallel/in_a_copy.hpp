@@ -8,16 +8,16 @@
 
 namespace pcor::internal {
 
-/// What `work` returns for each of 0 ... count-1, where it may crash, or never come back: it is done in a
-/// copy of this process, one after another. Where that copy is ended by a signal of a crash, or
-/// after `max_seconds` of processor time for one of them, it is that one alone that has no result; those
-/// behind it are done in another copy. Time in which the copy only waits has no end. What it writes to
-/// standard error is lost, but in a build with a sanitizer.
+/// Returns the result of `work` for each of 0 ... count-1, if it may crash or hang: it runs in a child
+/// process, one task after another. If that process ends by a crash signal, or after `max_seconds` of
+/// processor time for one task, only this task has no result; the remaining tasks run in another child
+/// process. Waiting time is not limited. Output to standard error is discarded, except in a build with a
+/// sanitizer.
 ///
-/// To be called while the process has one thread. Where a copy ends otherwise, as by what `work`
-/// throws, or the system begins no more processes, the work is done here.
+/// The calling process must have one thread. If a child process ends otherwise, for example by an exception
+/// of `work`, or the system starts no more processes, the work is done in the calling process.
 ///
-/// @param work gives a text of 10,000 letters at most, and leaves nothing in this process
+/// @param work returns a text of at most 10,000 characters and has no side effects in this process
 /// @return in the order of the numbers
 std::vector<std::optional<std::string>> in_a_copy(std::size_t count, int max_seconds,
                                                   const std::function<std::string(std::size_t)>& work);

@@ -58,7 +58,7 @@ class Unpacking {
  private:
   struct Buffer : std::streambuf {
     explicit Buffer(const std::string& bytes) {
-      char* const begin = const_cast<char*>(bytes.data());  // which nothing writes to
+      char* const begin = const_cast<char*>(bytes.data());  // the stream only reads
       setg(begin, begin, begin + bytes.size());
     }
   };

@@ -11,7 +11,7 @@ namespace pcor::internal {
 /// Who shares a work: the members of a team, and in each some threads.
 struct Workers {
   Communicator& comm;
-  std::size_t threads;  ///< of this member, at least one
+  std::size_t threads;  ///< threads of this rank, at least one
 
   /// @param wanted threads; 0: as many as processors, and one in a team of several, which has a processor for
   ///        each member

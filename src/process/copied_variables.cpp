@@ -11,7 +11,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// The first of some names that is a time series of the flight; empty where none is.
+/// First of several names that is a time series of the flight; empty if there is no such series.
 std::string first_series(const Flight& flight, const Names& names) {
   const auto found = std::find_if(names.begin(), names.end(), [&flight](const std::string& name) {
     return flight.has(name) && flight.variable(name).is_series;
@@ -19,7 +19,7 @@ std::string first_series(const Flight& flight, const Names& names) {
   return found == names.end() ? std::string() : *found;
 }
 
-/// The first time series that says itself what it is, by a standard name of CF; empty where none does.
+/// First time series with the given CF standard name; empty if there is no such series.
 std::string series_that_is(const Flight& flight, const std::string& standard_name) {
   for (const std::string& name : flight.variables()) {
     const VariableInfo& info = flight.variable(name);

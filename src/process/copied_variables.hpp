@@ -8,12 +8,11 @@
 
 namespace pcor::internal {
 
-/// Names the variables of the flight that say where the aircraft was: those that the flight or the model
-/// name, else the usual ones. Empty where there is none.
+/// Sets the coordinate variables of the flight: those named by the flight or the model, otherwise the usual
+/// ones. Empty if absent.
 void name_coordinates(const Flight& flight, const ModelDefinition& model, FileDescription& description);
 
-/// The variables that a fit of temperature needs besides those of the model, as far as the flight has them:
-/// the height, the way, and how it was flown.
+/// Available inputs of a temperature fit other than those of the model: height, position and motion.
 std::vector<std::string> flown_variables(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

@@ -14,13 +14,13 @@ namespace pcor::internal {
 struct Output {
   Quantity quantity = Quantity::count;
   double offset = 0.0;     ///< added to go from the library's unit to the file's
-  std::size_t number = 0;  ///< of the writer's
+  std::size_t number = 0;  ///< index in the writer
   std::vector<double> values{};
 
   double value_in(const Loop& loop) const { return loop.state()[quantity] + offset; }
 };
 
-/// What leaves the loop later than its sample entered it: brings it back to the samples that it is of.
+/// Assigns delayed outputs of the loop to their samples.
 class DelayLine {
  public:
   /// @param delay in runs of the loop
@@ -29,7 +29,7 @@ class DelayLine {
   void add(Output output) { outputs_.push_back(std::move(output)); }
   void set_flags(std::size_t number) { flags_ = Output{Quantity::count, 0.0, number, {}}; }
 
-  /// Samples that have entered since the last gap and not left yet.
+  /// Samples since the last gap without results yet.
   std::size_t inside() const { return entered_ - left_; }
 
   /// A sample enters the loop, which is then run.
@@ -37,16 +37,16 @@ class DelayLine {
 
   /// The quality bits, as a number, of the next sample of which they are known; it may leave later.
   void enter_flags(double bits) { flags_->values.push_back(bits); }
-  /// Adds a bit of the sample that left last.
+  /// Adds a bit of the sample with the latest results.
   void add_flag(double bit) { flags_->values[finished_ - 1] += bit; }
 
-  /// Takes what the last run of the loop gave. False where that is of no sample.
+  /// Takes the results of the last run of the loop. False if they belong to no sample.
   bool leave(const Loop& loop);
 
   /// After a gap nothing is in the loop.
   void reset() { runs_ = entered_ = left_ = 0; }
 
-  /// Writes the whole records of what has left.
+  /// Writes the complete records of delayed outputs.
   void write(FlightWriter& writer, std::size_t rate);
 
  private:
@@ -56,7 +56,7 @@ class DelayLine {
   std::size_t runs_ = 0;  // since the last gap
   std::size_t entered_ = 0;
   std::size_t left_ = 0;
-  std::size_t finished_ = 0;  // samples that left and are not written yet
+  std::size_t finished_ = 0;  // samples with results that are not written yet
   std::size_t written_records_ = 0;
 };
 

@@ -38,8 +38,8 @@ namespace {
 
 /// A variable of the file that the loop reads.
 struct Input : ModelInput {
-  std::vector<double> values{};  // of one block
-  RejectedCounts left_out{};     // of all of them
+  std::vector<double> values{};  // values of one block
+  RejectedCounts left_out{};     // total of all inputs
   std::vector<bool> frozen{};    // records in which the sensor is frozen; empty: none
 };
 
@@ -50,8 +50,8 @@ constexpr std::size_t flagged_place(Quality bit) {
   return place;
 }
 
-/// The dynamic pressure, hPa, of the flying speed of an aircraft at sea level in the standard atmosphere.
-/// What carries an aircraft is dynamic pressure, at any height.
+/// Dynamic pressure, hPa, at the flying speed of an aircraft at sea level in the standard atmosphere. The
+/// lift depends on the dynamic pressure, at any height.
 double flying_dynamic_pressure(const std::string& aircraft) {
   const double speed = RegimeCriteria::of(aircraft).value_or(RegimeCriteria{}).flying_speed;
   return dynamic_pressure_from_airspeed(standard_pressure(0.0), speed, standard_temperature(0.0),
@@ -117,18 +117,18 @@ class Processing {
 
   Flight flight_;
   const ModelDefinition& given_;
-  ModelDefinition file_;  // as it is applied to this flight
+  ModelDefinition file_;  // model adapted to this flight
   const ProcessOptions& options_;
   std::vector<Quantity> roles_;
   std::shared_ptr<const Chain> chain_;
   std::optional<Loop> loop_;
-  ModelUncertainty uncertainty_;  // of which the results' is found
+  ModelUncertainty uncertainty_;  // uncertainty of the model and its inputs
   std::vector<Input> inputs_;
   std::optional<DelayLine> results_;
   std::optional<DelayLine> filtered_;  // later still; and the quality bits, one of which is the filter's
   double sample_step_ = 1.0;           // s
   std::vector<bool> frozen_;           // records in which any sensor is frozen; empty: none
-  std::size_t noted_ = 0;              // samples that have left the loop
+  std::size_t noted_ = 0;              // samples of which results are available
   std::map<Quantity, std::string> output_names_;
   ProcessSummary summary_;
 };
@@ -151,8 +151,8 @@ void Processing::choose_roles() {
   choose_chain();
 }
 
-/// The model, and with it the doubt of its thermometer where uncertainties are found and the model does not
-/// state that of the thermometer: without its main source that of the temperature would be far too small.
+/// Model with the calibration uncertainty of its thermometer, if uncertainties are computed and the model
+/// does not state it: otherwise that of the temperature would be far too small.
 ModelDefinition Processing::doubted() const {
   const UncertaintyPart part = options_.uncertainty;
   if (part == UncertaintyPart::none || part == UncertaintyPart::random ||
@@ -177,9 +177,9 @@ void Processing::choose_inputs() {
   }
 }
 
-/// What stands still in flight for much longer than its noise lets it.
+/// Detects sensors that are constant in flight for much longer than their noise permits.
 void Processing::find_frozen_sensors() {
-  constexpr std::size_t min_records = 300;  // that a sensor with one value only is not left
+  constexpr std::size_t min_records = 300;  // a sensor with a single value is also excluded
   const auto read = [this](const Input& input) {
     return read_values(flight_, input.variable, input.conversion).values;
   };
@@ -204,7 +204,7 @@ void Processing::find_frozen_sensors() {
     }
   }
   if (!frozen_.empty()) {
-    note(options_.keep_frozen ? "what frozen sensors read is corrected all the same; PCORFLAG says where"
+    note(options_.keep_frozen ? "readings of frozen sensors are corrected, too; PCORFLAG marks them"
                               : "what frozen sensors read counts as missing; --keep-frozen corrects it");
   }
 }
@@ -228,7 +228,7 @@ void Processing::choose_rate() {
   if (!loop_->order(&why)) fail_model(why);
 }
 
-/// Rates of change go as far as what is recorded is signal.
+/// Rates of change are limited to the frequencies at which the recorded values are signal.
 ShortestPeriods Processing::choose_periods() {
   ShortestPeriods periods;
   std::vector<double> time;
@@ -245,7 +245,7 @@ ShortestPeriods Processing::choose_periods() {
   return periods;
 }
 
-/// What adds more noise to a result than it takes error away is not applied.
+/// Effects that add more noise to a result than they remove error are not applied.
 void Processing::leave_out_noise(Quantity rate, const SignalBand& band) {
   const double signal = band.rate_variance - band.rate_noise;
   if (!(band.rate_noise > signal)) return;
@@ -257,9 +257,8 @@ void Processing::leave_out_noise(Quantity rate, const SignalBand& band) {
     if (!reads || time == info.parameters[0].neutral) continue;
     const std::string_view unit = info_of(info.location).unit;
     note(
-        "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and take an error of "
-        "{:.2g} "
-        "{} away",
+        "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and remove an error of "
+        "{:.2g} {}",
         effect.id, time, std::abs(time) * std::sqrt(band.rate_noise), unit,
         std::abs(time) * std::sqrt(std::max(0.0, signal)), unit);
     time = info.parameters[0].neutral;
@@ -267,8 +266,8 @@ void Processing::leave_out_noise(Quantity rate, const SignalBand& band) {
   choose_chain();
 }
 
-/// What is stated of the model, as far as it is asked for; notes what is not. @throws Error if nothing is
-/// stated of what is asked for.
+/// Stated uncertainty of the model, according to the options; missing parts are noted. @throws Error if a
+/// requested part is not stated.
 ModelUncertainty Processing::uncertainty() {
   const UncertaintyPart part = options_.uncertainty;
   if (part == UncertaintyPart::none) return {};
@@ -282,12 +281,12 @@ ModelUncertainty Processing::uncertainty() {
                            : part == UncertaintyPart::random ? "no uncertainty of a sample in [uncertainty]"
                                                              : "no uncertainty";
   fail_model(
-      fmt::format("it states {}, so its results have none; 'pcor refit' writes the covariance, "
-                  "[uncertainty] takes those of sensors, or leave out --uncertainty",
+      fmt::format("it states {}; 'pcor refit' writes the covariance, [uncertainty] takes those of sensors, "
+                  "or omit --uncertainty",
                   what));
 }
 
-/// True where an uncertainty is stated of a coefficient at one of the places, or of one of the roles.
+/// True if an uncertainty is stated of a coefficient at one of the locations, or of one of the roles.
 bool Processing::states(std::initializer_list<EffectLocation> places,
                         std::initializer_list<Quantity> roles) const {
   const std::size_t count = chain_->parameters().size();
@@ -307,28 +306,28 @@ bool Processing::states(std::initializer_list<EffectLocation> places,
 void Processing::note_uncertainty() {
   if (!uncertainty_.has_systematic() && !uncertainty_.has_random()) return;
   if (options_.correct_with == CorrectWith::lams) {
-    note("samples that are corrected with LAMS have no uncertainty: the model's says nothing of the laser");
+    note("no uncertainty is given for LAMS-corrected samples: the model covariance does not apply to them");
   }
   using Q = Quantity;
   if (uncertainty_.static_defect == 0.0 && uncertainty_.static_defect_ratio == 0.0 &&
       !states({EffectLocation::static_defect}, {})) {
-    note("the uncertainties are without that of delta-p, of which the model states none");
+    note("the uncertainties exclude that of delta-p, which the model does not state");
   }
   if (!states({EffectLocation::static_transducer, EffectLocation::static_line}, {Q::static_pressure}) ||
       !states({EffectLocation::dynamic_transducer, EffectLocation::static_line, EffectLocation::total_line,
                EffectLocation::pitot},
               {Q::dynamic_pressure})) {
     note(
-        "the uncertainties leave out the pressure transducers, since the model does not state those of both; "
-        "its table [uncertainty] takes static_pressure and dynamic_pressure");
+        "the uncertainties exclude the pressure transducers, because the model does not state both; set "
+        "static_pressure and dynamic_pressure in its table [uncertainty]");
   }
   for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
     if (chain_->effect_count() == file_.model.effects.size()) break;  // none was added
     const std::vector<std::string>& known = file_.covariance.parameters;
     if (!doubt.is_usual || std::find(known.begin(), known.end(), doubt.name()) != known.end()) continue;
     note(
-        "the uncertainties take {} to be 0 +- {:g}, the usual size, since the model states none; its table "
-        "[uncertainty] takes \"{}\"",
+        "the uncertainties assume {} = 0 +- {:g}, the usual size, because the model states no value; set "
+        "\"{}\" in its table [uncertainty]",
         doubt.name(), doubt.size, doubt.name());
   }
   if (chain_->has_temperature() &&
@@ -363,12 +362,12 @@ void Processing::copy_variables(FlightWriter& writer, const FileDescription& des
     if (!options_.copy_all || writer.can_copy(name)) {
       writer.copy(name);
     } else if (name != flight_.time_variable()) {
-      note("{} is of a kind that cannot be copied, and left out", name);
+      note("{} has a type that cannot be copied and is omitted", name);
     }
   }
 }
 
-/// What a result is found from, by the names that the file has: other results, and variables that are read.
+/// Inputs of a result by their names in the file: other results, and recorded variables.
 Processing::Names Processing::dependencies_of(const OutputRow& row) const {
   Names names;
   for (const Quantity quantity : row.from({*chain_, options_.correct_with})) {
@@ -420,7 +419,7 @@ void Processing::define_outputs(FlightWriter& writer) {
   }
 }
 
-/// An uncertainty is written beside its result only.
+/// An uncertainty is written only with its result.
 bool Processing::is_written(const OutputRow& row) const {
   if (!loop_->writes(row.quantity)) return false;
   return row.uncertainty_of == Quantity::count || loop_->writes(row.uncertainty_of);
@@ -461,7 +460,7 @@ std::size_t Processing::define(FlightWriter& writer, const OutputVariable& varia
   return writer.define(variable);
 }
 
-/// The coefficients a0, a1 and a2 of the calibration that ATX has in it, zero where there is none.
+/// Coefficients a0, a1 and a2 of the calibration included in ATX, zero without calibration.
 std::string Processing::temperature_calibration() {
   std::vector<double> coefficients(3, 0.0);
   for (const ModelEffect& effect : file_.model.effects) {
@@ -493,7 +492,8 @@ void Processing::note_sample() {
   if (quality.bits() != 0) {
     for (std::size_t i = 0; i < quality_info.size(); ++i) {
       const Quality bit = quality_info[i].bit;
-      if (!quality.has(bit) || bit == Quality::filter_window_incomplete) continue;  // that of another sample
+      // Bit of an earlier sample.
+      if (!quality.has(bit) || bit == Quality::filter_window_incomplete) continue;
       ++summary_.flagged[i];
       bits += static_cast<double>(bit);
     }
@@ -501,7 +501,7 @@ void Processing::note_sample() {
   filtered_->enter_flags(bits);
 }
 
-/// Of the last run, which may be those of an earlier sample.
+/// Takes the results of the last run, which may belong to an earlier sample.
 void Processing::take_results() {
   if (results_->leave(*loop_)) note_sample();
   if (!filtered_->leave(*loop_) || !loop_->quality().has(Quality::filter_window_incomplete)) return;
@@ -509,7 +509,7 @@ void Processing::take_results() {
   ++summary_.flagged[flagged_place(Quality::filter_window_incomplete)];
 }
 
-/// Before a gap and at the end: the loop goes on without values until its last sample has left it.
+/// Before a gap and at the end: runs the loop with missing values until its last sample has left it.
 void Processing::flush() {
   const double last = loop_->last_time();
   for (std::size_t i = 1; filtered_->inside() > 0; ++i) {

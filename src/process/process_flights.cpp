@@ -24,7 +24,7 @@ void process_one(const ProcessTask& task, const ProcessFlightsOptions& options, 
   flight.summary = process_flight(task.input, flight.model, task.output, process);
 }
 
-/// Why flights cannot be opened, where that is looked for before.
+/// Reasons for which flights cannot be opened, if they are probed in advance.
 std::map<fs::path, std::string> troubles_with(const std::vector<ProcessTask>& tasks,
                                               const ProcessFlightsOptions& options) {
   std::map<fs::path, std::string> troubles;

@@ -38,7 +38,7 @@ constexpr std::array<Shown, 7> shown{{{"PCOR", "delta-p", "hPa"},
 
 constexpr const char* own_difference = "own_difference";
 
-/// The static pressure that the flight's own processing corrected, hPa; empty where it has none.
+/// Static pressure corrected in the flight file, hPa; empty if absent.
 Series own_static_pressure(const Flight& input) {
   const VariableNaming& family = family_of(input);
   const std::string variable = processed_static_pressure(input, family);
@@ -92,13 +92,11 @@ class Outputs {
 };
 
 void add_pictures(Report& report) {
-  add_if_present(
-      report,
-      TimePanel{"Delta-p in time",
-                "What was added to the static pressure and taken off the dynamic pressure, with its standard "
-                "uncertainty where the model states one. Drag over a time range, and every picture shows its "
-                "samples alone.",
-                {"PCOR", "PCOR_uncertainty"}});
+  add_if_present(report, TimePanel{"Delta-p in time",
+                                   "Correction added to the static pressure and subtracted from the dynamic "
+                                   "pressure, with its standard uncertainty if the model states one. Drag "
+                                   "over a time range to restrict all figures to it.",
+                                   {"PCOR", "PCOR_uncertainty"}});
   if (has_column(report, "PCOR")) {
     std::vector<std::string> states;
     for (const char* name : {"MACHX", "QCXC", "PSXC"}) {
@@ -108,17 +106,14 @@ void add_pictures(Report& report) {
       report.items.emplace_back(BinnedPanel{
           "Delta-p by the state of flight", "The samples, and their mean in each bin.", {"PCOR"}, states});
   }
-  add_if_present(
-      report,
-      TimePanel{
-          "Difference from the flight's own processing",
-          "The corrected static pressure less the one that the input holds already: 1 hPa is about 8 m of "
-          "height at the ground.",
-          {own_difference},
-          "difference of static pressure"});
-  add_if_present(report, TimePanel{"True airspeed", "Of the corrected pressures.", {"TASX"}});
+  add_if_present(report, TimePanel{"Difference from the flight's own processing",
+                                   "Corrected static pressure minus the corrected static pressure of the "
+                                   "input: 1 hPa is about 8 m of height at the ground.",
+                                   {own_difference},
+                                   "difference of static pressure"});
+  add_if_present(report, TimePanel{"True airspeed", "Computed from the corrected pressures.", {"TASX"}});
   add_if_present(report, TimePanel{"Ambient temperature",
-                                   "Of the recovery temperature and the corrected Mach number.",
+                                   "Computed from the recovery temperature and the corrected Mach number.",
                                    {"ATX"}});
 }
 

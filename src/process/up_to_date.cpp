@@ -28,7 +28,7 @@ bool is_up_to_date(const fs::path& output, const fs::path& input, const ModelDef
     const std::string hash = sha256_of_file(input);
     return says(input_hash_attribute, hash);
   } catch (const Error&) {
-    // What cannot be compared is done again, and says then what is wrong.
+    // An output that cannot be compared is processed again, with its error reported.
     return false;
   }
 }

@@ -15,11 +15,11 @@ namespace {
 
 constexpr double max_kept_gap = 300.0;        // s
 constexpr std::size_t max_interpolation = 5;  // cells
-constexpr double max_vertical_speed = 40.0;   // m/s; more is a jump of a height, not a climb
-constexpr double rounding = 1e-6;             // s, of a time since 1970 in double precision
+constexpr double max_vertical_speed = 40.0;   // m/s; a faster change is a jump of the height, not a climb
+constexpr double rounding = 1e-6;             // s, rounding error of a time since 1970 in double precision
 constexpr double radians = 3.14159265358979323846 / 180.0;
 
-// Which cell each sample is in.
+// Cell of each sample.
 struct Division {
   std::vector<std::size_t> cell;
   std::vector<double> begin;
@@ -27,13 +27,13 @@ struct Division {
 
 Division divide(const std::vector<double>& time) {
   Division division;
-  double first_begin = 0.0;  // of the cells since the last cut gap
+  double first_begin = 0.0;  // begin of the cells since the last cut gap
   std::size_t first_cell = 0;
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (!std::isfinite(time[i]) || (i > 0 && !(time[i] > time[i - 1]))) {
       throw Error(
-          fmt::format("flight motion: the time of sample {} is not after the one before; give times "
-                      "that strictly increase",
+          fmt::format("flight motion: the time of sample {} is not after the time before; give times that "
+                      "strictly increase",
                       i));
     }
     if (i == 0) first_begin = time[0];
@@ -69,8 +69,9 @@ std::vector<double> means(const std::vector<double>& samples, const Division& di
   const std::size_t count = division.begin.empty() ? 0 : division.begin.size() - 1;
   std::vector<double> sum(count, 0.0), known(count, 0.0);
   if (!samples.empty() && samples.size() != division.cell.size()) {
-    throw Error(fmt::format("flight motion: {} has {} values for {} times; give one for each, or none", name,
-                            samples.size(), division.cell.size()));
+    throw Error(fmt::format(
+        "flight motion: {} has {} values for {} times; give one value per time, or an empty series", name,
+        samples.size(), division.cell.size()));
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!std::isfinite(samples[i])) continue;
@@ -82,7 +83,7 @@ std::vector<double> means(const std::vector<double>& samples, const Division& di
   return sum;
 }
 
-// Angles that go on beyond a full turn instead of wrapping.
+// Angles that continue beyond a full turn instead of wrapping.
 std::vector<double> unwrapped(std::vector<double> angles) {
   double last = nan;
   for (double& angle : angles) {

@@ -12,11 +12,11 @@ struct KnownAircraft {
   RegimeCriteria (*criteria)();
 };
 
-/// The aircraft whose criteria are known.
+/// Aircraft with specific criteria.
 constexpr std::array<KnownAircraft, 2> known_aircraft{
     {{"N130AR", RegimeCriteria::c130}, {"N677F", RegimeCriteria::gv}}};
 
-/// What pitch and yaw manoeuvres share, of the angle that oscillates.
+/// Common part of the criteria of pitch and yaw manoeuvres, for the oscillating angle.
 std::string oscillation(const char* angle, double shortest, double longest, double variance, double time,
                         const std::string& seen, const RegimeCriteria& c) {
   return fmt::format(
@@ -54,14 +54,15 @@ std::string criterion_of(Regime regime, const RegimeCriteria& c) {
           "airspeed below {} m/s, until the take-off roll ({} m/s, at most {} s earlier) and from landing on",
           c.flying_speed, c.roll_speed, c.take_off_time);
     case Regime::take_off:
-      return fmt::format("from the roll until {} m above the field, at most {} s after {} m/s were reached",
-                         c.take_off_height, c.take_off_time, c.flying_speed);
+      return fmt::format(
+          "from the start of the roll to {} m above the field, at most {} s after {} m/s were reached",
+          c.take_off_height, c.take_off_time, c.flying_speed);
     case Regime::climb:
       return climb("above", c.climb_rate, c);
     case Regime::descent:
       return climb("below", -c.climb_rate, c);
     case Regime::level:
-      return "in the air, and neither take-off nor climb nor descent";
+      return "airborne, and not take-off, climb or descent";
     case Regime::turn:
       return fmt::format(
           "roll beyond {} deg to one side for {} s or longer, not counting interruptions up to {} s",

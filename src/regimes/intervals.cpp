@@ -13,12 +13,12 @@ constexpr double day = 86400.0;  // s
 
 bool is_time_of_day(double time) { return time < day; }
 
-// How far a moment is from a flight; zero within it.
+// Distance of a time from a flight, s; zero within the flight.
 double distance(double time, double first_time, double last_time) {
   return std::max({first_time - time, time - last_time, 0.0});
 }
 
-// The moment of that time of the day which is in the flight or nearest to it.
+// Moment with that time of day in the flight or nearest to it.
 double nearest_moment(double time_of_day, double first_time, double last_time) {
   double moment = midnight_before(first_time) - day + time_of_day;
   for (double next = moment + day; next - day <= last_time; next += day) {
@@ -40,7 +40,7 @@ bool overlap(const Interval& interval, double begin, double end) {
   return interval.begin < end && begin < interval.end;
 }
 
-// Takes [begin, end) out of an interval; what remains of it, if it is worth anything, goes to `kept`.
+// Removes [begin, end) from an interval; remainders that are long enough are added to `kept`.
 void keep_outside(const Interval& interval, double begin, double end, std::vector<Interval>& kept) {
   if (!overlap(interval, begin, end)) {
     kept.push_back(interval);
@@ -57,7 +57,7 @@ void keep_outside(const Interval& interval, double begin, double end, std::vecto
   }
 }
 
-// Removes the intervals that `concerns` from [begin, end), and the other leg of a pair with the one.
+// Removes the intervals that `concerns` from [begin, end), together with the other leg of a pair.
 template <class Concerns>
 void remove(std::vector<Interval>& intervals, double begin, double end, Concerns concerns) {
   std::vector<int> pairs;

@@ -18,18 +18,18 @@ namespace {
 
 constexpr std::string_view intervals_format = "pcor-intervals/1";
 constexpr double day = 86400.0;           // s
-constexpr double max_of_day = day / 2.0;  // s between two times of the day; more is a mistake
+constexpr double max_of_day = day / 2.0;  // s between two times of day; a longer interval is a mistake
 constexpr const char* wanted_time =
     "a date and time such as 2011-11-17T20:10:00Z, or a time of the day such as \"20:10:00\"";
 
-// "20:10" or "20:10:00.5".
+// Formats "20:10" and "20:10:00.5".
 std::optional<toml::time> time_of_day(const std::string& text) {
   return moment_in<toml::time>(text.size() == 5 ? text + ":00" : text);
 }
 
 Names names_of_regimes() { return names_of(regime_info, &RegimeInfo::name); }
 
-// Reads a parsed file, and refuses what has no meaning with the place where it stands.
+// Reads a parsed file; entries without a meaning are refused with their position.
 class Reader final : TomlReader {
  public:
   explicit Reader(std::string_view name) : TomlReader(name) {}
@@ -54,12 +54,10 @@ class Reader final : TomlReader {
   void check_format(const toml::table& root) const {
     const Entry format = format_of(root, "holds intervals", intervals_format);
     if (format.node->value<std::string_view>() == intervals_format) return;
-    fail(format, fmt::format("this is not a format of interval files that this program reads; write "
-                             "format = \"{}\"",
-                             intervals_format));
+    fail(format, fmt::format("unknown format of an interval file; write format = \"{}\"", intervals_format));
   }
 
-  // An error at the first key, in the order of the text, that is not `known`.
+  // Refuses the first key, in the order of the text, that is not `known`.
   void refuse_unknown(const toml::table& table, const std::string& title, const Names& known) const {
     for (const Entry& entry : entries_of(table, title)) {
       if (std::find(known.begin(), known.end(), entry.key) == known.end()) refuse(entry, known);
@@ -71,7 +69,7 @@ class Reader final : TomlReader {
     const toml::node* node = root.get(key);
     if (node == nullptr) return;
     const std::string title = "[[" + key + "]]";
-    const std::string otherwise = fmt::format("'{}' is no list of tables; write {}", key, title);
+    const std::string otherwise = fmt::format("'{}' is not a list of tables; write {}", key, title);
     for (const toml::node& element : as<toml::array>(*node, otherwise)) {
       const auto& table = as<toml::table>(element, otherwise);
       refuse_unknown(table, title, known);
@@ -153,7 +151,7 @@ class Reader final : TomlReader {
     return span;
   }
 
-  // Seconds since 1970 UTC, or of the day, which are fewer than a day.
+  // Seconds since 1970 UTC, or since midnight, which are less than a day.
   double time_of(const toml::node& node) const {
     if (const auto* moment = node.as_date_time()) {
       const toml::date_time& value = moment->get();
@@ -164,7 +162,7 @@ class Reader final : TomlReader {
     }
     const std::optional<toml::time> time =
         node.is_string() ? time_of_day(node.as_string()->get()) : node.value<toml::time>();
-    if (!time) fail(node, fmt::format("this is not a time; give {}", wanted_time));
+    if (!time) fail(node, fmt::format("the value is not a time; give {}", wanted_time));
     return seconds_of(*time);
   }
 

@@ -27,7 +27,7 @@ std::vector<double> product(const std::vector<double>& a, const std::vector<doub
   return result;
 }
 
-// What remains without changes slower than the band, and quicker ones than a third of its shortest period.
+// Removes changes slower than the band, and changes faster than a third of its shortest period.
 std::vector<double> in_band(const std::vector<double>& values, const Band& band) {
   const std::vector<double> trend = smoothed_twice(values, band.max_period);
   const std::vector<double> smooth = running_mean(values, band.min_period / 3);
@@ -38,8 +38,8 @@ std::vector<double> in_band(const std::vector<double>& values, const Band& band)
   return result;
 }
 
-// How well each cell's surroundings, three of the longest periods, repeat after the best period of the band:
-// 1 for a pure oscillation, about 0 for turbulence.
+// Autocorrelation of the surroundings of each cell, three of the longest periods wide, at the best period of
+// the band: 1 for a pure oscillation, about 0 for turbulence.
 std::vector<double> local_periodicity(const std::vector<double>& values, const Band& band) {
   const std::size_t window = 3 * band.max_period;
   const std::vector<double> variance = running_mean(product(values, values), window);
@@ -53,7 +53,7 @@ std::vector<double> local_periodicity(const std::vector<double>& values, const B
   return best;
 }
 
-// The autocorrelation of a run `lag` later.
+// Autocorrelation of a run at the lag `lag`.
 double autocorrelation(const std::vector<double>& values, Run run, std::size_t lag) {
   double covariance = 0.0, variance = 0.0;
   for (std::size_t i = run.first; i + lag < run.end; ++i) {
@@ -65,13 +65,13 @@ double autocorrelation(const std::vector<double>& values, Run run, std::size_t l
   return variance > 0.0 ? covariance / variance : 0.0;
 }
 
-// The vertex of the parabola through three values one apart, from the middle one.
+// Vertex of the parabola through three values one apart, relative to the middle one.
 double vertex(double left, double middle, double right) {
   const double curvature = left - 2.0 * middle + right;
   return curvature < 0.0 ? std::clamp((left - right) / (2.0 * curvature), -0.5, 0.5) : 0.0;
 }
 
-// The first period at which a run repeats best; 0 if nowhere well enough.
+// First period with maximum autocorrelation of a run; 0 if the correlation is too low everywhere.
 double period_of(const std::vector<double>& values, Run run, const Band& band) {
   std::vector<double> correlation;
   for (std::size_t lag = band.min_period - 1; lag <= band.max_period + 1; ++lag) {
@@ -87,8 +87,8 @@ double period_of(const std::vector<double>& values, Run run, const Band& band) {
          vertex(correlation[best - 1], correlation[best], correlation[best + 1]);
 }
 
-// From the zero before the first swing of half the amplitude to the zero after the last one, at most a
-// period outside the run.
+// Run from the zero before the first swing of half the amplitude to the zero after the last one, extended by
+// at most one period.
 Run whole_swings(const std::vector<double>& values, Run run, double amplitude, std::size_t margin) {
   const std::size_t earliest = run.first - std::min(run.first, margin);
   const std::size_t latest = std::min(run.end + margin, values.size());
@@ -127,7 +127,7 @@ std::string described(const Oscillation& oscillation) {
                      oscillation.amplitude);
 }
 
-// The cells in flight without net climb.
+// Cells in flight without net climb.
 std::vector<bool> about_level(const Cells& cells, const std::vector<bool>& flying,
                               const RegimeCriteria& criteria) {
   const std::vector<double> climb = smoothed_twice(cells.vertical_speed, cells_in(criteria.climb_smoothing));

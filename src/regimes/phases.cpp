@@ -8,10 +8,10 @@
 namespace pcor::internal {
 namespace {
 
-// A shorter time above or below the flying speed is noise, s.
+// Shorter times above or below the flying speed are noise, s.
 constexpr std::size_t min_flight = 30;
 
-// How far from where the smoothed vertical speed says a phase may begin, s.
+// Maximum distance of the start of a phase from the change of the smoothed vertical speed, s.
 constexpr std::size_t reach = 90;
 constexpr std::size_t min_side = 15;
 
@@ -20,8 +20,8 @@ struct PhaseRun {
   Run run;
 };
 
-// Which cells are in the air: faster than the flying speed. Where the speed is not known the last
-// known one counts, before the first the next one.
+// Airborne cells: faster than the flying speed. Unknown speeds take the last known value, or the next one
+// before the first.
 std::vector<bool> airborne(const Cells& cells, const RegimeCriteria& criteria) {
   std::vector<bool> flying(cells.count());
   const auto first_known = std::find_if(cells.airspeed.begin(), cells.airspeed.end(),
@@ -41,7 +41,7 @@ std::vector<bool> airborne(const Cells& cells, const RegimeCriteria& criteria) {
   return flying;
 }
 
-// Where the roll began that reached the flying speed at `fast`.
+// Start of the roll that reached the flying speed at `fast`.
 std::size_t begin_of_roll(const Cells& cells, std::size_t fast, const RegimeCriteria& criteria) {
   const std::size_t earliest = fast - std::min(fast, cells_in(criteria.take_off_time));
   std::size_t begin = fast;
@@ -64,7 +64,7 @@ Regime phase_at(double climb, const RegimeCriteria& criteria) {
   return Regime::level;
 }
 
-// Where the climb is not known the phase before goes on; at first it is level.
+// If the climb is unknown the previous phase continues; the initial phase is level.
 std::vector<PhaseRun> runs_of_phase(const std::vector<double>& climb, Run flight,
                                     const RegimeCriteria& criteria) {
   std::vector<PhaseRun> runs;
@@ -81,8 +81,7 @@ std::vector<PhaseRun> runs_of_phase(const std::vector<double>& climb, Run flight
   return runs;
 }
 
-// Makes the shortest run part of the neighbour whose vertical speed is more like its own, until all are long
-// enough.
+// Merges the shortest run with the neighbour of more similar vertical speed, until all runs are long enough.
 void join_short(std::vector<PhaseRun>& runs, const std::vector<double>& climb, std::size_t shortest) {
   const auto length = [](const PhaseRun& a, const PhaseRun& b) { return a.run.length() < b.run.length(); };
   while (runs.size() > 1) {
@@ -110,8 +109,8 @@ void join_short(std::vector<PhaseRun>& runs, const std::vector<double>& climb, s
   }
 }
 
-// Puts each boundary where a step fits the vertical speed itself best; the smoothed one has it too early or
-// too late.
+// Moves each boundary to the best fit of a step to the vertical speed; boundaries of the smoothed speed are
+// too early or too late.
 void sharpen(std::vector<PhaseRun>& runs, const std::vector<double>& vertical_speed) {
   for (std::size_t i = 1; i < runs.size(); ++i) {
     Run& before = runs[i - 1].run;

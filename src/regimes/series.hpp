@@ -8,9 +8,9 @@
 
 namespace pcor::internal {
 
-/// Arithmetic on series with one value each second, NaN where there is none.
+/// Arithmetic on series with one value each second; missing values are NaN.
 
-/// The cells from `first` up to but not including `end`.
+/// Cells from `first` up to but not including `end`.
 struct Run {
   std::size_t first = 0;
   std::size_t end = 0;
@@ -18,17 +18,17 @@ struct Run {
   std::size_t length() const { return end - first; }
 };
 
-/// At each cell the mean of the known values at most `window` / 2 cells away; NaN where there are none.
+/// Mean of the known values at most `window` / 2 cells from each cell; NaN if all are missing.
 std::vector<double> running_mean(const std::vector<double>& values, std::size_t window);
 
-/// The running mean of the running mean: a triangular window, which passes next to nothing of oscillations
-/// shorter than `window`.
+/// Running mean of the running mean: a triangular window, which suppresses oscillations shorter than
+/// `window`.
 std::vector<double> smoothed_twice(const std::vector<double>& values, std::size_t window);
 
-/// The mean of the known values of a run; NaN if there are none.
+/// Mean of the known values of a run; NaN if all are missing.
 double mean(const std::vector<double>& values, Run run);
 
-/// The least and the greatest of the known values of a run; NaN if there are none.
+/// Minimum and maximum of the known values of a run; NaN if all are missing.
 struct Extent {
   double least;
   double greatest;
@@ -37,12 +37,12 @@ struct Extent {
 };
 Extent extent(const std::vector<double>& values, Run run);
 
-/// The cell at which a step fits a run best: the first after it, if both sides are taken as constant (least
-/// squares), with at least `shortest` known values on each side. `otherwise` if there are too few.
+/// First cell after the best-fitting step in a run, if both sides are constant (least squares), with at least
+/// `shortest` known values on each side. `otherwise` if there are too few.
 std::size_t best_step(const std::vector<double>& values, Run run, std::size_t shortest,
                       std::size_t otherwise);
 
-/// The longest runs of cells below `count` of which the predicate is true.
+/// Longest runs of cells below `count` that meet the predicate.
 template <class Predicate>
 std::vector<Run> runs_where(std::size_t count, Predicate predicate) {
   std::vector<Run> runs;
@@ -57,10 +57,10 @@ std::vector<Run> runs_where(std::size_t count, Predicate predicate) {
   return runs;
 }
 
-/// Runs that are at most `gap` cells apart as one.
+/// Merges runs that are at most `gap` cells apart.
 std::vector<Run> bridged(const std::vector<Run>& runs, std::size_t gap);
 
-/// The runs of at least `length` cells.
+/// Runs of at least `length` cells.
 std::vector<Run> not_shorter(std::vector<Run> runs, std::size_t length);
 
 }  // namespace pcor::internal

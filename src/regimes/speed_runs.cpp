@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t smoothing = 10;  // s
 constexpr std::size_t min_side = 10;   // s of known acceleration on each side of an end
 
-// Where the airspeed changes enough, and the height little, over `time` seconds around a cell.
+// Segments in which the airspeed changes enough, and the height little, over `time` seconds around a cell.
 std::vector<Run> branches(double time, const std::vector<double>& airspeed,
                           const std::vector<double>& altitude, const std::vector<bool>& flying,
                           const RegimeCriteria& criteria) {
@@ -27,7 +27,7 @@ std::vector<Run> branches(double time, const std::vector<double>& airspeed,
   });
 }
 
-// Branches that follow one another at one height as one speed run.
+// Merges consecutive branches at one height to one speed run.
 std::vector<Run> joined(const std::vector<Run>& runs, const std::vector<double>& altitude,
                         const RegimeCriteria& criteria) {
   std::vector<Run> longer;
@@ -48,7 +48,7 @@ bool overlaps_any(Run run, const std::vector<Run>& others) {
                      [&](const Run& other) { return run.first < other.end && other.first < run.end; });
 }
 
-// The run with each end where the acceleration begins or ends.
+// Run whose ends are the start and the end of the acceleration.
 Run sharpened(Run run, const std::vector<double>& acceleration, const RegimeCriteria& criteria) {
   const std::size_t reach = 2 * cells_in(criteria.branch_time);
   const std::size_t inside = std::min(reach, run.length() / 2);

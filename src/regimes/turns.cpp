@@ -8,7 +8,7 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t roll_smoothing = 3;       // s: turbulence rocks the wings
+constexpr std::size_t roll_smoothing = 3;       // s: turbulence moves the wings
 constexpr std::size_t straight_smoothing = 10;  // s
 
 struct Turn {
@@ -31,7 +31,7 @@ std::vector<Turn> turns_beyond(double least, const Cells& cells, const std::vect
   return turns;
 }
 
-// The deg of heading from the first known value of a run to the last, positive to the right.
+// Heading change from the first known value of a run to the last, deg, positive to the right.
 double heading_change(const Cells& cells, Run run) {
   std::size_t first = run.first, last = run.end - 1;
   while (first < last && std::isnan(cells.heading[first])) ++first;
@@ -57,13 +57,13 @@ struct Leg {
   double altitude = 0.0;
 };
 
-// What the `shortest` cells of a straight run next to the reversal say of the whole leg.
+// Leg estimated from the `shortest` cells of a straight run next to the reversal.
 Leg leg_beside(const Cells& cells, Run run, bool before, std::size_t shortest) {
   const Run beside = before ? Run{run.end - shortest, run.end} : Run{run.first, run.first + shortest};
   return {beside, mean(cells.heading, beside), mean(cells.altitude, beside)};
 }
 
-// Makes a leg longer, away from the reversal, while the aircraft keeps heading and height.
+// Extends a leg away from the reversal while the aircraft keeps heading and height.
 template <class Keeps>
 void lengthen(Leg& leg, Run straight, bool before, std::size_t longest, Keeps keeps) {
   if (before) {

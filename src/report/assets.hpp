@@ -4,7 +4,7 @@
 
 namespace pcor::internal::report {
 
-// The browser's side of a report, from the files beside this one; the build embeds them (embed.cmake).
+// Style and scripts of a report, from the files in this folder; the build embeds them (embed.cmake).
 extern const std::string_view style;
 extern const std::string_view script;
 

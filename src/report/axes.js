@@ -1,6 +1,6 @@
 // Colours, scales, ticks and the frame of a plot.
 
-// Series after Okabe and Ito, whose colours the colour-blind can tell apart; lighter on a dark page.
+// Colours after Okabe and Ito, which colour-blind readers can distinguish; lighter on a dark page.
 const palettes = {
   light: {
     paper: '#ffffff', ink: '#1c2126', quiet: '#5c6670', grid: '#e8eaec', frame: '#9aa3ab',
@@ -18,12 +18,12 @@ const palettes = {
   },
 };
 
-// The regimes that pcor knows, so that one has the same mark in every report; others follow.
+// Standard regimes of pcor, which have the same mark in every report; others follow.
 const knownRegimes = ['climb', 'descent', 'level', 'turn', 'take-off', 'ground', 'circle', 'cloud', 'pitch manoeuvre',
   'yaw manoeuvre', 'speed run', 'reverse heading'];
 
-// The colour of a regime, and the dashes that tell it from the one before with that colour: every colour twice,
-// whole and in dashes, then in dots.
+// Colour of a regime, and dashes that distinguish it from the previous one with that colour: every colour
+// twice, solid and dashed, then dotted.
 function regimeMark(name, names, theme) {
   const known = knownRegimes.indexOf(name);
   const others = names.filter((each) => !knownRegimes.includes(each));
@@ -35,7 +35,7 @@ function regimeMark(name, names, theme) {
   };
 }
 
-// The colour at `part`, from 0 to 1, of colours at equal distances.
+// Colour at `part`, from 0 to 1, of equidistant colours.
 function mixed(colours, part) {
   const place = Math.min(Math.max(part, 0), 1) * (colours.length - 1);
   const below = Math.min(Math.floor(place), colours.length - 2);
@@ -52,8 +52,8 @@ function scale(from, to, begin, end) {
   return (value) => begin + (value - from) * factor;
 }
 
-// From the least to the greatest with a little room. Where a few values lie far out, the limits leave them out:
-// `beyond` is how many. `always` lies within.
+// Minimum and maximum with a small margin. If a few values lie far out, the limits exclude them: `beyond` is
+// their number. `always` lies within.
 function limits(values, always = []) {
   const sorted = Float64Array.from(values).sort();
   const last = sorted.length - 1;
@@ -81,7 +81,7 @@ function ticks(from, to, about) {
   return {step, all};
 }
 
-// A number as exact as a step asks for, with a true minus.
+// Number rounded to the resolution of a step, with a true minus.
 function number(value, step) {
   if (!Number.isFinite(value)) return '–';
   const large = Math.max(Math.abs(value), step);
@@ -91,13 +91,13 @@ function number(value, step) {
   return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');
 }
 
-// A number with three significant digits.
+// Number with three significant digits.
 function brief(value) {
   const step = value === 0 || !Number.isFinite(value) ? 1 : 10 ** (Math.floor(Math.log10(Math.abs(value))) - 2);
   return number(value, Math.min(step, 1));
 }
 
-// A mean as exact as its error is known.
+// Mean rounded to the precision of its error.
 function withError(mean, error) {
   const step = error > 0 ? 10 ** Math.min(Math.floor(Math.log10(error)) - 1, 0) : 1e-3;
   return `${number(mean, step)} ± ${number(error, step)}`;
@@ -115,7 +115,7 @@ const day = (time) => new Date(time * 1000).toISOString().slice(0, 10);
 
 const timeSteps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10800, 21600, 43200, 86400];
 
-// Round times of day on the time axis, flight by flight; short flights beside others may need more of them.
+// Round times of day on the time axis, flight by flight; short flights next to others may need more of them.
 function timeTicks(samples, [from, to], about) {
   let place = timeSteps.findIndex((one) => one * about >= to - from);
   if (place < 0) place = timeSteps.length - 1;
@@ -138,13 +138,13 @@ function timesOfDay(samples, from, to, step) {
 
 const fontSize = 11.5;
 
-const smallSize = 10.7;  // 8 points in print, and no letters are smaller
+const smallSize = 10.7;  // 8 points in print, the smallest character size
 
-const margin = 68;  // at the left, for the numbers and what the axis says
+const margin = 68;  // left margin for the numbers and the axis label
 
 const small = (theme, align = 'start') => ({fill: theme.quiet, size: fontSize, align});
 
-// Where the plot lies in a picture: margins for the axes, and for a legend of `lines`.
+// Plot area of a picture: margins for the axes, and for a legend of `lines`.
 function plotBox(width, height, {left = margin, right = 14, top = 12, bottom = 44} = {}) {
   return {x: left, y: top, width: width - left - right, height: height - top - bottom};
 }
@@ -154,7 +154,7 @@ function numberTicks(from, to, length, distance) {
   return all.map((value) => ({value, label: number(value, step)}));
 }
 
-// The grid and the numbers of the vertical axis; what it says is turned along it.
+// Grid and numbers of the vertical axis; its label is turned along it.
 function verticalAxis(pen, box, y, {from, to}, label, theme) {
   for (const tick of numberTicks(from, to, box.height, 30)) {
     const at = Math.round(y(tick.value)) + 0.5;
@@ -179,7 +179,7 @@ function horizontalAxis(pen, box, x, {from, to}, label, theme) {
   horizontalTicks(pen, box, placed, label, theme);
 }
 
-// The grid and the numbers of a horizontal axis of logarithms.
+// Grid and numbers of a horizontal logarithmic axis.
 function logarithmicAxis(pen, box, x, {from, to}, label, theme) {
   const all = [];
   for (let power = 10 ** Math.floor(Math.log10(from)); power <= to; power *= 10)
@@ -201,7 +201,8 @@ function shortened(words, width, size) {
   return `${words.slice(0, end)}…`;
 }
 
-// Marks and names in lines above the plot; returns the height they take. Where buttons name the curves, none.
+// Marks and names in lines above the plot; returns their height. If buttons name the curves, the legend is
+// empty.
 function legend(pen, entries, left, right, theme) {
   if (theme.named) return 10;
   let x = left, y = 13;
@@ -217,7 +218,7 @@ function legend(pen, entries, left, right, theme) {
   return y + 9;
 }
 
-// Says at the lower right of the plot how many samples lie outside of it.
+// Prints the number of samples outside of the plot at its lower right.
 function tellBeyond(pen, box, beyond, theme) {
   if (beyond > 0)
     pen.text(box.x + box.width - 4, box.y + box.height - 6, `${countText(beyond)} beyond the axis`,

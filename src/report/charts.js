@@ -1,16 +1,16 @@
-// The pictures. Each draws an item with a pen on width x height and returns what it drew:
-// {points: samples drawn, plot: where, alternative: a sentence, table: {headers, rows}}.
+// Pictures. Each function draws an item with a pen on width x height and returns {points: samples drawn,
+// plot: plot area, alternative: a sentence, table: {headers, rows}}.
 
 const columnsOf = (samples, names) => names.map((name) => samples.columns.get(name));
 
-// The columns of an item that are not switched off, each with its colour.
+// Visible columns of an item, each with its colour.
 const curvesOf = (samples, item, theme) => columnsOf(samples, item.columns)
   .map((column, i) => ({...column, colour: theme.series[i % theme.series.length]}))
   .filter(({name}) => !item.hidden?.has(name));
 
 const listText = (labels) => labels.length > 1 ? `${labels.slice(0, -1).join(', ')} and ${labels.at(-1)}` : labels[0];
 
-// What an axis says of several columns: the words given or the titles, and the unit if they share it.
+// Axis label of several columns: the given words or the titles, and the unit if they share it.
 function sharedLabel(columns, words) {
   const units = new Set(columns.map(({unit}) => unit));
   const unit = units.size === 1 && columns[0].unit ? ` (${columns[0].unit})` : '';
@@ -27,7 +27,7 @@ function statisticsTable(samples, columns) {
   };
 }
 
-// Where samples lie in a picture: x, y, x, y, ...
+// Positions of samples in a picture: x, y, x, y, ...
 function places(indices, xs, ys, x, y) {
   const xy = new Float64Array(2 * indices.length);
   indices.forEach((i, n) => {
@@ -37,10 +37,10 @@ function places(indices, xs, ys, x, y) {
   return xy;
 }
 
-// The columns by which a scale is chosen: those that do not change under the hand, where there are some.
+// Columns that determine a scale: columns that do not change interactively, if there are any.
 const steady = (columns) => columns.some(({live}) => !live) ? columns.filter(({live}) => !live) : columns;
 
-// All values of columns, selected or not: scales stay where they are when the reader selects.
+// All values of columns, selected or not: scales stay fixed during a selection.
 const valuesOf = (samples, columns) => steady(columns).flatMap((column) =>
   samples.indices([column], samples.every).map((i) => column.values[i]));
 
@@ -64,7 +64,7 @@ function shadeIntervals(pen, box, x, samples, theme) {
   }
 }
 
-// The lines of a column: within a pixel only the first, least, greatest and last value.
+// Lines of a column: within a pixel only the first, minimum, maximum and last value.
 function linePaths(samples, values, x, y) {
   const paths = [];
   let path = null, pixel = null;
@@ -89,7 +89,7 @@ function linePaths(samples, values, x, y) {
     pixel.last = i;
   }
   flush();
-  // A sample alone is a short stroke.
+  // An isolated sample is a short stroke.
   return paths.map((one) => one.length > 2 ? one : [one[0] - 1.5, one[1], one[0] + 1.5, one[1]]);
 }
 
@@ -133,7 +133,7 @@ function drawTime(pen, width, height, item, samples, theme) {
   };
 }
 
-// The mean of y in bins of x, with its standard error.
+// Mean of y in bins of x, with its standard error.
 function binned(xs, ys, indices, {from, to}, bins, samplesPerIndependent) {
   const all = Array.from({length: bins}, (_, b) =>
     ({middle: from + (b + 0.5) * (to - from) / bins, count: 0, sum: 0, squares: 0}));
@@ -151,9 +151,9 @@ function binned(xs, ys, indices, {from, to}, bins, samplesPerIndependent) {
   });
 }
 
-const fewest = 5;  // samples in a bin that is shown
+const fewest = 5;  // minimum number of samples in a visible bin
 
-// The bins that are shown, in runs without a gap.
+// Visible bins, in runs without a gap.
 function neighbours(bins) {
   const runs = [[]];
   for (const bin of bins) {
@@ -217,7 +217,7 @@ function drawBinned(pen, width, height, item, samples, theme) {
   };
 }
 
-const levels = 48;  // of colour
+const levels = 48;  // number of colours
 
 function colourBar(pen, box, colours, {from, to}, label, theme) {
   const x = box.x + box.width + 14, width = 11;
@@ -395,10 +395,10 @@ function drawCurves(pen, width, height, item, samples, theme) {
   };
 }
 
-// Every bar has a row of its own, as long as the picture can hold them.
+// Every bar has a separate row, if the picture is high enough.
 const heightOfBars = ({bars}) => 70 + 30 * Math.min(Math.max(bars.length, 2), 40);
 
-// How high the pictures are that have a height of their own.
+// Heights of pictures that do not follow their width.
 const heights = {bars: heightOfBars};
 
 const pictures = {time: drawTime, binned: drawBinned, plane: drawPlane, pair: drawPair, bars: drawBars, curves: drawCurves};

@@ -7,10 +7,10 @@
 
 namespace pcor::internal {
 
-/// The column of that name; null where there is none.
+/// Column with a name; null if absent.
 const ReportColumn* column_named(const std::vector<ReportColumn>& columns, const std::string& name);
 
-/// Whether some sample has a value in all of these columns; false where one of them is not there.
+/// Whether some sample has a value in all of these columns; false if one of them is absent.
 bool meet(const std::vector<ReportColumn>& columns, const std::vector<std::string>& names);
 
 }  // namespace pcor::internal

@@ -1,6 +1,6 @@
 'use strict';
 
-// The samples of the report, and which of them are selected.
+// Samples of the report, and their selection.
 
 function decode(text, Numbers) {
   const letters = atob(text);
@@ -9,7 +9,8 @@ function decode(text, Numbers) {
   return new Numbers(bytes.buffer);
 }
 
-// Whole numbers, each told by what it differs from the one before; behind a difference of zero how many more follow.
+// Whole numbers, each stored as the difference from the previous one; a difference of zero is followed by a
+// repeat count.
 function unpacked(text) {
   const bytes = decode(text, Uint8Array), numbers = [];
   let at = 0, value = 0;
@@ -39,7 +40,7 @@ function median(numbers) {
   return numbers.slice().sort()[numbers.length >> 1];
 }
 
-// Flights stand one after another on the time axis: `position` is in seconds along it, with room between flights.
+// Flights follow one another on the time axis: `position` is in seconds along it, with gaps between flights.
 class Samples {
   constructor(data) {
     this.columns = new Map(data.columns.map((column) => [column.name, decodeColumn(column)]));
@@ -51,7 +52,7 @@ class Samples {
     this.count = times.reduce((sum, flight) => sum + flight.length, 0);
     this.time = new Float64Array(this.count);
     this.position = new Float64Array(this.count);
-    this.breaks = new Uint8Array(this.count);  // 1: no line leads here from the sample before
+    this.breaks = new Uint8Array(this.count);  // 1: not connected to the previous sample
     const room = 0.02 * times.reduce((sum, flight) => sum + flight[flight.length - 1] / 1000, 0);
     let i = 0, offset = 0;
     data.flights.forEach(({name, start}, number) => {
@@ -76,8 +77,8 @@ class Samples {
   }
 
   setIntervals(intervals) {
-    this.intervals = [];  // on the time axis, once for each flight that they meet
-    this.regimes = new Map();  // name to the samples in it, 1 or 0
+    this.intervals = [];  // positions on the time axis, once for each flight that they meet
+    this.regimes = new Map();  // map from name to its samples, 1 or 0
     for (const {name, begin, end} of intervals) {
       if (!this.regimes.has(name)) this.regimes.set(name, new Uint8Array(this.count));
       for (const flight of this.flights) {
@@ -90,7 +91,7 @@ class Samples {
     }
   }
 
-  // The flight and its time (s since 1970) at a place on the time axis.
+  // Flight and time (s since 1970) at a position on the time axis.
   at(position) {
     const flight = this.flights.findLast(({offset}) => offset <= position) ?? this.flights[0];
     return {flight, time: flight.start + Math.min(Math.max(position - flight.offset, 0), flight.duration)};
@@ -98,7 +99,7 @@ class Samples {
 
   get view() { return this.range ?? [0, this.length]; }
 
-  // Selects by place on the time axis and by names of intervals; null and nothing are all.
+  // Selects by position on the time axis and by names of intervals; null and an empty set select all.
   choose(range, names = new Set()) {
     this.range = range;
     this.names = names;
@@ -114,7 +115,7 @@ class Samples {
 
   clear() { this.choose(null); }
 
-  // The sample that is nearest to a place on the time axis.
+  // Sample nearest to a position on the time axis.
   nearest(position) {
     let low = 0, high = this.count - 1;
     while (low < high) {
@@ -125,7 +126,7 @@ class Samples {
     return low > 0 && position - this.position[low - 1] < this.position[low] - position ? low - 1 : low;
   }
 
-  // Selects the samples from t0 to t1, in seconds since 1970; all that lies between on the time axis.
+  // Selects the samples from t0 to t1, in seconds since 1970, and all between them on the time axis.
   select(t0, t1) {
     const inside = this.position.filter((p, i) => this.time[i] >= t0 && this.time[i] <= t1);
     if (inside.length) this.choose([inside[0], inside[inside.length - 1]], this.names);
@@ -133,7 +134,7 @@ class Samples {
 
   get isFiltered() { return this.range !== null || this.names.size > 0; }
 
-  // The indices of the selected samples that have a value in all the columns.
+  // Indices of the selected samples that have a value in all the columns.
   indices(columns, mask = this.selected) {
     const found = [];
     const all = columns.map(({values}) => values);
@@ -146,7 +147,7 @@ class Samples {
   }
 }
 
-// How many of a mask are 1.
+// Number of ones in a mask.
 function countOf(mask) {
   let count = 0;
   for (let i = 0; i < mask.length; ++i) count += mask[i];

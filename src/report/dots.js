@@ -1,6 +1,7 @@
-// Rows of dots with error bars: checks with their verdicts, a ladder, coefficients, regimes.
+// Rows of dots with error bars: checks with their verdicts, steps of a model selection, coefficients,
+// regimes.
 
-// A mark at a place, each with a form of its own, so that it is known without its colour.
+// Marks with distinct forms, which are recognizable without colour.
 const marks = [
   (pen, x, y, colour) => pen.dots([x, y], 8, colour),
   (pen, x, y, colour, paper) => {
@@ -12,21 +13,21 @@ const marks = [
   (pen, x, y, colour) => pen.lines([[x, y - 5.5, x + 5.5, y, x, y + 5.5, x - 5.5, y, x, y - 5.5]], colour, 1.75),
 ];
 
-// What a verdict looks like: the place of its colour, and its mark.
+// Appearance of a verdict: index of its colour, and its mark.
 const tones = {
   good: {colour: (theme) => theme.series[0], mark: marks[0]},
   bad: {colour: (theme) => theme.series[1], mark: marks[2]},
   open: {colour: (theme) => theme.quiet, mark: marks[1]},
 };
 
-const markHeight = 17;  // of a series in a row
+const markHeight = 17;  // height of a series in a row
 
 function dotsHeight(rows, series) {
   return 76 + rows * Math.max(30, 8 + markHeight * series);
 }
 
-// Rows {label, dots: [{value, error}, ...], text, tone, mark}: an axis below that covers `reach`, or else all dots with
-// their bars, a band of what is small, and lines.
+// Rows {label, dots: [{value, error}, ...], text, tone, mark}: an axis below that covers `reach`, or
+// otherwise all dots with their bars, a band of small values, and lines.
 function drawRows(pen, width, height, {rows, series, lines = [], band = null, axis, reach}, theme) {
   cover(pen, width, height, theme);
   const colours = series.map((label, s) => theme.series[s % theme.series.length]);
@@ -36,7 +37,7 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
     ...(band ? [{label: band.label, colour: theme.frame, wide: true}] : [])], width - 14, theme);
   const swatch = rows.some(({mark}) => mark) ? 22 : 0;
   const words = Math.max(0, ...rows.map(({text}) => textWidth(text ?? '', fontSize)));
-  const below = words > 0.3 * width;  // what has no room at the right stands below the names
+  const below = words > 0.3 * width;  // text that does not fit at the right is placed below the names
   const longest = Math.max(...rows.map(({label, text}) =>
     Math.max(textWidth(label, fontSize), below ? textWidth(text ?? '', smallSize) : 0))) + swatch;
   const left = Math.min(longest + 22, (below ? 0.55 : 0.36) * width);
@@ -82,7 +83,7 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
   return {box, points: finite.length};
 }
 
-// Marks and names above rows; returns the height that they take.
+// Marks and names above rows; returns their height.
 function keysAbove(pen, keys, right, theme) {
   let x = 8, y = 13;
   for (const {label, colour, mark, dash, wide} of keys) {
@@ -119,13 +120,14 @@ function drawDots(pen, width, height, item, samples, theme) {
   };
 }
 
-// Of each regime the mean of columns, with the scatter about it as a bar.
+// Mean of columns for each regime, with the scatter about it as a bar.
 function drawRegimes(pen, width, height, item, samples, theme) {
   const columns = columnsOf(samples, item.columns);
   const names = [...samples.regimes.keys()];
   const all = [...names.map((name) => [name, samples.regimes.get(name)]), ['All', samples.every]];
   const scatter = ({mean, rms}) => Math.sqrt(Math.max(rms * rms - mean * mean, 0));
-  // That of all samples, twice as far as they scatter, so that the axis stays where some are selected.
+  // Mean of all samples, plus and minus twice their scatter, so that the axis is independent of the
+  // selection.
   const reach = all.flatMap(([, inside]) => columns.flatMap((column) => {
     const found = statistics(column.values, samples.indices([column], inside));
     return [found.mean - 2 * scatter(found), found.mean + 2 * scatter(found)];

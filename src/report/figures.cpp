@@ -29,7 +29,7 @@ namespace {
 
 constexpr const char* captions = "captions.txt";
 
-// A program that the variable PATH leads to; empty where it leads to none.
+// Program found in the variable PATH; empty if absent.
 std::string program_named(const std::string& name) {
   if (name.find('/') != std::string::npos) return ::access(name.c_str(), X_OK) == 0 ? name : "";
   const char* const path = std::getenv("PATH");
@@ -46,15 +46,16 @@ std::string browser() {
     const std::string found = program_named(chosen);
     if (found.empty())
       throw Error(fmt::format(
-          "figures: CHROMIUM names {}, which is no program; name Chromium or a browser of its kind", chosen));
+          "figures: CHROMIUM names {}, which is not a program; set it to Chromium or a similar browser",
+          chosen));
     return found;
   }
   for (const char* const name : {"chromium", "chromium-browser", "google-chrome"}) {
     if (std::string found = program_named(name); !found.empty()) return found;
   }
   throw Error(
-      "figures: there is no Chromium to draw them; install it (on Debian: apt-get install chromium), set "
-      "CHROMIUM to a browser of its kind, or save the pictures of a --report from your own browser");
+      "figures: Chromium was not found; install it (on Debian: apt-get install chromium), set CHROMIUM to a "
+      "similar browser, or save the pictures of a --report from a browser");
 }
 
 std::string file_address(const fs::path& path) {
@@ -68,27 +69,27 @@ std::string file_address(const fs::path& path) {
   return address;
 }
 
-// A new folder for the page and what the browser keeps.
+// New folder for the page and the files of the browser.
 fs::path make_work_folder() {
   std::error_code code;
   const fs::path temporary = fs::absolute(fs::temp_directory_path(code), code);
   std::string name = (temporary / "pcor-figures-XXXXXX").string();
   if (code || ::mkdtemp(name.data()) == nullptr)
-    throw Error(Error::Code::output, "figures: nothing can be written in the folder for temporary files " +
+    throw Error(Error::Code::output, "figures: cannot write to the folder for temporary files " +
                                          temporary.string() +
                                          "; check the space there, or set TMPDIR to another folder");
   return name;
 }
 
-// What a page leaves in place of itself. A shell starts the browser and removes the folder, also where this
-// program is stopped; a browser that hangs is ended.
+// Final content of a page. A shell starts the browser and removes the folder, also if this program is
+// stopped; a browser that hangs is killed.
 std::string dumped(const std::string& program, const std::string& html, const std::string& wish) {
   const fs::path folder = make_work_folder();
   const fs::path page = folder / "page.html";
   std::ofstream stream(page, std::ios::binary);
   stream << html;
   stream.close();
-  const bool is_root = ::geteuid() == 0;  // for whom Chromium has no sandbox
+  const bool is_root = ::geteuid() == 0;  // Chromium has no sandbox for root
   const std::string command = fmt::format(
       "folder={0}\n"
       "trap 'rm -rf -- \"$folder\"' EXIT; trap 'exit 1' INT TERM HUP PIPE\n"
@@ -102,7 +103,7 @@ std::string dumped(const std::string& program, const std::string& html, const st
   if (pipe == nullptr) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
-    throw Error(Error::Code::output, "figures: the page for the browser cannot be written in " +
+    throw Error(Error::Code::output, "figures: cannot write the page for the browser to " +
                                          folder.parent_path().string() +
                                          "; check the space there, or set TMPDIR to another folder");
   }
@@ -112,8 +113,9 @@ std::string dumped(const std::string& program, const std::string& html, const st
     text.append(buffer.data(), count);
   if (::pclose(pipe) != 0) {
     while (!text.empty() && text.back() == '\n') text.pop_back();
-    throw Error(fmt::format("figures: {} failed: {}; start it by hand, or set CHROMIUM to another browser",
-                            program, text.substr(text.rfind('\n') + 1)));
+    throw Error(
+        fmt::format("figures: {} failed: {}; start it from a shell, or set CHROMIUM to another browser",
+                    program, text.substr(text.rfind('\n') + 1)));
   }
   return text;
 }
@@ -153,7 +155,7 @@ Files files_of(const std::string& text) {
   return files;
 }
 
-// The pictures of an earlier run, which its captions name.
+// Pictures of an earlier run, listed in its captions.
 std::vector<fs::path> earlier_pictures(const fs::path& folder) {
   std::vector<fs::path> all;
   std::ifstream stream(folder / captions);
@@ -184,12 +186,12 @@ void require_figures(const fs::path& folder) {
   OutputTransaction none;
   none.make_folder(folder);
   const AtomicFile probe(folder / captions);
-  // Some start and see nothing: one in a container of its own does not read the folder of temporary files.
+  // Some browsers start without access: a containerized one does not read the folder of temporary files.
   if (dumped(program, fmt::format("<!DOCTYPE html><title>figures</title><p>{}", sign), "").find(sign) ==
       std::string::npos)
     throw Error(
-        fmt::format("figures: {} shows nothing of a page in {}; set TMPDIR to a folder that it reads, "
-                    "or CHROMIUM to another browser",
+        fmt::format("figures: {} cannot read a page in {}; set TMPDIR to a readable folder, or CHROMIUM to "
+                    "another browser",
                     program, fs::temp_directory_path().string()));
 }
 

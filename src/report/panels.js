@@ -1,4 +1,4 @@
-// The panels on the page: picture, buttons, numbers in words; and what the reader selects.
+// Panels of the page: picture, buttons, table of numbers; and the selection.
 
 function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
@@ -10,7 +10,7 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-// Two numbers between which there is room, as far as numbers go.
+// Two distinct numbers, further apart than rounding errors.
 const isRange = (range) => Array.isArray(range) && range.length === 2 && range.every(Number.isFinite) &&
   range[1] - range[0] > 1e-9 * Math.max(Math.abs(range[0]), Math.abs(range[1]));
 
@@ -24,8 +24,8 @@ function fillTable(table, {headers, rows}) {
   table.replaceChildren(make('thead', {}, head), make('tbody', {}, ...body));
 }
 
-// What pictures are saved for: how wide they are drawn, in the 96 dots of an inch that letters of 11.5 are 8.6
-// points in, and how wide they are shown.
+// Purposes of saved pictures: drawn width, in 96 pixels per inch, at which characters of 11.5 pixels are 8.6
+// points, and displayed width.
 const uses = {
   page: {words: 'a page, 180 mm', drawn: 680, shown: 680},
   column: {words: 'a column, 86 mm', drawn: 325, shown: 325},
@@ -36,7 +36,7 @@ const overTime = ({kind}) => kind === 'time' || kind === 'strip';
 
 const titleSize = 13;
 
-// A title in lines that fit, and how high they are together.
+// Title broken into lines, and their total height.
 function titleLines(title, width) {
   const lines = [''];
   for (const word of title.split(' ')) {
@@ -82,7 +82,7 @@ class Panel {
     return make('label', {class: 'choice'}, 'Horizontal axis', select);
   }
 
-  // Buttons that switch curves off and on, where there are several; one curve always stays.
+  // Buttons that switch curves off and on, if there are several; one curve always remains.
   makeSwitches() {
     const {item, report} = this;
     if (!['time', 'binned', 'quantiles'].includes(item.kind) || item.columns.length < 2) return [];
@@ -113,7 +113,7 @@ class Panel {
 
   draw() {
     const {samples, theme, sharpness} = this.report;
-    // A sheet of paper is as wide as 680 dots; what is drawn wider is made smaller, letters and all.
+    // A sheet of paper is 680 pixels wide; wider drawings are reduced, including text.
     const width = this.report.printing ? 680 : Math.max(Math.round(this.picture.clientWidth), 280);
     this.width = width;
     this.canvas.width = width * sharpness;
@@ -135,13 +135,13 @@ class Panel {
     fillTable(this.numbers, table);
   }
 
-  // To be called when the reader changed this picture alone.
+  // Call after a change of this picture alone.
   changed() {
     this.draw();
     this.report.remember();
   }
 
-  // Whether curves are switched off, or the vertical axis is not whole.
+  // Whether curves are switched off, or the vertical axis is enlarged.
   get isChanged() { return this.item.hidden?.size > 0 || this.item.vertical !== undefined; }
 
   reset() {
@@ -149,7 +149,7 @@ class Panel {
     this.item.vertical = undefined;
   }
 
-  // The columns that the readout tells.
+  // Columns of the readout.
   get told() {
     const {kind, columns, choice, choices, x, y, latitude, longitude, colour} = this.item;
     if (kind === 'time' || kind === 'strip') return columns;
@@ -157,7 +157,7 @@ class Panel {
     return [x, y, latitude, longitude, colour].filter((name) => name);
   }
 
-  // Shows where the sample `i` is in this picture, and its values; undefined for none.
+  // Shows the position of sample `i` in this picture, and its values; undefined for no sample.
   point(i) {
     const {samples} = this.report;
     const {plot, place} = this.drawn;
@@ -173,7 +173,7 @@ class Panel {
     Object.assign(this.spot.style, {left: `${at.x}px`, top: `${at.y}px`});
   }
 
-  // The selected sample that is drawn nearest to a place, no further than a finger is wide.
+  // Selected sample nearest to a position, within the width of a finger.
   nearest(x, y) {
     const {samples} = this.report;
     let found, least = 18 ** 2;
@@ -186,7 +186,7 @@ class Panel {
     return found;
   }
 
-  // How wide the picture is drawn for what it is saved for, how high, and how wide it is shown.
+  // Drawn width and height of the picture for its purpose, and displayed width.
   get exportSize() {
     const {drawn, shown} = uses[this.report.use];
     const half = this.item.kind === 'time' ? 0.4 : 0.6;
@@ -195,7 +195,7 @@ class Panel {
     return {width: drawn, height, shown};
   }
 
-  // The picture on white, below its title.
+  // Picture on white, below its title.
   drawForPaper(pen, width, height, title) {
     cover(pen, width, height + title.height, palettes.light);
     title.lines.forEach((words, i) =>
@@ -224,7 +224,7 @@ class Panel {
 
   get caption() { return this.section.querySelector('.caption')?.textContent ?? ''; }
 
-  // What the picture shows and how it came to be, for those who do not see it or find it alone.
+  // Description of the picture and its provenance, for screen readers and for the picture without the page.
   get description() {
     const origin = [...document.querySelectorAll('footer div')].map((fact) =>
       `${fact.querySelector('dt').textContent}: ${fact.querySelector('dd').textContent}.`);
@@ -257,8 +257,8 @@ class Pointing {
   }
 }
 
-// In a time panel the reader selects a range by dragging along it, and enlarges the vertical axis by dragging up
-// or down; the wheel with Ctrl, or two keys, zoom where the pointer is.
+// In a time panel the reader selects a range by dragging along it, and enlarges the vertical axis by dragging
+// up or down; the wheel with Ctrl, or two keys, zoom at the pointer.
 class TimeSelector {
   constructor(panel, report) {
     Object.assign(this, {panel, report});
@@ -281,7 +281,7 @@ class TimeSelector {
 
   get samples() { return this.report.samples; }
 
-  // Where the pointer is: pixels in the plot, and the place on the time axis.
+  // Pointer: pixels in the plot, and the position on the time axis.
   at(event) {
     const {plot} = this.panel.drawn;
     const [from, to] = this.samples.view;
@@ -294,7 +294,7 @@ class TimeSelector {
   begin(event) {
     if (event.button !== 0) return;
     this.from = this.to = this.at(event);
-    if (event.isTrusted) this.panel.picture.setPointerCapture(event.pointerId);  // else there is no pointer
+    if (event.isTrusted) this.panel.picture.setPointerCapture(event.pointerId);  // otherwise there is no pointer
   }
 
   // Whether the reader drags up or down rather than along.
@@ -343,13 +343,13 @@ class TimeSelector {
     this.report.point(undefined);
   }
 
-  // Shows so much of the view, with the place where it is; all of it where nothing is left out.
+  // Changes the visible fraction of the view around a position; the full range removes the limits.
   zoom(factor, position, lasting = true) {
     const [from, to] = this.samples.view;
     this.show(position - factor * (position - from), factor * (to - from), lasting);
   }
 
-  // No less than a few samples.
+  // At least a few samples.
   show(begin, wanted, lasting = true) {
     const most = this.samples.length;
     const length = Math.max(wanted, Math.min(5 * most / this.samples.count, most));
@@ -357,7 +357,7 @@ class TimeSelector {
     this.report.choose(length >= most ? null : [start, start + length], this.samples.names, lasting);
   }
 
-  // A turn of the wheel alone moves the page. What a turn of many notches comes to is one step to be undone.
+  // A turn of the wheel alone scrolls the page. A turn of many notches is one undo step.
   wheel(event) {
     if (!event.ctrlKey) return;
     event.preventDefault();
@@ -369,7 +369,8 @@ class TimeSelector {
   key(event) {
     const {samples, report} = this;
     const [from, to] = samples.view, length = to - from;
-    const turn = {ArrowUp: 0.25, ArrowDown: 1}[event.key];  // of the vertical axis, to both sides of its middle
+    const turn = {ArrowUp: 0.25, ArrowDown: 1}[event.key];  // fraction of the vertical axis, to both sides of
+                                                            // its middle
     const step = event.key === 'ArrowLeft' ? -1 : event.key === 'ArrowRight' ? 1 : 0;
     if (event.key === 'Escape') report.clear();
     else if (event.key === '+') this.zoom(0.5, (from + to) / 2);
@@ -388,7 +389,7 @@ class TimeSelector {
   }
 }
 
-// Samples, bias and rms for each name of intervals, of what is selected.
+// Samples, bias and rms of the selection for each name of intervals.
 class Regimes {
   constructor(item, section, report) {
     Object.assign(this, {item, report});
@@ -416,21 +417,21 @@ class Regimes {
     this.table.replaceChildren(make('thead', {}, first, second), make('tbody', {}, ...rows));
   }
 
-  // One number of decimals for a row: three digits of its least rms.
+  // Common number of decimals of a row: three digits of its minimum rms.
   step(all) {
     const least = Math.min(...all.map(({rms}) => rms).filter((rms) => rms > 0));
     return Number.isFinite(least) ? 10 ** Math.min(Math.floor(Math.log10(least)) - 2, 0) : 1;
   }
 }
 
-// What is selected, in words, and buttons for the names of intervals.
+// Description of the selection, and buttons for the names of intervals.
 class SelectionBar {
   constructor(report) {
     this.report = report;
     this.words = make('span', {role: 'status', class: 'selected'});
     this.hint = make('span', {class: 'hint'}, 'Drag along a picture over time to select, up or down to enlarge it; Ctrl and the wheel zoom');
     this.clear = make('button', {type: 'button', class: 'clear', onclick: () => report.clear()}, 'Show all');
-    this.undo = make('button', {type: 'button', title: 'Back to what was shown before', onclick: () => history.back()}, 'Undo');
+    this.undo = make('button', {type: 'button', title: 'Restore the previous view', onclick: () => history.back()}, 'Undo');
     this.chips = [...report.samples.regimes.keys()].map((name) => make('button', {
       'type': 'button', 'class': 'chip', 'aria-pressed': 'false', 'onclick': () => this.toggle(name),
     }, make('span', {class: 'swatch'}), name));
@@ -455,7 +456,7 @@ class SelectionBar {
       ? `${where}${countText(samples.selectedCount)} of ${plural(samples.count, 'sample')}`
       : `All ${plural(samples.count, 'sample')}`;
     if (!samples.selectedCount && samples.names.size)
-      this.words.textContent += `: ${[...samples.names].join(' or ')} is not in this time`;
+      this.words.textContent += `: ${[...samples.names].join(' or ')} has no samples in this time range`;
     this.clear.hidden = !samples.isFiltered && !this.report.panels.some((panel) => panel.isChanged);
     this.undo.hidden = this.report.steps === 0;
     this.hint.hidden = samples.isFiltered || !this.report.panels.some(({item}) => item.kind === 'time');

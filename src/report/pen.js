@@ -1,11 +1,11 @@
-// One way to draw, and two papers: a canvas for the screen and PNG, text for SVG.
+// One drawing interface for two outputs: a canvas for the screen and PNG, text for SVG.
 //
 //   rect(x, y, width, height, fill, opacity)
 //   lines(paths, stroke, width, dash)      each path is x, y, x, y, ... in one array
-//   dots(xy, size, fill, opacity)          squares around x, y, x, y, ...; one per pixel is enough
+//   dots(xy, size, fill, opacity)          squares around x, y, x, y, ...; one per pixel
 //   text(x, y, words, {fill, size, align: start | middle | end, weight, turn: degrees})
-//   clip(box, draw)                        draws inside the box {x, y, width, height} only
-//   below(height, draw)                    draws so much further down
+//   clip(box, draw)                        limits drawing to the box {x, y, width, height}
+//   below(height, draw)                    draws `height` further down
 
 const fontFamily = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 

@@ -1,6 +1,6 @@
-// Whether values are as a normal distribution has them: their quantiles against its own.
+// Comparison of values with a normal distribution by quantiles.
 
-// The value of a standard normal distribution below which a part of it lies, from its integral in small steps.
+// Quantile of the standard normal distribution, from its integral in small steps.
 const normalQuantile = (() => {
   const step = 0.005, most = 5, parts = [0];
   for (let x = -most + step / 2; x < most; x += step)
@@ -18,7 +18,7 @@ const normalQuantile = (() => {
 
 const mostQuantiles = 300;
 
-// Values at equal distances along the distribution, the least and the greatest among them.
+// Values at equal probability steps, including minimum and maximum.
 function quantilesOf(sorted) {
   const ends = sorted.length > mostQuantiles ? normalQuantile(1 - 0.5 / sorted.length) : 0;
   const count = Math.min(sorted.length, mostQuantiles);
@@ -69,11 +69,11 @@ function drawQuantiles(pen, width, height, item, samples, theme) {
   return {
     points: all.reduce((sum, {sorted}) => sum + sorted.length, 0),
     plot: box,
-    alternative: `Quantiles against those of a normal distribution; beyond three standard deviations, of which a normal ` +
+    alternative: `Quantiles against the quantiles of a normal distribution; beyond three standard deviations, of which a normal ` +
       `distribution has 0.27 %, lie ${listText(all.map((each) =>
         `${number(100 * beyond(each), 0.01)} % of ${each.title}`))}`,
     table: {
-      headers: ['', 'Samples', 'Median', 'Standard deviation, from the quartiles', 'Beyond 3 of them', 'Of a normal distribution'],
+      headers: ['', 'Samples', 'Median', 'Standard deviation, from the quartiles', 'Beyond 3 standard deviations', 'Normal distribution'],
       rows: all.map((each) => [each.label, countText(each.sorted.length), brief(each.middle), brief(each.spread),
         `${number(100 * beyond(each), 0.01)} %`, '0.27 %']),
     },

@@ -1,7 +1,7 @@
 // Starts the page. `window.pcorReport` is the report for other scripts and for the tests.
 //
-// Words after # in the address: "light" and "dark" choose the colours, "selftest" has the page test itself,
-// "export" leaves only the pictures, for figures.cpp, and "for=slide" says what they are for (see `uses`).
+// Words after # in the address: "light" and "dark" choose the colours, "selftest" runs the test of the page,
+// "export" keeps only the pictures, for figures.cpp, and "for=slide" sets their purpose (see `uses`).
 
 const wishes = location.hash.slice(1).split('+');
 
@@ -12,9 +12,9 @@ class ReportPage {
     window.addEventListener('error', ({message}) => this.errors.push(message));
     window.addEventListener('unhandledrejection', ({reason}) => this.errors.push(String(reason)));
     this.printing = false;
-    // Of pictures that are saved.
+    // Purpose of saved pictures.
     this.use = Object.keys(uses).find((use) => wishes.includes(`for=${use}`)) ?? 'page';
-    this.steps = 0;  // that can be undone
+    this.steps = 0;  // number of steps that can be undone
     this.darkMedia = window.matchMedia('(prefers-color-scheme: dark)');
     this.samples = new Samples(data);
     this.panels = [];
@@ -91,13 +91,13 @@ class ReportPage {
     if (this.samples.count) this.bar.draw();
   }
 
-  // Shows a sample in every picture; undefined for none.
+  // Shows a sample in every picture; undefined for no sample.
   point(i) {
     this.cursor = i;
     for (const panel of this.panels) panel.point(i);
   }
 
-  // Says what only pictures show to those who hear the page.
+  // Announces changes of pictures to screen readers.
   tell(words) { this.spoken.textContent = words; }
 
   choose(range, names, lasting = true) {
@@ -113,7 +113,7 @@ class ReportPage {
     this.remember();
   }
 
-  // What is shown, in the address: it can be sent to a colleague, and the button of the browser goes back.
+  // Stores the state in the address: it can be sent to a colleague, and the back button of the browser works.
   remember() {
     const view = {};
     const {range, names} = this.samples;
@@ -134,13 +134,13 @@ class ReportPage {
       history.pushState({steps: this.steps + 1}, '', address);
       if ((location.hash || '#') === address) ++this.steps;
     } catch (error) {
-      // A browser takes so many steps in a time; what is shown is shown all the same.
+      // A browser limits the rate of such steps; the page itself is still updated.
       if (error.name !== 'SecurityError') throw error;
     }
     if (this.samples.count) this.bar.draw();
   }
 
-  // Shows what the address says; what it says of another report is passed over.
+  // Restores the state from the address; parts of other reports are ignored.
   recall() {
     const {samples} = this;
     let view = {};
@@ -167,7 +167,7 @@ class ReportPage {
     this.draw();
   }
 
-  // The titles of a long page, to go to; and what pictures are saved for.
+  // Table of contents of a long page, and the purpose of saved pictures.
   addGuide() {
     const select = make('select', {onchange: () => { this.use = select.value; }},
       ...Object.entries(uses).map(([value, {words}]) => make('option', {value}, words)));
@@ -200,13 +200,13 @@ class ReportPage {
     return {from, to, names: [...names], count: selectedCount};
   }
 
-  // The picture of a panel, counted from 0, as the text of an SVG file.
+  // Picture of a panel, counted from 0, as the text of an SVG file.
   svg(panel) { return this.panels[panel].svg(); }
 
-  // The pictures that do not hang on what the reader tries.
+  // Pictures that do not depend on interactive changes.
   get figures() { return this.panels.filter(({item}) => !item.isLive); }
 
-  // Every figure, and what it shows, as lines "NAME BASE64".
+  // All figures and their captions, as lines "NAME BASE64".
   exportText() {
     const letters = (bytes) => bytes.reduce((text, byte) => text + String.fromCharCode(byte), '');
     const base64 = (text) => btoa(letters(new TextEncoder().encode(text)));

@@ -20,7 +20,7 @@ namespace {
 [[noreturn]] void fail(const std::string& what) { throw Error("report: " + what); }
 
 [[noreturn]] void fail_empty(const std::string& title) {
-  fail("panel '" + title + "' would be empty: no sample has a value there; leave the panel out");
+  fail("panel '" + title + "' would be empty: no sample has a value; remove the panel");
 }
 
 class Columns {
@@ -29,7 +29,7 @@ class Columns {
     std::set<std::string> names;
     for (const ReportColumn& column : report.columns) {
       if (!names.insert(column.name).second)
-        fail("two columns are named '" + column.name + "'; give each its own name");
+        fail("two columns are named '" + column.name + "'; use distinct names");
       if (column.values.size() != report.time.size())
         fail("column '" + column.name + "' has " + std::to_string(column.values.size()) + " values for " +
              std::to_string(report.time.size()) + " samples; give one per sample, NaN where missing");
@@ -73,7 +73,7 @@ struct CheckItem {
     if (panel.bins == 0) fail("panel '" + panel.title + "' has no bins; give at least one");
     if (!(panel.autocorrelation_time >= 1.0))
       fail("panel '" + panel.title +
-           "': samples_per_independent is not a number from 1 on; 1 is for independent samples");
+           "': samples_per_independent must be a number from 1 on; 1 is for independent samples");
     if (panel.x_choices.empty()) fail_empty(panel.title);
     for (const std::string& x : panel.x_choices) {
       bool found = false;
@@ -110,7 +110,7 @@ struct CheckItem {
       for (std::size_t i = 0; i < curve.x.size(); ++i) {
         if (panel.log_x && !(curve.x[i] > 0.0))
           fail("curve '" + curve.label + "' of panel '" + panel.title +
-               "' has a place at or below zero on a logarithmic axis; leave it out");
+               "' has a position at or below zero on a logarithmic axis; remove it");
         if (std::isfinite(curve.y[i])) ++shown;
       }
     }
@@ -138,7 +138,8 @@ struct CheckItem {
 
   void operator()(const WhatIfPanel& panel) const {
     if (!columns.meet(panel.title, {panel.residual})) fail_empty(panel.title);
-    if (panel.effects.empty()) fail("panel '" + panel.title + "' has no effect to switch on; leave it out");
+    if (panel.effects.empty())
+      fail("panel '" + panel.title + "' has no effect to switch on; remove the panel");
     for (const WhatIfCoefficient& coefficient : panel.coefficients)
       if (coefficient.column.size() != columns.samples())
         fail("coefficient '" + coefficient.name + "' of panel '" + panel.title + "' has " +
@@ -161,16 +162,15 @@ struct CheckItem {
         std::any_of(all.begin(), all.end(), [width](const WhatIfSums& sums) {
           return sums.products.size() != width * (width + 1) / 2;
         }))
-      fail("panel '" + panel.title + "' has sums that are not of its " +
+      fail("panel '" + panel.title + "' has incomplete sums or a size other than " +
            std::to_string(panel.coefficients.size()) +
-           " coefficients and the residual, or not for all parts, or none without an effect; give all of "
-           "them");
+           " coefficients and the residual; give the sums of all parts");
     for (const std::string& x : panel.x_choices)
       if (!columns.meet(panel.title, {x, panel.residual})) fail_empty(panel.title);
   }
 
   void operator()(const ReportTable& table) const {
-    if (table.rows.empty()) fail("table '" + table.title + "' has no rows; leave it out");
+    if (table.rows.empty()) fail("table '" + table.title + "' has no rows; remove it");
     for (const auto& row : table.rows)
       if (row.size() != table.headers.size())
         fail("table '" + table.title + "' has a row of " + std::to_string(row.size()) + " cells under " +
@@ -185,7 +185,7 @@ void check_flights(const Report& report) {
   const std::size_t flights = std::max<std::size_t>(starts.size(), 1);
   if (!report.flight_names.empty() && report.flight_names.size() != flights)
     fail(std::to_string(report.flight_names.size()) + " names for " + std::to_string(flights) +
-         " flights; give as many, or none");
+         " flights; give as many, or an empty list");
   for (std::size_t i = 0; i < starts.size(); ++i)
     if (i == 0 ? starts[0] != 0 : starts[i] <= starts[i - 1] || starts[i] >= report.time.size())
       fail("the flights do not begin one after another at samples from 0 on; correct flight_starts");
@@ -195,7 +195,7 @@ void check_time(const Report& report) {
   const auto& time = report.time;
   const auto& starts = report.flight_starts;
   for (std::size_t i = 0; i < time.size(); ++i) {
-    if (!std::isfinite(time[i])) fail("sample " + std::to_string(i) + " has no time; leave it out");
+    if (!std::isfinite(time[i])) fail("sample " + std::to_string(i) + " has no time; remove it");
     const bool first = i == 0 || std::binary_search(starts.begin(), starts.end(), i);
     if (!first && time[i] <= time[i - 1])
       fail("time does not increase at sample " + std::to_string(i) + "; sort the samples of each flight");

@@ -44,9 +44,9 @@ std::string base64(const std::vector<Unsigned>& numbers) {
   return text;
 }
 
-// Whole numbers that are near those before them, in few letters: by what each differs from the one before,
-// the sign as the last bit, in bytes of seven bits of which the last has no eighth; behind a difference of
-// zero how many more such follow; all in base64.
+// Compact encoding of numbers near their predecessors: differences with the sign as the last bit, in bytes of
+// seven bits whose last one has no eighth bit; a difference of zero is followed by a repeat count; all in
+// base64.
 std::string packed(const std::vector<std::uint32_t>& numbers) {
   constexpr std::uint64_t seven_bits = 127;
   std::vector<std::uint8_t> bytes;
@@ -68,8 +68,8 @@ std::string packed(const std::vector<std::uint32_t>& numbers) {
   return base64(bytes);
 }
 
-constexpr double all_steps = 65534.0;   // between the least and the greatest value of a column
-constexpr double steps_along = 4094.0;  // of one that pictures have along their axes alone
+constexpr double all_steps = 65534.0;   // steps between the minimum and the maximum of a column
+constexpr double steps_along = 4094.0;  // steps of a column used along axes only
 
 // 65535 is missing; any other number n is `least` + n * `step`.
 json quantised(const ReportColumn& column, double most = all_steps) {
@@ -92,7 +92,7 @@ json quantised(const ReportColumn& column, double most = all_steps) {
           {"step", step},        {"values", packed(numbers)}};
 }
 
-// Which columns are only along the axes of pictures, where no more can be seen than a pixel.
+// Columns used only along the axes of pictures, where the resolution is a pixel.
 class AlongAxes {
  public:
   explicit AlongAxes(const Report& report) {
@@ -123,7 +123,7 @@ class AlongAxes {
   void operator()(const StripPanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
   void operator()(const RegimePanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
   void operator()(const QuantilePanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
-  // What has no columns.
+  // Panels without columns.
   void operator()(const BarPanel&) {}
   void operator()(const CurvePanel&) {}
   void operator()(const DotPanel&) {}
@@ -135,8 +135,8 @@ class AlongAxes {
   std::set<std::string> up_{};
 };
 
-// Each flight with the time of its samples: `start` in seconds since 1970, the milliseconds from each sample
-// to the next, the first of them from the start to itself.
+// Flights with the time of their samples: `start` in seconds since 1970, and the milliseconds between
+// successive samples, beginning with the difference between the first one and the start.
 json flights(const Report& report) {
   constexpr double most = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::size_t> bounds = report.flight_starts;
@@ -162,7 +162,7 @@ json flights(const Report& report) {
   return all;
 }
 
-// To what a barb shows.
+// Rounded to the resolution of a barb.
 double rounded(double speed) { return std::round(10.0 * speed) / 10.0; }
 
 const char* to_string(ReportTone tone) {
@@ -186,10 +186,10 @@ json sums_json(const std::vector<WhatIfSums>& all) {
   return sums;
 }
 
-// The samples at which the columns are kept, and their values there.
+// Samples at which the columns are kept, and their values there.
 json what_if_columns(const WhatIfPanel& panel, const Report& report) {
   constexpr std::size_t most = 4000;
-  // Of what is kept pictures are drawn, in which a hundredth of the noise is nothing.
+  // The kept values are drawn only; a hundredth of the noise is invisible.
   const double enough = 0.01 * panel.noise;
   std::vector<ScaledSeries> series;
   for (const WhatIfCoefficient& coefficient : panel.coefficients)
@@ -338,7 +338,7 @@ struct ItemJson {
   json operator()(const ReportText&) const { return json::object(); }
 };
 
-/// What a terminal or a page would obey is shown.
+/// Escapes characters that a terminal or a page would interpret.
 void show_texts(json& data) {
   if (data.is_string()) {
     data = shown_text(data.get_ref<const std::string&>());

@@ -9,10 +9,10 @@ namespace pcor::internal::report {
 // Throws Error if the report cannot be drawn: see report_html.
 void check(const Report& report);
 
-// What the browser draws from: the samples, the intervals and the panels, as JSON in which no '<' occurs.
+// Input of the browser: samples, intervals and panels, as JSON without the character '<'.
 std::string data_json(const Report& report);
 
-// "time", "binned", ...: what the browser calls the kind of an item.
+// Kind of an item in the browser: "time", "binned", ...
 const char* kind_of(const ReportItem& item);
 
 }  // namespace pcor::internal::report

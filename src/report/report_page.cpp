@@ -49,7 +49,7 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
-// Nothing for no text.
+// Empty for an empty text.
 std::string element(std::string_view tag, std::string_view text) {
   return text.empty() ? "" : fmt::format("<{0}>{1}</{0}>\n", tag, escaped(text));
 }
@@ -58,14 +58,14 @@ std::string element(std::string_view tag, std::string_view kind, std::string_vie
   return text.empty() ? "" : fmt::format(R"(<{0} class="{1}">{2}</{0}>)", tag, kind, escaped(text)) + "\n";
 }
 
-// Whether a cell is a number, perhaps with its error or unit: "-1.2e-3", "0.3 ± 0.1", "12 %".
+// Whether a cell is a number, optionally with its error or unit: "-1.2e-3", "0.3 ± 0.1", "12 %".
 bool is_numeric(const std::string& cell) {
   char* end = nullptr;
   std::strtod(cell.c_str(), &end);
   return end != cell.c_str() && (*end == '\0' || *end == ' ');
 }
 
-// A cell with more letters may take several lines.
+// A cell with more characters may take several lines.
 constexpr std::size_t max_on_a_line = 60;
 
 std::string table(const ReportTable& table) {
@@ -91,7 +91,7 @@ std::string table(const ReportTable& table) {
                      escaped(table.title), head, body);
 }
 
-// What an item says without the browser's script: its caption, its table, its text.
+// Content of an item without the browser's script: its caption, its table, its text.
 struct ItemBody {
   template <typename Panel>
   std::string operator()(const Panel& panel) const {
@@ -113,7 +113,7 @@ bool takes_half(const ReportItem& item) {
          std::holds_alternative<CurvePanel>(item) || std::holds_alternative<QuantilePanel>(item);
 }
 
-// Pictures that are not over time stand in pairs; one that is left over takes the whole width.
+// Pictures that are not over time are placed in pairs; a single remaining one takes the whole width.
 std::string items(const Report& report) {
   std::string html;
   bool second = false;
@@ -157,7 +157,7 @@ std::string foot(const Report& report) {
   return report.origin.empty() ? "" : "<footer>\n" + info(report.origin) + "</footer>\n";
 }
 
-// The script as a policy names it, so that the browser runs no other: its SHA-256 in base 64.
+// Hash of the script for the content security policy, which prevents other scripts: its SHA-256 in base 64.
 std::string hash_of(std::string_view script) {
   constexpr std::size_t bytes = 32;
   std::array<unsigned char, bytes> digest{};

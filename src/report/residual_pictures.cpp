@@ -19,7 +19,7 @@ std::vector<std::string> present(const Report& report, std::vector<std::string> 
   return names;
 }
 
-// The usual distance of samples, s.
+// Median sampling interval, s.
 double step_of(const Report& report) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < report.time.size(); ++i) {
@@ -33,11 +33,12 @@ double step_of(const Report& report) {
 void add_regimes(Report& report, const std::vector<std::string>& residuals) {
   const std::vector<std::string> shown = present(report, residuals);
   if (shown.empty() || report.intervals.empty()) return;
-  report.items.emplace_back(RegimePanel{
-      "Residual by regime",
-      "Dots are the mean of the selected samples of a regime, bars the scatter about it, the rms is at the "
-      "right. A mean off zero in one regime is an effect of what is flown there.",
-      shown, "residual"});
+  report.items.emplace_back(
+      RegimePanel{"Residual by regime",
+                  "Dots are the mean of the selected samples of a regime, bars the scatter about it; the rms "
+                  "is at the right. A mean different from zero in one regime indicates a missing effect that "
+                  "depends on the manoeuvre.",
+                  shown, "residual"});
 }
 
 void add_distributions(Report& report, const std::vector<std::string>& residuals) {
@@ -45,9 +46,8 @@ void add_distributions(Report& report, const std::vector<std::string>& residuals
   if (shown.empty()) return;
   CurvePanel spectrum{
       "Residual by period",
-      "The rms of the part of the residual within an octave about each period, with standard errors: "
-      "what an effect of manoeuvres leaves lies at their periods, noise without memory rises to "
-      "short ones.",
+      "Rms of the residual within an octave about each period, with standard errors: missing effects of "
+      "manoeuvres appear at the periods of the manoeuvres, white noise rises towards short periods.",
       {},
       "period",
       "rms per octave",
@@ -63,11 +63,11 @@ void add_distributions(Report& report, const std::vector<std::string>& residuals
           {column.title, std::move(found.period), std::move(found.rms), std::move(found.error)});
   }
   if (!spectrum.curves.empty()) report.items.emplace_back(std::move(spectrum));
-  report.items.emplace_back(QuantilePanel{
-      "Quantiles of the residual",
-      "Noise lies on the line, whose slope is its standard deviation. Ends that turn away are outliers "
-      "or an effect that acts at times only.",
-      shown, "residual"});
+  report.items.emplace_back(
+      QuantilePanel{"Quantiles of the residual",
+                    "Normal noise lies on the line, whose slope is its standard deviation. Ends that deviate "
+                    "indicate outliers or an intermittent effect.",
+                    shown, "residual"});
 }
 
 void add_strip(Report& report) {
@@ -75,8 +75,8 @@ void add_strip(Report& report) {
   if (shown.empty()) return;
   report.items.emplace_back(
       StripPanel{"Height, speed and regimes",
-                 "What was flown, with a lane for each regime. Drag over a time range, and "
-                 "every picture shows its samples alone.",
+                 "Altitude, speed and regimes of the flight, with a lane for each regime. Drag over a time "
+                 "range to restrict every picture to its samples.",
                  std::move(shown)});
 }
 

@@ -7,19 +7,18 @@
 
 namespace pcor::internal {
 
-/// Pictures of residuals and flights that several reports have. Each is added where the report has its
-/// columns.
+/// Pictures of residuals and flights common to several reports. Each is added if the report has its columns.
 
-/// Of each regime the mean and the scatter of residuals.
+/// Mean and scatter of residuals in each regime.
 void add_regimes(Report& report, const std::vector<std::string>& residuals);
 
-/// At which periods residuals are, and whether they are distributed as noise is.
+/// Distribution of residuals over periods, and comparison with normal noise.
 void add_distributions(Report& report, const std::vector<std::string>& residuals);
 
-/// Height and speed, and what was flown: the columns "altitude" and "airspeed" or "true_airspeed".
+/// Height, speed and regimes: the columns "altitude" and "airspeed" or "true_airspeed".
 void add_strip(Report& report);
 
-/// The track, the columns "latitude" and "longitude", with one column by colour, and the wind on request.
+/// Track, from the columns "latitude" and "longitude", with one column by colour, and the wind on request.
 void add_track(Report& report, const std::string& title, const std::string& caption,
                const std::string& colour, std::vector<ReportBarb> wind = {}, bool diverging = true);
 

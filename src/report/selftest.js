@@ -1,4 +1,4 @@
-// The page tests itself: what it finds wrong, as sentences. Run by "#selftest" in the address.
+// Test of the page: returns the failures as sentences. Run by "#selftest" in the address.
 
 // Pixels of the plot that are clearly coloured: the frame, the grid and the words are grey, the shades of
 // intervals are faint.
@@ -16,7 +16,7 @@ function colouredPixels(panel, sharpness) {
   return count;
 }
 
-// Drags over the middle half of a time panel, zooms there by a key, and lets go by another.
+// Drags over the middle half of a time panel, zooms there by a key, and clears the selection by another.
 function tryTimePanel(panel, report, expect) {
   const {picture, canvas, drawn: {plot}, item: {title}} = panel;
   const left = canvas.getBoundingClientRect().left + plot.x;
@@ -28,7 +28,7 @@ function tryTimePanel(panel, report, expect) {
   pointer('pointerdown', 0.25);
   pointer('pointermove', 0.75);
   expect(panel.section.querySelector('.readout').textContent.includes('UTC'),
-    `'${title}' does not tell what is under the pointer`);
+    `'${title}' shows no values under the pointer`);
   pointer('pointerup', 0.75);
   expect(Math.abs(lasts() - 0.5) < 0.01, `dragging over half of '${title}' selects ${lasts()} of it`);
   press('+');
@@ -45,7 +45,7 @@ function tryTimePanel(panel, report, expect) {
 }
 
 function selfTest(report) {
-  const few = 20;  // points, whose halves may be anything
+  const few = 20;  // minimum number of points; halves of fewer points may have any size
   const wrong = [];
   const expect = (holds, sentence) => { if (!holds) wrong.push(sentence); };
   const {panels, samples} = report;
@@ -79,7 +79,7 @@ function selfTest(report) {
   panels.forEach((panel, i) => {
     const {title, kind} = panel.item;
     const part = half[i] / before[i];
-    if (['bars', 'curves', 'dots'].includes(kind)) expect(part === 1, `'${title}' follows a selection that is not of it`);
+    if (['bars', 'curves', 'dots'].includes(kind)) expect(part === 1, `'${title}' follows a selection of samples that it does not show`);
     else if (before[i] > Math.max(few, 0.9 * samples.count))
       expect(part > 0.2 && part < 0.8, `selecting half leaves '${title}' ${half[i]} of ${before[i]} points`);
     expect(!half[i] || pixelsHalf[i] > Math.min(half[i], 20), `'${title}' is blank with half of the samples`);

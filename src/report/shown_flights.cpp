@@ -13,7 +13,7 @@ namespace pcor::internal {
 
 namespace {
 
-/// Some of the flights, at even distances in the order in which they were flown.
+/// Some of the flights, at even distances in the order of time.
 template <class Begin>
 std::vector<std::size_t> spread(std::vector<std::size_t> flights, std::size_t most, const Begin& begin) {
   std::stable_sort(flights.begin(), flights.end(),
@@ -30,7 +30,7 @@ std::vector<std::size_t> numbers_to(std::size_t count) {
   return all;
 }
 
-/// Leaves the records and intervals of some flights of a report.
+/// Keeps the records and intervals of some flights of a report.
 void show_only(Report& report, const std::vector<std::size_t>& flights) {
   std::vector<std::size_t> samples;
   std::vector<std::size_t> starts;
@@ -93,17 +93,15 @@ void show_flights_over_time(Report& report, std::size_t most) {
                                                 : std::numeric_limits<double>::infinity());
   const std::vector<std::size_t> shown = flights_over_time(begins, most);
   if (shown.size() == begins.size()) return;
-  report.summary.push_back(
-      shown_text(shown.size(), begins.size(), "some that are spread over the time in which they were flown"));
+  report.summary.push_back(shown_text(shown.size(), begins.size(), "flights spread over the campaign"));
   show_only(report, shown);
 }
 
 std::string shown_text(std::size_t shown, std::size_t flights, const std::string& which) {
   if (shown >= flights) return "";
   return fmt::format(
-      "The pictures of samples, and what is selected in them, are of {} of the {} flights: {}. All else is "
-      "of "
-      "all flights.",
+      "The pictures of samples, and selections in them, show {} of the {} flights: {}. All other results "
+      "cover all flights.",
       shown, flights, which);
 }
 

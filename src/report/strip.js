@@ -1,4 +1,4 @@
-// The flight at a glance: columns over time, each on an axis of its own, and below them a lane for every regime.
+// Overview of the flight: columns over time, each on a separate axis, and below them a lane for every regime.
 
 const lane = 15;
 

@@ -7,11 +7,11 @@
 namespace pcor::internal::report {
 namespace {
 
-/// The samples between two that are kept, by their places among those that have values.
+/// Samples between two kept ones, by their indices among the samples with values.
 struct Line {
   std::size_t first = 0;
   std::size_t last = 0;
-  std::size_t worst = 0;  // sample between them
+  std::size_t worst = 0;  // sample with the largest deviation
   double error = 0.0;     // there
 
   bool operator<(const Line& other) const {

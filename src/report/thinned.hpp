@@ -5,19 +5,19 @@
 
 namespace pcor::internal::report {
 
-/// A series of a value per sample, and by how much its values count.
+/// Series with a value per sample, and the scale of its values.
 struct ScaledSeries {
   const std::vector<double>* values;
   double scale = 1.0;
 };
 
-/// The samples between which a straight line in time stands best for all the series, at most so many: first
-/// the ends of each flight, then again and again the sample at which some series is furthest from its line.
-/// Samples at which a series has no value are left out.
+/// Selects samples for which piecewise linear interpolation in time approximates all the series best, up to a
+/// limit: first the ends of each flight, then repeatedly the sample with the largest deviation of any series
+/// from its line. Samples at which a series has no value are excluded.
 ///
 /// @param begins the first sample of each flight
-/// @param most of the samples that are kept, beside two for each flight
-/// @param enough a line that is as near as this to all series (scaled) is not divided
+/// @param most number of kept samples, in addition to two for each flight
+/// @param enough lines with smaller (scaled) deviations of all series are not divided
 std::vector<std::size_t> thinned(const std::vector<double>& time, const std::vector<std::size_t>& begins,
                                  const std::vector<ScaledSeries>& series, std::size_t most, double enough);
 

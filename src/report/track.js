@@ -1,10 +1,10 @@
-// The track over the ground, in a projection of its own: distances from the middle of the track are true.
+// Ground track, in a separate projection: distances from the middle of the track are true.
 
 const earthRadius = 6371;  // km
 
 const radians = (degrees) => degrees * Math.PI / 180;
 
-// Kilometres to the east and the north of a place, along great circles through it.
+// Kilometres to the east and the north of a position, along great circles through it.
 function projectionAbout(latitude, longitude) {
   const [sin, cos] = [Math.sin(radians(latitude)), Math.cos(radians(latitude))];
   return (lat, lon) => {
@@ -15,7 +15,7 @@ function projectionAbout(latitude, longitude) {
   };
 }
 
-// The middle of places on the globe, wherever longitude jumps.
+// Middle of positions on the globe, for any jump of the longitude.
 function middleOf(indices, latitudes, longitudes) {
   const sum = [0, 0, 0];
   for (const i of indices) {
@@ -34,12 +34,12 @@ const degreesText = (degrees, step, [positive, negative]) => {
   return `${number(Math.abs(turned), step)}°${side}`;
 };
 
-// A wind of so many m/s as a barb at a place: the shaft points to where it comes from, in knots by its feathers.
+// Wind in m/s as a barb at a position: the shaft points to the origin of the wind; feathers give knots.
 function barb(pen, x, y, east, north, colour) {
   const speed = Math.hypot(east, north);
   let knots = Math.round(speed * 1.943844 / 5) * 5;
   if (knots < 5) { pen.lines([[x - 3, y, x, y - 3, x + 3, y, x, y + 3, x - 3, y]], colour, 1.25); return; }
-  const [a, b] = [-east / speed, north / speed];  // along the shaft on the picture, whose y is downwards
+  const [a, b] = [-east / speed, north / speed];  // along the shaft on the picture, whose y axis points down
   const at = (along, aside) => [x + along * a - aside * b, y + along * b + aside * a];
   const length = 26, paths = [[...at(0, 0), ...at(length, 0)]];
   let along = length;
@@ -50,7 +50,7 @@ function barb(pen, x, y, east, north, colour) {
   pen.lines(paths, colour, 1.25);
 }
 
-// Where the samples of a track are, in kilometres from its middle, and how far it reaches; found once.
+// Positions of the samples of a track, in kilometres from its middle, and their extent; computed once.
 function placesOf(item, samples) {
   return item.places ??= (() => {
     const [lat, lon] = columnsOf(samples, [item.latitude, item.longitude]);
@@ -66,7 +66,7 @@ function placesOf(item, samples) {
 
 const trackMargins = {left: 58, right: 84, top: 12, bottom: 44};
 
-const trackRoom = 18;  // pixels about the track
+const trackRoom = 18;  // margin around the track, pixels
 
 function drawTrack(pen, width, height, item, samples, theme) {
   const [lat, lon, shade] = columnsOf(samples, [item.latitude, item.longitude, item.colour]);
@@ -80,7 +80,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
   const x = (place) => box.x + box.width / 2 + (place[0] - centre[0]) / perPixel;
   const y = (place) => box.y + box.height / 2 - (place[1] - centre[1]) / perPixel;
 
-  // Parallels and meridians, each with its name where it meets the left side or the bottom.
+  // Parallels and meridians, each with its name at the left side or the bottom.
   const span = [box.width * perPixel / 111 / Math.max(Math.cos(radians(middleLat)), 0.05), box.height * perPixel / 111];
   const grid = (isMeridian) => {
     const middle = isMeridian ? middleLon : middleLat, wide = isMeridian ? Math.min(span[0], 359) : span[1];
@@ -143,7 +143,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
       pen.text(fits ? px + 9 : px - 9, line, words, {...small(theme, fits ? 'start' : 'end'), fill: theme.ink});
     }
   });
-  // No barb so close to another that they meet.
+  // Barbs that do not overlap.
   function drawBarbs() {
     const drawn = [];
     for (const {time, east: u, north: v} of item.wind) {
@@ -152,7 +152,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
       const [px, py] = [x(at.get(i)), y(at.get(i))];
       if (Math.abs(samples.time[i] - time) > 60 || drawn.some(([ox, oy]) => Math.hypot(px - ox, py - oy) < 34)) continue;
       drawn.push([px, py]);
-      const ahead = project(lat.values[i] + 0.01, lon.values[i]);  // where north is on the picture
+      const ahead = project(lat.values[i] + 0.01, lon.values[i]);  // direction of north in the picture
       const turn = Math.atan2(ahead[0] - at.get(i)[0], ahead[1] - at.get(i)[1]);
       barb(pen, px, py, u * Math.cos(turn) + v * Math.sin(turn), v * Math.cos(turn) - u * Math.sin(turn), theme.ink);
     }
@@ -175,7 +175,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
 }
 
 pictures.track = drawTrack;
-// As high as the track asks for at this width.
+// Height required by the track at this width.
 heights.track = (item, samples, width) => {
   const {left, right, top, bottom} = trackMargins;
   const {east, north} = placesOf(item, samples);

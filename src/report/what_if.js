@@ -1,4 +1,4 @@
-// Effects that the reader switches on, with their coefficients on sliders; residual, table, ladder and figures
+// Effects that the reader switches on, with their coefficients on sliders; residual, table, steps and figures
 // follow.
 
 const sliderSteps = 1000;
@@ -16,7 +16,7 @@ class WhatIf {
     this.update();
   }
 
-  // All as it was at first.
+  // Restores the initial state.
   forget() {
     this.on = new Set();
     this.byHand = new Map();
@@ -28,7 +28,7 @@ class WhatIf {
 
   get isChanged() { return this.on.size > 0 || !this.own; }
 
-  // The columns at some samples, and where each sample of the report lies between those.
+  // Columns at some samples, and the position of each sample of the report between them.
   readColumns() {
     const {item, samples} = this;
     const points = unpacked(item.points);
@@ -58,7 +58,7 @@ class WhatIf {
     return column;
   }
 
-  // Fills `result` with what changes of the coefficients take off the residual.
+  // Fills `result` with the change of the residual by changes of the coefficients.
   takenOff(values, result) {
     const sums = new Float64Array(this.points + 1);
     this.columns.forEach((column, c) => {
@@ -86,12 +86,12 @@ class WhatIf {
     this.rows = item.effects.map((effect, e) => this.effectRow(effect, e));
     this.command = make('code');
     this.copy = make('button', {type: 'button', onclick: () => this.copyCommand()}, 'Copy');
-    this.commandPart = make('div', {class: 'what-if-command'}, make('p', {}, 'To add what is switched on, and refit'), this.copy, this.command);
+    this.commandPart = make('div', {class: 'what-if-command'}, make('p', {}, 'To add the active effects, and refit'), this.copy, this.command);
     this.coefficients = make('table');
     this.controls = make('div', {class: 'what-if-controls'},
       make('div', {class: 'scroll'}, this.figures),
       make('div', {class: 'what-if-general'},
-        make('label', {class: 'switch'}, this.ownSwitch, text('The model’s own coefficients are fitted again')), this.reset),
+        make('label', {class: 'switch'}, this.ownSwitch, text('The model’s coefficients are fitted again')), this.reset),
       this.commandPart,
       make('ul', {class: 'what-if-effects', 'aria-label': 'Effects'}, ...this.rows.map(({element}) => element)),
       make('details', {}, make('summary', {}, 'Coefficients'), make('div', {class: 'scroll'}, this.coefficients)));
@@ -117,7 +117,7 @@ class WhatIf {
     for (const c of this.fit.coefficientsOf(e)) this.byHand.delete(c);
   }
 
-  // A slider and a number for coefficient `c` of effect `e`; where they reach stays as it is.
+  // Slider and number for coefficient `c` of effect `e`; their range stays fixed.
   slider(c, e) {
     const {name, unit, given, start, least, greatest} = this.item.coefficients[c];
     const {values, errors} = this.fit.fit([e], new Map(), true, this.fit.weightsOf([e]), false);
@@ -131,7 +131,7 @@ class WhatIf {
                                   min: least ?? null, max: greatest ?? null});
     const band = make('span', {class: 'band'}), zero = make('span', {class: 'zero'});
     const told = make('span', {class: 'told'});
-    const fitted = make('button', {type: 'button', title: 'Let the fit find it again', 'aria-label': `Fit ${label} again`,
+    const fitted = make('button', {type: 'button', title: 'Fit this coefficient again', 'aria-label': `Fit ${label} again`,
                                    onclick: () => { this.byHand.delete(c); this.changed(); }}, 'Fit');
     const move = (value) => {
       this.on.add(e);
@@ -148,7 +148,7 @@ class WhatIf {
     return {c, element, range, number, band, told, fitted, from, to, step, unit};
   }
 
-  // Where a value stands on a track: the thumb is 1rem wide, and its middle tells.
+  // Position of a value on a track: the thumb is 1rem wide, and its middle is the value.
   place(value, from, to) {
     const part = Math.min(Math.max((value - from) / (to - from), 0), 1);
     return `calc(0.5rem + ${part} * (100% - 1rem))`;
@@ -172,17 +172,17 @@ class WhatIf {
       return panel;
     };
     this.panels = [add({kind: 'time', title: 'What if: residual in time', columns, axis: 'residual'},
-      'The scale is that of the residual without the effects, so that it stays where it is.')];
+      'The scale is fixed by the residual without the effects.')];
     this.ladder = {kind: 'bars', title: 'What if: ladder', bars: this.rungs(), axis: this.heldOutWords, unit: 'hPa'};
     this.panels.push(add(this.ladder, this.fit.heldOut
-      ? 'On what is held out, effect by effect as they were switched on.'
-      : 'On parts of the flights that were left out of the fit in turn, without outliers, effect by effect as they were switched on.'));
+      ? 'On the hold-out, for each effect in the order in which they were switched on.'
+      : 'On parts of the flights that were excluded from the fit one at a time, without outliers, for each effect in the order in which they were switched on.'));
     const regimes = {title: 'Bias and rms by regime, what if', columns};
     this.regimes = new Regimes(regimes, part('regimes', 'What if: by regime', 'Bias and rms of the residual of the selected samples.'), report);
     report.tables.push(this.regimes);
     if (item.choices.length)
       this.panels.push(add({kind: 'binned', title: 'What if: residual against a variable', columns, choices: item.choices, bins: 12,
-        samplesPerIndependent: item.samplesPerIndependent, axis: 'residual'}, 'A slope or a bend that is more than the error bars is something that the model still lacks.'));
+        samplesPerIndependent: item.samplesPerIndependent, axis: 'residual'}, 'A slope or a bend larger than the error bars indicates a missing effect.'));
     if (item.effects.length > 1) this.makePair(add, part);
   }
 
@@ -200,17 +200,18 @@ class WhatIf {
     const labels = ['One', 'The other'].map((words, side) => make('label', {class: 'choice'}, words, this.selects[side]));
     this.pairWords = make('div', {class: 'what-if-words'});
     this.pairTable = make('table', {class: 'regime-table'});
-    this.pairPanel = add({kind: 'time', title: 'Two effects side by side', columns: this.sides.map(({name}) => name), axis: 'taken off the residual'},
-      'What each would take off the residual were it alone added and the model fitted again: where the two curves differ, these flights can tell them apart.',
+    this.pairPanel = add({kind: 'time', title: 'Two effects side by side', columns: this.sides.map(({name}) => name), axis: 'change of the residual'},
+      'Reduction of the residual by each effect alone, with the model fitted again: where the two curves differ, these flights distinguish the effects.',
       make('div', {class: 'what-if-pair'}, ...labels));
     this.panels.push(this.pairPanel);
     const scroll = {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Two effects by regime'};
-    part('table', 'Where the two differ', 'Rms of what each takes off the residual, and of the difference, over the selected samples; the correlation is that over these samples.',
+    part('table', 'Where the two differ', 'Rms of the reduction of the residual by each effect, and of the difference, over the selected samples; the correlation covers the same samples.',
       this.pairWords, make('div', scroll, this.pairTable));
     this.report.tables.push({draw: () => this.fillPairTable(), table: this.pairTable});
   }
 
-  // The ladder: with the coefficients of the start, with the model's own fitted, and with one effect after another.
+  // Steps: with the initial coefficients, with the model's coefficients fitted, and with one effect after
+  // another.
   rungs() {
     const {fit, item} = this;
     const bars = [{label: item.start, value: fit.heldOutRms(fit.fit([], new Map(), false))}];
@@ -221,7 +222,7 @@ class WhatIf {
     return [...bars, {label: 'noise', value: item.noise}];
   }
 
-  // After a step that can be undone.
+  // Call after a step that can be undone.
   changed() {
     this.follow();
     this.report.remember();
@@ -231,7 +232,7 @@ class WhatIf {
 
   get names() { return [...this.on].map((e) => this.item.effects[e].id).join(', '); }
 
-  // What the reader did, shown at the next frame; of many moves in one frame the last.
+  // Shows a change at the next frame; only the last of several changes in one frame.
   follow() {
     this.fitNow();
     if (this.asked) return;
@@ -274,7 +275,7 @@ class WhatIf {
     for (let i = 0; i < values.length; ++i) values[i] = this.residual.values[i] - values[i];
   }
 
-  // By how much chi2 falls from the model fitted again to what is shown now.
+  // Decrease of chi2 from the refitted model to the displayed state.
   get fallOfNow() {
     return this.fit.gain(this.fit.fit([], new Map(), this.own, this.now.weights), this.now, [...this.on]);
   }
@@ -300,14 +301,14 @@ class WhatIf {
     const ifOn = isOn ? this.now : fit.fit([...others, e], this.byHand, this.own);
     const fall = fit.fall(others, [...others, e], this.byHand, this.own);
     gain.textContent = `χ² ${number(-fall, fall < 10 ? 0.1 : 1)}`;
-    gain.title = isOn ? 'By how much chi2 falls with it, beside the others that are on' : 'By how much chi2 would fall with it, beside those that are on';
+    gain.title = isOn ? 'Decrease of chi2 by this effect, in addition to the other active ones' : 'Decrease of chi2 if this effect is added to the active ones';
     for (const slider of sliders) this.showSlider(slider, e, isOn, ifOn);
   }
 
   showSlider({c, range, number: input, band, told, fitted, from, to, step, unit}, e, isOn, ifOn) {
     const {start} = this.item.coefficients[c];
     const byHand = this.byHand.has(c);
-    // Where the fit would have it, the others as they are.
+    // Fitted value, with the other coefficients unchanged.
     const hand = new Map(this.byHand);
     hand.delete(c);
     const {values, errors} = byHand ? this.fit.fit([...this.on], hand, this.own) : ifOn;
@@ -319,8 +320,8 @@ class WhatIf {
     band.hidden = !(error > 0);
     band.style.left = this.place(estimate - error, from, to);
     band.style.right = `calc(100% - ${this.place(estimate + error, from, to)})`;
-    told.textContent = error > 0 ? withError(estimate, error) : this.fit.isAtBound(c, values) ? 'at its bound' : 'not told from the others';
-    told.title = 'What the fit finds, with its standard error';
+    told.textContent = error > 0 ? withError(estimate, error) : this.fit.isAtBound(c, values) ? 'at its bound' : 'not identifiable';
+    told.title = 'Fitted value with its standard error';
     fitted.hidden = !byHand;
   }
 
@@ -338,7 +339,7 @@ class WhatIf {
     fillTable(this.coefficients, {headers: ['Coefficient', 'given', 'fitted again', 'what if', 'unit'], rows});
   }
 
-  // The command that adds the effects that are on: one for all of the catalogue, one for each formula.
+  // Command that adds the active effects: one for all of the catalogue, one for each formula.
   get commandText() {
     const {commands, effects, coefficients} = this.item;
     const on = [...this.on].map((e) => effects[e]).filter(({argument}) => argument);
@@ -365,7 +366,7 @@ class WhatIf {
     try {
       await navigator.clipboard.writeText(this.commandText);
     } catch {
-      // A browser that does not let the page write: the reader finds the command marked, ready to be copied.
+      // If the browser does not allow a copy, the command is selected for the reader.
       getSelection().selectAllChildren(this.command);
       this.copy.textContent = 'Marked';
       return;
@@ -392,8 +393,8 @@ class WhatIf {
     const alike = fit.correlation(...changes);
     const separation = item.separations.find(({effect, rival}) => effect === a && rival === b);
     const sentences = a === b ? ['Choose two effects.'] : [
-      `On these flights the two are alike to a correlation of ${number(alike, 0.001)}, in units of the noise and after the model’s own coefficients.`,
-      separation ? `${separation.text[0].toUpperCase()}${separation.text.slice(1)}.` : 'No manoeuvre was tried that would tell them apart.'];
+      `On these flights the two have a correlation of ${number(alike, 0.001)}, in units of the noise and after fitting the model’s coefficients.`,
+      separation ? `${separation.text[0].toUpperCase()}${separation.text.slice(1)}.` : 'No tested manoeuvre distinguishes them.'];
     this.pairWords.replaceChildren(...sentences.map((words) => make('p', {}, words)));
   }
 
@@ -412,7 +413,7 @@ class WhatIf {
     fillTable(this.pairTable, {headers: ['Regime', 'Samples', `${a.title}, hPa`, `${b.title}, hPa`, 'Difference, hPa', 'Correlation'], rows});
   }
 
-  // What is in the address, and what it asks for; what it says of another report is passed over.
+  // State in the address, and its restoration; parts of other reports are ignored.
   get state() {
     const {item} = this;
     const state = {};
@@ -445,7 +446,7 @@ class WhatIf {
   }
 }
 
-// How alike two series are at some samples, -1 to 1.
+// Correlation of two series at some samples, -1 to 1.
 function correlationOf(xs, ys, indices) {
   let sx = 0, sy = 0, xx = 0, yy = 0, xy = 0;
   for (const i of indices) {

@@ -1,9 +1,10 @@
-// The arithmetic of a what-if: least squares by the sums that the report keeps, without a page. A coefficient is
-// its number; values are changes from the start, at which the residual is as its column has it.
+// Least squares of a what-if from the sums that the report keeps, independent of the page. A coefficient is
+// its number; values are changes from the start, at which the residual equals its column.
 
-const leastPivot = 1e-11;  // of a column, beside those before it: less is what they imitate
+const leastPivot = 1e-11;  // relative pivot of a column after the previous ones; a smaller one is collinear
+                           // with them
 
-// Sums of products of (columns, residual), whole again from their lower triangle.
+// Sums of products of (columns, residual), restored from their lower triangle.
 function wholeSums({products, samples}, width) {
   const lower = decode(products, Float64Array);
   const matrix = Array.from({length: width}, () => new Float64Array(width));
@@ -17,7 +18,8 @@ function combined(a, b, sign = 1) {
           samples: a.samples + sign * b.samples};
 }
 
-// A symmetric matrix as L L', unknowns scaled alike. Those that others imitate stay out: their pivot is zero.
+// Symmetric matrix as L L', with equal scaling of the unknowns. Collinear ones are excluded: their pivot is
+// zero.
 class Cholesky {
   constructor(matrix) {
     this.scale = matrix.map((row, i) => row[i] > 0 ? 1 / Math.sqrt(row[i]) : 0);
@@ -46,13 +48,13 @@ class Cholesky {
     return x.map((value, i) => value * scale[i]);
   }
 
-  // The rows of the inverse.
+  // Rows of the inverse.
   get inverse() {
     return this.lower.map((row, i) => this.solve(row.map((_, j) => j === i ? 1 : 0)));
   }
 }
 
-// What is left of the squares with these values.
+// Residual sum of squares with these values.
 function squaresLeft({matrix}, values) {
   const change = [...values].map((value) => -value);
   change.push(1);
@@ -76,21 +78,21 @@ class WhatIfFit {
     this.heldOut = heldOut.samples ? wholeSums(heldOut, width) : null;
   }
 
-  // The weights of the noise that is left with these effects in the model: of what was found and is among them, or
-  // has another in its place, as many as there are weights for.
+  // Weights of the residual noise with these effects in the model: findings among them, or replaced by
+  // others, as many as there are weights for.
   weightsOf(on) {
     const taken = new Set([...on].map((effect) => this.effects[effect].standsFor).filter((effect) => effect !== null));
     const fitting = this.weights.filter((each) => each.taken.every((effect) => taken.has(effect)));
     return fitting.reduce((a, b) => b.taken.length > a.taken.length ? b : a);
   }
 
-  // The numbers of the coefficients of an effect that the flights tell.
+  // Numbers of the identifiable coefficients of an effect.
   coefficientsOf(effect) {
     const {first, count} = this.effects[effect];
     return Array.from({length: count}, (_, k) => first + k).filter((c) => !this.coefficients[c].fixed);
   }
 
-  // The values that leave least by some sums, where `free` says which are looked for.
+  // Values that minimize the squares of some sums; `free` marks the unknowns.
   solved(sums, free, values) {
     const {matrix} = sums, last = values.length;
     const fixed = values.map((value, c) => free.includes(c) ? 0 : value);
@@ -101,9 +103,9 @@ class WhatIfFit {
     return {values: fixed, factor};
   }
 
-  // Fits with some effects in the model. @param byHand a Map of coefficients to values that are held
-  // @param own the model's own coefficients are fitted again; @param weights as of `weightsOf`
-  // @param bounded only to values that physics allows
+  // Fits with some effects in the model. @param byHand a Map of coefficients to fixed values
+  // @param own the model's coefficients are fitted again; @param weights as returned by `weightsOf`
+  // @param bounded only to physical values
   fit(on, byHand = new Map(), own = true, weights = this.weightsOf(on), bounded = true) {
     const {coefficients} = this;
     const values = Float64Array.from(coefficients, ({given, start}) => given - start);
@@ -114,7 +116,7 @@ class WhatIfFit {
         if (byHand.has(c)) values[c] = byHand.get(c) - coefficients[c].start;
         else free.push(c);
       }
-    // A coefficient that would go beyond its bound stays there, until the others let it go.
+    // A coefficient beyond its bound is fixed there, until the others release it.
     const atBound = [];
     for (let step = 0;; ++step) {
       const {values: found, factor} = this.solved(weights.whole, free, values);
@@ -130,7 +132,7 @@ class WhatIfFit {
     }
   }
 
-  // Half of what the squares grow by with a coefficient.
+  // Half of the derivative of the squares with respect to a coefficient.
   slope({whole}, c, values) {
     const row = whole.matrix[c];
     return values.reduce((sum, value, j) => sum + row[j] * value, -row[values.length]);
@@ -142,7 +144,7 @@ class WhatIfFit {
 
   isAtBound(c, values) { return values[c] <= this.least(c) || values[c] >= this.greatest(c); }
 
-  // A value of a coefficient, or the bound of physics that it is beyond.
+  // Value of a coefficient, limited to its physical bounds.
   possible(c, value) {
     const {least, greatest} = this.coefficients[c];
     return Math.min(Math.max(value, least ?? -Infinity), greatest ?? Infinity);
@@ -159,10 +161,11 @@ class WhatIfFit {
     return {values, errors, free, weights, squares, rms: rmsLeft(this.all, values)};
   }
 
-  // The rms on what took no part: on what is held out, else on parts of the flights left out in turn.
+  // Rms on unused samples: on the hold-out, otherwise on parts of the flights excluded one at a time.
   heldOutRms({values, free, weights}) {
     if (this.heldOut) return rmsLeft(this.heldOut, values);
-    if (this.alike.filter(({samples}) => samples).length < 2) return NaN;  // what is left out would be all
+    if (this.alike.filter(({samples}) => samples).length < 2) return NaN;  // the excluded part would be the
+                                                                           // whole
     let squares = 0, samples = 0;
     weights.parts.forEach((part, k) => {
       if (!this.alike[k].samples) return;
@@ -173,15 +176,16 @@ class WhatIfFit {
     return Math.sqrt(Math.max(squares, 0) / samples);
   }
 
-  // By how much chi2 falls with some effects more, in units of the noise that is left with all of them.
+  // Decrease of chi2 by additional effects, in units of the residual noise with all of them.
   fall(before, after, byHand, own) {
     const weights = this.weightsOf(after);
     const without = this.fit(before, byHand, own, weights), now = this.fit(after, byHand, own, weights);
     return this.gain(without, now, after.filter((effect) => !before.includes(effect)));
   }
 
-  // By how much chi2 falls from one fit to another of the same weights, with some effects more, in units of the noise
-  // with its memory: the mean of the scores of the effects, or where none is added of the coefficients that were fitted.
+  // Decrease of chi2 from one fit to another of the same weights, by additional effects, in units of the
+  // autocorrelated noise: the mean of the scores of the effects, or, without additional effects, of the
+  // fitted coefficients.
   gain(without, {squares, weights: {scores, whole}}, effects) {
     const added = effects.flatMap((effect) => [...this.coefficientsOf(effect)]);
     const told = (added.length ? added : without.free).filter((c) => whole.matrix[c][c] > 0);
@@ -189,7 +193,7 @@ class WhatIfFit {
     return variance > 0 ? (without.squares - squares) / variance : 0;
   }
 
-  // How alike two changes are in units of the noise that is left with all that was found, -1 to 1.
+  // Correlation of two changes in units of the residual noise after all findings, -1 to 1.
   correlation(a, b) {
     const {matrix} = this.weights.at(-1).whole;
     const product = (x, y) => x.reduce((sum, value, i) =>

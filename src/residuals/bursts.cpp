@@ -12,12 +12,12 @@ namespace pcor::internal {
 namespace {
 
 constexpr double longest = 20.0;   // s
-constexpr double min_noise = 0.2;  // hPa: gusts change the defect of a port, too, and by less than 1 hPa
-constexpr double limit = 5.0;      // robust deviations: chance passes it at 6 in 10 million normal samples
+constexpr double min_noise = 0.2;  // hPa: gusts change the defect of a port as well, by less than 1 hPa
+constexpr double limit = 5.0;      // robust standard deviations: exceeded by 6 in 10 million normal samples
 constexpr double margin = 3.0;     // s
-constexpr double beside = 3.0;     // robust deviations, of what belongs to a jump beyond the limit
+constexpr double beside = 3.0;     // robust standard deviations, for samples near a jump beyond the limit
 
-/// By how much each sample departs from the middle of its neighbours; NaN at the ends and beside gaps.
+/// Deviation of each sample from the mean of its neighbours; NaN at the ends and next to gaps.
 std::vector<double> departures_of(const std::vector<double>& values, const std::vector<double>& time,
                                   double step) {
   std::vector<double> departures(values.size(), nan);
@@ -28,7 +28,7 @@ std::vector<double> departures_of(const std::vector<double>& values, const std::
   return departures;
 }
 
-/// How far each sample jumps, in robust deviations; NaN where unknown.
+/// Jump of each sample, in robust standard deviations; NaN if unknown.
 std::vector<double> jumps_of(const std::vector<double>& values, const std::vector<double>& time,
                              double step) {
   std::vector<double> jumps = departures_of(values, time, step);

@@ -15,10 +15,10 @@ namespace {
 using Series = std::vector<double>;
 
 constexpr double window = 10.0;          // s: longer than a gust, shorter than a manoeuvre
-constexpr double min_time = 600.0;       // s: sixty windows, in which chance does not reach
-constexpr double min_correlation = 0.5;  // the least of recorded pairs, sideslip and drift, have 0.55
+constexpr double min_time = 600.0;       // s: sixty windows, which chance does not reach
+constexpr double min_correlation = 0.5;  // the minimum of recorded pairs, sideslip and drift, is 0.55
 
-/// How much a series rises around each sample in `window`, NaN across gaps; of an angle on the circle.
+/// Increase of a series around each sample in `window`, NaN across gaps; for an angle on the circle.
 Series rise_of(const Series& values, const Series& time, double step, bool is_angle = false) {
   Series rise(values.size(), nan);
   const auto half = static_cast<std::size_t>(std::lround(window / 2.0 / step));
@@ -30,14 +30,14 @@ Series rise_of(const Series& values, const Series& time, double step, bool is_an
   return rise;
 }
 
-/// Two series that go up and down together, as they would stand in a sentence.
+/// Two series that increase and decrease together, with their names in a sentence.
 struct Pair {
   std::string_view first_name;
   Series first;
   std::string_view second_name;
   Series second;
-  double min_rms;         ///< of the second: below it nothing moved
-  std::string_view turn;  ///< what turns one of them, in the [units] of a model
+  double min_rms;         ///< minimum rms of the second; below it the aircraft did not move
+  std::string_view turn;  ///< setting in the [units] of a model that inverts one of them
 };
 
 class Signs {
@@ -56,8 +56,9 @@ class Signs {
                      altitude, 5.0, R"(altitude = "-1 m")"});
     all.push_back({"the roll", motion_.roll, "the turning of the heading", heading, 2.0,
                    R"(roll = "-1 degree" or heading = "-1 degree")"});
-    all.push_back({"the turning of the ground track", rise(motion_.ground_track, true), "that of the heading",
-                   heading, 2.0, R"(ground_track = "-1 degree" or heading = "-1 degree")"});
+    all.push_back({"the turning of the ground track", rise(motion_.ground_track, true),
+                   "the turning of the heading", heading, 2.0,
+                   R"(ground_track = "-1 degree" or heading = "-1 degree")"});
     all.push_back({"the angle of attack", rise(motion_.attack), "the pitch above the path",
                    rise(pitch_above_path()), 0.3, R"(attack = "-1 degree" or pitch = "-1 degree")"});
     all.push_back({"the pitch", rise(motion_.pitch), "the angle of attack and of climb together",
@@ -67,7 +68,7 @@ class Signs {
     return all;
   }
 
-  /// Between -1 and 1; NaN where too little moved, or one was not recorded.
+  /// Correlation between -1 and 1; NaN if too little moved, or one was not recorded.
   double correlation(const Pair& pair) const {
     if (pair.first.size() != pair.second.size()) return nan;
     double count = 0.0;
@@ -101,7 +102,7 @@ class Signs {
     return values;
   }
 
-  /// The angle of climb, deg; empty without a vertical speed.
+  /// Angle of climb, deg; empty without a vertical speed.
   Series climb() const {
     Series angle = motion_.vertical_speed;
     for (std::size_t i = 0; i < angle.size(); ++i)
@@ -109,20 +110,20 @@ class Signs {
     return angle;
   }
 
-  /// The sum of two series of one length, the second times `sign`; empty where one was not recorded.
+  /// Sum of two series of one length, the second times `sign`; empty if one was not recorded.
   static Series sum(Series first, const Series& second, double sign) {
     if (first.size() != second.size()) return {};
     for (std::size_t i = 0; i < first.size(); ++i) first[i] += sign * second[i];
     return first;
   }
 
-  /// The angle of attack without wind.
+  /// Angle of attack without wind.
   Series pitch_above_path() const { return sum(motion_.pitch, climb(), -1.0); }
 
-  /// The pitch without wind.
+  /// Pitch without wind.
   Series attack_and_climb() const { return sum(motion_.attack, climb(), 1.0); }
 
-  /// The ground track less the heading, deg: where the nose goes to port, the wind comes from starboard.
+  /// Ground track minus heading, deg: if the nose points to port, the wind comes from starboard.
   Series drift() const { return sum(motion_.ground_track, motion_.heading, -1.0); }
 
   const FlightSamples& samples_;
@@ -140,9 +141,8 @@ std::vector<std::string> contradicting_signs(const FlightSamples& samples, doubl
     const double correlation = signs.correlation(pair);
     if (!(correlation < -min_correlation)) continue;
     contradictions.push_back(
-        fmt::format("{} and {} contradict each other (correlation {:.2f}): one of them has the other sign; "
-                    "turn it in the "
-                    "[units] of the model, {}",
+        fmt::format("{} and {} have opposite signs (correlation {:.2f}); invert the wrong one in the [units] "
+                    "of the model, {}",
                     pair.first_name, pair.second_name, correlation, pair.turn));
   }
   return contradictions;

@@ -21,17 +21,18 @@ namespace pcor::internal {
 namespace {
 
 constexpr double piece_time = 20.0;         // s
-constexpr double time_in = 3600.0;          // s, mean
-constexpr double time_out = 600.0;          // s, mean
+constexpr double time_in = 3600.0;          // s, mean duration
+constexpr double time_out = 600.0;          // s, mean duration
 constexpr double min_deficit = 0.12;        // a C-130 of 2004 showed 0.37 and more
-constexpr double max_deficit = 0.8;         // and 0.68 at most, before it landed
-constexpr double anywhere_share = 0.001;    // of the pieces with flaps in
+constexpr double max_deficit = 0.8;         // and at most 0.68 before it landed
+constexpr double anywhere_share = 0.001;    // fraction of the pieces with flaps in
 constexpr double anywhere_deficit = 0.3;    // their standard deviation
-constexpr double slope_error = 0.05;        // of the lift away from where the law was fitted
-constexpr double usual_compression = -0.2;  // of M^2: half of the rule of Prandtl and Glauert, as swept wings
+constexpr double slope_error = 0.05;        // relative error of the lift away from the fitted range
+constexpr double usual_compression = -0.2;  // coefficient of M^2: half of the Prandtl-Glauert rule, as for
+                                            // swept wings
 constexpr double compression_spread = 0.3;  // standard deviation
 constexpr double most_evidence = 3.0;       // ln 20
-constexpr double over_speed = 0.05;         // by which pilots pass the limit, standard deviation
+constexpr double over_speed = 0.05;         // standard deviation by which pilots exceed the limit
 constexpr double likely = 0.9;
 constexpr double robust_limit = 4.0;         // deviations
 constexpr double sea_level_density = 1.225;  // kg/m3, standard atmosphere
@@ -43,8 +44,8 @@ struct FlapSpeed {
   double airspeed;  ///< m/s, indicated
 };
 
-/// The greatest speeds with the flaps of an approach, of the flight manuals: C-130 180 kt with 50 %, GV
-/// 220 kt with 20 deg. Of an aircraft that is not known here that of the C-130, the slower.
+/// Maximum speeds with the flaps of an approach, from the flight manuals: C-130 180 kt with 50 %, GV 220 kt
+/// with 20 deg. For other aircraft the limit of the C-130, which is slower.
 constexpr std::array<FlapSpeed, 2> flap_speeds{{{"N130AR", 92.6}, {"N677F", 113.2}}};
 
 double flap_speed_of(const std::string& aircraft) {
@@ -54,15 +55,15 @@ double flap_speed_of(const std::string& aircraft) {
   return flap_speeds.front().airspeed;
 }
 
-/// The means of 20 s.
+/// Means of 20 s.
 struct Piece {
   std::size_t first = 0;  ///< sample
   std::size_t end = 0;
   double time = 0.0;  ///< s
   double lift = 0.0;  ///< n/q, 1/hPa
   double mach = 0.0;
-  double angle = 0.0;     ///< as given
-  double airspeed = 0.0;  ///< indicated, m/s
+  double angle = 0.0;     ///< as recorded
+  double airspeed = 0.0;  ///< indicated airspeed, m/s
 };
 
 double load_factor_at(const FlightSamples& samples, std::size_t i) {
@@ -109,14 +110,14 @@ std::vector<Piece> pieces_of(const FlightSamples& samples, const std::vector<dou
   return pieces;
 }
 
-/// What the angle falls short of what the lift needs, a part, and its standard error.
+/// Relative deficit of the angle compared with the lift, and its standard error.
 struct Deficit {
   double value;
   double error;
 };
 
-/// angle = c0 + (c1 + c2 t + c3 M^2) n/q, with t in hours; c3/c1 has a prior, since one height cannot tell
-/// it.
+/// angle = c0 + (c1 + c2 t + c3 M^2) n/q, with t in hours; c3/c1 has a prior, since one height does not
+/// determine it.
 class LiftLaw {
  public:
   LiftLaw(const std::vector<Piece>& pieces, const std::vector<double>& weights)
@@ -136,7 +137,7 @@ class LiftLaw {
       sum += weights[i];
     }
     mean_lift_ = lift / sum;
-    // First the usual compression alone, which gives slope and scatter; then its prior, measured in these.
+    // First the usual compression alone, which gives slope and scatter; then its prior, in units of these.
     Eigen::Matrix4d precision = Eigen::Matrix4d::Zero();
     precision(3, 3) = information.trace();
     for (int pass = 0; pass < 2; ++pass) {
@@ -167,7 +168,7 @@ class LiftLaw {
   }
 
  private:
-  /// With the usual compression in the slope, so that the last coefficient is what is beyond it.
+  /// With the usual compression in the slope, so that the last coefficient is the deviation from it.
   Eigen::Vector4d row_of(const Piece& piece) const {
     const double mach_squared = piece.mach * piece.mach;
     const double lift = piece.lift / scale_;
@@ -175,7 +176,7 @@ class LiftLaw {
     return {1.0, lift * slope, lift * slope * (piece.time - middle_) / 3600.0, lift * mach_squared};
   }
 
-  /// For how many pieces an independent one stands, by the correlation of neighbours.
+  /// Integrated autocorrelation time, in pieces, from the correlation of neighbours.
   double pieces_per_independent(std::vector<double> clean) const {
     constexpr double most = 0.95;
     double product = 0.0;
@@ -204,7 +205,7 @@ double normal_density(double x, double deviation) {
 
 double normal_probability(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
-/// The logarithm of how much likelier a piece is with flaps out than with flaps in.
+/// Log likelihood ratio of flaps out against flaps in, for a piece.
 double evidence_of(const Deficit& deficit, double airspeed, double flap_speed) {
   const auto [value, error] = deficit;
   const double in = (1.0 - anywhere_share) * normal_density(value, error) +
@@ -217,10 +218,10 @@ double evidence_of(const Deficit& deficit, double airspeed, double flap_speed) {
   return (std::isnan(lift) ? 0.0 : lift) - 0.5 * over * over;
 }
 
-/// The probability of the state out at each piece: forward and backward over all of them.
+/// Probability of the state out at each piece: forward and backward over all of them.
 std::vector<double> probabilities_of_out(const std::vector<Piece>& pieces,
                                          const std::vector<double>& evidence) {
-  using Pair = Eigen::Vector2d;  // in, out
+  using Pair = Eigen::Vector2d;  // states: in, out
   const auto transition = [&pieces](std::size_t to) {
     const double time = pieces[to].time - pieces[to - 1].time;
     const double leaves_in = -std::expm1(-time / time_in);

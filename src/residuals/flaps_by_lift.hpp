@@ -8,32 +8,33 @@
 
 namespace pcor::internal {
 
-/// Where flaps are out, as the lift tells of a flight that does not record them.
+/// Samples with flaps out, inferred from the lift of a flight that does not record the flaps.
 struct FlapsByLift {
-  std::vector<bool> out{};  ///< of every sample
-  double deficit = 0.0;     ///< by how much the angle of attack is too small where they are, a part; a median
-  double deviation = 0.0;   ///< of the same where they are in
+  std::vector<bool> out{};  ///< state of every sample
+  double deficit = 0.0;     ///< median relative deficit of the angle of attack with flaps out
+  double deviation = 0.0;   ///< standard deviation of the deficit with flaps in
 };
 
-/// The angle of attack above that without lift goes with load factor over dynamic pressure, n/q; flaps need a
-/// part less of it. The law of the clean wing is fitted to the flight itself, with a weight that falls with
-/// time and the flight's own compressibility: first to what is faster than flaps may be flown, then to all
-/// that is likely clean. Its error is that of the fit, of correlated residuals, and 5 % of the lever in n/q.
+/// The angle of attack above the zero-lift angle is proportional to load factor over dynamic pressure, n/q;
+/// with flaps out it is smaller. The relation of the clean wing is fitted to the flight, with a weight that
+/// decreases with time, and with the compressibility of the flight: first to samples above the maximum speed
+/// with flaps, then to all samples that are likely clean. Its error consists of the error of the fit, with
+/// correlated residuals, and 5 % of the lever in n/q.
 ///
-/// Over pieces of 20 s, two states follow each other: in, for an hour on average, and out, for ten minutes.
-/// Out the angle is too small by 12 to 80 %, each as likely; in it is as the law says, but for its error and
-/// one piece in a thousand that is anywhere. A piece counts for no more than a factor of 20, since neighbours
-/// share their errors, and above the speed of flaps the state out becomes the less likely the faster. Out is
-/// what is so with 90 %.
+/// A two-state model covers pieces of 20 s: in, for an hour on average, and out, for ten minutes. In the
+/// state out the angle is too small by 12 to 80 %, uniformly distributed; in the state in it follows the
+/// relation, except for its error and one piece in a thousand with any value. The likelihood ratio of a piece
+/// is limited to a factor of 20, since neighbours share their errors, and above the speed limit of the flaps
+/// the state out becomes less probable with speed. Flaps are out if the probability is at least 90 %.
 ///
-/// Absent where fewer than 15 pieces are faster than that, or the angle does not rise with n/q.
+/// Nullopt if fewer than 15 pieces are above that speed, or the angle does not increase with n/q.
 ///
 /// @param angle of attack, deg, or ADIFR/QCR, which is linear in it; of every sample
-/// @param min_airspeed m/s; slower samples do not count
+/// @param min_airspeed m/s; slower samples are not used
 std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, const std::vector<double>& angle,
                                               double min_airspeed);
 
-/// "from 2004-02-18 15:04:42 to 15:13:02 UTC (500 samples)", and so on.
+/// Text like "from 2004-02-18 15:04:42 to 15:13:02 UTC (500 samples)", for all intervals.
 std::string times_of(const FlapsByLift& flaps, const std::vector<double>& time);
 
 }  // namespace pcor::internal

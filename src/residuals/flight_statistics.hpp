@@ -10,9 +10,8 @@
 
 namespace pcor::internal {
 
-// The one definition of rms, bias and noise of a residual: compare, refit, diagnose and improve print these.
-// The residual is that of `Residuals::values`, exact, one value for each record; every sample that takes part
-// counts once, outliers too.
+// Definition of rms, bias and noise of a residual for compare, refit, diagnose and improve. The residual is
+// `Residuals::values`, exact, one value for each record; every used sample counts once, including outliers.
 
 /// Values at some of the samples, NaN at all others.
 std::vector<double> only_at(const std::vector<double>& values, const std::vector<std::size_t>& samples);
@@ -20,44 +19,43 @@ std::vector<double> only_at(const std::vector<double>& values, const std::vector
 /// Values at the samples with one mask, NaN at all others.
 std::vector<double> masked(const std::vector<double>& values, const std::vector<Mask>& masks, Mask mask);
 
-/// The noise floor of a flight. @param residual NaN where a sample takes no part
+/// Noise floor of a flight. @param residual NaN if a sample is excluded
 NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<double>& residual);
 
-/// The sums of a residual that is NaN where it does not count. @param noise of the flight, which may be that
-/// of more samples
+/// Sums of a residual, NaN where excluded. @param noise of the flight, possibly from more samples
 ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
                             const NoiseFloor& noise);
 
-/// As above, with the noise of these samples alone.
+/// Sums of a residual with the noise of these samples alone.
 ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual);
 
-/// The sums over the samples that are left out for nothing but their flaps.
+/// Sums over the samples that are excluded only because of their flaps.
 ResidualSums flaps_out(const Residuals& residuals, const double* parameters);
 
-/// By how much squared residuals fall, in units of the noise, and its error from how that differs between
-/// minutes, or longer stretches that are independent.
+/// Decrease of squared residuals, in units of the noise, and its error from the variation between minutes, or
+/// longer independent stretches.
 struct Gain {
   double value = 0.0;
   double error = 0.0;
 };
 
-/// From residuals `before` to residuals `after`, both of all samples; NaN where they do not count.
-/// @param window over which a residual holds together, s: the samples within count as one; 0 for one sample
+/// Gain from residuals `before` to residuals `after`, both of all samples; NaN where excluded.
+/// @param window of a residual, s: the samples within count as one; 0 for one sample
 Gain gain_between(const FlightSamples& samples, const std::vector<double>& before,
                   const std::vector<double>& after, const NoiseFloor& noise, double window = 0.0);
 
-/// The means of a residual over every five minutes, of which at least half count.
+/// Means of a residual over blocks of five minutes with values for at least half of the samples.
 std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vector<double>& residual);
 
-/// By how much the means of residuals differ from zero where they were fitted: of blocks, and of flights.
+/// Deviation of the means of fitted residuals from zero: of blocks, and of flights.
 class FittedMeans {
  public:
-  /// Adds a flight. @param blocks their means, hPa
+  /// Adds a flight. @param blocks means of its blocks, hPa
   void add(const std::vector<double>& blocks);
 
-  /// The standard error of the mean of a residual that is held out, were the model as right there as where it
-  /// was fitted, hPa. 0 where the means say nothing.
-  /// @param held_out how many blocks are
+  /// Standard error of the mean of a held-out residual if the model were equally accurate on the held-out
+  /// part, hPa. 0 if undetermined.
+  /// @param held_out number of held-out blocks
   double expected_bias(std::size_t held_out) const;
 
  private:

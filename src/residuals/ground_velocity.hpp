@@ -6,14 +6,14 @@
 
 namespace pcor::internal {
 
-/// The velocity over the ground, one value for each record; without values where the flight does not record
-/// it.
+/// Ground velocity, one value for each record; empty if the flight does not record it.
 struct GroundVelocity {
   RecordedSeries speed{};  ///< m/s
   RecordedSeries track{};  ///< deg from true north
 };
 
-/// From ground speed and track, by the roles of the model or the usual names; else from the usual components.
+/// Reads ground speed and track, by the roles of the model or the standard names; otherwise the standard
+/// components.
 GroundVelocity read_ground_velocity(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

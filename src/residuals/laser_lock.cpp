@@ -13,15 +13,15 @@ namespace pcor::internal {
 namespace {
 
 constexpr double min_deviation = 0.1;  // m/s
-constexpr double by_angles = 0.03;     // of the airspeed: a static defect of 6 % of q
-constexpr double max_off = 0.15;       // of the airspeed: a static defect of three tenths of q
+constexpr double by_angles = 0.03;     // relative airspeed: a static defect of 6 % of q
+constexpr double max_off = 0.15;       // relative airspeed: a static defect of three tenths of q
 constexpr double scale_of_cauchy = 2.385;
 constexpr int rounds = 20;
 constexpr double min_eigenvalue = 1e-9;
 constexpr std::size_t fewest = 30;
 constexpr std::size_t beside = 5;  // samples on either side
 
-/// By how much the laser departs from the factor that most samples agree on, m/s.
+/// Deviation of the laser from the factor of the majority of samples, m/s.
 std::vector<double> departures(const Eigen::MatrixXd& columns, const Eigen::VectorXd& beam) {
   Eigen::VectorXd departure = beam - columns.col(0);
   for (int round = 0; round < rounds; ++round) {
@@ -37,7 +37,7 @@ std::vector<double> departures(const Eigen::MatrixXd& columns, const Eigen::Vect
   return {departure.begin(), departure.end()};
 }
 
-/// The samples that are unlocked, and those most of whose neighbours are.
+/// Unlocked samples, and samples with mostly unlocked neighbours.
 std::vector<std::size_t> with_those_between(const std::vector<std::size_t>& samples,
                                             const std::vector<bool>& is_unlocked) {
   std::vector<std::size_t> unlocked;

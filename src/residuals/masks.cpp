@@ -17,16 +17,16 @@ namespace pcor {
 
 const std::array<MaskInfo, mask_count> mask_info{{
     {"used", "used"},
-    {"excluded", "in times that the user excluded"},
-    {"missing", "without a value that the model needs"},
+    {"excluded", "in times excluded by the user"},
+    {"missing", "without a value required by the model"},
     {"ground", "on the ground"},
-    {"low_speed", "slower than the least airspeed (--min-airspeed)"},
-    {"regime", "in a regime that is excluded (--exclude)"},
+    {"low_speed", "below the minimum airspeed (--min-airspeed)"},
+    {"regime", "in an excluded regime (--exclude)"},
     {"frozen", "with a frozen sensor"},
     {"reference_missing", "without a value of the reference"},
-    {"laser_unlocked", "with a laser airspeed far from what the pressures let expect"},
-    {"burst", "in a burst of some seconds, in which a pressure and the residual jump"},
-    {"impossible", "without a delta-p: impossible with these values and coefficients"},
+    {"laser_unlocked", "with a laser airspeed far from the prediction by the pressures"},
+    {"burst", "in a burst of a few seconds, in which a pressure and the residual jump"},
+    {"impossible", "with an undefined delta-p for these values and coefficients"},
     {"flaps", "with flaps out (--max-flaps)"},
 }};
 
@@ -52,7 +52,7 @@ double airspeed_at(const FlightSamples& samples, std::size_t sample) {
   return airspeed.empty() ? nan : airspeed[sample];
 }
 
-/// Flaps are not looked at.
+/// Ignores flaps.
 Mask mask_as_flown(const FlightSamples& samples, std::size_t sample, const RegimeSet& regimes,
                    const MaskOptions& options) {
   const auto in = [&regimes](Regime regime) { return regimes[static_cast<std::size_t>(regime)]; };
@@ -93,7 +93,7 @@ bool is_read(Quantity quantity, const std::vector<Batch::Input>& read) {
   });
 }
 
-/// Marks the samples at which something that is read stands still.
+/// Marks the samples at which an input is frozen.
 void mark_frozen(const ModelSamples& samples, const std::vector<Batch::Input>& read,
                  std::vector<Mask>& masks) {
   for (const FrozenSpan& span : samples.frozen) {
@@ -104,8 +104,8 @@ void mark_frozen(const ModelSamples& samples, const std::vector<Batch::Input>& r
   }
 }
 
-/// The static and dynamic pressures that are read. Those of the radome jump with the flow angles, and effects
-/// of the angles with them.
+/// Static and dynamic pressures among the inputs. The radome pressures are excluded: they jump with the flow
+/// angles, and effects of the angles with them.
 void add_pressures(const ModelSamples& samples, const std::vector<Batch::Input>& read,
                    std::vector<const std::vector<double>*>& pressures) {
   for (const Quantity quantity :
@@ -150,7 +150,8 @@ std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& 
       masks[i] = residual.reference.why_missing(i);
   }
   residual.reference.mark_implausible(masks, samples.motion.airspeed, options);
-  mark_bursts(residual, masks);
+  // In a gust the dynamic pressure and the residual by wind jump together, although every sensor works.
+  if (residual.reference.neighbours() == nullptr) mark_bursts(residual, masks);
   const std::vector<ModelEffect>& effects = residual.model.model().effects;
   const bool describes_flaps = std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
     return reads_flaps(effect, samples.flaps_variable);

@@ -90,7 +90,7 @@ void ModelOnSamples::total_pressure(const std::vector<Batch::Input>& inputs, std
   for (std::size_t i = 0; i < count; ++i) out[i] += dynamic[i];
 }
 
-/// A step of a linear parameter that changes delta-p by tenths of hPa.
+/// Step of a linear parameter that changes delta-p by tenths of hPa.
 double ModelOnSamples::step_of(std::size_t parameter) const {
   std::size_t first = 0;
   for (const ModelEffect& effect : model_.effects) {

@@ -10,20 +10,20 @@
 
 namespace pcor::internal {
 
-/// Columns at some places, gathered one after another into `store`.
+/// Columns at some indices, gathered one after another into `store`.
 std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns, const std::size_t* samples,
                                    std::size_t count, std::vector<double>& store);
 
-/// A linear parameter, and where the derivatives by it go.
+/// Linear parameter, and destination of its derivatives.
 struct LinearColumn {
   std::size_t parameter;
   double* derivatives;
 };
 
-/// A model on the samples of a flight, as its chain reads them.
+/// Model on the samples of a flight, as inputs of its chain.
 class ModelOnSamples {
  public:
-  /// Of the roles of the samples those count that the model names: a diagnosis reads more of a flight.
+  /// Only the roles named by the model are used: a diagnosis reads more of a flight.
   /// @throws Error if the model cannot be used on the samples.
   ModelOnSamples(const ModelDefinition& file, const ModelSamples& samples);
 
@@ -32,18 +32,18 @@ class ModelOnSamples {
   const std::vector<Batch::Input>& columns() const { return columns_; }
   const Model& model() const { return model_; }
 
-  /// The columns at some places, gathered one after another into `store`.
+  /// Columns at some indices, gathered one after another into `store`.
   std::vector<Batch::Input> gathered(const std::size_t* samples, std::size_t count, const double* parameters,
                                      std::vector<double>& store) const;
 
-  /// As the file has them.
+  /// Parameters of the file.
   const std::vector<double>& parameters() const { return chain().parameters(); }
 
-  /// True for each parameter in which delta-p is exactly linear, and nothing else changes with it: those of
-  /// effects of the catalogue at the static ports, where delta-p has no lower limit.
+  /// True for each parameter in which delta-p is exactly linear and which changes no other result: parameters
+  /// of catalogue effects at the static ports, if delta-p has no lower limit.
   std::vector<bool> linear() const;
 
-  /// One sample through the chain up to delta-p of the model.
+  /// Evaluates the chain for one sample up to delta-p of the model.
   template <class S>
   S corrected_static_pressure(std::size_t sample, const S* parameters, State<S>& state) const {
     NoQualityFlags flags;
@@ -53,7 +53,7 @@ class ModelOnSamples {
     return state[Quantity::port_static_pressure] + state[Quantity::static_defect];
   }
 
-  /// One sample through the whole chain: corrected pressures, temperature, humidity and airspeed.
+  /// Evaluates the whole chain for one sample: corrected pressures, temperature, humidity and airspeed.
   template <class S>
   void air(std::size_t sample, const S* parameters, State<S>& state) const {
     NoQualityFlags flags;
@@ -62,8 +62,8 @@ class ModelOnSamples {
     chain().air(state, parameters, flags);
   }
 
-  /// The airspeed of one sample along the beam, m/s, as `Chain::airspeed_along_beam` has it, by a law that
-  /// takes the rate of this airspeed, which is to be found from it, as zero.
+  /// Airspeed of one sample along the beam, m/s, as `Chain::airspeed_along_beam`; the rate of this airspeed,
+  /// if the model reads it, is set to zero, since it depends on the result.
   double airspeed_along_beam(std::size_t sample, const double* parameters) const {
     State<double> state;
     read(sample, parameters, state);
@@ -71,7 +71,7 @@ class ModelOnSamples {
     return chain().airspeed_along_beam(state, parameters);
   }
 
-  /// The total pressure of one sample at the ports, hPa: static plus dynamic, in which delta-p cancels.
+  /// Total pressure of one sample at the ports, hPa: static plus dynamic, in which delta-p cancels.
   template <class S>
   S total_pressure(std::size_t sample, const S* parameters) const {
     State<S> state;
@@ -81,26 +81,26 @@ class ModelOnSamples {
     return state[Quantity::port_static_pressure] + state[Quantity::port_dynamic_pressure];
   }
 
-  /// The same of a block.
+  /// Total pressure of a block at the ports, hPa.
   void total_pressure(const std::vector<Batch::Input>& inputs, std::size_t count, const double* parameters,
                       double* out) const;
 
-  /// The corrected static pressure of a block, hPa.
+  /// Corrected static pressure of a block, hPa.
   void corrected_static_pressure(const std::vector<Batch::Input>& inputs, std::size_t count,
                                  const double* parameters, double* out) const;
 
-  /// The derivatives of delta-p of a block by linear parameters, hPa per unit.
+  /// Derivatives of delta-p of a block with respect to linear parameters, hPa per unit.
   void differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
                             const double* parameters, const std::vector<LinearColumn>& wanted) const;
 
-  /// True where the columns that hang on coefficients were found at these.
+  /// True if the columns that depend on coefficients were computed at these parameters.
   bool stands_at(const double* parameters) const;
 
   bool is_missing_needed(std::size_t sample) const;
   bool is_missing_any(std::size_t sample) const;
 
  private:
-  /// A column that hangs on a coefficient, and the place of that among the parameters.
+  /// Column that depends on a coefficient, and the index of the coefficient among the parameters.
   struct Moving {
     const ParameterDependentColumn* column;
     std::size_t parameter;

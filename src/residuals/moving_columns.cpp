@@ -69,8 +69,8 @@ void find_moving_columns(const Model& model, const double* parameters, const std
     const auto over = [&](double seconds) { return remembered(memory.of, samples, time, step, seconds); };
     std::vector<double> values = over(at);
     if (memory.of == Quantity::airspeed_rate) {
-      // A fit needs the same samples at every delay: where nothing is known of so long before, beside a gap,
-      // the derivative stands in.
+      // A fit needs the same samples at every delay: next to a gap, without an earlier value, the derivative
+      // is used.
       const std::vector<double> derivative = over(0.0);
       for (std::size_t i = 0; i < values.size(); ++i) {
         if (std::isnan(values[i])) values[i] = derivative[i];
@@ -82,9 +82,9 @@ void find_moving_columns(const Model& model, const double* parameters, const std
     moving->at = at;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double slope = (above[i] - below[i]) / (at + little - lower);
-      moving->slope[i] = std::isfinite(slope) ? slope : 0.0;  // beside a gap
+      moving->slope[i] = std::isfinite(slope) ? slope : 0.0;  // next to a gap
     }
-    // In place: what reads the column keeps its address.
+    // In place: readers of the column keep its address.
     std::copy(values.begin(), values.end(), column->second.begin());
   }
 }

@@ -8,36 +8,37 @@
 
 namespace pcor::internal {
 
-/// What an effect of a model finds over a time; nothing for a formula.
+/// History input of an effect; empty for a formula.
 Memory memory_of(const ModelEffect& effect);
 
-/// How wet the thermometer is in each record (`Wetness`); after a gap in time it begins anew. @param
-/// liquid_water g/m3 @param time of the records, s @param step s @param drying s, below zero as zero
+/// Wetness of the thermometer in each record (`Wetness`); it restarts after a gap in time. @param
+/// liquid_water g/m3 @param time of the records, s @param step sampling interval, s @param drying s, values
+/// below zero are treated as zero
 std::vector<double> wetness_of(const std::vector<double>& liquid_water, const std::vector<double>& time,
                                double step, double drying);
 
-/// The true airspeed by corrected pressures and temperature, m/s, along the beam of the laser where there is
-/// one, of a model with these coefficients; with its own where none are given.
+/// True airspeed from corrected pressures and temperature, m/s, projected on the beam of the laser if there
+/// is one, with the given coefficients or, if none are given, the coefficients of the model.
 std::vector<double> airspeed_along_beam(const ModelDefinition& model, const ModelSamples& samples,
                                         const double* parameters = nullptr);
 
-/// What a model finds over some seconds (`EffectInfo::memory`): the mean rate of the airspeed along the
-/// beam, m/s2, or the wetness of the thermometer after liquid water. Empty where the samples do not have what
-/// it is found from. @param time of the records, s @param step s
+/// History input of a model (`EffectInfo::memory`): the mean rate of the airspeed along the beam, m/s2, or
+/// the wetness of the thermometer after liquid water. Empty if the samples lack its inputs. @param time of
+/// the records, s @param step sampling interval, s
 std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,
                                const std::vector<double>& time, double step, double seconds);
 
-/// Finds the columns that hang on a coefficient of the model, those of the samples that it has there, and how
-/// they change with it (`remembered`). @param parameters of the model @param time of the records, s
-/// @param step s
+/// Computes the columns of the samples that depend on a coefficient of the model, and their derivatives with
+/// respect to it (`remembered`). @param parameters of the model @param time of the records, s
+/// @param step sampling interval, s
 void find_moving_columns(const Model& model, const double* parameters, const std::vector<double>& time,
                          double step, ModelSamples& samples);
 
-/// The columns of a model at some coefficients: those of the samples, but for those that hang on coefficients
-/// and were found at others.
+/// Columns of a model at some coefficients: columns of the samples, except columns that depend on
+/// coefficients and were computed at other values.
 class ColumnsAt {
  public:
-  /// The model and the samples have to outlive it.
+  /// The model and the samples must outlive it.
   ColumnsAt(const ModelOnSamples& model, const FlightSamples& samples, const double* parameters);
 
   ColumnsAt(const ColumnsAt&) = delete;

@@ -8,7 +8,7 @@
 #include "parallel/packed.hpp"
 #include "residuals/residual_sums.hpp"
 
-/// How what is known of flights is packed for the other members of a team.
+/// Serialization of flight data for other ranks.
 namespace cereal {
 
 template <class Archive>
@@ -61,7 +61,7 @@ void serialize(Archive& archive, pcor::internal::ResidualSums& sums) {
   archive(sums.samples, sums.sum, sums.squares, sums.noise_squares, sums.sum_variance);
 }
 
-/// The samples of a flight that several may hold, or none: each that gets them holds its own.
+/// Shared samples of a flight, or null: each receiver gets its copy.
 template <class Archive>
 void save(Archive& archive, const std::shared_ptr<const pcor::FlightSamples>& samples) {
   archive(samples != nullptr);

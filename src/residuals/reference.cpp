@@ -33,7 +33,7 @@ Pointer read_lams(const std::string&, const ModelDefinition& model) {
   return lams_reference();
 }
 
-/// A pair of pressures that no law corrects.
+/// Uncorrected pair of pressures.
 ModelDefinition bare_pair(const std::string& static_pressure, const std::string& dynamic_pressure) {
   ModelDefinition pair;
   pair.model.name = static_pressure + "+" + dynamic_pressure;
@@ -42,20 +42,18 @@ ModelDefinition bare_pair(const std::string& static_pressure, const std::string&
   return pair;
 }
 
-/// A second system, whose pressures nobody can guess.
+/// Second system; its pressures must be named.
 ModelDefinition read_system(const std::string& path) {
   ModelDefinition system = read_model(path);
   if (system.variables.count(Quantity::static_pressure) == 0) {
-    throw Error(
-        Error::Code::model,
-        fmt::format("{}: the model of a second system has to name its pressures; add static_pressure and "
-                    "dynamic_pressure to [variables]",
-                    path));
+    throw Error(Error::Code::model, fmt::format("{}: the model of a second system must name its pressures; "
+                                                "add static_pressure and dynamic_pressure to [variables]",
+                                                path));
   }
   return system;
 }
 
-/// Of a file, or of two variables with a + between them.
+/// Model file, or two variables joined by +.
 Pointer read_total_pressure(const std::string& system, const ModelDefinition&) {
   const std::size_t plus = system.find('+');
   const bool is_pair = plus != std::string::npos && !std::filesystem::exists(system);
@@ -63,10 +61,10 @@ Pointer read_total_pressure(const std::string& system, const ModelDefinition&) {
                                           : read_system(system));
 }
 
-/// How a text names a reference: "form" or, where it takes an argument, "form:argument".
+/// Text form of a reference: "form" or, with an argument, "form:argument".
 struct Form {
   std::string_view form;
-  std::string_view argument;  ///< in words; empty: it takes none
+  std::string_view argument;  ///< description; empty: without argument
   std::string_view meaning;
   Pointer (*read)(const std::string& argument, const ModelDefinition& model);
 };
@@ -95,7 +93,7 @@ ModelSamples Reference::read(const Flight&, const std::vector<double>&, std::vec
 }
 
 const Reference& first_of(const References& references) {
-  if (references.empty()) throw Error("nothing to hold the model against; give at least one reference");
+  if (references.empty()) throw Error("no reference is given; give at least one");
   return *references.front();
 }
 

@@ -13,34 +13,34 @@ namespace pcor::internal {
 
 inline constexpr int jet_width = 4;
 
-/// A number and its derivatives by a few parameters.
+/// Number and its derivatives with respect to a few parameters.
 using Jet = ceres::Jet<double, jet_width>;
 
-/// A sensor of a reference whose noise goes through the chain before it is in the residual.
+/// Sensor of a reference whose noise enters the residual through the chain.
 class NoisySensor {
  public:
   virtual ~NoisySensor() = default;
 
-  /// Which column of the model's samples it fills.
+  /// Column of the model's samples that it fills.
   virtual Quantity quantity() const = 0;
 
-  /// What it would show where the model says that the air is, without its noise, at some samples.
+  /// Noise-free reading of the sensor predicted by the model, at some samples.
   virtual void predict(const std::size_t* samples, std::size_t count, const double* parameters,
                        double* out) const = 0;
   virtual void predict(const std::size_t* samples, std::size_t count, const Jet* parameters,
                        Jet* out) const = 0;
 
-  /// The derivative of the residual by it, hPa per unit, at the prediction of the files' parameters, for
-  /// every sample.
+  /// Derivative of the residual with respect to the sensor, hPa per unit, at the prediction with the files'
+  /// parameters, for every sample.
   virtual std::vector<double> sensitivity() const = 0;
 };
 
-/// A residual that is made of the samples around its own.
+/// Residual that depends on neighbouring samples.
 class Neighbours {
  public:
   virtual ~Neighbours() = default;
 
-  /// How many samples on either side.
+  /// Number of samples on either side.
   virtual std::size_t reach() const = 0;
 
   /// `Residuals::differentiate_along`.
@@ -48,41 +48,42 @@ class Neighbours {
                              const std::vector<Direction>& directions, double* derivatives) const = 0;
 };
 
-/// What a reference says of the samples of a flight, beside the model that is held against it. Parameters are
-/// all of them: those of the model, then those of the reference's own model.
+/// Reference on the samples of a flight, compared with a model. The parameters are all parameters of the
+/// model, followed by all parameters of the reference's model.
 class ReferenceOnSamples {
  public:
-  /// Some samples, with what model and reference read of them gathered.
+  /// Some samples, with the gathered inputs of model and reference.
   struct Block {
     const std::vector<Batch::Input>& model;
     const std::vector<Batch::Input>& reference;
-    const std::size_t* samples;  ///< which they are
+    const std::size_t* samples;  ///< indices of the samples
     std::size_t count;
   };
 
   virtual ~ReferenceOnSamples() = default;
 
-  /// Of the reference less the model, hPa.
+  /// Reference minus model, hPa.
   virtual void residuals(const Block& block, const double* parameters, double* out) const = 0;
   virtual void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
                          Jet* out) const = 0;
 
-  /// What it reads for itself.
+  /// Inputs of the reference.
   virtual std::vector<Batch::Input> columns() const { return {}; }
 
-  /// The model that corrects it; null where it has none.
+  /// Model that corrects it; null without a model.
   virtual const ModelOnSamples* model() const { return nullptr; }
 
-  /// Null where its noise is added to the residual itself.
+  /// Null if its noise is added to the residual directly.
   virtual const NoisySensor* sensor() const { return nullptr; }
 
-  /// Null where its residual is of one sample alone.
+  /// Null if its residual depends on one sample.
   virtual const Neighbours* neighbours() const { return nullptr; }
 
-  /// Why a sample has no residual, though the model has its pressures.
+  /// Reason why a sample has no residual although the model has its pressures.
   virtual Mask why_missing(std::size_t sample) const = 0;
 
-  /// Marks the samples at which it cannot be believed, among those that have a residual and no other mask.
+  /// Marks the samples with implausible values of the reference, among samples that have a residual and no
+  /// other mask.
   /// @param airspeed of the pressures, m/s
   virtual void mark_implausible(std::vector<Mask>& masks, const std::vector<double>& airspeed,
                                 const MaskOptions& options) const;

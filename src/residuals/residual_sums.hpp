@@ -6,15 +6,15 @@
 
 namespace pcor::internal {
 
-/// Sums of residuals, from which statistics follow; those of flights add up.
+/// Sums of residuals that determine their statistics; sums of flights are additive.
 struct ResidualSums {
   std::size_t samples = 0;
   double sum = 0.0;
   double squares = 0.0;
   double noise_squares = 0.0;
-  double sum_variance = 0.0;  ///< of `sum`, by the noise; NaN: not known
+  double sum_variance = 0.0;  ///< variance of `sum` due to the noise; NaN: unknown
 
-  /// Adds a sample, without what it adds to `sum_variance`.
+  /// Adds a sample, without its contribution to `sum_variance`.
   void add(double residual, double noise);
   void add(const ResidualSums& other);
   Statistics statistics() const;

@@ -20,8 +20,8 @@ using namespace internal;
 
 namespace {
 
-/// Derivatives by dual numbers of the parameters `places` among those `wanted`, into their columns.
-/// `values(dual, out)` finds the `count` values for dual parameters.
+/// Derivatives by dual numbers with respect to the parameters `places` among the `wanted` ones, into their
+/// columns. `values(dual, out)` computes the `count` values for dual parameters.
 template <class Values>
 void differentiate(std::size_t count, const std::vector<double>& parameters,
                    const std::vector<std::size_t>& wanted, const std::vector<std::size_t>& places,
@@ -52,7 +52,7 @@ struct Residuals::Implementation {
   std::vector<bool> linear;
   std::vector<Mask> mask;
 
-  /// Of the residual to the reference's sensor, where it has one; found when it is first asked for.
+  /// Derivative of the residual with respect to the reference's sensor, if it has one; computed on first use.
   const std::vector<double>& sensitivity() const {
     std::call_once(found_, [this] { sensitivity_ = reference->sensor()->sensitivity(); });
     return sensitivity_;
@@ -141,7 +141,7 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
   own.reference->residuals({inputs, reference_inputs, samples, count}, parameters, residual);
 
   const std::size_t of_model = own.model.parameters().size();
-  std::vector<std::size_t> curved;  // places in `wanted`
+  std::vector<std::size_t> curved;  // indices in `wanted`
   std::vector<LinearColumn> by_model;
   std::vector<LinearColumn> by_reference;
   for (std::size_t k = 0; k < wanted.size(); ++k) {

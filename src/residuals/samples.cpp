@@ -31,7 +31,7 @@ using namespace internal;
 
 namespace {
 
-/// True airspeed from the pressures as measured, m/s: within 2 %, for regimes and masks.
+/// True airspeed from the measured pressures, m/s: within 2 %, for regimes and masks.
 std::vector<double> measured_airspeed(const ModelSamples& samples) {
   const std::vector<double>& p = *samples.find(Quantity::static_pressure);
   const std::vector<double>& q = *samples.find(Quantity::dynamic_pressure);
@@ -51,7 +51,7 @@ std::vector<double> measured_airspeed(const ModelSamples& samples) {
   return airspeed;
 }
 
-/// What is not found without a series of the motion.
+/// Regimes that require a series of the motion.
 struct Loss {
   Quantity role;
   std::string_view text;
@@ -94,7 +94,7 @@ FlightMotion read_motion(const Flight& flight, const ModelDefinition& model, Fli
   motion.liquid_water = read(Quantity::liquid_water);
   if (!by_usual_names.empty()) {
     samples.notes.push_back(
-        fmt::format("regimes are found with variables of usual names that the model does not name: {}",
+        fmt::format("regimes use variables with standard names that the model does not name: {}",
                     fmt::join(by_usual_names, ", ")));
   }
   const std::array<const std::vector<double>*, losses.size()> found{&motion.altitude, &motion.roll,
@@ -105,7 +105,7 @@ FlightMotion read_motion(const Flight& flight, const ModelDefinition& model, Fli
   return motion;
 }
 
-/// ADIFR/QCR, else the angle of attack, deg; empty where neither is recorded.
+/// ADIFR/QCR, otherwise the angle of attack, deg; empty if neither is recorded.
 std::vector<double> read_attack(const Flight& flight, const ModelDefinition& model,
                                 const FlightMotion& motion) {
   std::vector<double> ratio = read_role(flight, model, Quantity::attack_differential_pressure).values;
@@ -115,7 +115,7 @@ std::vector<double> read_attack(const Flight& flight, const ModelDefinition& mod
   return ratio;
 }
 
-/// The flaps as recorded, else where the lift says that they are out.
+/// Reads recorded flaps, otherwise infers them from the lift.
 void read_flaps(const Flight& flight, const ModelDefinition& model, double min_airspeed,
                 FlightSamples& samples) {
   RecordedSeries recorded = read_role(flight, model, Quantity::flaps);
@@ -127,26 +127,23 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
       attack.empty() ? std::nullopt : find_flaps_by_lift(samples, attack, min_airspeed);
   if (!lift) {
     samples.notes.emplace_back(
-        "the flight records no flaps, and its lift does not tell, so an approach with flaps and gear out "
-        "takes part; --min-airspeed or --intervals leaves it out");
+        "flap position is not recorded and could not be inferred; approach samples may be included. Exclude "
+        "them with --min-airspeed or --intervals");
     return;
   }
   samples.flaps_by_lift = lift->out;
   const std::string times = times_of(*lift, samples.time);
   samples.notes.push_back(
       times.empty()
-          ? fmt::format(
-                "the flight records no flaps; by its lift they are in all the time: the angle of attack "
-                "is what the lift needs within {:.1f} %",
-                100.0 * lift->deviation)
-          : fmt::format(
-                "the flight records no flaps; by its lift they are out {}: the angle of attack is {:.0f} % "
-                "less than the lift needs without flaps, elsewhere it is what that needs within {:.1f} %; "
-                "--max-flaps 100 lets these samples take part",
-                times, 100.0 * lift->deficit, 100.0 * lift->deviation));
+          ? fmt::format("flaps not recorded; inferred as retracted during the whole flight (scatter of the "
+                        "angle of attack {:.1f} %)",
+                        100.0 * lift->deviation)
+          : fmt::format("flaps not recorded; inferred as extended {} (angle of attack {:.0f} % below the "
+                        "clean-wing value, scatter {:.1f} %). Use --max-flaps 100 to include these samples",
+                        times, 100.0 * lift->deficit, 100.0 * lift->deviation));
 }
 
-/// What is recorded, at some rate.
+/// Reads recorded inputs at some rate.
 ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& inputs, int rate,
                          std::vector<std::string>& notes) {
   ModelSamples samples;
@@ -160,7 +157,7 @@ ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& in
   return samples;
 }
 
-/// Pressures in steps that are no small part of their noise.
+/// Notes pressures whose resolution is a considerable part of their noise.
 void note_coarse(const ModelSamples& samples, std::vector<std::string>& notes) {
   for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
     const std::vector<double>* const values = samples.find(quantity);
@@ -168,14 +165,14 @@ void note_coarse(const ModelSamples& samples, std::vector<std::string>& notes) {
     if (step < coarse_pressure) continue;
     const auto variable = std::find_if(samples.variables.begin(), samples.variables.end(),
                                        [quantity](const auto& each) { return each.first == quantity; });
-    notes.push_back(
-        fmt::format("{} is recorded in steps of {:.2g} hPa: rounding alone is {:.2g} hPa rms of its noise",
-                    variable->second, step, rounding_of(step)));
+    notes.push_back(fmt::format(
+        "{} is recorded in steps of {:.2g} hPa: rounding alone contributes {:.2g} hPa rms of noise",
+        variable->second, step, rounding_of(step)));
   }
 }
 
-/// The airspeed along the beam, at the highest rate at which a pressure is recorded. What else a model adds
-/// up from the records, rates of change and the time, is that of the whole record.
+/// Airspeed along the beam, at the highest rate of a recorded pressure. Other derived inputs, rates of change
+/// and the time, are computed over the whole record.
 FastSeries read_along_beam(const Flight& flight, const ModelDefinition& model,
                            const std::vector<ModelInput>& inputs, const ModelSamples& records) {
   int rate = 1;
@@ -229,7 +226,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
   for (const ModelInput& input : inputs) fastest = std::max(fastest, flight.variable(input.variable).rate);
   if (fastest > 1) {
     notes.push_back(
-        fmt::format("recorded with up to {:g} samples a second: what is compared are means over {:g} s",
+        fmt::format("recorded with up to {:g} samples per second; the comparison uses means over {:g} s",
                     fastest / step, step));
   }
   const auto rate = [&](FastSeries& series) {
@@ -248,7 +245,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
         wetness_of(*samples.find(Quantity::liquid_water), time, step, chain.time_of(Quantity::wetness)));
   }
   if (chain.derives(Quantity::airspeed_rate)) {
-    // Of corrected pressures: in a pitch manoeuvre delta-p changes faster than the dynamic pressure.
+    // Corrected pressures are used: in a pitch manoeuvre delta-p changes faster than the dynamic pressure.
     samples.along_beam = read_along_beam(flight, model, inputs, samples);
     add(Quantity::airspeed_rate, rate(samples.along_beam));
   }
@@ -277,9 +274,8 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
   const std::optional<RegimeCriteria> criteria = RegimeCriteria::of(samples.aircraft);
   if (!criteria) {
     samples.notes.push_back(
-        fmt::format("the aircraft {} is not known here, so its regimes are found by the criteria of the "
-                    "C-130, whose speed "
-                    "runs are slower than those of a jet; --intervals adds regimes and takes them away",
+        fmt::format("unknown aircraft {}: regimes are found by the criteria of the C-130, whose speed runs "
+                    "are slower than those of a jet; --intervals adds or removes regimes",
                     samples.aircraft.empty() ? "of this flight" : "'" + samples.aircraft + "'"));
   }
   samples.intervals = find_regimes(samples.motion, criteria.value_or(RegimeCriteria::c130()));

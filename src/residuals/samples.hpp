@@ -7,8 +7,9 @@
 
 namespace pcor::internal {
 
-/// What a model reads of a flight, rates of change and the time since the first record included. Without
-/// `with_laser` it is used as if it had none. Adds to `notes` what a user should know, a sentence each.
+/// Inputs of a model from a flight, including rates of change and the time since the first record. Without
+/// `with_laser` the model is used as if it had no laser. Adds notes for the user to `notes`, one sentence
+/// each.
 /// @throws Error if the model cannot be used, a variable is absent or has no value, or its unit does not fit.
 ModelSamples read_model_columns(const Flight& flight, const ModelDefinition& model, bool with_laser,
                                 const std::vector<double>& time, std::vector<std::string>& notes);

@@ -9,14 +9,15 @@
 
 namespace pcor::internal {
 
-/// A text that is the same for two models that read the same of a flight: its variables and units, and what
-/// its effects need. The coefficients of the effects count only where a column depends on one of them
+/// Text that is identical for two models with the same inputs from a flight: variables and units, and the
+/// inputs of its effects. The coefficients of the effects count only if a column depends on one of them
 /// (`find_moving_columns`, `airspeed_along_beam`).
 /// @throws Error if the model cannot be used on its roles
 std::string inputs_of(const ModelDefinition& model, bool with_laser);
 
-/// A number that is the same where `read_samples` gives the same of a flight, except for a chance of 2^-64.
-/// @throws Error as `inputs_of`
+/// Key that is identical if `read_samples` returns the same samples of a flight, and different otherwise
+/// except with probability 2^-64.
+/// @throws Error as does `inputs_of`
 std::uint64_t samples_key(const ModelDefinition& model, const Reference& reference, const MaskOptions& mask);
 
 }  // namespace pcor::internal

@@ -66,17 +66,16 @@ std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_wh
 bool HeldOutPart::is_off() const {
   constexpr double chance = 1.0 / 80.0;
   const double tail = 1.0 - std::pow(1.0 - chance, 1.0 / static_cast<double>(parts));
-  const double limit = std::sqrt(chi_squared_value(tail, 1.0));  // standard errors; 2.5 of one part
-  constexpr double smallest = 1e-3;                              // hPa: less is the rounding of a file
+  const double limit = std::sqrt(chi_squared_value(tail, 1.0));  // standard errors; 2.5 for a single part
+  constexpr double smallest = 1e-3;                              // hPa: smaller values are rounding of a file
   return statistics.samples > 0 && expected > 0.0 &&
          std::abs(statistics.bias) > std::max(limit * expected, smallest);
 }
 
 std::string HeldOutPart::text() const {
   return fmt::format(
-      "{}, held out, is off by {:+.3f} hPa (rms {:.3f} hPa); the fit expects 0 +- {:.3f} hPa there: "
-      "something that the model lacks changes with time, between flights, or in a regime that the fit did "
-      "not see",
+      "held-out {}: mean residual {:+.3f} hPa (rms {:.3f} hPa), expected 0 +- {:.3f} hPa: the model lacks a "
+      "change with time, between flights, or in a regime outside the fit",
       flight, statistics.bias, statistics.rms, expected);
 }
 

@@ -7,9 +7,9 @@
 
 namespace pcor::internal {
 
-/// The wind of a flight about every fortieth of it: the speed over the ground less that through the air,
-/// which goes along the heading and, where the sideslip is known, beside it. Good to some m/s, for pictures.
-/// None where the flight does not record what it takes.
+/// Wind of a flight at about forty times: ground velocity minus velocity through the air, which points along
+/// the heading and, if the sideslip is known, has a lateral component. Accurate to a few m/s, for pictures.
+/// Empty if the flight does not record its inputs.
 std::vector<ReportBarb> wind_of(const FlightSamples& flight);
 
 }  // namespace pcor::internal

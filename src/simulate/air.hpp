@@ -24,15 +24,15 @@ double density(const Air& air);
 /// Speed of sound, m/s: (c_p/c_v R T)^(1/2).
 double speed_of_sound(const Air& air);
 
-/// The pressure, hPa, where the air that flows at `speed` (m/s) is brought to rest without losses:
-/// p (T*/T)^(c_p/R) with T* = T + v^2/(2 c_p).
+/// Total pressure, hPa, of air with the speed `speed` (m/s), without losses: p (T*/T)^(c_p/R) with T* = T +
+/// v^2/(2 c_p).
 double total_pressure(const Air& air, double speed);
 
 /// Temperature, K, of the air brought to rest with the part `recovery` of its heating.
 double recovery_temperature(const Air& air, double speed, double recovery);
 
-/// The Mach number, 1, that a dry-air computer finds from a pair of pressures of one unit; 0 where the
-/// dynamic one is not positive.
+/// Mach number, 1, computed by a dry-air computer from a pair of pressures of one unit; 0 if the dynamic one
+/// is not positive.
 double dry_mach(double static_pressure, double dynamic_pressure);
 
 /// Saturation vapour pressure over water, hPa, temperature in K: Alduchov and Eskridge, J. Appl. Meteorol.

@@ -26,22 +26,22 @@ struct Thermometer {
   double recovery_factor(double mach) const;
 };
 
-/// What is particular to an aircraft. Sources: aircraft.cpp.
+/// Properties of an aircraft. Sources: aircraft.cpp.
 struct AircraftInfo {
   std::string_view type{};
   std::string_view registration{};
-  Thermometer thermometer{};         ///< of constant recovery factor, which a scenario may set
-  Thermometer second_thermometer{};  ///< of the recovery factor that processing uses since 2014
+  Thermometer thermometer{};         ///< constant recovery factor, which a scenario may set
+  Thermometer second_thermometer{};  ///< recovery factor used in processing since 2014
 
   double wing_area = 0.0;      ///< m2
-  double lift_slope = 0.0;     ///< of the lift coefficient at low Mach number, 1/deg
+  double lift_slope = 0.0;     ///< slope of the lift coefficient at low Mach number, 1/deg
   double zero_lift = 0.0;      ///< angle of attack without lift, flaps up, deg
-  double flap_lift = 0.0;      ///< by how much full flaps lower that angle, deg
+  double flap_lift = 0.0;      ///< decrease of the zero-lift angle with full flaps, deg
   double drag_constant = 0.0;  ///< drag coefficient C_D = drag_constant + induced_drag C_L^2
   double induced_drag = 0.0;
-  double weight = 0.0;              ///< at the start of a flight, kg
+  double weight = 0.0;              ///< initial weight, kg
   double fuel_flow = 0.0;           ///< kg/s
-  double power = 0.0;               ///< of all engines at 100 %, propellers' losses taken off, W
+  double power = 0.0;               ///< total power of the engines at 100 %, after propeller losses, W
   double cabin_differential = 0.0;  ///< greatest, hPa
 
   double min_speed = 0.0;       ///< true airspeed of manoeuvres, m/s
@@ -54,7 +54,7 @@ struct AircraftInfo {
   double speed_run_low = 0.0;   ///< usual, m/s
   double speed_run_high = 0.0;  ///< usual, m/s
   double speed_run_rate = 0.0;  ///< usual, m/s2
-  double clear_above = 0.0;     ///< where half of the laser's samples lack aerosol, m
+  double clear_above = 0.0;     ///< height at which half of the laser's samples are missing, m
 
   Radome attack{};
   Radome sideslip{};
@@ -72,8 +72,8 @@ const AircraftInfo& info_of(Scenario::Aircraft aircraft);
 double lift_attack(const AircraftInfo& aircraft, double weight, double load_factor, double dynamic_pressure,
                    double mach, double flaps);
 
-/// The part of full power, %, that it takes to fly at `speed` m/s with lift coefficient `lift`, while the
-/// aircraft gains `energy_rate` (W) of height and speed; not below 5 (idle) nor above 100.
+/// Fraction of full power, %, required to fly at `speed` m/s with lift coefficient `lift`, while the aircraft
+/// gains `energy_rate` (W) of height and speed; limited to 5 (idle) to 100.
 double torque(const AircraftInfo& aircraft, double lift, double dynamic_pressure, double speed,
               double energy_rate);
 

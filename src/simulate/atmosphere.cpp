@@ -10,7 +10,7 @@
 namespace pcor::internal::simulate {
 namespace {
 
-constexpr double step = 10.0;  // m; interpolating ln p between levels then errs by 4e-8
+constexpr double step = 10.0;  // m; the interpolation error of ln p between levels is 4e-8
 constexpr double below_ground = 500.0;
 constexpr double top = 18000.0;
 constexpr double inversion_depth = 200.0;  // m

@@ -21,7 +21,7 @@ class Column {
   /// @throws Error if the air would be colder than 150 K below the tropopause.
   Column(const Scenario::Atmosphere& atmosphere, double latitude);
 
-  /// The air at a height, m. Beyond the column (500 m below the ground to 18 km) the last value.
+  /// Air at a height, m. The last value is used beyond the column (500 m below the ground to 18 km).
   Air at(double height) const;
 
  private:
@@ -30,8 +30,8 @@ class Column {
   std::vector<Air> levels_;
 };
 
-/// The dissipation rate of turbulence, m2/s3, at a height in m: that of the boundary layer up to the
-/// inversion, that of the free troposphere from 300 m above it, in between by their geometric mean.
+/// Dissipation rate of turbulence, m2/s3, at a height in m: the boundary-layer value up to the inversion, the
+/// free-troposphere value from 300 m above it, their geometric interpolation in between.
 double dissipation(const Scenario::Atmosphere& atmosphere, double height);
 
 }  // namespace pcor::internal::simulate

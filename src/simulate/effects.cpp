@@ -103,8 +103,9 @@ void ground_effect(const Effect& effect, const Truth& truth, SystemFaults* syste
   });
 }
 
-// Weight and inertia of the air between the port and the transducer `below` and `behind` it, which has the
-// temperature of the bay: dp = rho (f_normal below + f_forward behind), f what an accelerometer feels.
+// Weight and inertia of the air between the port and the transducer `below` and `behind` it, at the
+// temperature of the bay: dp = rho (f_normal below + f_forward behind), with the specific forces f measured
+// by an accelerometer.
 void line_head(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
   constexpr double pascal_per_hpa = 100.0;
   const double below = number(effect, "below");
@@ -194,8 +195,8 @@ void recovery_factor(const Effect& effect, const Truth&, SystemFaults*, Faults& 
   faults.recovery += number(effect, "error");
 }
 
-// The heat of de-icing warms the element the more, the less air passes it: Z is a measure of the flow of
-// mass, and below 0.18 nobody has measured.
+// De-icing heat warms the element in inverse relation to the mass flow, of which Z is a measure; there are no
+// measurements below 0.18.
 void temp_deice_heat(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
   constexpr double flow_scale = 0.269589;  // K/hPa
   constexpr double min_flow = 0.18;

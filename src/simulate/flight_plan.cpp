@@ -16,7 +16,7 @@ using Kind = Scenario::Leg::Kind;
 
 constexpr double two_pi = 6.283185307179586;
 constexpr double usual_acceleration = 0.5;  // m/s2, between legs
-constexpr double hold_rate = 3.0;           // m/s, to come back to a height
+constexpr double hold_rate = 3.0;           // m/s, for the return to a height
 
 /// Flies legs with a pilot; remembers the height and speed to hold.
 class Plan {
@@ -110,7 +110,7 @@ class Plan {
       const double envelope = std::clamp(std::min(t, duration - t) / ramp, 0.0, 1.0);
       return peak * envelope * std::sin(frequency * t);
     };
-    const double left_over = pilot_.vertical_speed();  // to be gone after the first half cycle
+    const double left_over = pilot_.vertical_speed();  // removed after the first half cycle
     for (std::size_t i = 0; i < steps_of(duration); ++i) {
       const double t = time_step * static_cast<double>(i);
       Command command;
@@ -144,10 +144,10 @@ class Plan {
     }
   }
 
-  // With the bank of the leg; rolls out in proportion to what is left.
+  // Turns at the bank of the leg; rolls out in proportion to the remaining angle.
   void turn(const Leg& leg, double angle) {
     constexpr double done = 0.3;      // deg
-    constexpr double roll_out = 3.0;  // deg of bank for each deg that is left
+    constexpr double roll_out = 3.0;  // deg of bank per deg of remaining turn
     const double target = pilot_.direction() + angle;
     while (std::abs(target - pilot_.direction()) > done) {
       Command command = hold(hold_rate);
@@ -164,7 +164,7 @@ class Plan {
     held_height_ = pilot_.height_of_ground();
     while (pilot_.height() - held_height_ > touch_down) {
       Command command = hold(leg.rate);
-      // Slow down in level flight at first: flaps go down when it is slow enough.
+      // Decelerates in level flight first, until flaps can be extended.
       if (pilot_.speed() < pilot_.aircraft().min_speed + 5.0) command.flaps = leg.flaps;
       pilot_.step(command, leg);
     }

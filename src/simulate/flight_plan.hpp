@@ -10,7 +10,7 @@
 
 namespace pcor::internal::simulate {
 
-/// A number that a leg takes.
+/// Number used by a leg.
 struct LegNumber {
   std::string_view key;
   double Scenario::Leg::*value;
@@ -32,7 +32,7 @@ inline constexpr std::array<LegNumber, 12> leg_numbers{{
     {"flaps", &Scenario::Leg::flaps},
 }};
 
-/// A kind of leg: its name in scenarios and the numbers it takes.
+/// Kind of leg: its name in scenarios and the numbers it uses.
 struct LegInfo {
   Scenario::Leg::Kind kind;
   std::string_view name;
@@ -54,11 +54,11 @@ inline constexpr std::array<LegInfo, 12> leg_info{{
     {Scenario::Leg::Kind::landing, "landing", "speed rate flaps"},
 }};
 
-/// Fills the numbers of a leg that are not given with the usual ones of the aircraft. Sizes of manoeuvres:
-/// those of NCAR's calibration flights (QAtools, memo).
+/// Sets missing numbers of a leg to the usual ones of the aircraft. Sizes of manoeuvres: NCAR's calibration
+/// flights (QAtools, memo).
 void complete(Scenario::Leg& leg, const AircraftInfo& aircraft);
 
-/// The steps of one leg as it was flown: from `first` to before `last`.
+/// Steps of one simulated leg: [first, last).
 struct LegSteps {
   Scenario::Leg::Kind kind;
   std::size_t first;

@@ -11,7 +11,7 @@ namespace pcor::internal::simulate {
 namespace {
 
 constexpr double radians = constants::radians_per_degree;
-constexpr double metres_per_degree = 111195.0;  // of latitude, mean earth
+constexpr double metres_per_degree = 111195.0;  // latitude, mean earth
 constexpr double gradient_length = 1e5;         // m; slopes of isobars are per 100 km
 constexpr double roll_rate = 5.0;               // deg/s, of research turns
 constexpr double flap_rate = 3.0;               // percent/s, estimate

@@ -11,10 +11,10 @@
 
 namespace pcor::internal::simulate {
 
-/// What the aircraft is told to do in one step.
+/// Command to the aircraft for one step.
 struct Command {
   double vertical_acceleration = 0.0;  ///< m/s2
-  double acceleration = 0.0;           ///< of the airspeed, m/s2
+  double acceleration = 0.0;           ///< change of the airspeed, m/s2
   double roll = 0.0;                   ///< deg
   double sideslip = 0.0;               ///< deg
   double flaps = 0.0;                  ///< percent
@@ -22,9 +22,9 @@ struct Command {
 
 /// Flies the aircraft through the air by steps of `time_step` and writes down what is true in each.
 ///
-/// The angle of attack is the one at which the wing carries the weight, so that it goes with airspeed,
-/// weight, load factor and flaps as in reality. Gusts change airspeed and flow angles at once; vertical and
-/// lateral ones slower than 1.5 s carry the aircraft with them.
+/// The angle of attack is the one at which the wing carries the weight, so it depends on airspeed, weight,
+/// load factor and flaps. Gusts change airspeed and flow angles immediately; vertical and lateral ones slower
+/// than 1.5 s carry the aircraft with them.
 class Pilot {
  public:
   explicit Pilot(const Scenario& scenario);
@@ -42,7 +42,7 @@ class Pilot {
   double height() const { return height_ - isobar_height(); }
   double vertical_speed() const { return vertical_speed_; }
   double speed() const { return speed_; }
-  double direction() const { return direction_; }  ///< in which it moves through the air, deg
+  double direction() const { return direction_; }  ///< direction of motion through the air, deg
   double flaps() const { return flaps_; }
   double roll() const { return roll_; }
   double height_of_ground() const { return scenario_.atmosphere.ground_height; }
@@ -54,7 +54,7 @@ class Pilot {
  private:
   struct Cloud {
     const Scenario::Cloud* layer;
-    double threshold;  // of the drift, above which there is cloud
+    double threshold;  // threshold of the drift for cloud
     Drift drift;
   };
 

@@ -28,12 +28,12 @@ class Random {
   bool has_spare_ = false;
 };
 
-/// A normal process of mean 0 and variance 1 that forgets itself as exp(-t/memory) (Ornstein-Uhlenbeck).
+/// Normal process of mean 0, variance 1 and autocorrelation exp(-t/memory) (Ornstein-Uhlenbeck).
 class Drift {
  public:
   Drift(std::uint64_t seed, std::string_view name);
 
-  /// The value a step later; `kept` = exp(-step/memory) is what is left of the last one, 0 to below 1.
+  /// Value a step later; `kept` = exp(-step/memory) is its correlation with the previous one, 0 to below 1.
   double next(double kept);
 
  private:

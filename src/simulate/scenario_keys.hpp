@@ -8,7 +8,7 @@
 
 namespace pcor::internal::simulate {
 
-/// The numbers of a scenario: their keys, where they go, and what they may be.
+/// Numbers of a scenario: keys, destinations and domains.
 
 /// The values that a number may have, with its unit for the message.
 struct Domain {
@@ -19,7 +19,7 @@ struct Domain {
 
 inline constexpr double any = 1e9;
 
-/// A number of a table: its key, where it goes, what it may be.
+/// Number of a table: key, destination and domain.
 template <class Object>
 struct NumberKey {
   std::string_view key;
@@ -113,7 +113,7 @@ inline constexpr std::array<LawKey, 10> law_keys{{
     {"static-beta-even", &Scenario::Law::b2},
 }};
 
-/// What a number of a leg may be.
+/// Domain of a number of a leg.
 inline Domain leg_domain(std::string_view key, Scenario::Leg::Kind kind, const AircraftInfo& aircraft) {
   using Kind = Scenario::Leg::Kind;
   const bool slow = kind == Kind::take_off || kind == Kind::landing;
@@ -136,7 +136,7 @@ inline Domain leg_domain(std::string_view key, Scenario::Leg::Kind kind, const A
   return {0.0, 100.0, "percent"};
 }
 
-/// What a parameter of an effect may be.
+/// Domain of a parameter of an effect.
 inline Domain parameter_domain(std::string_view key) {
   if (key == "tau" || key == "drying") return {0.0, 600.0, "s"};
   if (key == "seconds") return {-60.0, 60.0, "s"};

@@ -36,7 +36,7 @@ Names split_words(std::string_view text) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
-/// Reads a parsed file into a scenario, and refuses what has no meaning with the place where it stands.
+/// Reads a parsed file into a scenario, and rejects invalid contents with their position.
 class Reader final : TomlReader {
  public:
   explicit Reader(std::string_view name) : TomlReader(name) { scenario_.file = name; }
@@ -74,7 +74,7 @@ class Reader final : TomlReader {
   void tables(const Entry& entry, Read read) const {
     const std::string wanted = fmt::format("tables [[{}]]", entry.key);
     for (const toml::node& node : array(entry, wanted)) {
-      read(as<toml::table>(node, "this is no table; give " + wanted), node.source().begin);
+      read(as<toml::table>(node, "this is not a table; give " + wanted), node.source().begin);
     }
   }
 
@@ -284,7 +284,8 @@ class Reader final : TomlReader {
     fail(place, "the leg has no kind; add kind = \"level\" or another");
   }
 
-  /// What the numbers of a leg say together, and with the legs before it. `height` is what they led to.
+  /// Checks the combination of numbers of a leg, and of the legs before it. `height` is the altitude they
+  /// reach.
   void check_leg(const Scenario::Leg& leg, const LegInfo& info, Place place, bool& flying,
                  double& height) const {
     using Kind = Scenario::Leg::Kind;
@@ -309,8 +310,8 @@ class Reader final : TomlReader {
     if (changes_height || leg.kind == Kind::take_off) height = leg.altitude;
     if (leg.kind == Kind::landing) height = scenario_.atmosphere.ground_height;
     if (std::abs(leg.angle) < 1.0)
-      fail(place,
-           fmt::format("angle = {} deg is no {}; give 1 deg or more to either side", leg.angle, info.name));
+      fail(place, fmt::format("angle = {} deg is not a {}; give 1 deg or more to either side", leg.angle,
+                              info.name));
     if (leg.kind == Kind::speed_run && !(leg.low < leg.high))
       fail(place, fmt::format("low = {} m/s is not below high = {} m/s; give low < high", leg.low, leg.high));
   }
@@ -368,7 +369,7 @@ class Reader final : TomlReader {
     });
   }
 
-  /// What an effect says together with the rest of the scenario.
+  /// Checks an effect in combination with the rest of the scenario.
   void check_effect(const Scenario::Effect& effect, Place place) const {
     const bool of_clouds = effect.id == "lams-cloud" || effect.id == "temp-wetting";
     if (of_clouds && scenario_.atmosphere.clouds.empty())
@@ -376,7 +377,7 @@ class Reader final : TomlReader {
     if (effect.id != "unknown") return;
     const bool on_systems = effect.location == "static" || effect.location == "total";
     if (!on_systems && !effect.on.empty())
-      fail(place, fmt::format("what acts on the {} acts on nothing else; remove 'on'", effect.location));
+      fail(place, fmt::format("an effect on the {} has no other target; remove 'on'", effect.location));
     if (effect.parameters.at("scale") == 0.0) fail(place, "scale = 0 is impossible; give another number");
   }
 
@@ -412,7 +413,7 @@ class Reader final : TomlReader {
       each(items, "[[outliers]]", actions);
       if (outliers.variable.empty()) fail(place, "the outliers have no variable; add variable = \"...\"");
       if (outliers.fraction == 0.0 || outliers.size == 0.0)
-        fail(place, "the outliers are none; give a fraction and a size above 0");
+        fail(place, "the outliers have no effect; give a fraction and a size above 0");
       scenario_.outliers.push_back(outliers);
     });
   }

@@ -15,7 +15,7 @@ constexpr double radians = constants::radians_per_degree;
 
 double at(const Series& series, std::size_t i) { return series.empty() ? 0.0 : series[i]; }
 
-/// What is left of a law at a dynamic pressure, hPa: without flow there is no defect.
+/// Fading factor of a law at a dynamic pressure, hPa: no defect without flow.
 double fading_at(double dynamic_pressure) {
   constexpr double fades_below = 20.0;  // hPa
   const double part = std::clamp(dynamic_pressure / fades_below, 0.0, 1.0);
@@ -34,7 +34,7 @@ double law_value(const Scenario::Law& law, const PortState& s, double pressure) 
   return pressure * sum * fading_at(q);
 }
 
-/// What a port's law stands in at a step of the flight, with nothing wrong.
+/// Inputs of a port's law at a step of the flight, without errors.
 PortState port_state(const Scenario::System& system, const Truth& truth, const AircraftInfo& aircraft,
                      std::size_t i) {
   const double mach = truth.mach[i];
@@ -186,7 +186,7 @@ Series read_lams(const Scenario& scenario, const Faults& faults, const Truth& tr
 }
 
 Series read_thermometer(const Thermometer& thermometer, const Faults& faults, const Truth& truth) {
-  constexpr double slowest = 0.05;  // Mach number; the laws of recovery factors do not go to rest
+  constexpr double slowest = 0.05;  // Mach number; lower limit of the recovery-factor laws
   Series temperature(truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double recovery = thermometer.recovery_factor(std::max(truth.mach[i], slowest)) + faults.recovery;

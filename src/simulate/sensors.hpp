@@ -10,14 +10,14 @@
 
 namespace pcor::internal::simulate {
 
-/// What a pair of pressures reads before its noise.
+/// Reading of a pair of pressures without noise.
 struct PairReading {
   Series static_pressure;   ///< hPa
   Series dynamic_pressure;  ///< hPa
-  Series defect;            ///< at the static port, hPa: p_port = p - d
+  Series defect;            ///< defect at the static port, hPa: p_port = p - d
 };
 
-/// What the radome reads before its noise.
+/// Reading of the radome without noise.
 struct RadomeReading {
   Series dynamic_pressure;  ///< QCR, hPa
   Series attack;            ///< ADIFR, hPa
@@ -28,22 +28,22 @@ struct RadomeReading {
 ///
 ///     d = p_m law(q_m/p_m, ...) + extra,   p_m = p - d,   q_m = total - p_m
 ///
-/// since the published laws stand in what is measured. Found by the secant method to 1e-11 hPa. Below q_m =
+/// because the published laws use measured quantities. Solved by the secant method to 1e-11 hPa. Below q_m =
 /// 20 hPa the law fades as (q_m/20)^2: without flow there is no defect.
 struct PortState {
-  double pressure;      ///< of the air, hPa
-  double total;         ///< at the pitot, hPa
+  double pressure;      ///< static pressure of the air, hPa
+  double total;         ///< total pressure at the pitot, hPa
   double attack_ratio;  ///< ADIFR/QCR as calibrated
   double sideslip_ratio;
   double attack;    ///< deg
   double sideslip;  ///< deg
-  double mach;      ///< for the law; NaN: that of the pair in dry air
+  double mach;      ///< Mach number for the law; NaN: Mach number of the pair in dry air
   double extra;     ///< hPa
 };
 double static_defect(const Scenario::Law& law, const PortState& state);
 
-/// The Mach number, 1, with which `law` gives the defect that the first system has by its own law: see
-/// `Scenario::Avionics`. It becomes the true one where the laws fade.
+/// Mach number, 1, with which `law` gives the defect of the first system: see `Scenario::Avionics`. It
+/// approaches the true one as the laws fade.
 Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftInfo& aircraft);
 
 /// Air to ports, lines and transducers of one pair.
@@ -54,28 +54,28 @@ PairReading read_pair(const Scenario::System& system, const SystemFaults& faults
 RadomeReading read_radome(const Faults& faults, const Truth& truth, const AircraftInfo& aircraft,
                           const Series& defect);
 
-/// The airspeed along the laser beam, m/s: the product of the vectors of the beam and of the aircraft's
-/// motion through the air, in body axes (x forward, y starboard, z down). NaN where the laser has no signal.
+/// Airspeed along the laser beam, m/s: the product of the vectors of the beam and of the aircraft's motion
+/// through the air, in body axes (x forward, y starboard, z down). NaN without a laser signal.
 Series read_lams(const Scenario& scenario, const Faults& faults, const Truth& truth,
                  const AircraftInfo& aircraft);
 
-/// Recovery temperature, K. What is wrong with the temperature is so with every thermometer.
+/// Recovery temperature, K. Temperature errors affect every thermometer.
 Series read_thermometer(const Thermometer& thermometer, const Faults& faults, const Truth& truth);
 
-/// First-order response to a series: tau dx/dt = u - x, exact where u is linear between steps. `tau` of 0
-/// leaves it as it is.
+/// First-order response to a series: tau dx/dt = u - x, exact for linear u between steps. `tau` = 0 returns
+/// it unchanged.
 Series with_response(Series series, double tau);
 
-/// The series `seconds` later (earlier where negative); its ends are held.
+/// Series delayed by `seconds` (advanced if negative); its ends are held.
 Series delayed(Series series, double seconds);
 
-/// Turns what a sensor feels into what is in the file.
+/// Converts the input of a sensor to recorded values.
 class Recorder {
  public:
   Recorder(const Scenario& scenario, const Faults& faults) : scenario_(scenario), faults_(faults) {}
 
-  /// Adds response, clock, noise and resolution of `variable`, takes means over the intervals of `rate`
-  /// samples a second (NaN where fewer than half of the steps have a value), then outliers and gaps.
+  /// Applies response, clock, noise and resolution of `variable`, averages over the intervals of `rate`
+  /// samples per second (NaN if fewer than half of the steps have a value), then adds outliers and gaps.
   std::vector<double> record(const std::string& variable, Series series, int rate) const;
 
   /// Means over the intervals alone.

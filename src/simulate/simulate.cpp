@@ -102,7 +102,7 @@ class Recording {
     const std::vector<double> mach = Recorder::means(truth_.mach, rate);
     std::vector<double> attack(q.size());
     std::vector<double> sideslip(q.size());
-    constexpr double min_flow = 1.0;  // hPa; below it the ports say nothing
+    constexpr double min_flow = 1.0;  // hPa; minimum for valid port readings
     for (std::size_t i = 0; i < q.size(); ++i) {
       const bool flow = q[i] > min_flow;
       attack[i] = flow ? aircraft_.attack.angle(up[i] / q[i], mach[i]) : Scenario::by_default;

@@ -14,9 +14,9 @@ inline constexpr double time_step = 1.0 / internal_rate;  // s
 /// Values at the internal rate, one for each step of the flight.
 using Series = std::vector<double>;
 
-/// What really was, step by step. Angles go on beyond 360 deg, so that means need no care.
+/// True values at every step. Angles are unwrapped beyond 360 deg, so that means are simple.
 struct Truth {
-  Series pressure;              ///< of the undisturbed air, hPa
+  Series pressure;              ///< pressure of the undisturbed air, hPa
   Series total_pressure;        ///< hPa
   Series temperature;           ///< K
   Series vapor_pressure;        ///< hPa
@@ -34,27 +34,27 @@ struct Truth {
   Series latitude;              ///< deg
   Series longitude;             ///< deg
   Series height;                ///< above the ground, m
-  Series normal_acceleration;   ///< without gravity, upwards in the aircraft, m/s2
+  Series normal_acceleration;   ///< acceleration without gravity, upwards in the aircraft, m/s2
   Series forward_acceleration;  ///< along the aircraft, with gravity: what an accelerometer shows, m/s2
   Series flaps;                 ///< percent
   Series liquid_water;          ///< g/m3
   Series cabin_pressure;        ///< hPa
-  Series torque;                ///< of the engines, percent
-  Series bay_temperature;       ///< of the transducers, K
+  Series torque;                ///< torque of the engines, percent
+  Series bay_temperature;       ///< temperature of the transducers, K
   Series weight;                ///< kg
-  Series wind_east;             ///< where the air moves to, m/s
+  Series wind_east;             ///< direction of the air motion: eastward, m/s
   Series wind_north;            ///< m/s
-  Series dissipation;           ///< of the turbulence, m2/s3
-  Series hidden;                ///< a slow wave that nothing in the file records, rms 1
+  Series dissipation;           ///< dissipation rate of the turbulence, m2/s3
+  Series hidden;                ///< slow wave that is not recorded in the file, rms 1
 
   std::size_t size() const { return pressure.size(); }
 };
 
 /// A series of the truth and how the file calls it.
 struct TruthInfo {
-  std::string_view recorded;  ///< as an instrument records it, e.g. "ENGTRQ"; empty if none does
-  std::string_view name;      ///< as truth, e.g. "TRUE_PS"; empty if it is not written
-  std::string_view unit;      ///< in the file; degC stands for K of the series
+  std::string_view recorded;  ///< name as recorded by an instrument, e.g. "ENGTRQ"; empty if not recorded
+  std::string_view name;      ///< name of the true value, e.g. "TRUE_PS"; empty if it is not written
+  std::string_view unit;      ///< unit in the file; degC for a series in K
   std::string_view description;
   Series Truth::*series;
   bool fast = false;   ///< written at the scenario's rate

@@ -13,8 +13,8 @@ Turbulence::Turbulence(std::uint64_t seed, const std::string& name, bool across)
   // A process of wave number K and variance s^2 has F(k) = s^2 (2/pi) K/(K^2 + k^2). With s^2 = A K^(-2/3) at
   // wave numbers `ratio` apart the sum is 2 A k^(-5/3)/ln(ratio).
   const double scale = 0.5 * alpha * std::log(ratio);
-  // The first stands for all larger scales too: far above its wave number their spectra sum up to so much of
-  // it.
+  // The first component includes all larger scales: this factor is the sum of their spectra far above its
+  // wave number.
   const double larger = 1.0 / (1.0 - std::cbrt(1.0 / ratio));
   double wave_number = two_pi / longest;
   for (int i = 0; i < count; ++i) {

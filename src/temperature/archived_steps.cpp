@@ -22,7 +22,7 @@ using Coefficients = std::array<double, 3>;
 
 [[noreturn]] void refuse_without(const Flight& flight, const char* what, const char* attribute) {
   throw Error(fmt::format(
-      "{}: {} does not say {} (attribute {}); write the file again with pcor process --hydrostatic",
+      "{}: {} does not state {} (attribute {}); write the file again with pcor process --hydrostatic",
       flight.path().string(), variable, what, attribute));
 }
 
@@ -37,13 +37,13 @@ Coefficients calibration_in(const Flight& flight) {
   Coefficients a{};
   std::istringstream text(attribute_of(flight, calibration_attribute));
   if (!(text >> a[0] >> a[1] >> a[2]))
-    refuse_without(flight, "which correction of the temperature is in ATX", calibration_attribute);
+    refuse_without(flight, "the temperature correction in ATX", calibration_attribute);
   return a;
 }
 
 void require_same_model(const Flight& flight, const ModelDefinition& model) {
   const std::string archived = attribute_of(flight, model_attribute);
-  if (archived.empty()) refuse_without(flight, "with which model it was made", model_attribute);
+  if (archived.empty()) refuse_without(flight, "its model", model_attribute);
   const std::string difference = archived_difference(archived, archived_model(model, CorrectWith::model));
   if (difference.empty()) return;
   throw Error(fmt::format(

@@ -9,7 +9,8 @@
 namespace pcor::internal {
 namespace {
 
-// Of flights held out: standard errors of the gain in -2 ln L, and the gain itself. 4 are two deviations.
+// Threshold for held-out flights: standard errors of the gain in -2 ln L, and the gain itself. 4 corresponds
+// to two standard deviations.
 constexpr double sure = 2.0;
 constexpr double worthwhile_held_out = 4.0;
 
@@ -56,7 +57,7 @@ Degrees::Degrees(const std::vector<HeightEquations>& flights, std::size_t most) 
   }
 }
 
-/// Whether flights without it are foretold better with one more coefficient, by more than chance.
+/// True if one more coefficient significantly improves the prediction of held-out flights.
 bool Degrees::is_worthwhile(std::size_t terms) const {
   if (flights_ < min_for_choice)
     return choices_[terms - 1].deviance - choices_[terms].deviance > worthwhile_gain;

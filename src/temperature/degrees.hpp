@@ -8,8 +8,7 @@
 
 namespace pcor::internal {
 
-/// How much -2 ln L falls for a coefficient that is worth having where no flight can be held out: 3
-/// deviations.
+/// Decrease of -2 ln L that justifies a coefficient if no flight can be held out: 3 standard deviations.
 inline constexpr double worthwhile_gain = 9.0;
 
 /// Flights, for errors from their scatter.
@@ -23,7 +22,7 @@ class Degrees {
 
   const std::vector<DegreeChoice>& choices() const { return choices_; }
 
-  /// How many coefficients are worth having, one at least.
+  /// Number of coefficients that are justified, at least one.
   std::size_t worthwhile_terms() const;
 
  private:
@@ -31,7 +30,7 @@ class Degrees {
 
   std::size_t flights_;
   std::vector<DegreeChoice> choices_;
-  std::vector<std::vector<double>> gains_;  // of each number of terms, -2 ln L of each flight held out
+  std::vector<std::vector<double>> gains_;  // -2 ln L, by number of terms, of each held-out flight
 };
 
 }  // namespace pcor::internal

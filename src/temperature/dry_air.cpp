@@ -57,9 +57,8 @@ std::string trouble_with_dry_air(const HeightRecord& record, const ModelDefiniti
   }
   if (lowest > dry_above || by_vapor > min_part * (highest - lowest)) return "";
   return fmt::format(
-      "{}: it climbs or descends down to {:.0f} m in air that is taken for dry; below {:.0f} m vapour that "
-      "is "
-      "left out looks like an error of the thermometer of up to 3 K; {}",
+      "{}: it climbs or descends down to {:.0f} m in air assumed dry; below {:.0f} m neglected vapour "
+      "resembles a thermometer error of up to 3 K; {}",
       record.name, lowest, dry_above, remedy(model, flight));
 }
 

@@ -8,9 +8,9 @@
 
 namespace pcor::internal {
 
-/// Why the air of a flight must not be taken for dry: it reaches below 5 km, where vapour that is left out
-/// looks like a thermometer that reads too low by up to some K. Says which humidity the model could name.
-/// Empty where the integral knows the vapour, or the flight stays above.
+/// Reason against assuming dry air for a flight: it reaches below 5 km, where neglected vapour resembles a
+/// thermometer that reads too low by up to a few K. Names a humidity variable for the model, if there is one.
+/// Empty if the integral includes the vapour, or the flight stays above.
 std::string trouble_with_dry_air(const HeightRecord& record, const ModelDefinition& model,
                                  const Flight& flight);
 

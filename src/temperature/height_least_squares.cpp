@@ -10,7 +10,7 @@
 namespace pcor::internal {
 namespace {
 
-/// Tells `see` the first and one past the last block of every stretch.
+/// Calls `see` with the first and one past the last block of every segment.
 template <class See>
 void for_each_segment(const HeightRecord& record, const See& see) {
   std::size_t first = 0;

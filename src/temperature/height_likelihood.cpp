@@ -19,7 +19,7 @@ namespace {
 // The states, in their order.
 enum State : Eigen::Index { drift, wander, slope_east, slope_north, state_count };
 
-// What is filtered: the height, and the columns of the unknowns.
+// Columns of the filter: the height, and the columns of the unknowns.
 constexpr Eigen::Index unknowns = HeightEquations::unknowns;
 constexpr Eigen::Index filtered = 1 + unknowns;
 using Covariance = Eigen::Matrix<double, state_count, state_count>;
@@ -29,14 +29,14 @@ using Row = Eigen::Matrix<double, 1, filtered>;
 
 constexpr double unknown_height = 1e8;  // m2: the variance of a height that is not known
 
-/// Means over a block of noise that remembers itself, given what it was at the start: exact for a block of
-/// any length. From the start on the noise itself fades, and its mean has a part of the start left.
+/// Means over a block of correlated noise, given its value at the start: exact for a block of any length.
+/// From the start on the noise decays, and its mean contains a part of the start.
 struct BlockMean {
-  double fading;      // of the noise over the block
+  double fading;      // decay over the block
   double kept;        // part of the start in the mean
-  double variance;    // of the noise at the end, given its start
-  double of_mean;     // of the mean, given its start
-  double covariance;  // of both
+  double variance;    // variance of the noise at the end, given its start
+  double of_mean;     // variance of the mean, given the start
+  double covariance;  // covariance of the noise at the end and the mean
 
   BlockMean(double sigma, double memory, double length) {
     const double ratio = memory / length;
@@ -49,8 +49,8 @@ struct BlockMean {
   }
 };
 
-/// The filter over one flight; tells `see` the innovations of every block and their variance. Heights are
-/// means over blocks, so what moves the states within a block is in its height too.
+/// Filter over one flight; passes the innovations of every block and their variance to `see`. Heights are
+/// means over blocks, so changes of the states within a block affect its height too.
 template <class See>
 void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPrior& prior, const See& see) {
   Covariance p = Covariance::Zero();
@@ -105,7 +105,7 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
     const Row innovation = measured - seen.transpose() * x;
     see(block, innovation, variance);
 
-    // To the end of the block, where what came within it goes with what was measured.
+    // Propagated to the end of the block, including correlations with the measured mean.
     x.row(wander) *= slow.fading;
     p.row(wander) *= slow.fading;
     p.col(wander) *= slow.fading;
@@ -161,7 +161,7 @@ class AroundLikeliest {
   struct Point {
     Logarithms x;
     HeightEquations equations;
-    double rise = 0.0;  // of -2 ln L, and of what is known beforehand
+    double rise = 0.0;  // increase of -2 ln L, including the prior
   };
 
   AroundLikeliest(const std::vector<HeightRecord>& records, Eigen::Index terms, const HeightPrior& prior,
@@ -219,7 +219,7 @@ class AroundLikeliest {
     point.x = x.cwiseMax(lower_).cwiseMin(upper_);
     point.equations =
         height_equations(records_, as_noise({point.x.begin(), point.x.end()}), prior_, workers_);
-    // Noise that does not matter has no least value: all is taken for known to a factor of 4.5.
+    // Irrelevant noise components have no lower limit: all have a prior of a factor of 4.5.
     constexpr double known_to = 1.5;
     point.rise = restricted_deviance(point.equations, terms_) - likely_.deviance +
                  (point.x - centre_).squaredNorm() / (known_to * known_to);
@@ -227,7 +227,8 @@ class AroundLikeliest {
     return point;
   }
 
-  /// Along `direction`, where -2 ln L is 1 above its least, to a fifth in `trials`; or at a bound.
+  /// Distance along `direction` at which -2 ln L is 1 above its minimum, to 20 %, in `trials`; or the
+  /// distance to a bound.
   Point rise_by_one(const Logarithms& direction, double reach, int trials) const {
     constexpr double min_rise = 1e-3;
     Point point = at(centre_ + reach * direction);
@@ -267,7 +268,7 @@ HeightEquations::Matrix with_prior(HeightEquations::Matrix information,
   return information;
 }
 
-/// How far other errors are from none, by what is known beforehand.
+/// Prior penalty of the other errors.
 double sum_of_prior(const HeightEquations::Vector& all, const std::array<double, height_errors>& sizes) {
   double sum = 0.0;
   for (std::size_t k = 0; k < height_errors; ++k) {
@@ -331,7 +332,7 @@ double HeightEquations::deviance_of_heights(const Vector& all) const {
 }
 
 double HeightEquations::deviance_at(const Eigen::VectorXd& a) const {
-  // The other errors are at their best for what these coefficients leave.
+  // The other errors are optimised for these coefficients.
   Vector all = Vector::Zero();
   all.head(a.size()) = a;
   HeightEquations left = *this;
@@ -348,7 +349,7 @@ HeightEquations height_equations(const HeightRecord& record, const HeightNoise& 
   HeightEquations result;
   result.sizes = prior.errors;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
-    if (block.starts_segment) return;  // it says what the unknown height is, and nothing else
+    if (block.starts_segment) return;  // this block only determines the unknown initial height
     const double weight = 1.0 / variance;
     const HeightEquations::Vector columns = innovation.tail<unknowns>().transpose();
     result.information.noalias() += weight * columns * columns.transpose();
@@ -411,7 +412,7 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
       const Eigen::MatrixXd covariance = equations.covariance(terms);
       Eigen::VectorXd a = equations.best(terms);
       a += covariance.col(held->term) * ((held->value - a[held->term]) / covariance(held->term, held->term));
-      // What is left to explain the heights are the others: their information is all without the held one's.
+      // The other coefficients are free: their information is the total without the fixed one's.
       value = equations.deviance_at(a) + equations.log_information(terms) +
               std::log(covariance(held->term, held->term));
     }
@@ -430,15 +431,15 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
     upper.push_back(std::log(each.greatest));
   }
   std::vector<double> x = as_logarithms(start);
-  // BOBYQA finds the valley; a second start from its end mends steps that stopped at a bound.
+  // BOBYQA finds the valley; a restart from its end corrects steps that stopped at a bound.
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
     nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(x.size()));
     search.set_lower_bounds(lower);
     search.set_upper_bounds(upper);
     search.set_initial_step(held == nullptr ? 1.0 : 0.3);
-    // Where the slope of isobars and the walk can hardly be told apart the valley is flat: a small
-    // gain of one trial is no sign of its floor, but trials that are close together are.
+    // If the slope of isobars and the walk are nearly confounded the valley is flat: a small gain of one
+    // trial does not indicate its minimum, but trials that are close together do.
     search.set_xtol_abs(1e-3);
     search.set_maxeval(1000);
     minimize_objective(search, deviance, x);

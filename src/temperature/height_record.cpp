@@ -23,7 +23,7 @@ constexpr double kappa = 2.0 / 7.0;         // R/cp of dry air
 using Powers = std::array<double, calibration_terms>;
 using Errors = std::array<double, height_errors>;
 
-/// The integral at a sample that takes part.
+/// Integral at a sample in use.
 struct Point {
   std::size_t sample = 0;
   bool starts_segment = false;
@@ -72,7 +72,7 @@ class Integration {
     return !std::isnan(air_.pressure[i]) && !std::isnan(air_.temperature[i]);
   }
 
-  /// Takes the integral to sample `i`; starts anew after a gap.
+  /// Advances the integral to sample `i`; restarts after a gap.
   void advance(std::size_t i) {
     if (!has_value(i)) {
       if (going_ && air_.time()[i] - air_.time()[last_] > options_.max_bridge) going_ = false;
@@ -89,7 +89,7 @@ class Integration {
         const double mean = 0.5 * (before + here) + constants::ice_point;
         height_ += step * mean;
         add_errors(shares_at(i), step, mean, air_.gas_constant[i] * mean / constants::standard_gravity);
-        // The thickness goes with R_a, of which the vapour makes what is above that of dry air.
+        // The thickness is proportional to R_a, whose excess over dry air is due to the vapour.
         const double dry =
             hydrostatic_step(air_.pressure[last_], air_.pressure[i], dry_air<double>().gas_constant);
         errors_[with_vapor] += (step - dry) * mean;
@@ -113,8 +113,7 @@ class Integration {
     last_ = i;
   }
 
-  /// The part of the static pressure that each error of one unit is. Where no angle is recorded, or
-  /// none just now, it is as it was.
+  /// Relative pressure change of each error of one unit. If the angle is missing, its previous value is used.
   Errors shares_at(std::size_t i) const {
     const auto known = [](double share, double else_share) { return std::isnan(share) ? else_share : share; };
     return {1.0 / air_.pressure[i], 1.0,
@@ -125,7 +124,8 @@ class Integration {
   void add_errors(const Errors& shares, double step, double temperature, double scale_height) {
     for (std::size_t k = 0; k < height_errors; ++k)
       errors_[k] += scale_height * (shares[k] - last_shares_[k]);
-    // A law takes from the dynamic pressure what it adds to the static one, and with it from the heating.
+    // The static correction is subtracted from the dynamic pressure, and therefore changes the dynamic
+    // heating.
     if (options_.recovers) {
       for (const HeightError k : {with_static, with_dynamic, with_attack})
         errors_[k] -= step * temperature * kappa * 0.5 * (shares[k] + last_shares_[k]);
@@ -137,7 +137,7 @@ class Integration {
     if (!steps_.empty()) {
       double sum = 0.0;
       for (std::size_t i = before + 1; i <= here; ++i) sum += steps_[i];
-      if (!std::isnan(sum)) return sum;  // else across samples without pressure
+      if (!std::isnan(sum)) return sum;  // bridges samples without pressure
     }
     return hydrostatic_step(air_.pressure[before], air_.pressure[here],
                             0.5 * (air_.gas_constant[before] + air_.gas_constant[here]));
@@ -154,10 +154,10 @@ class Integration {
   Powers columns_{};
   Errors errors_{};
   Errors last_shares_{};
-  Errors squares_{};  // of the static pressure by one unit, hPa2
+  Errors squares_{};  // squared static pressure change for one unit, hPa2
 };
 
-/// Marks what the GPS does that no air does: a spike is left out, at a step the integral starts anew.
+/// Marks GPS errors that are impossible motions: spikes are excluded, and the integral restarts at a step.
 void mark_steps(std::vector<Point>& points, HeightRecord& record) {
   constexpr double min_step = 5.0;     // m; smaller ones are part of the noise model
   constexpr double deviations = 10.0;  // robust standard deviations of a change within a second
@@ -198,9 +198,8 @@ bool has_ground_velocity(const FlightAir& air, std::size_t i) {
   return !air.east_speed.empty() && !std::isnan(air.east_speed[i] + air.north_speed[i]);
 }
 
-/// The velocity over the ground, to the east and north, m/s; where that is missing, through the air by
-/// airspeed and heading. Where there is no heading at all, and no way over the ground, the airspeed
-/// counts as one to the north.
+/// Ground velocity to the east and north, m/s; if missing, velocity through the air from airspeed and
+/// heading. Without any heading or track, the airspeed counts as northward.
 Eigen::Vector2d velocity(const FlightAir& air, std::size_t i) {
   if (has_ground_velocity(air, i)) return {air.east_speed[i], air.north_speed[i]};
   if (way_known(air) == WayKnown::length) return {0.0, air.airspeed[i]};
@@ -209,8 +208,8 @@ Eigen::Vector2d velocity(const FlightAir& air, std::size_t i) {
   return {air.airspeed[i] * std::sin(heading), air.airspeed[i] * std::cos(heading)};
 }
 
-/// The way from the first sample, m, to the east and north. Where no velocity is known, the last one
-/// goes on.
+/// Displacement from the first sample, m, to the east and north. Missing velocities are replaced by the last
+/// one.
 struct Way {
   std::vector<double> east;
   std::vector<double> north;
@@ -283,7 +282,7 @@ class BlockMeans {
   double heading(std::size_t i) const {
     return air_.samples->motion.heading[i] * constants::radians_per_degree;
   }
-  /// Components of the wind, m/s; NaN where it is not known.
+  /// Wind components, m/s; NaN if unknown.
   double wind_east(std::size_t i) const {
     return has_wind() ? air_.east_speed[i] - air_.airspeed[i] * std::sin(heading(i)) : nan;
   }
@@ -298,7 +297,7 @@ class BlockMeans {
   std::size_t last_ = 0;
 };
 
-/// Leaves out what climbs too slowly; what is left of a climb is a stretch.
+/// Removes blocks with slow climb; the remaining parts of a climb are segments.
 void keep_climbs(std::vector<HeightBlock>& blocks, double min_rate) {
   if (min_rate <= 0.0) return;
   std::vector<HeightBlock> kept;

@@ -10,23 +10,23 @@
 
 namespace pcor::internal {
 
-/// How many powers of the temperature a calibration may have: a0 + a1 t + a2 t^2.
+/// Number of coefficients of a calibration: a0 + a1 t + a2 t^2.
 inline constexpr std::size_t calibration_terms = 3;
 
-/// Errors beside that of the thermometer: of the static pressure one that lasts (hPa), and those in
-/// proportion to the static pressure (static-constant), the dynamic pressure (static-qp), and the angle of
-/// attack times the static pressure (static-alpha, static-attack); of the vapour pressure one in proportion
-/// to it (humidity-error). The second moves no height but by the temperature.
+/// Errors in addition to that of the thermometer: a constant static-pressure bias (hPa), and errors
+/// proportional to the static pressure (static-constant), the dynamic pressure (static-qp), the angle of
+/// attack times the static pressure (static-alpha, static-attack), and the vapour pressure (humidity-error).
+/// The second affects heights only through the temperature.
 enum HeightError : std::size_t { lasting, with_static, with_dynamic, with_attack, with_vapor, height_errors };
 
-/// Means over some seconds of a flight: the height by GPS against the integral of the hydrostatic equation
-/// from the start of the stretch.
+/// Means over a few seconds of a flight: GPS height compared with the integral of the hydrostatic equation
+/// from the start of the segment.
 struct HeightBlock {
-  bool starts_segment = false;  ///< the integral starts anew: its height is not known
+  bool starts_segment = false;  ///< the integral restarts: its height is unknown
   double time = 0.0;            ///< middle, s since 1970 UTC
-  double length = 0.0;          ///< over which it is the mean, s
-  double excess = 0.0;  ///< geopotential height by GPS less the integral with the uncorrected temperature, m
-  /// What one unit of a0 (K), a1 (1), a2 (1/K) adds to the integral, m.
+  double length = 0.0;          ///< averaging time, s
+  double excess = 0.0;  ///< GPS geopotential height minus integral with the uncorrected temperature, m
+  /// Change of the integral for one unit of a0 (K), a1 (1), a2 (1/K), m.
   std::array<double, calibration_terms> columns{};
   double east = 0.0;            ///< way flown, m (`WayKnown`)
   double north = 0.0;           ///< m
@@ -34,12 +34,12 @@ struct HeightBlock {
   double pressure = 0.0;        ///< corrected static pressure, hPa
   double temperature = 0.0;     ///< uncorrected, degC
   double metres_per_hpa = 0.0;  ///< R_a T/(g p): thickness of a layer of 1 hPa, m/hPa
-  /// What one unit more of each error of the static pressure adds to `excess`: m/hPa; m for an error as large
-  /// as the static pressure, and as the dynamic pressure; m for one of the radome ratio, or 1 deg, times the
-  /// static pressure. The last: what it adds, m, where the vapour pressure lacks as much as it is.
+  /// Change of `excess` for one unit of each error: m/hPa; m for an error as large as the static pressure,
+  /// and as the dynamic pressure; m for one of the radome ratio, or 1 deg, times the static pressure; last, m
+  /// for a relative error of 1 of the vapour pressure.
   std::array<double, height_errors> errors{};
   double climb = 0.0;       ///< m/s
-  double slope_east = 0.0;  ///< of isobaric surfaces by the geostrophic wind, 1; NaN where there is no wind
+  double slope_east = 0.0;  ///< slope of isobaric surfaces from the geostrophic wind, 1; NaN without a wind
   double slope_north = 0.0;
   std::size_t samples = 0;
 
@@ -50,11 +50,11 @@ struct HeightBlock {
   }
 };
 
-/// What is known of the way that a flight went.
+/// Source of the horizontal displacement of a flight.
 enum class WayKnown {
   over_ground,
-  through_air,  ///< by airspeed and heading
-  length        ///< without a heading: all of it counts as one direction
+  through_air,  ///< airspeed and heading
+  length        ///< unknown heading: all displacement counts as one direction
 };
 
 /// A flight as the fit of temperature sees it.
@@ -63,20 +63,19 @@ struct HeightRecord {
   std::vector<HeightBlock> blocks;
   std::size_t segments = 0;
   std::size_t samples = 0;          ///< those that are in blocks
-  std::size_t height_steps = 0;     ///< steps of the GPS height, at which the integral starts anew
-  std::size_t height_spikes = 0;    ///< samples whose GPS height is left out
+  std::size_t height_steps = 0;     ///< steps of the GPS height, at which the integral restarts
+  std::size_t height_spikes = 0;    ///< samples with excluded GPS height
   std::size_t missing_heights = 0;  ///< samples in the air without GPS height
   std::size_t unknown_ways = 0;     ///< samples without velocity over the ground in a flight that has it
   WayKnown way = WayKnown::over_ground;
   bool has_wind = false;
   double slope_left = 1.0;       ///< part of the usual slope of isobars that `excess` has in it yet, 0 to 1
-  bool returns = false;          ///< it is known to end within 50 km of where it began
+  bool returns = false;          ///< ends within 50 km of its start
   double min_temperature = 0.0;  ///< degC
   double max_temperature = 0.0;  ///< degC
   /// Rms of the static pressure by one unit of each of its errors, hPa.
   std::array<double, height_errors> rms_of_unit{};
-  /// Variance that the model states of delta-p, the mean over the samples, hPa2; nothing where it states
-  /// none.
+  /// Stated variance of delta-p of the model, averaged over the samples, hPa2; nullopt if not stated.
   std::optional<double> law_variance{};
   std::vector<std::string> notes;
 
@@ -90,21 +89,21 @@ struct HeightRecord {
 
 struct HeightRecordOptions {
   double block = 10.0;          ///< s
-  double min_climb_rate = 0.0;  ///< m/s; slower blocks are left out, and each climb is a stretch
+  double min_climb_rate = 0.0;  ///< m/s; slower blocks are excluded, and each climb is a segment
   /// The temperature is that of a thermometer less the heating by the flow, for which it has to know the Mach
   /// number: where delta-p is too large by a part x of the pressure, that is x R/cp of the temperature too
   /// much, (p/(p + q))^(R/cp) being their ratio where all of the heating is recovered.
   bool recovers = false;
-  bool has_radome = true;    ///< errors with the angle of attack go by the radome ratio, else by degrees
+  bool has_radome = true;    ///< angle-of-attack errors in units of the radome ratio; otherwise of degrees
   double max_bridge = 10.0;  ///< s without pressure or temperature that the integral crosses in one step
 };
 
 /// Integrates the hydrostatic equation along a flight (memo eq. 24 in its exact form, geopotential height),
-/// after the take-off, with flaps in, anew after every gap and every step of the GPS height.
+/// after the take-off, with flaps in. Restarts after every gap and every step of the GPS height.
 ///
-/// @param steps if not empty, -(R_a/g0) ln(p_i/p_(i-1)) of every record as `pcor process --hydrostatic` wrote
-///        it, m/K; else it is found from pressure and humidity
-/// @throws Error if the height is none that goes with the pressure (`height_problem`), the flight has no
+/// @param steps if not empty, -(R_a/g0) ln(p_i/p_(i-1)) of every record from `pcor process --hydrostatic`,
+/// m/K; otherwise computed from pressure and humidity
+/// @throws Error if the height is inconsistent with the pressure (`height_problem`), the flight has no
 /// temperature, or it neither climbs nor descends by 300 m.
 HeightRecord height_record(const FlightAir& air, const std::vector<double>& steps,
                            const HeightRecordOptions& options);

@@ -50,8 +50,8 @@ IterativeCalibration calibrate_iteratively(const FlightSet& flights, const Model
                                            const TemperatureOptions& temperature_options) {
   if (temperature_options.archived) {
     throw Error(
-        "archived flights have their pressures already; to fit pressure and temperature in turn give flights "
-        "as recorded");
+        "the pressures of archived flights are fixed; to fit pressure and temperature iteratively, give the "
+        "recorded flights");
   }
   IterativeCalibration result;
   TemperatureOptions options = temperature_options;
@@ -69,7 +69,7 @@ IterativeCalibration calibrate_iteratively(const FlightSet& flights, const Model
       degrees = result.temperature.degrees;
       notes_on_degree = result.temperature.notes_on_degree;
     }
-    // The degree is chosen once, lest it goes to and fro.
+    // The degree is chosen once, to prevent oscillation.
     options.degree = static_cast<int>(result.temperature.likelihood.coefficients.size()) - 1;
 
     CalibrationRound round;

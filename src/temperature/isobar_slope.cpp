@@ -13,12 +13,12 @@ namespace {
 
 constexpr double level_climb = 1.0;     // m/s: slower is level
 constexpr double climbing = 1.5;        // m/s: faster is a climb or a descent
-constexpr double bin_hpa = 10.0;        // of isobaric surfaces that are met more than once
+constexpr double bin_hpa = 10.0;        // bin width of isobaric surfaces crossed more than once
 constexpr double usual_slope = 1e-4;    // 10 m in 100 km; memo after eq. 24
 constexpr double height_scatter = 2.0;  // m, of surfaces about a plane
 
-// Estimates draw on surfaces that are met again some tens of km away, with a scatter of metres: an error of
-// some 3 m in 100 km, a third of the usual slope. A wind is out of balance by some tenths, too.
+// Estimates use surfaces that are crossed again a few 10 km away, with a scatter of metres: an error of about
+// 3 m in 100 km, a third of the usual slope. A wind is out of balance by a similar fraction.
 constexpr double slope_left_by_estimates = 1.0 / 3.0;
 
 /// A place at which the height of an isobaric surface is known, and which surface or leg it belongs to.
@@ -90,26 +90,26 @@ void take_off_isobar_slope(HeightRecord& record, IsobarSlope option) {
   if (option == IsobarSlope::none) return;
   if (record.way == WayKnown::through_air) {
     record.notes.emplace_back(
-        "the way over the ground is not recorded (GGSPD and GGTRK, or GGVEW and GGVNS): that through the "
-        "air, by airspeed and heading, stands in for it");
+        "ground speed and track are not recorded (GGSPD and GGTRK, or GGVEW and GGVNS): airspeed and heading "
+        "are used instead");
   }
   if (record.way == WayKnown::length) {
     record.notes.emplace_back(
-        "neither the way over the ground nor the heading is recorded (GGSPD and GGTRK, or GGVEW and GGVNS, "
-        "or THDG): isobars may slope along the way flown as if it were one direction, so turns make errors "
-        "that are not stated");
+        "neither ground speed and track nor heading is recorded (GGSPD and GGTRK, or GGVEW and GGVNS, or "
+        "THDG): the slope of isobars is fitted as if the track were straight, so errors in turns are not "
+        "included");
   }
   if (option == IsobarSlope::fitted) return;
   if (option == IsobarSlope::geostrophic && !record.has_wind) {
     record.notes.emplace_back(
-        "without heading, airspeed and the way over the ground there is no wind: the slope of isobars is "
-        "left to the likelihood, as with --slope fitted");
+        "no wind, because heading, airspeed or ground velocity is not recorded: the slope of isobars is "
+        "fitted by the likelihood, as with --slope fitted");
     return;
   }
   if (option != IsobarSlope::geostrophic && record.way == WayKnown::length) {
     record.notes.emplace_back(
-        "without directions no slope of isobars can be estimated: it is left to the likelihood, as with "
-        "--slope fitted");
+        "no slope of isobars can be estimated, because directions are unknown: it is fitted by the "
+        "likelihood, as with --slope fitted");
     return;
   }
   record.slope_left = slope_left_by_estimates;

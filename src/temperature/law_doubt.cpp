@@ -44,7 +44,7 @@ std::vector<Eigen::VectorXd> standard_deviations(const std::vector<double>& cova
   return changes;
 }
 
-/// Whether an uncertainty is stated of a coefficient of the law itself, not of a sensor.
+/// True if an uncertainty is stated of a coefficient of the law itself, not of a sensor.
 bool states_law(const ModelDefinition& model, const ModelUncertainty& stated) {
   std::size_t place = 0;
   const auto count = static_cast<std::size_t>(std::lround(std::sqrt(stated.covariance.size())));

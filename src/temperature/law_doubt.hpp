@@ -7,9 +7,8 @@
 
 namespace pcor::internal {
 
-/// The variance of delta-p that a model states, hPa2, the mean over the samples in the air: of the
-/// coefficients of its law by their covariance, and of what the law leaves. Nothing where the model states
-/// neither.
+/// Variance of delta-p stated by a model, hPa2, averaged over the samples in the air: from the covariance of
+/// its coefficients, and its remaining error. nullopt if the model states neither.
 std::optional<double> stated_law_variance(const ModelDefinition& model, const FlightAir& air);
 
 }  // namespace pcor::internal

@@ -11,9 +11,9 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double rare = 0.01;  // the probability below which a difference is no chance
+constexpr double rare = 0.01;  // significance level of a difference
 
-/// The correction of all at the mean temperature of what a column of a0 holds: a1's column over it.
+/// Common correction at the mean temperature of a part, the ratio of the columns of a1 and a0.
 PartCorrection common_at(double temperature, const HeightEquations::Vector& unknowns) {
   PartCorrection part;
   part.temperature = temperature;
@@ -23,8 +23,8 @@ PartCorrection common_at(double temperature, const HeightEquations::Vector& unkn
   return part;
 }
 
-/// Records of what the correction leaves, with the columns of a0 in climbs, a0 in descents, and both times
-/// the temperature.
+/// Records of residual heights, with the columns of a0 in climbs, a0 in descents, and both times the
+/// temperature.
 HeightRecord with_climbs_and_descents(const HeightRecord& whole, const HeightEquations::Vector& unknowns) {
   HeightRecord record = without_unknowns(whole, unknowns);
   double climbs = 0.0;

@@ -41,7 +41,7 @@ using namespace internal;
 
 namespace {
 
-/// What is met in practice of an effect with one coefficient.
+/// Typical size of an effect with one coefficient.
 template <class Effect>
 constexpr double usual_size = Effect::info().parameters[0].typical;
 
@@ -63,10 +63,10 @@ constexpr double seen = 3.0;         // standard errors that chance does not mak
 constexpr double usual_zero = usual_size<effects::PsfdBias>;
 constexpr double told = 2.6;  // standard errors, which chance makes once in 100 times
 
-/// What a member of a team tells of a flight of its own.
+/// Results of a rank for a local flight.
 struct FlightPart {
-  std::string left_out{};  ///< why; empty where it is not
-  std::string dry{};       ///< why its air must not be taken for dry; empty where it is not
+  std::string left_out{};  ///< reason for exclusion; empty if used
+  std::string dry{};       ///< reason against dry air; empty if there is no objection
   std::optional<HeightRecord> record{};
 
   template <class Archive>
@@ -118,10 +118,11 @@ class TemperatureCalibration {
       try {
         part.record = read_record(number);
         part.dry = trouble_with_dry_air(*part.record, model_, flights_[number]);
-        if (!part.dry.empty() && !options_.dry_air) throw Error(part.dry + "; --force goes on with dry air");
+        if (!part.dry.empty() && !options_.dry_air)
+          throw Error(part.dry + "; --force continues with dry air");
         if (options_.skip_returning && part.record->returns) {
           part.record.reset();
-          part.left_out = "it ends where it began (--skip-returning)";
+          part.left_out = "it ends at its start point (--skip-returning)";
         }
       } catch (const Error& error) {
         part.record.reset();
@@ -140,7 +141,7 @@ class TemperatureCalibration {
       if (!part.record) continue;
       if (dry_.empty()) dry_ = part.dry;
       levelled_.push_back(*part.record);
-      // Least squares and pictures know no slope of their own.
+      // Least squares and figures do not fit a slope.
       const bool fitted = options_.slope == IsobarSlope::fitted;
       take_off_isobar_slope(levelled_.back(), fitted ? IsobarSlope::whole_flight : options_.slope);
       take_off_isobar_slope(*part.record, options_.slope);
@@ -149,7 +150,7 @@ class TemperatureCalibration {
     if (!records_.empty()) return;
     if (flights_.size() == 1) throw Error(first_trouble);
     throw Error(
-        fmt::format("none of the {} flights can be used; the first: {}", flights_.size(), first_trouble));
+        fmt::format("no usable flight among {} flights; the first: {}", flights_.size(), first_trouble));
   }
 
   HeightRecord read_record(std::size_t number) const {
@@ -179,7 +180,7 @@ class TemperatureCalibration {
     }
     HeightRecord record = height_record(air, steps, record_options);
     ModelDefinition stated = bare_;
-    if (options_.archived) {  // What the law reads is not archived: only what it leaves is known.
+    if (options_.archived) {  // Inputs of the model are not archived: only its remaining error is known.
       stated.covariance = {};
       stated.fits.clear();
     }
@@ -187,9 +188,9 @@ class TemperatureCalibration {
     return record;
   }
 
-  /// What is known of the other errors beforehand: of the humidity its usual error. A law is as good in each
-  /// of its terms as it states, or as laws usually are; what a law lacks that states nothing may be as large
-  /// as the effect usually is.
+  /// Priors of the other errors: of the humidity its typical error. The error of each term of the model is
+  /// that stated, or the usual one of models; a term missing from a model without stated errors has the
+  /// typical size of its effect.
   void find_prior() {
     double variances = 0.0;
     std::array<double, height_errors> squares{};
@@ -216,7 +217,7 @@ class TemperatureCalibration {
     prior_.errors[with_vapor] = usual_size<effects::HumidityError>;
   }
 
-  /// Noise to start from: of modern differential GPS where heights change that little, else of older.
+  /// Initial noise: of modern differential GPS if its heights are that smooth, otherwise of older GPS.
   HeightNoise start() const {
     std::vector<double> changes;
     for (const HeightRecord& record : records_) {
@@ -239,8 +240,8 @@ class TemperatureCalibration {
         maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, likeliest_.noise, workers_);
   }
 
-  /// What the most likely correction has that no thermometer needs: "a1 = -0.0785, outside [-0.05, 0.05]".
-  /// Empty where it is possible.
+  /// Implausible coefficients of the most likely correction: "a1 = -0.0785, outside [-0.05, 0.05]". Empty if
+  /// it is possible.
   std::string impossible() const {
     const Eigen::VectorXd best = likeliest_.equations.best(static_cast<Eigen::Index>(terms_));
     for (std::size_t k = 0; k < terms_; ++k) {
@@ -258,8 +259,8 @@ class TemperatureCalibration {
     maximise();
     while (!options_.degree && terms_ > 1 && !impossible().empty()) {
       result_.notes_on_degree.push_back(
-          fmt::format("a correction of degree {} is given up, as it is physically implausible ({}); "
-                      "more climbs and descents through other temperatures would tell it",
+          fmt::format("a correction of degree {} is rejected as physically implausible ({}); it needs more "
+                      "climbs and descents through other temperatures",
                       terms_ - 1, impossible()));
       --terms_;
       maximise();
@@ -267,8 +268,8 @@ class TemperatureCalibration {
     if (const std::string trouble = impossible(); !trouble.empty()) {
       throw Error(fmt::format(
           "the correction of the temperature is physically implausible: {}; {}", trouble,
-          terms_ > 1 ? "these flights do not tell so many coefficients: lower --degree"
-                     : "look whether recovery_temperature and the altitude are what the model says"));
+          terms_ > 1 ? "these flights do not determine this number of coefficients: reduce --degree"
+                     : "check recovery_temperature and the altitude in the model"));
     }
     const auto n = static_cast<Eigen::Index>(terms_);
     const HeightEquations& equations = likeliest_.equations;
@@ -317,9 +318,9 @@ class TemperatureCalibration {
     return sum / count;
   }
 
-  /// Errors of the pressure that heights do not tell from the thermometer's: the zero of the transducer, as
-  /// the model states it of psfd-bias, and what a law errs by in proportion to the pressure. A law that the
-  /// heights see to be wrong by more than it states may be so in that, too.
+  /// Errors of the pressure that heights cannot separate from a thermometer error: the zero of the
+  /// transducer, as stated in the model for psfd-bias, and an error of the model proportional to the
+  /// pressure. If heights show that the model errs by more than stated, the latter may be larger, too.
   void find_unseen_errors() {
     result_.pressure_error = options_.pressure_error.value_or(stated_zero().value_or(usual_zero));
     result_.law_error = options_.pressure_error.value_or(law_error_);
@@ -344,10 +345,10 @@ class TemperatureCalibration {
     return is_seen(error) && std::abs(error.change) > seen * error.size;
   }
 
-  /// What the likelihood cannot see. An error of the pressure that lasts: in hPa, of which the shape of the
-  /// heights would tell only if that of the thermometer's error were known, or as a part of the pressure,
-  /// which moves the temperature alone. And a correction serves any flight, in climbs and descents, no better
-  /// than these agree.
+  /// Covariance of errors that the likelihood cannot detect. Constant errors of the pressure: in hPa,
+  /// detectable from the shape of the heights only if that of the thermometer's error were known, or relative
+  /// to the pressure, which affects the temperature only. And the spread between flights, and between climbs
+  /// and descents, which limits the accuracy of a common correction.
   Eigen::MatrixXd covariance_of_unseen(const Eigen::VectorXd& per_hpa,
                                        const Eigen::VectorXd& per_hpa_in_proportion) const {
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(per_hpa.size(), per_hpa.size());
@@ -368,7 +369,7 @@ class TemperatureCalibration {
     result_.spread_of_climbs = disagreement_of(result_.parts_by_climb).spread;
   }
 
-  /// The range of the static pressure over the stretches by an error of one unit, hPa.
+  /// Range of the static pressure over the segments due to an error of one unit, hPa.
   double range_of(HeightError error) const {
     double range = 0.0;
     double least = 0.0;
@@ -407,8 +408,8 @@ class TemperatureCalibration {
     result_.humidity_error = std::sqrt(likeliest_.equations.covariance_of_unknowns(n)(at, at));
   }
 
-  /// Where -2 ln L, with the noise and the other coefficients at their best, is 1 above its least,
-  /// below and above; and the variance that the likelihood cannot see.
+  /// Values below and above at which -2 ln L, with the noise and the other coefficients optimised, is 1 above
+  /// its minimum, including the variance that the likelihood cannot detect.
   std::array<double, 2> profile_interval(Eigen::Index term, double error, double unseen) const {
     const double best = result_.likelihood.coefficients[static_cast<std::size_t>(term)];
     const auto deviance_at = [&](double value) {
@@ -431,9 +432,9 @@ class TemperatureCalibration {
     return {limit(-1.0), limit(1.0)};
   }
 
-  /// What least squares would add to the correction as a constant, once the other errors are taken off too,
-  /// with slopes of isobars of each flight as unknowns: slopes that are estimated before would have in them
-  /// what a law errs by between climbs and descents. The mean over the flights, weighted.
+  /// Constant that least squares adds to the correction, after removal of the other errors, with the slopes
+  /// of isobars of each flight as unknowns: slopes estimated beforehand would include errors of the model
+  /// that differ between climbs and descents. Weighted mean over the flights.
   void compare_with_least_squares() {
     const HeightEquations::Vector unknowns = likeliest_.equations.best_unknowns(as_index(terms_));
     double weights = 0.0;
@@ -521,7 +522,7 @@ class TemperatureCalibration {
     return std::sqrt(squares / static_cast<double>(values.size()));
   }
 
-  /// Where the correction is furthest from none, in its errors.
+  /// Correction with the largest ratio to its standard error.
   const TemperatureCorrection& surest() const {
     return *std::max_element(result_.corrections.begin(), result_.corrections.end(),
                              [](const TemperatureCorrection& one, const TemperatureCorrection& other) {
@@ -531,10 +532,10 @@ class TemperatureCalibration {
   }
 
   static std::string saying(const PartCorrection& part) {
-    return fmt::format("{} says {} K", part.part, with_error(part.correction, part.standard_error));
+    return fmt::format("{}: {} K", part.part, with_error(part.correction, part.standard_error));
   }
 
-  /// Rms of heights about their mean in each stretch, with a correction and without the other errors, m.
+  /// Rms of heights about their mean in each segment, with a correction and without the other errors, m.
   double rms_without_other_errors(const std::vector<double>& coefficients) const {
     HeightEquations::Vector others = likeliest_.equations.best_unknowns(as_index(terms_));
     others.head(as_index(calibration_terms)).setZero();
@@ -546,7 +547,7 @@ class TemperatureCalibration {
     return rms(heights);
   }
 
-  /// Looks whether the correction is better than none.
+  /// Tests whether the correction is an improvement.
   void compare_with_none() {
     const double before = rms_without_other_errors({});
     const double after = rms_without_other_errors(result_.likelihood.coefficients);
@@ -557,22 +558,21 @@ class TemperatureCalibration {
     const TemperatureCorrection& at = surest();
     const double gain = result_.degrees.front().deviance - result_.degrees[terms_].deviance;
     if (gain < worthwhile_gain) {
-      result_.worse = fmt::format(
-          "these flights do not tell the correction from none: -2 ln L falls by {:.1f}, and {:g} are asked",
-          gain, worthwhile_gain);
+      result_.worse =
+          fmt::format("the correction is not significant: -2 ln L decreases by {:.1f} (threshold {:g})", gain,
+                      worthwhile_gain);
       return;
     }
     if (std::abs(at.correction) < told * at.standard_error) {
       result_.worse = fmt::format(
-          "these flights do not tell the correction from none: where they know it best, at {:.0f} C, it is "
-          "{} K, and {:g} standard errors, which chance makes once in a hundred times, are asked",
+          "the correction is not significant: at {:.0f} C, where it is best determined, it is {} K "
+          "(threshold {:g} standard errors, p = 0.01)",
           at.temperature, with_error(at.correction, at.standard_error), told);
       return;
     }
     if (after > before) {
       result_.worse = fmt::format(
-          "heights keep less close to the integral with the correction than without (rms {:.2f} m and {:.2f} "
-          "m), though it is likelier",
+          "height rms with the correction is {:.2f} m, without it {:.2f} m, although the likelihood improves",
           after, before);
       return;
     }
@@ -587,8 +587,8 @@ class TemperatureCalibration {
       for (const PartCorrection& part : *parts) {
         if (!is_made_worse(part)) continue;
         result_.worse = fmt::format(
-            "by itself {}, where the correction is {:+.2f} K: it makes that worse than none does by more "
-            "than three standard errors",
+            "separate fit {}, common correction {:+.2f} K: the correction degrades it by more than three "
+            "standard errors",
             saying(part), part.common);
         return;
       }
@@ -611,17 +611,18 @@ class TemperatureCalibration {
     for (const LawError& error : result_.law_errors) {
       if (!is_seen(error)) continue;
       result_.warnings.push_back(fmt::format(
-          "the heights see an error of the law of the static pressure: {} of {} lacks {}, a range of {:.2f} "
-          "hPa over the flights; it is not taken for the thermometer's, {}refit the law first",
+          "heights indicate an error of the static-pressure model: {} of {} is too small by {}, a range of "
+          "{:.2f} hPa over the flights; it was removed before fitting the thermometer, {}refit the model "
+          "first",
           error.parameter, error.effect, with_error(error.change, error.standard_error), error.range,
-          is_beyond_prior(error) ? "but as much may last unseen: "
-                                 : "and is within what is known of the law; "));
+          is_beyond_prior(error) ? "but an undetected error of the same size may remain: "
+                                 : "and is within the stated error of the model; "));
     }
     if (std::abs(result_.humidity_change) > seen * result_.humidity_error) {
-      result_.warnings.push_back(fmt::format(
-          "the heights see an error of the humidity: the vapour pressure lacks {} of it; compare it with "
-          "another hygrometer",
-          with_error(result_.humidity_change, result_.humidity_error)));
+      result_.warnings.push_back(
+          fmt::format("heights indicate an error of the humidity: the vapour pressure is too small by {}; "
+                      "compare it with another hygrometer",
+                      with_error(result_.humidity_change, result_.humidity_error)));
     }
   }
 
@@ -632,34 +633,33 @@ class TemperatureCalibration {
     if (!result_.worse.empty()) notes.push_back(result_.worse);
     if (!options_.degree && records_.size() < min_for_choice) {
       result_.notes_on_degree.push_back(
-          fmt::format("with {} flight{} none can be held out: the degree is chosen by what these flights "
-                      "gain (more than {:.0f} in -2 ln L for a coefficient); --degree sets it",
+          fmt::format("{} flight{} cannot be cross-validated: the degree is chosen by the fit of these "
+                      "flights (decrease of -2 ln L above {:.0f} per coefficient); --degree sets it",
                       records_.size(), records_.size() == 1 ? "" : "s", worthwhile_gain));
     }
     notes.insert(notes.end(), result_.notes_on_degree.begin(), result_.notes_on_degree.end());
     if (std::max(result_.gps_noise, result_.gps_wander) > much_noise || result_.drift > much_drift) {
       notes.push_back(
-          fmt::format("the noise that was found is large (GPS height {:.1f} m, drift of the integral {:.1f} "
-                      "m in a minute): a lag of the static line or the thermometer, or a law that is wrong "
-                      "in climbs, looks like it; the layers of pcor check say whether the pressure lags "
-                      "behind the height",
+          fmt::format("the fitted noise is large (GPS height {:.1f} m, drift of the integral {:.1f} m per "
+                      "minute); possible causes are a lag of the static line or the thermometer, or a "
+                      "pressure error in climbs: the layers of pcor check show a lag of the pressure",
                       std::max(result_.gps_noise, result_.gps_wander), result_.drift));
     }
     if (prior_.errors[with_attack] > 0.0 && result_.law_errors.size() < 2) {
       notes.emplace_back(
-          "the angle of attack is not known: an error of the law in proportion to it, which changes in a "
-          "climb, is not taken off and may look like the thermometer's");
+          "the angle of attack is unknown: a pressure error proportional to it, which changes in a climb, is "
+          "not corrected and may resemble a thermometer error");
     }
     if (options_.slope == IsobarSlope::none ||
         (options_.slope == IsobarSlope::fitted && options_.slope_size == 0.0)) {
       notes.emplace_back(
-          "isobars are taken for level: 10 m in 100 km along a climb of 5 m/s look like 1 K (--slope "
-          "fitted)");
+          "isobars are assumed level: a slope of 10 m in 100 km in a climb of 5 m/s is equivalent to 1 K "
+          "(--slope fitted)");
     }
     if (options_.slope == IsobarSlope::geostrophic) {
       notes.emplace_back(
-          "the slope of isobars is that of a wind in balance: friction, curved ways of the air and changes "
-          "of the wind put it out of balance, and the coefficients are as good as the balance is");
+          "the slope of isobars assumes geostrophic balance: friction, curvature and changes of the wind "
+          "violate it, which limits the accuracy of the coefficients");
     }
     std::size_t steps = 0;
     std::size_t spikes = 0;
@@ -674,20 +674,19 @@ class TemperatureCalibration {
     if (missing > 0) notes.push_back(fmt::format("{} samples have no GPS height", missing));
     if (unknown_ways > 0 && options_.slope != IsobarSlope::none) {
       notes.push_back(fmt::format(
-          "{} samples have no velocity over the ground: there the way is that through the air, or goes on as "
-          "before",
+          "{} samples have no ground velocity: airspeed and heading, or the last velocity, are used instead",
           unknown_ways));
     }
     if (steps + spikes > 0) {
       notes.push_back(
-          fmt::format("the GPS height has {} step(s), at which the integral starts anew, and {} sample(s) in "
-                      "spikes, which are left out",
+          fmt::format("the GPS height has {} step(s), at which the integral restarts, and {} sample(s) in "
+                      "spikes, which are excluded",
                       steps, spikes));
     }
     if (std::abs(result_.innovation_correlation) > 0.1) {
       notes.push_back(
-          fmt::format("the noise is not quite as described: innovations have a correlation of {:+.2f}, so "
-                      "errors may be off by some tenths",
+          fmt::format("the noise model is not exact: innovations have a correlation of {:+.2f}, so errors "
+                      "may be wrong by 10 to 30 %",
                       result_.innovation_correlation));
     }
     std::map<std::string, std::size_t> said;
@@ -722,15 +721,15 @@ class TemperatureCalibration {
 
   const FlightSet& flights_;
   const ModelDefinition& model_;
-  ModelDefinition bare_;  // without a correction of the temperature
+  ModelDefinition bare_;  // model without temperature correction
   const TemperatureOptions& options_;
   Workers workers_;
   bool has_radome_ = false;
-  std::string dry_;         // why the air of a flight that takes part must not be taken for dry
+  std::string dry_;         // objection to dry air for a flight in use
   double law_error_ = 0.0;  // standard deviation of delta-p, hPa, before the heights are seen
   HeightPrior prior_;
   std::vector<HeightRecord> records_;
-  std::vector<HeightRecord> levelled_;  // with an estimate of the slope of isobars taken off
+  std::vector<HeightRecord> levelled_;  // heights after subtraction of an estimated isobar slope
   MostLikely likeliest_;
   std::size_t terms_ = 1;
   TemperatureResult result_;
@@ -753,7 +752,7 @@ std::optional<IsobarSlope> isobar_slope_named(std::string_view name) {
 
 TemperatureResult fit_temperature(const FlightSet& flights, const ModelDefinition& model,
                                   const TemperatureOptions& options) {
-  if (flights.empty()) throw Error("nothing to fit the temperature to; give at least one flight");
+  if (flights.empty()) throw Error("no flights for the temperature fit; give at least one flight");
   constexpr int most = static_cast<int>(calibration_terms) - 1;
   if (options.degree && (*options.degree < 0 || *options.degree > most))
     throw Error(fmt::format("a correction has no degree {}; give one from 0 to {}", *options.degree, most));

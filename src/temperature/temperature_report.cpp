@@ -25,10 +25,9 @@ ReportTable coefficient_table(const TemperatureResult& result) {
   table.title = "Coefficients";
   table.caption =
       "T corrected = T + a0 + a1 t + a2 t², t in °C. The standard error comes from the curvature of the "
-      "likelihood, averaged over the noises that are likely; the interval is where the likelihood has fallen "
-      "by e^(-1/2), with the noise at its best for each value. Least squares on height, as in "
-      "Cooper (2012), takes heights for independent and isobars for level or known: its errors are too "
-      "small. " +
+      "likelihood, averaged over likely noise models; the interval is the profile likelihood at e^(-1/2), "
+      "with the noise re-optimised for each value. Least squares on height, as in Cooper (2012), assumes "
+      "independent heights and level or known isobars: its errors are too small. " +
       pressure_error_text(result) + ".";
   table.headers = {"",
                    "likelihood",
@@ -53,9 +52,9 @@ ReportTable degree_table(const TemperatureResult& result) {
   ReportTable table;
   table.title = "Which degree";
   table.caption =
-      "-2 ln L, less that without correction: of all flights, and of each flight with the coefficients of "
-      "the others. A further coefficient is kept where flights that took no part are foretold better, by "
-      "more than 4 and two standard errors of the gain.";
+      "-2 ln L minus its value without correction: for all flights, and for each flight with the "
+      "coefficients of the others. A coefficient is kept if it improves the prediction of held-out flights "
+      "by more than 4 and by more than two standard errors.";
   table.headers = {"correction", "all flights", "held-out flights", "std. error"};
   const auto number = [](double x) { return std::isnan(x) ? std::string("-") : fmt::format("{:.1f}", x); };
   for (const DegreeChoice& choice : result.degrees)
@@ -68,8 +67,8 @@ ReportTable flight_table(const TemperatureResult& result) {
   ReportTable table;
   table.title = "Flights";
   table.caption =
-      "Rms of the height by GPS less the integral, about its mean in each stretch and an estimate of the "
-      "slope of isobars: what remains with the correction is noise and the drift of the integral.";
+      "Rms of GPS height minus integral, about its mean in each segment and an estimate of the slope of "
+      "isobars: the remainder with the correction is noise and the drift of the integral.";
   table.headers = {"flight",      "samples",       "stretches",    "coldest, °C",
                    "warmest, °C", "rms before, m", "rms after, m", ""};
   for (const FlightHeights& flight : result.flights) {
@@ -87,12 +86,12 @@ ReportTable flight_table(const TemperatureResult& result) {
 
 ReportTable part_table(const TemperatureResult& result) {
   ReportTable table;
-  table.title = "Parts by themselves";
+  table.title = "Separate fits of parts";
   table.caption =
-      "What every flight says by itself, and climbs and descents: the common correction with a constant of "
-      "its own, with the error of the noise alone. Where they differ by more than chance makes once in 100 "
-      "times, the standard deviation between them is in the errors of the coefficients.";
-  table.headers = {"part", "at, °C", "by itself, K", "std. error, K", "of all, K"};
+      "Correction of each flight, and of climbs and descents: the common correction plus a constant, with "
+      "the error due to noise. If they differ significantly (p < 0.01), the standard deviation between them "
+      "is included in the errors of the coefficients.";
+  table.headers = {"part", "at, °C", "separate fit, K", "std. error, K", "all data, K"};
   for (const std::vector<PartCorrection>* parts : {&result.parts_by_flight, &result.parts_by_climb}) {
     for (const PartCorrection& part : *parts)
       table.rows.push_back({part.part, fmt::format("{:.1f}", part.temperature),
@@ -106,8 +105,8 @@ ReportTable law_table(const TemperatureResult& result) {
   ReportTable table;
   table.title = "Errors of the law";
   table.caption =
-      "What coefficients of the static pressure lack by the heights, found with those of the temperature and "
-      "taken off.";
+      "Errors of the static-pressure coefficients estimated from heights, fitted with those of the "
+      "temperature and corrected.";
   table.headers = {"effect", "coefficient", "lacks", "std. error", "range over the flights, hPa"};
   for (const LawError& error : result.law_errors)
     table.rows.push_back({error.effect, error.parameter, fmt::format("{:+.4g}", error.change),
@@ -118,7 +117,8 @@ ReportTable law_table(const TemperatureResult& result) {
 BarPanel correction_bars(const TemperatureResult& result) {
   BarPanel panel;
   panel.title = "The correction";
-  panel.caption = "What is added to the temperature, with its standard error, over the range of the flights.";
+  panel.caption =
+      "Correction added to the temperature, with its standard error, over the range of the flights.";
   panel.axis = "correction";
   panel.unit = "K";
   for (const TemperatureCorrection& at : result.corrections)
@@ -159,8 +159,8 @@ std::string pressure_error_text(const TemperatureResult& result) {
                          k == 1 ? "" : " " + coefficient_unit(k));
   }
   return fmt::format(
-      "Errors are those of the noise only: one of the static pressure of {:g} hPa in all flights, as the "
-      "fits of laws have, would move {}; --pressure-error {:g} takes it into the errors",
+      "Errors include noise only: a constant static-pressure bias of {:g} hPa in all flights would change "
+      "{}; --pressure-error {:g} includes it",
       usual, moved, usual);
 }
 
@@ -186,7 +186,7 @@ Report temperature_report(const TemperatureResult& result) {
       {"Noise of the GPS height", fmt::format("{:.2f} m in a sample, {:.2f} m correlated over {:.0f} s",
                                               result.gps_noise, result.gps_wander, result.gps_wander_time)},
       {"Drift of the hydrostatic height", fmt::format("{:.3f} m in a minute", result.drift)},
-      {"Innovations", fmt::format("variance {:.2f} (1 where the noise is as described), correlation {:+.2f}",
+      {"Innovations", fmt::format("variance {:.2f} (1 for a correct noise model), correlation {:+.2f}",
                                   result.innovation_variance, result.innovation_correlation)}};
 
   for (const FlightHeights& flight : result.flights) {
@@ -208,8 +208,8 @@ Report temperature_report(const TemperatureResult& result) {
   TimePanel difference;
   difference.title = "Height by GPS less the integral of the hydrostatic equation";
   difference.caption =
-      "Means over 10 s, about the mean of each stretch, with an estimate of the slope of isobars taken off. "
-      "A thermometer that errs makes the difference follow the height.";
+      "Means over 10 s, about the mean of each segment, after subtraction of an estimated slope of isobars. "
+      "A thermometer error makes the difference follow the height.";
   difference.columns = {"before", "after"};
   difference.axis = "height difference";
   report.items.emplace_back(difference);
@@ -219,10 +219,10 @@ Report temperature_report(const TemperatureResult& result) {
   height.columns = {"height"};
   report.items.emplace_back(height);
   BinnedPanel binned;
-  binned.title = "What the likelihood did not foresee";
+  binned.title = "Innovations of the likelihood";
   binned.caption =
-      "Innovations of the filter in standard deviations. A mean that goes with a variable is something the "
-      "correction lacks.";
+      "Innovations of the filter in standard deviations. A mean that varies with a variable indicates an "
+      "error of the correction.";
   binned.y = {"innovation"};
   binned.x_choices = {"temperature", "height"};
   report.items.emplace_back(binned);

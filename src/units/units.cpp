@@ -18,12 +18,12 @@ namespace pcor {
 namespace {
 
 struct Alias {
-  std::string_view seen;      // in real files
-  std::string_view standard;  // for UDUNITS
+  std::string_view seen;      // spelling in flight files
+  std::string_view standard;  // spelling of UDUNITS
 };
 
-// What files hold that UDUNITS does not know, or takes for something else: "C" would be coulomb, "mb"
-// millibarn, "cnt" centinit, "N/cm3" newton per cubic centimetre. Ordered by `seen`.
+// Units in flight files that UDUNITS does not know or misinterprets: "C" would be coulomb, "mb" millibarn,
+// "cnt" centinit, "N/cm3" newton per cubic centimetre. Ordered by `seen`.
 constexpr std::array aliases{
     Alias{"#", "1"},
     Alias{"#/L", "L-1"},
@@ -138,8 +138,7 @@ std::mutex& udunits_lock() {
   return lock;
 }
 
-/// What UDUNITS answers. @throws std::bad_alloc where it gets no memory, of which it may say that a unit is
-/// wrong
+/// Calls UDUNITS. @throws std::bad_alloc if out of memory, which UDUNITS may report as an invalid unit
 template <class Question>
 auto answer_to(const Question& question) {
   errno = 0;

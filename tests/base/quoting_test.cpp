@@ -27,13 +27,13 @@ TEST(OneLine, KeepsLettersWhole) {
 
 TEST(Shortened, CutsBetweenLetters) {
   EXPECT_EQ(shortened("abc", 3), "abc");
-  EXPECT_EQ(shortened("abcd", 3), "abc... (4 letters)");
-  EXPECT_EQ(shortened("\u20ac\u20ac\u20ac", 2), "\u20ac\u20ac... (3 letters)");
+  EXPECT_EQ(shortened("abcd", 3), "abc... (4 characters)");
+  EXPECT_EQ(shortened("\u20ac\u20ac\u20ac", 2), "\u20ac\u20ac... (3 characters)");
 }
 
 TEST(InQuotes, RepeatsNoMoreThanTellsWhatIsMeant) {
   EXPECT_EQ(quote("QCF"), "'QCF'");
-  EXPECT_EQ(quote(std::string(1000000, 'x')), "'" + std::string(100, 'x') + "... (1000000 letters)'");
+  EXPECT_EQ(quote(std::string(1000000, 'x')), "'" + std::string(100, 'x') + "... (1000000 characters)'");
 }
 
 }  // namespace

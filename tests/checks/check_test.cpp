@@ -385,7 +385,7 @@ TEST_F(CheckTest, RefusesAFlightTwice) {
 TEST_F(CheckTest, MakesAReport) {
   const Checks checks = with_both({fly(head + aloft + manoeuvres, 1)});
   const std::string html = report_html(check_report(checks));
-  for (const char* word : {"Verdicts", "Total pressure", "Reverse headings", "What it cannot see", "Yaw"})
+  for (const char* word : {"Verdicts", "Total pressure", "Reverse headings", "Limitations", "Yaw"})
     EXPECT_THAT(html, HasSubstr(word));
 }
 

@@ -84,7 +84,7 @@ def what_is_wrong(command, output):
         return f"it refuses in other than a line: {done.stderr.decode(errors='replace')}"
     if done.returncode == 1 and output.read_bytes() != EARLIER:
         return "the earlier output is lost"
-    if b"fault of the program" in done.stderr:
+    if b"internal error" in done.stderr:
         return done.stderr.decode(errors="replace").strip()
     return None
 

@@ -64,7 +64,7 @@ TEST(FlightPartition, FailsWhereTheMembersHaveOtherFlights) {
       messages[comm.rank()] = error.what();
     }
   });
-  EXPECT_THAT(messages, Each(::testing::HasSubstr("different numbers")));
+  EXPECT_THAT(messages, Each(::testing::HasSubstr("different results")));
 }
 
 /// A part of everything that is sent.

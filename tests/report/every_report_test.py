@@ -167,7 +167,7 @@ class Figures(unittest.TestCase):
 
     def test_what_cannot_be_drawn_is_said_before_the_work(self):
         words = [str(TOOL), "refit", *FITTED, "-m", "model.toml", "-o", "none.toml", "--figures"]
-        for folder, browser, said in (("figures2", "/nowhere", "CHROMIUM names"), ("model.toml", CHROMIUM, "is an input itself"),
+        for folder, browser, said in (("figures2", "/nowhere", "CHROMIUM names"), ("model.toml", CHROMIUM, "model.toml is also an input"),
                                       ("one.nc/figures", CHROMIUM, "cannot be a folder")):
             found = subprocess.run([*words, folder], cwd=FOLDER, env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
             self.assertEqual((found.returncode, found.stdout), (1, ""))

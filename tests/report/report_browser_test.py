@@ -158,7 +158,7 @@ class ReportInBrowser(unittest.TestCase):
 
     def test_without_a_browser_nothing_is_there(self):
         folder = self.folder / "none"
-        for browser, words in (("/nowhere/chromium", "is no program"), (shutil.which("false"), "failed"), (shutil.which("true"), "no pictures")):
+        for browser, words in (("/nowhere/chromium", "/nowhere/chromium"), (shutil.which("false"), "failed"), (shutil.which("true"), "no pictures")):
             found = subprocess.run([SAMPLE_REPORT, "--figures", folder], env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
             self.assertEqual(found.returncode, 1)
             self.assertIn(words, found.stderr)
@@ -348,14 +348,14 @@ class ReportUnderTheHand(unittest.TestCase):
         self.browser.drag(*self.place(panel, begin + 0.002), *self.place(panel, end))
         self.browser.click(*self.button(regime))
         self.assertEqual(self.selection["count"], 0)
-        self.assertIn(f"{regime} is not in this time", self.value("document.querySelector('.selected').textContent"))
+        self.assertIn(f"{regime} has no samples in this time range", self.value("document.querySelector('.selected').textContent"))
         self.assertEqual(self.value(f"pcorReport.panels[{panel}].empty.textContent"), "No sample is selected")
         self.assertFalse(self.value(f"pcorReport.panels[{panel}].empty.hidden"))
         self.assertEqual(self.value(top), before)
         self.assertEqual(self.value(f"pcorReport.panels[{plane}].drawn.place(0)"), corner)
         self.browser.click(*self.button(regime))
         self.value("pcorReport.select(0, 1)")  # a time before all flights: nothing changes
-        self.assertNotIn("is not in this time", self.value("document.querySelector('.selected').textContent"))
+        self.assertNotIn("has no samples in this time range", self.value("document.querySelector('.selected').textContent"))
         self.browser.click(*self.button("Show all"))
         self.assertEqual(self.selection["count"], self.count)
 

@@ -745,7 +745,7 @@ TEST_P(ScenarioRefusal, SaysWhereWhatAndWhatToDo) {
 INSTANTIATE_TEST_SUITE_P(
     All, ScenarioRefusal,
     testing::Values(
-        Refusal{"a = [", {"test.toml:1:", "TOML"}}, Refusal{"name = \"x\"", {"begin it with format"}},
+        Refusal{"a = [", {"test.toml:1:", "TOML"}}, Refusal{"name = \"x\"", {"1:1", "format ="}},
         Refusal{"format = \"pcor-model/1\"", {"test.toml:1:10", "pcor-scenario/1"}},
         Refusal{head + "sead = 3\n", {"test.toml:7:1", "sead", "seed"}},
         Refusal{head + "rate = 10\n", {"rate = 10", "1, 5 or 25"}}, Refusal{head, {"[[system]]"}},

@@ -304,11 +304,11 @@ TEST_F(Temperature, DryAirIsRefusedUnlessItIsWanted) {
   ModelDefinition dry = model();
   dry.model.moist = false;
   EXPECT_THAT([&] { fit_temperature({flight}, dry, of_degree(1)); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("flight1.nc"), HasSubstr("taken for dry"))));
+              ThrowsMessage<Error>(AllOf(HasSubstr("flight1.nc"), HasSubstr("dry"))));
   TemperatureOptions options = of_degree(1);
   options.dry_air = true;
   const TemperatureResult result = fit_temperature({flight}, dry, options);
-  EXPECT_THAT(result.worse, HasSubstr("taken for dry"));
+  EXPECT_THAT(result.worse, HasSubstr("dry"));
   EXPECT_EQ(result.humidity_change, 0.0);
 }
 
@@ -533,7 +533,7 @@ TEST_F(Temperature, StatedErrorsKnowWhatAnEstimateOfTheSlopeLeaves) {
     const double score =
         (result.likelihood.coefficients[0] - truth(flight)[0]) / result.likelihood.standard_errors[0];
     squares += score * score;
-    EXPECT_THAT(result.notes, testing::Contains(HasSubstr("wind in balance")));
+    EXPECT_THAT(result.notes, testing::Contains(HasSubstr("geostrophic")));
     fs::remove(flight);
   }
   EXPECT_LT(std::sqrt(squares / static_cast<double>(flights)), 1.7);
@@ -579,7 +579,7 @@ TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
       calibrate_iteratively(flights, model(), {pcor::lams_reference()}, {}, {});
   EXPECT_TRUE(found.converged);
   EXPECT_THAT(found.temperature.degrees, SizeIs(4));  // none to quadratic
-  EXPECT_THAT(found.temperature.notes_on_degree, ElementsAre(HasSubstr("none can be held out")));
+  EXPECT_THAT(found.temperature.notes_on_degree, ElementsAre(HasSubstr("--degree")));
   EXPECT_THAT(found.temperature.notes, testing::Contains(found.temperature.notes_on_degree.front()));
   for (const CalibrationRound& round : found.rounds)
     EXPECT_THAT(round.coefficients, SizeIs(found.rounds.front().coefficients.size()));
@@ -675,13 +675,13 @@ TEST_F(Temperature, RefusesWhatTellsNothing) {
   archived.archived = true;
   EXPECT_THAT(
       [&] { calibrate_iteratively({fly(one_climb(), 3)}, model(), {pcor::lams_reference()}, {}, archived); },
-      ThrowsMessage<Error>(HasSubstr("as recorded")));
+      ThrowsMessage<Error>(HasSubstr("archived")));
   const std::vector<fs::path> flights = fly_several(no_climb(), 1, 2);
   EXPECT_THAT([&] { fit_temperature({flights[0]}, model()); },
               ThrowsMessage<Error>(AllOf(HasSubstr("flight1.nc"), HasSubstr("climbs by"), HasSubstr("300 m"),
-                                         Not(HasSubstr("none of")))));
+                                         Not(HasSubstr("usable")))));
   EXPECT_THAT([&] { fit_temperature(flights, model()); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("none of the 2 flights"), HasSubstr("flight1.nc"))));
+              ThrowsMessage<Error>(AllOf(HasSubstr("2 flights"), HasSubstr("flight1.nc"))));
   EXPECT_THAT(
       [&] {
         fit_temperature({flights[0], flights[0]}, model());

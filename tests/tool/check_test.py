@@ -159,7 +159,7 @@ class Results(CheckTest):
         self.done("check", ONE, TWO, "-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}", "--report", report)
         html = report.read_text()
         self.assertEqual(addresses_in(html), set())
-        for word in ("Verdicts", "Reverse heading", "What it cannot see"):
+        for word in ("Verdicts", "Reverse heading", "Limitations"):
             self.assertIn(word, html)
 
     def test_intervals(self):
@@ -199,7 +199,7 @@ class BadInput(CheckTest):
         legs = self.write("legs.toml", 'format = "pcor-intervals/1"\n[[veto]]\nregime = "reverse heading"\n'
                           'begin = "20:00:00"\nend = "23:00:00"\n[[add]]\nregime = "reverse heading"\npair = 1\n'
                           'begin = "20:06:00"\nend = "20:07:00"\n')
-        self.assert_not_run(self.check("--intervals", legs)["reverse-heading"], "single leg", "two are needed")
+        self.assert_not_run(self.check("--intervals", legs)["reverse-heading"], "single leg", "two")
 
     def test_a_flight_without_values(self):
         def change(file):

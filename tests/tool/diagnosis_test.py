@@ -203,8 +203,8 @@ class Diagnose(DiagnosisTest):
         self.done("simulate", scenario, "-o", self.path / "flight.nc", "--quiet")
         self.model()
         text = self.done("diagnose", "flight.nc", "-m", "model.toml", "--no-file-variables", cwd=self.path).stdout
-        self.assertIn("\ntotal-lag was found alike on the other system, which no model file can hold: it is added "
-                      "without that.\nTo add it and fit: " + str(TOOL) + " add total-lag ", text)
+        self.assertIn("\ntotal-lag was found alike on the other system, which a model file cannot represent: it is added "
+                      "without this part.\nTo add it and fit: " + str(TOOL) + " add total-lag ", text)
         self.run_as_printed(text)
 
     def test_a_formula_is_a_candidate(self):
@@ -317,7 +317,7 @@ class BadInput(DiagnosisTest):
         self.both(model=self.model(replace('"VLAMS"', '"VLAMX"')), words=["one.nc", "VLAMX", "lams_airspeed"])
 
     def test_every_sample_is_masked(self):
-        self.both("--min-airspeed", "500", words=["slower than the least airspeed"])
+        self.both("--min-airspeed", "500", words=["(--min-airspeed)"])
 
     def test_formula_that_cannot_be_read(self):
         for formula, words in (("k * (ENGTRQ", ["column"]), ("k ** ENGTRQ", ["column 4"]),
@@ -361,8 +361,8 @@ class BadInput(DiagnosisTest):
         self.refuse_add("static-lag", "--where", "static", words=["--where", "--formula"], status=2)
 
     def test_shape_that_is_none(self):
-        self.refuse_add("static-transonic:0.8", words=["'0.8' is no shape", "static-transonic:name=number"])
-        self.refuse_add("static-transonic:onset=x", words=["'x' is no number"])
+        self.refuse_add("static-transonic:0.8", words=["'0.8'", "static-transonic:NAME=NUMBER"])
+        self.refuse_add("static-transonic:onset=x", words=["'x'", "NUMBER"])
         self.refuse_add("static-transonic:strength=1", words=["'strength'", "onset, static_pressure"])
         self.refuse_add("static-transonic:onset=2", words=["onset", "[0.7, 0.95]"])
         self.refuse_add("static-lag:static_pressure=0.5", words=["whole number from -3 to 3"])
@@ -533,7 +533,7 @@ class DoesNoHarm(DiagnosisTest):
         last = improved["steps"][-1]["diagnosis"]
         self.assertNotEqual(last["verdict"], "silent")
         self.assertTrue(last["held_out"][0]["is_off"])
-        self.assertRegex(improved["why_stopped"], r"held out, is off by \+\d\.\d+ hPa")
+        self.assertRegex(improved["why_stopped"], r"[Hh]eld-out .*\+\d\.\d+ hPa")
 
 
 if __name__ == "__main__":

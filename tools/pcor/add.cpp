@@ -31,17 +31,17 @@ struct Options {
   std::string flight;
 };
 
-/// The user's own effect. @throws Error if it cannot be one.
+/// User-defined effect. @throws Error if the options do not define one.
 ModelEffect own_effect(const Options& options, const std::vector<std::string>& variables) {
   if (options.effects.size() != 1) {
-    throw Error(fmt::format("--formula makes one effect, but {} are named: {}; name the one that it is",
+    throw Error(fmt::format("--formula defines one effect, but {} are named: {}; give one name",
                             options.effects.size(), fmt::join(options.effects, ", ")));
   }
   ModelEffect effect = formula_effect(options.effects.front(), options.formula, "--formula");
   effect.location = location_named(options.location);
   const std::string wanted(info_of(effect.location).unit);
   if (!options.unit.empty() && standard_unit(options.unit) != standard_unit(wanted)) {
-    throw Error(fmt::format("--unit {}: what acts at '{}' is in {}; write the formula in {}", options.unit,
+    throw Error(fmt::format("--unit {}: the quantity at '{}' is in {}; write the formula in {}", options.unit,
                             options.location, wanted, wanted));
   }
   effect.unit = wanted;
@@ -57,7 +57,7 @@ std::vector<ModelEffect> wanted_effects(const Options& options, const std::vecto
   return effects;
 }
 
-/// The roles that `extended` names beyond `model`.
+/// Roles that `extended` names and `model` does not.
 std::vector<Quantity> new_roles(const ModelDefinition& model, const ModelDefinition& extended) {
   std::vector<Quantity> roles;
   for (const Quantity role : extended.roles()) {
@@ -81,7 +81,7 @@ void print(const ModelDefinition& model, const ModelDefinition& extended, const 
         info ? std::string(info->formula) : effect.formula, fmt::join(start, ", "));
   }
   for (const Quantity role : new_roles(model, extended))
-    say("named for it: {} = \"{}\"\n", info_of(role).name, extended.variables.at(role));
+    say("variable selected: {} = \"{}\"\n", info_of(role).name, extended.variables.at(role));
   say("\n");
   say_written({options.output, options.common.json});
   say("To fit it: {} refit {} -m {} -o fitted.toml\n", program(),
@@ -108,8 +108,8 @@ void run(const Options& options) {
   const FlightSet flights = options.flight.empty() ? FlightSet() : FlightSet{options.flight};
   const ModelDefinition model = read_model_for(options.model, flights, options.common);
   if (model.variables.count(Quantity::static_pressure) == 0) {
-    throw Error(
-        fmt::format("{}: it leaves its variables to the flight; give one with --flight", options.model));
+    throw Error(fmt::format("{}: the model leaves its variables to the flight; give one with --flight",
+                            options.model));
   }
   std::vector<std::string> variables;
   if (!flights.empty()) variables = flights[0].variables();
@@ -131,35 +131,33 @@ CLI::Validator is_place() {
 
 std::function<void()> add_add(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      program.add_subcommand("add", "Add effects to a model, with neutral coefficients, which a refit finds");
+  CLI::App* command = program.add_subcommand(
+      "add", "Add effects with neutral coefficients to a model, for a subsequent refit");
   command
       ->add_option("effects", options->effects,
-                   "effects of the catalogue, with their shape where it is not the usual one, such as "
-                   "static-transonic:onset=0.8; or with --formula the name of an effect of your own")
+                   "effects of the catalogue, with their shape if it differs from the default, such as "
+                   "static-transonic:onset=0.8; or with --formula the name of a user-defined effect")
       ->required()
       ->type_name("EFFECT...");
   command->add_option("-m,--model", options->model, "the model to extend")
       ->required()
       ->type_name("MODEL.toml");
-  command
-      ->add_option("-o,--output", options->output,
-                   "the extended model, whole or not at all; - for standard output")
+  command->add_option("-o,--output", options->output, "output model (written atomically); - for stdout")
       ->required()
       ->type_name("NEW.toml");
-  CLI::Option* formula =
-      command
-          ->add_option(
-              "--formula", options->formula,
-              "the formula of an effect of your own, with a coefficient k and variables by netCDF name or by "
-              "role: 'k * ENGTRQ / 100'")
-          ->type_name("FORMULA");
+  CLI::Option* formula = command
+                             ->add_option("--formula", options->formula,
+                                          "formula of a user-defined effect, with a coefficient k and "
+                                          "variables by netCDF name or by role: 'k * ENGTRQ / 100'")
+                             ->type_name("FORMULA");
   command->add_option("--where", options->location, "the stage of the measurement at which the formula acts")
       ->check(is_place())
       ->needs(formula)
       ->capture_default_str();
-  command->add_option("--unit", options->unit, "of the formula's value")->needs(formula)->type_name("UNIT");
-  command->add_option("--source", options->source, "where the formula comes from")
+  command->add_option("--unit", options->unit, "unit of the formula's value")
+      ->needs(formula)
+      ->type_name("UNIT");
+  command->add_option("--source", options->source, "source of the formula")
       ->needs(formula)
       ->type_name("TEXT");
   command

@@ -27,30 +27,29 @@ struct Options {
   std::string table;
 };
 
-/// What the reference of a check begins with; the model of the second system follows.
+/// Prefix of the reference of a check; the model of the second system follows.
 const std::string second_system = "static:";
-/// The total pressure of a pair of variables is of no model: "total:PS_A+QC_A".
+/// Prefix of the total pressure of a pair of variables without a model: "total:PS_A+QC_A".
 const std::string second_pair = "total:";
 
 bool is_pair(const std::string& reference) {
   return reference.rfind(second_pair, 0) == 0 && reference.find('+') != std::string::npos;
 }
 
-/// A check of an option: the form that names a second static system.
+/// Validator of the option that names a second static system.
 CLI::Validator is_second_system() {
   const auto check = [](const std::string& reference) -> std::string {
     for (const std::string& form : {second_system, second_pair}) {
       if (reference.rfind(form, 0) == 0) return "";
     }
     return fmt::format(
-        "'{}' is nothing that check takes, for it needs no reference but a second static system: "
-        "static:OTHER.toml, total:OTHER.toml or total:STATIC+DYNAMIC",
+        "'{}' is not supported by check; use static:OTHER.toml, total:OTHER.toml or total:STATIC+DYNAMIC",
         reference);
   };
   return {check, ""};
 }
 
-/// The file of the second system's model; empty where none is named.
+/// File of the second system's model; empty if not given.
 std::string second_model(const Options& options) {
   if (options.reference.empty() || is_pair(options.reference)) return "";
   return options.reference.substr(options.reference.find(':') + 1);
@@ -99,14 +98,14 @@ nlohmann::ordered_json as_json(const Checks& checks) {
   return result;
 }
 
-/// "-0.154 +- 0.024 hPa between the systems; matters from 0.3 on".
+/// Text like "-0.154 +- 0.024 hPa between the systems; tolerance 0.3".
 std::string key_number(const CheckResult& result) {
   const TestStatistic& key = result.key;
-  return fmt::format("{:+.3f} +- {:.3f} {} {}; matters from {:g} on", key.value, key.standard_error, key.unit,
+  return fmt::format("{:+.3f} +- {:.3f} {} {}; tolerance {:g}", key.value, key.standard_error, key.unit,
                      key.what, key.matters);
 }
 
-/// The first rows of a table in columns, the first to the left and the others to the right.
+/// Prints the first rows of a table in columns, the first left-aligned and the others right-aligned.
 void print(const ReportTable& table) {
   constexpr std::size_t max_rows = 20;
   const std::size_t rows = std::min(table.rows.size(), max_rows);
@@ -124,11 +123,10 @@ void print(const ReportTable& table) {
   };
   print_row(table.headers);
   for (std::size_t row = 0; row < rows; ++row) print_row(table.rows[row]);
-  if (rows < table.rows.size())
-    say("    and {} more, which --json and --report have\n", table.rows.size() - rows);
+  if (rows < table.rows.size()) say("    and {} more in --json and --report\n", table.rows.size() - rows);
 }
 
-/// As the options stand on a command line, for the commands that are advised.
+/// Options as on a command line, for the suggested commands.
 std::string command_line(const Options& options) {
   std::string line = advised_command_line(options.flights);
   if (!options.model.empty()) line += " -m " + shell_path(options.model);
@@ -141,7 +139,8 @@ std::size_t count_of(const Checks& checks, CheckVerdict verdict) {
       [verdict](const CheckResult& result) { return result.ran && result.verdict == verdict; }));
 }
 
-/// What a user may do next: about a fault that no refit mends first, then the temperature, then the law.
+/// Suggested next step: first for a fault that a refit cannot correct, then for the temperature, then for the
+/// model.
 std::string next_step(const Checks& checks, const Options& options, bool has_laser) {
   const auto fails = [&](const std::string& name) {
     return std::any_of(checks.results.begin(), checks.results.end(), [&](const CheckResult& result) {
@@ -154,7 +153,7 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
                                      command_line(options), second);
   if (fails("total-pressure")) {
     return "A transducer, a pitot or a line of one system is wrong: static defects cancel in the total "
-           "pressure, so no law for them mends it.\n" +
+           "pressure, so no term of the model can correct it.\n" +
            pictures;
   }
   const std::size_t inconsistent = count_of(checks, CheckVerdict::inconsistent);
@@ -165,18 +164,17 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
                        program(), command_line(options));
   }
   if (inconsistent > 0 && has_laser)
-    return fmt::format("To refit the law and learn which effect it lacks: {} improve {} -o improved.toml",
+    return fmt::format("To refit the model and find missing effects: {} improve {} -o improved.toml",
                        program(), command_line(options));
   if (inconsistent > 0 && has_model && !options.reference.empty()) {
     return fmt::format(
-        "To refit the law and learn which effect it lacks: {} improve {} --reference {} -o improved.toml",
+        "To refit the model and find missing effects: {} improve {} --reference {} -o improved.toml",
         program(), command_line(options), shell_quote(options.reference));
   }
   if (inconsistent == 0 && has_model && count_of(checks, CheckVerdict::consistent) > 0) {
-    return fmt::format(
-        "Nothing here speaks against the model{}. To apply it: {} process {} -m {} -o corrected.nc",
-        open > 0 ? fmt::format("; {} check{} cannot tell", open, open == 1 ? "" : "s") : "", program(),
-        shell_path(options.flights.flights.front()), shell_path(options.model));
+    return fmt::format("No check contradicts the model{}. To apply it: {} process {} -m {} -o corrected.nc",
+                       open > 0 ? fmt::format("; {} check{} cannot tell", open, open == 1 ? "" : "s") : "",
+                       program(), shell_path(options.flights.flights.front()), shell_path(options.model));
   }
   return pictures;
 }
@@ -188,18 +186,17 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
     say("{:<18} {:<14} {}\n", result.name, result.ran ? to_string(result.verdict) : "not run",
         result.ran ? key_number(result) : "");
   }
-  say("inconsistent: beyond what matters and beyond three standard errors; consistent: within what matters, "
-      "by "
-      "two standard errors\n");
+  say("inconsistent: larger than the tolerance and than three standard errors; consistent: within the "
+      "tolerance, by two standard errors\n");
   for (const CheckResult& result : checks.results) {
     say("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
     if (result.ran) {
       say("  {}: {}.\n", to_string(result.verdict), result.decided);
-      say("  cannot see: {}\n", result.cannot_see);
+      say("  limitations: {}\n", result.cannot_see);
     }
     if (!result.tables.empty()) print(result.tables.front());
     for (const std::string& note : result.notes) {
-      // The reason of a check that did not run says its first note already.
+      // The first note of a check that was not run repeats its reason.
       if (result.ran || result.reason.find(note) == std::string::npos) say("  note: {}.\n", note);
     }
   }
@@ -209,9 +206,9 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
   say("{}\n", next_step(checks, options, has_laser));
 }
 
-/// A row for each check of each flight, which is checked alone.
+/// Row for each check of each flight, which is checked separately.
 ///
-/// @param together the checks of all flights, which are those of the flight where there is one
+/// @param together the checks of all flights, which equal the checks of the flight if there is only one
 FlightTable flight_table(const FlightSet& flights, const std::optional<ModelDefinition>& model,
                          const CheckOptions& how, const Checks& together) {
   FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
@@ -277,18 +274,18 @@ void run(const Options& options) {
 
 std::function<void()> add_check(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("check",
-                                             "Test the corrected pressures by what the model was not fitted "
-                                             "to: redundant systems, manoeuvres, layers");
+  CLI::App* command = program.add_subcommand(
+      "check",
+      "Test the corrected pressures independently of the fit: redundant systems, manoeuvres, layers");
   add_flight_options(*command, options->flights);
   command
       ->add_option("-m,--model", options->model,
-                   "the model to check; without it, the corrected variables that the flight has already")
+                   "model to check (default: corrected variables of the flight)")
       ->type_name("MODEL.toml");
   command
-      ->add_option("--reference", options->reference,
-                   "static:OTHER.toml, the model of a second static system; without it, the second pair as "
-                   "measured")
+      ->add_option(
+          "--reference", options->reference,
+          "static:OTHER.toml, model of a second static system (default: second pressure pair, uncorrected)")
       ->check(is_second_system())
       ->type_name("static:OTHER.toml");
   CLI::Option* const old = command->add_option_function<std::string>(
@@ -296,7 +293,7 @@ std::function<void()> add_check(CLI::App& program) {
   keep_old_name(*old, "--reference static:OTHER.toml");
   command
       ->add_option("--table", options->table,
-                   "write a row for each check of each flight alone, comma-separated values")
+                   "write one row per check and flight to FILE.csv, each flight checked separately")
       ->check(is_file_name())
       ->type_name("FILE.csv");
   add_common_options(*command, options->common);

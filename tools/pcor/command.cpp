@@ -21,7 +21,7 @@ constexpr const char* standard_output = "-";
 
 bool is_file(const fs::path& path) { return !path.empty() && path != standard_output; }
 
-/// True where the two names lead to one file, be it there or not.
+/// True if two names refer to one file, existing or not.
 bool same_place(const fs::path& a, const fs::path& b) {
   if (!is_file(a) || !is_file(b)) return false;
   std::error_code code;
@@ -33,7 +33,7 @@ bool same_place(const fs::path& a, const fs::path& b) {
 
 CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                              const std::string& description) {
-  return command.add_option(name, values, description + "; several times for several")
+  return command.add_option(name, values, description + "; may be repeated")
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
@@ -42,7 +42,7 @@ CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::ve
 void keep_old_name(CLI::Option& option, const std::string& name_now) {
   option.group("");  // hidden
   option.each([old = "--" + option.get_lnames().front(), name_now](const std::string&) {
-    tell(fmt::format("pcor: {} is called {} now, and works for the time being", old, name_now));
+    tell(fmt::format("pcor: {} was renamed to {}; the old name is deprecated", old, name_now));
   });
 }
 
@@ -57,24 +57,22 @@ void add_examples(CLI::App& command, const std::vector<std::string>& examples) {
 }
 
 void add_common_options(CLI::App& command, CommonOptions& options, bool has_report) {
-  command.add_option("--json", options.json, "write the result as JSON to FILE, - for standard output")
+  command.add_option("--json", options.json, "write the result as JSON to FILE, - for stdout")
       ->type_name("FILE");
   if (has_report) {
     command
         .add_option("--report", options.report, "write a self-contained report with pictures to FILE.html")
         ->check(is_file_name())
         ->type_name("FILE.html");
-    CLI::Option* const figures =
-        command
-            .add_option(
-                "--figures", options.figures,
-                "write each picture of the report into FOLDER, as SVG and PNG, with captions; Chromium "
-                "draws them")
-            ->check(is_file_name())
-            ->type_name("FOLDER");
+    CLI::Option* const figures = command
+                                     .add_option("--figures", options.figures,
+                                                 "write each picture of the report into FOLDER, as SVG and "
+                                                 "PNG, with captions; requires Chromium")
+                                     ->check(is_file_name())
+                                     ->type_name("FOLDER");
     command
         .add_option("--figures-for", options.figures_for,
-                    "what the figures are for: a page 180 mm wide, a column of 86 mm, or a slide")
+                    "size of the figures: a page 180 mm wide, a column of 86 mm, or a slide")
         ->check(CLI::IsMember({"page", "column", "slide"}))
         ->needs(figures)
         ->capture_default_str();
@@ -90,7 +88,9 @@ bool wants_text(const CommonOptions& options, const std::vector<std::string>& mo
 
 CLI::Validator is_file_name() {
   const auto check = [](const std::string& name) -> std::string {
-    return name == standard_output ? "standard output, '-', takes models and JSON alone: name a file" : "";
+    return name == standard_output
+               ? "standard output ('-') is supported for models and JSON only; name a file"
+               : "";
   };
   return {check, ""};
 }
@@ -132,14 +132,14 @@ void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (const fs::path& input : inputs) {
       if (same_place(outputs[i], input)) {
-        throw Error(fmt::format("{} is an input itself; choose another output", outputs[i].string()));
+        throw Error(fmt::format("{} is also an input; choose another output", outputs[i].string()));
       }
     }
     for (std::size_t j = 0; j < i; ++j) {
       if (outputs[i] == standard_output && outputs[j] == standard_output)
-        throw Error("standard output, '-', is asked for twice; name a file for one of the results");
+        throw Error("standard output ('-') is given twice; name a file for one of the results");
       if (same_place(outputs[i], outputs[j])) {
-        throw Error(fmt::format("{} is asked for twice as an output; choose two names", outputs[i].string()));
+        throw Error(fmt::format("{} is given twice as an output; choose two names", outputs[i].string()));
       }
     }
   }

@@ -11,7 +11,7 @@
 namespace pcor::tool {
 namespace {
 
-/// The words in "TEXT:{begin,middle}"; none where the option does not choose among words.
+/// Words in "TEXT:{begin,middle}"; empty if the option does not choose among words.
 std::vector<std::string> choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{');
@@ -20,7 +20,7 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
   return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
 }
 
-/// The names of all `facts`, an array of what has a name.
+/// Names of all `facts`, an array of elements with a name.
 template <class Info, class Name>
 std::vector<std::string> all_names(const Info& info, const Name& name) {
   std::vector<std::string> names;

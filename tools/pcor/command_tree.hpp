@@ -6,25 +6,26 @@
 
 namespace pcor::tool {
 
-/// The sub-commands that the help shows.
+/// Sub-commands shown by the help.
 std::vector<const CLI::App*> shown_commands(const CLI::App& program);
 
-/// The options that the help of a command shows, without its positional arguments.
+/// Options shown by the help of a command, without its positional arguments.
 std::vector<const CLI::Option*> shown_options(const CLI::App& command);
 
-/// The positional argument of a command; null where it has none.
+/// Positional argument of a command; null if there is no such argument.
 const CLI::Option* positional_of(const CLI::App& command);
 
-/// The names of an option as they are written: "-m", "--model".
+/// Names of an option as written on a command line: "-m", "--model".
 std::vector<std::string> names_of(const CLI::Option& option);
 
-/// What an option takes, in the words of the help: "MODEL.toml", "NUMBER", "begin|middle"; empty for a flag.
+/// Value name of an option in the help: "MODEL.toml", "NUMBER", "begin|middle"; empty for a flag.
 std::string value_name(const CLI::Option& option);
 
-/// What a shell may offer as value of an option.
+/// Completions of the value of an option.
 struct Offer {
-  std::vector<std::string> words{};  ///< all there are
-  std::string files{};  ///< else files of this pattern, such as "*.nc", "*/" for folders; empty for none
+  std::vector<std::string> words{};  ///< complete list of words
+  std::string files{};  ///< otherwise files of this pattern, such as "*.nc", "*/" for folders; empty if there
+                        ///< are none
 };
 
 Offer offer_of(const CLI::Option& option);

@@ -4,11 +4,11 @@
 
 namespace pcor::tool {
 
-/// The team that this process works in: itself alone, unless `set_communicator` said otherwise.
+/// Communicator of this process: serial, unless `set_communicator` was called.
 Communicator& comm();
 void set_communicator(Communicator& comm);
 
-/// Whether this member of the team says and writes what comes of the work: the first does, for all.
+/// Whether this rank prints and writes the results: true on the first rank.
 bool is_speaker();
 
 }  // namespace pcor::tool

@@ -107,7 +107,7 @@ void print_row(const std::string& name, const Statistics& s) {
       known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
 }
 
-/// Of the regimes and bands, those that matter: where the model fails most.
+/// Largest regimes and bands: where the errors of the model are largest.
 void print_model(const ModelComparison& model, bool with_name) {
   if (with_name) say("\n{}\n", model.name);
   print_flaps_out(model.flaps_out, "the comparison");
@@ -131,18 +131,18 @@ void print_model(const ModelComparison& model, bool with_name) {
     say("  {} to {}  bias {:+.3f}, rms {:.3f} hPa  {}\n", utc_text(worst.begin),
         utc_text(worst.end, "%H:%M:%S"), worst.statistics.bias, worst.statistics.rms, worst.regimes);
   }
-  // Of differences over time there is no R2.
+  // Differences over time have no R2.
   if (std::isfinite(model.r_squared)) say("R2 {:.4f}; ", model.r_squared);
-  say("the residuals are correlated in time: {:.1f} samples count as one independent one\n",
+  say("the residuals are correlated in time: autocorrelation time {:.1f} samples\n",
       model.autocorrelation_time);
   if (model.reference_error > 0.0)
     say("The calibration of the reference may shift the bias by {:.2f} hPa (one standard uncertainty).\n",
         model.reference_error);
 }
 
-/// Of a further reference: all samples and each regime.
+/// Statistics of a further reference: all samples and each regime.
 void print_further(const Comparison& comparison, bool with_names) {
-  say("\nresidual = {}, reference less model\n", comparison.reference);
+  say("\nresidual = {}, reference minus model\n", comparison.reference);
   say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
   say("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter", "rms",
       "noise", "ratio");
@@ -152,7 +152,8 @@ void print_further(const Comparison& comparison, bool with_names) {
   }
 }
 
-/// The residual of flight `number` goes to the file asked for, or beside it with the flight's name.
+/// Output file for the residual of flight `number`: the given file, or a file next to it with the flight's
+/// name.
 std::filesystem::path residual_file(const Options& options, std::size_t number) {
   const std::filesystem::path wanted = options.residuals;
   if (options.comparison.flights.size() == 1) return wanted;
@@ -165,17 +166,19 @@ void print(const Comparison& comparison, const std::vector<ComparedModel>& conte
            const ChosenReferences& references, const Options& options) {
   print_references(references);
   if (comparison.is_static_pressure) {
-    say("residual = static pressure of the reference ({}) less that of the model\n", comparison.reference);
+    say("residual = static pressure of the reference ({}) minus static pressure of the model\n",
+        comparison.reference);
   } else {
-    say("residual = {}, reference less model\n", comparison.reference);
+    say("residual = {}, reference minus model\n", comparison.reference);
   }
   say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
-  if (comparison.models.size() > 1) say("noise is that of the model that leaves least of it, one for all\n");
+  if (comparison.models.size() > 1)
+    say("noise: common to all models, from the model with the smallest noise\n");
   for (const ModelComparison& model : comparison.models) print_model(model, comparison.models.size() > 1);
   if (comparison.total_pressure) {
     const LineFit& total = *comparison.total_pressure;
-    say("\ntotal pressure of the reference against that of the model: slope {:.5f}, offset {:+.3f} hPa, rms "
-        "{:.3f} hPa\n",
+    say("\ntotal pressure of the reference against total pressure of the model: slope {:.5f}, offset {:+.3f} "
+        "hPa, rms {:.3f} hPa\n",
         total.slope, total.offset, total.rms);
   }
   for (const Comparison& further : comparison.further) print_further(further, options.models.size() > 1);
@@ -196,7 +199,7 @@ void print(const Comparison& comparison, const std::vector<ComparedModel>& conte
   if (comparison.models.size() > 1) say("The least rms has {}. ", best->name);
   const std::string flights = advised_command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
-    say("The residual of {} is little more than noise. To apply it: {} process {} -m {} -o corrected.nc\n",
+    say("The residual of {} is close to the noise. To apply it: {} process {} -m {} -o corrected.nc\n",
         best->name, program(), shell_path(options.comparison.flights.front()), shell_path(model));
     return;
   }
@@ -208,7 +211,7 @@ void print(const Comparison& comparison, const std::vector<ComparedModel>& conte
   }
 }
 
-/// Adds the references of a model to those of models before it, each once.
+/// Adds the references of a model to the references of earlier models, without repetition.
 void add_references(ChosenReferences& told, const ChosenReferences& own) {
   for (const auto& reference : own.used) {
     const auto same = [&reference](const auto& other) { return other->name() == reference->name(); };
@@ -220,7 +223,7 @@ void add_references(ChosenReferences& told, const ChosenReferences& own) {
   }
 }
 
-/// Models that share a name are told apart by their files.
+/// Distinguishes models with the same name by their files.
 void name_by_file(std::vector<ComparedModel>& contenders, const std::vector<std::string>& files) {
   std::map<std::string, std::size_t> count;
   for (const ComparedModel& contender : contenders) ++count[contender.name];
@@ -229,7 +232,7 @@ void name_by_file(std::vector<ComparedModel>& contenders, const std::vector<std:
   }
 }
 
-/// The residuals of each model on each flight.
+/// Writes the residuals of each model on each flight.
 void write_flight_table(const Comparison& comparison, const std::string& path) {
   FlightTable table({"flight", "model", "samples", "bias_hpa", "rms_hpa"});
   for (std::size_t f = 0; f < comparison.models.front().flights.size(); ++f) {
@@ -244,12 +247,12 @@ void write_flight_table(const Comparison& comparison, const std::string& path) {
 
 using Levels = std::vector<std::optional<LevelByGps>>;
 
-/// What delta-p of each model lacks in the mean by GPS, where that was asked for.
+/// Mean error of delta-p of each model by GPS, if requested.
 Levels levels_by_gps(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
                      const Options& options) {
   Levels levels(contenders.size());
   if (options.comparison.references.empty())
-    return levels;  // all that there are take part: GPS takes seconds
+    return levels;  // all available references are used: GPS takes seconds
   const MaskOptions mask = mask_options(options.comparison);
   for (std::size_t i = 0; i < contenders.size(); ++i)
     levels[i] = level_by_gps(flights, contenders[i].model, contenders[i].references, mask);
@@ -261,11 +264,11 @@ void print(const Levels& levels, const std::vector<ComparedModel>& contenders) {
     if (!levels[i]) continue;
     constexpr double known = 1.0;  // hPa
     if (levels[i]->standard_error < known)
-      say("{}: by GPS delta-p lacks {:+.2f} +- {:.2f} hPa in the mean\n", contenders[i].name,
+      say("{}: by GPS the mean delta-p error is {:+.2f} +- {:.2f} hPa\n", contenders[i].name,
           levels[i]->missing, levels[i]->standard_error);
     else
-      say("{}: these flights do not tell by GPS what delta-p lacks in the mean; circles or reverse headings "
-          "with --reference wind would\n",
+      say("{}: GPS does not determine the mean delta-p error on these flights; it requires circles or "
+          "reverse headings with --reference wind\n",
           contenders[i].name);
   }
 }
@@ -292,7 +295,7 @@ void run(const Options& options) {
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
   std::vector<ComparedModel> contenders;
-  ChosenReferences references;  // of all models, as the text tells them
+  ChosenReferences references;  // references of all models, for printing
   for (const std::string& path : options.models) {
     const ModelDefinition model = read_model_for(path, flights, options.common);
     const ChosenReferences own = read_references(options.comparison.references, model, flights);
@@ -305,7 +308,7 @@ void run(const Options& options) {
   if (!options.residuals.empty())
     compare_options.max_series = options.comparison.flights.size();
   else if (!wants_report(options.common))
-    compare_options.max_series = 0;  // all else is numbers
+    compare_options.max_series = 0;  // other results are numbers
   Comparison comparison;
   {
     Progress bar("comparing", !options.common.quiet);
@@ -313,6 +316,14 @@ void run(const Options& options) {
     comparison = compare(flights, contenders, compare_options);
   }
   const Levels levels = levels_by_gps(flights, contenders, options);
+  const bool has_wind = std::any_of(references.used.begin(), references.used.end(),
+                                    [](const auto& reference) { return reference->name() == "wind"; });
+  if (has_wind) {
+    comparison.notes.emplace_back(
+        "residuals by wind contain gusts and the drift of the wind, which are not errors of a model; "
+        "--reference "
+        "wind also prints the mean error of delta-p by GPS, which does not contain them");
+  }
   if (!is_speaker()) return;
   OutputTransaction together;
   if (!options.residuals.empty()) {
@@ -346,7 +357,7 @@ std::function<void()> add_compare(CLI::App& program) {
       program.add_subcommand("compare", "Compare a model with a measurement of delta-p, by flight regime");
   add_comparison_options(*command, options->comparison);
   add_list_option(*command, "-m,--model", options->models,
-                  "a model of the pressure system, shown side by side")
+                  "model of the pressure system; several models are shown side by side")
       ->required()
       ->type_name("MODEL.toml");
   command
@@ -356,8 +367,8 @@ std::function<void()> add_compare(CLI::App& program) {
       ->type_name("FILE.csv");
   command
       ->add_option("--residuals", options->residuals,
-                   "write the residuals of every sample to a netCDF file; of several flights each to one of "
-                   "its own, OUT-FLIGHT.nc")
+                   "write the residuals of every sample to a netCDF file; for several flights to one file "
+                   "each, OUT-FLIGHT.nc")
       ->check(is_file_name())
       ->type_name("OUT.nc");
   add_common_options(*command, options->common);

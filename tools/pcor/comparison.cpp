@@ -32,24 +32,23 @@ CLI::Validator is_amount() {
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_flight_options(command, options);
-  add_list_option(
-      command, "--reference", options.references,
-      "a measurement that the model is held against: " + reference_forms() +
-          "; not given, compare takes lams and what the flights allow of total, height and wind, and "
-          "refit, diagnose and improve take lams and, where the flights allow it, total")
+  add_list_option(command, "--reference", options.references,
+                  "measurement compared with the model: " + reference_forms() +
+                      "; default: compare uses lams and the available ones of total, height and wind; refit, "
+                      "diagnose and improve use lams and, if available, total")
       ->type_name("REFERENCE");
 }
 
 namespace {
 
-/// Takes out the flights that cannot be opened, and says so. @throws Error if none is left.
+/// Removes the flights that cannot be opened, and reports them. @throws Error if no flights remain.
 void leave_out_unreadable(std::vector<std::string>& flights) {
   const ReadableFlights readable =
       readable_flights({flights.begin(), flights.end()}, comm(), place_to_open());
   for (const UnreadableFlight& unreadable : readable.unreadable)
-    tell_choices({fmt::format("left out: {}", unreadable.why)}, false);
+    tell_choices({fmt::format("skipped: {}", unreadable.why)}, false);
   if (readable.flights.empty())
-    throw Error(fmt::format("none of the {} flights can be read", flights.size()));
+    throw Error(fmt::format("none of the {} flights is readable; check the files", flights.size()));
   flights.clear();
   for (const std::filesystem::path& flight : readable.flights) flights.push_back(flight.string());
 }
@@ -58,29 +57,27 @@ void leave_out_unreadable(std::vector<std::string>& flights) {
 
 void add_flight_options(CLI::App& command, ComparisonOptions& options) {
   command.add_option("flights", options.flights, "the flights, netCDF files")->required()->type_name("IN.nc");
-  add_list_option(command, "--exclude", options.exclude,
-                  "a flight regime that is left out, e.g. turn or cloud")
+  add_list_option(command, "--exclude", options.exclude, "exclude a flight regime, e.g. turn or cloud")
       ->type_name("REGIME");
   command
-      .add_option(
-          "--intervals", options.intervals,
-          "flight regimes to add or to veto, and times to leave out; docs/intervals.md has the format")
+      .add_option("--intervals", options.intervals,
+                  "flight regimes to add or to remove, and times to exclude; format: docs/intervals.md")
       ->type_name("FILE.toml");
-  command.add_option("--min-airspeed", options.min_airspeed, "samples that are slower are left out, m/s")
+  command.add_option("--min-airspeed", options.min_airspeed, "exclude samples below this airspeed, m/s")
       ->check(is_amount())
       ->capture_default_str();
   command
       .add_option("--max-flaps", options.max_flaps,
-                  "samples with more flaps are left out, percent; not given it is 5, and none is left out "
-                  "where an effect of the model reads the flaps")
+                  "exclude samples with flaps above N percent (default 5; no limit if an effect of the model "
+                  "uses the flaps)")
       ->check(is_amount());
   command
       .add_option("--time-stamp", options.timestamp_alignment,
-                  "whether the time of a record is the beginning or the middle of its second")
+                  "position of the time of a record in its averaging interval")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
   command.add_flag("--skip-unreadable", options.skip_unreadable,
-                   "leave out a flight that is damaged or is none, and say so");
+                   "skip files that are damaged or not flights, with a warning");
   add_processes_option(command);
   command.parse_complete_callback([&options] {
     options.references = in_order(options.references);
@@ -94,7 +91,7 @@ Regime regime_of(const std::string& name, const std::string& option) {
   std::vector<std::string> known;
   for (const RegimeInfo& info : regime_info) known.emplace_back(info.name);
   const std::string meant = did_you_mean(name, known);
-  throw Error(fmt::format("{} '{}': there is no such regime; {}", option, name,
+  throw Error(fmt::format("{} '{}': unknown regime; {}", option, name,
                           meant.empty() ? fmt::format("the regimes are {}", fmt::join(known, ", ")) : meant));
 }
 
@@ -171,9 +168,9 @@ ChosenReferences references_to_fit(const ComparisonOptions& options, const Model
   const auto held_together = std::stable_partition(chosen.used.begin(), chosen.used.end(),
                                                    [](const auto& each) { return each->is_of_one_sample(); });
   for (auto each = held_together; each != chosen.used.end(); ++each) {
-    const char* const who = (*each)->window() > 0.0 ? "refit, diagnose and improve take" : "refit takes";
+    const char* const who = (*each)->window() > 0.0 ? "refit, diagnose and improve use" : "refit uses";
     chosen.not_used.push_back(
-        fmt::format("{}: compare shows it, and {} it where --reference names it", (*each)->name(), who));
+        fmt::format("{}: compare shows it, and {} it if --reference names it", (*each)->name(), who));
   }
   chosen.used.erase(held_together, chosen.used.end());
   return chosen;

@@ -12,7 +12,7 @@
 
 namespace pcor::tool {
 
-/// The options of every sub-command that holds a model against measurements.
+/// Options of every sub-command that compares a model with measurements.
 struct ComparisonOptions {
   std::vector<std::string> flights{};
   std::vector<std::string> references{};
@@ -21,25 +21,24 @@ struct ComparisonOptions {
   double min_airspeed = MaskOptions{}.min_airspeed;
   std::optional<double> max_flaps{};
   std::string timestamp_alignment = "begin";
-  bool skip_unreadable = false;  ///< flights that cannot be opened are taken from `flights`
+  bool skip_unreadable = false;  ///< flights that cannot be opened are removed from `flights`
 };
 
-/// A check of an option: a finite number, zero or more.
+/// Validator: a finite number, zero or more.
 CLI::Validator is_amount();
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options);
 
-/// As `add_comparison_options`, without the reference: flights, and which samples take part.
+/// Adds the options of `add_comparison_options` without the reference: flights, and selection of samples.
 void add_flight_options(CLI::App& command, ComparisonOptions& options);
 
-/// The regime called `name` on the option `option`. @throws Error with the names that there are.
+/// Regime called `name` in the option `option`. @throws Error with the known names.
 Regime regime_of(const std::string& name, const std::string& option);
 
-/// @throws Error if a regime has no such name or the file of intervals cannot be read.
+/// @throws Error if a regime is unknown or the file of intervals cannot be read.
 MaskOptions mask_options(const ComparisonOptions& options);
 
-/// The flights of a command, opened once for all that it does: those that are fitted or compared, and those
-/// that are held out.
+/// Flights of a command, opened once: fitted or compared flights, and held-out flights.
 struct CommandFlights {
   FlightSet flights{};
   FlightSet holdout{};
@@ -51,31 +50,32 @@ struct CommandFlights {
   FlightSet all() const { return flights.with(holdout); }
 };
 
-/// The files that the options read, for `refuse_overwriting`.
+/// Files that the options read, for `refuse_overwriting`.
 std::vector<std::filesystem::path> input_files(const ComparisonOptions& options);
 
-/// The options as they stand on a command line, for the commands that a user is advised to run next.
+/// Options as on a command line, for the suggested next commands.
 std::string command_line(const ComparisonOptions& options);
 
-/// The same for the commands that are advised: of more flights than anyone reads the first and the last.
+/// Options as on a command line, for suggested commands: many flights are shortened to the first and the
+/// last.
 std::string advised_command_line(const ComparisonOptions& options);
 
 std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options);
 
-/// What a model is fitted to: the references that the options name, else LAMS and the total pressure of a
-/// second pair. What the others leave to their noise, winds that change and slopes of surfaces of one
-/// pressure, is not known well enough to be taken unasked: heights that are off by a thousandth, and air that
-/// is not at rest, look to a diagnosis like some tenths of a kelvin at the thermometer.
-/// @param flights those that are held out, too, must allow the references
+/// References of a fit: the references given by the options, otherwise LAMS and the total pressure of a
+/// second pair. The uncertainty of the others, due to changing winds and sloping isobars, is not known well
+/// enough to use them by default: a height error of one thousandth, and moving air, appear in a diagnosis as
+/// a few tenths of a kelvin at the thermometer.
+/// @param flights the held-out flights must allow the references as well
 ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelDefinition& model,
                                    const FlightSet& flights);
 
-/// Prints which references a model is held against and which not, where there are several to tell of.
+/// Prints the used and unused references of a model, if there are several.
 void print_references(const ChosenReferences& references);
 
 nlohmann::ordered_json as_json(const Statistics& statistics);
 
-/// Prints what the residual is where flaps are out, on a line of its own; nothing where none are.
+/// Prints the residual with flaps out, on a separate line; prints no line if there are no such samples.
 void print_flaps_out(const Statistics& flaps_out, const std::string& of_what);
 nlohmann::ordered_json masks_as_json(const std::array<std::size_t, mask_count>& masks);
 

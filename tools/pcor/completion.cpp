@@ -12,19 +12,19 @@
 namespace pcor::tool {
 namespace {
 
-/// `text` in single quotes, whatever it holds.
+/// `text` in single quotes, for any content.
 std::string quote(const std::string& text) {
   return "'" + CLI::detail::find_and_replace(text, "'", "'\\''") + "'";
 }
 
-/// What bash offers: an assignment that the function below reads.
+/// Completion for bash: an assignment that the function below reads.
 std::string bash_offer(const Offer& offer) {
   if (!offer.words.empty())
     return fmt::format("words={}", quote(fmt::format("{}", fmt::join(offer.words, "\n"))));
   return offer.files.empty() ? "return" : fmt::format("files={}", quote(offer.files));
 }
 
-/// The cases of one sub-command: the values of its options, its options, its positional arguments.
+/// Cases of one sub-command: the values of its options, its options, its positional arguments.
 std::string bash_cases(const CLI::App& command) {
   std::string text;
   std::vector<std::string> options;
@@ -55,7 +55,7 @@ std::string bash_completion(const CLI::App& program) {
     const std::vector<std::string> names = names_of(*option);
     commands.insert(commands.end(), names.begin(), names.end());
   }
-  // Bash breaks words at '=' and ':' too: --option=value, static:OTHER.toml.
+  // Bash also breaks words at '=' and ':': --option=value, static:OTHER.toml.
   return fmt::format(R"(# Completion of pcor for bash, written by 'pcor completion bash'.
 _pcor() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} words='' files='' IFS=$'\n'
@@ -83,7 +83,7 @@ complete -F _pcor pcor
                      bash_offer({commands, ""}), cases);
 }
 
-/// A text in the specification of an option for zsh, in which some letters have a meaning.
+/// Escaped text in the specification of an option for zsh.
 std::string zsh_text(const std::string& text) {
   std::string result;
   for (const char letter : text) {
@@ -93,7 +93,7 @@ std::string zsh_text(const std::string& text) {
   return result;
 }
 
-/// The first words of a description: what is behind a semicolon or a colon is for the help.
+/// First words of a description: text after a semicolon or a colon appears in the help only.
 std::string brief(const CLI::Option& option) {
   const std::string& text = option.get_description();
   return text.substr(0, text.find_first_of(";:"));
@@ -158,13 +158,13 @@ _pcor "$@"
                      zsh_arguments(program), commands, cases);
 }
 
-/// `text` in single quotes as fish reads them.
+/// `text` in single quotes for fish.
 std::string in_fish_quotes(const std::string& text) {
   return "'" + CLI::detail::find_and_replace(CLI::detail::find_and_replace(text, "\\", "\\\\"), "'", "\\'") +
          "'";
 }
 
-/// What fish offers: the arguments of its `complete`.
+/// Completion for fish: the arguments of its `complete`.
 std::string fish_offer(const Offer& offer) {
   if (!offer.words.empty()) {
     std::vector<std::string> words;
@@ -207,9 +207,8 @@ std::string fish_completion(const CLI::App& program) {
 
 std::function<void()> add_completion(CLI::App& program) {
   auto shell = std::make_shared<std::string>();
-  CLI::App* command =
-      program.add_subcommand("completion", "Print what makes a shell complete the words of pcor");
-  command->group("");  // for those who package the program, so the help does not show it
+  CLI::App* command = program.add_subcommand("completion", "Print the completion script of a shell");
+  command->group("");  // hidden in the help, because it is for packagers
   command->add_option("shell", *shell, "the shell")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));

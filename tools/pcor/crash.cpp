@@ -22,7 +22,7 @@ constexpr std::size_t stack_bytes = std::size_t{64} << 10;
 constexpr int seconds_between_looks = 5;
 constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
-std::array<struct sigaction, crashes.size()> earlier;  // a sanitizer's, where there is one
+std::array<struct sigaction, crashes.size()> earlier;  // handlers of a sanitizer, if any
 volatile std::sig_atomic_t is_running = 0;
 volatile std::sig_atomic_t status_of_crash = 1;
 
@@ -30,28 +30,29 @@ void print(const char* text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
-/// @param file at which a damaged one was seen; null where none was
+/// @param file that was being read; null if unknown
 [[noreturn]] void give_up(const char* file) {
   remove_unfinished_files();
   print("pcor: ");
   if (file != nullptr) {
     print(file);
-    print(had_previous_input()
-              ? " is damaged, or a flight that was read before it: the HDF5 library could not read it; see "
-                "which by pcor inspect, and fetch that again from its source\n"
-              : " is damaged: the HDF5 library could not read it; fetch it again from its source\n");
+    print(
+        had_previous_input()
+            ? ": this flight or one read before it is damaged: the HDF5 library failed; find it with pcor "
+              "inspect, and fetch it again from its source\n"
+            : ": the file is damaged: the HDF5 library could not read it; fetch it again from its source\n");
   } else {
     print(
-        "a library that reads and writes files failed, as where the memory or the disk is full; make room, "
-        "or give fewer flights at a time\n");
+        "a library that reads and writes files failed, for example because the memory or the disk is full; "
+        "free space, or give fewer flights\n");
   }
   _exit(status_of_crash);
 }
 
-/// What is in the middle of something.
+/// Code that is running.
 enum class Busy { other, library, reader_of_flights };
 
-/// Of libraries those that are shared can be told by name.
+/// Only shared libraries can be identified by name.
 Busy what_is_busy() {
   constexpr int max_frames = 64;
   void* frames[max_frames];
@@ -61,7 +62,7 @@ Busy what_is_busy() {
     Dl_info place{};
     if (dladdr(frames[i], &place) == 0 || place.dli_fname == nullptr) continue;
     const auto is = [&place](const char* name) { return std::strstr(place.dli_fname, name) != nullptr; };
-    // What reads units and makes digests meets no flight that may be damaged.
+    // Libraries for units and digests do not read flights, which may be damaged.
     if (is("/libudunits") || is("/libcrypto")) return Busy::library;
     if (is("/libhdf5") || is("/libnetcdf")) found = Busy::reader_of_flights;
   }
@@ -69,7 +70,7 @@ Busy what_is_busy() {
 }
 
 extern "C" void explain(int signal) {
-  remove_unfinished_files();  // before a look at a stack that may be damaged, too
+  remove_unfinished_files();  // before the stack is inspected, which may be damaged as well
   const Busy busy = what_is_busy();
   if (busy != Busy::other) give_up(busy == Busy::reader_of_flights ? current_input_path() : nullptr);
   for (std::size_t i = 0; i < crashes.size(); ++i)
@@ -84,7 +85,7 @@ extern "C" void watch(int /*signal*/) {
 
 extern "C" void watch_waiting(int /*signal*/) {
   const char* const file = current_input_path();
-  static volatile std::sig_atomic_t times = 0;  // few pass while a user has stopped the program
+  static volatile std::sig_atomic_t times = 0;  // few ticks pass while a user has stopped the program
   const double waiting = seconds_of_waiting();
   times = waiting < 0.9 * seconds_between_looks ? 0 : times + 1;
   if (file == nullptr || waiting < max_seconds_of_waiting ||
@@ -94,13 +95,12 @@ extern "C" void watch_waiting(int /*signal*/) {
   print("pcor: ");
   print(file);
   print(
-      " does not answer: half a minute passed without a byte, as where it links to a pipe or to a disk that "
-      "is "
-      "gone; copy it, and give the copy\n");
+      ": no data for half a minute; the path may be a pipe or an unavailable disk; copy the file and give "
+      "the copy\n");
   _exit(status_of_crash);
 }
 
-/// Libraries end a program where they get no memory.
+/// Libraries end a program if memory is exhausted.
 extern "C" void explain_exit() {
   if (is_running != 0) give_up(nullptr);
 }
@@ -116,8 +116,8 @@ void handle(int signal, void (*handler)(int), int flags, struct sigaction* befor
 
 CrashesExplained::CrashesExplained(int status) {
   status_of_crash = status;
-  what_is_busy();  // the first look at a stack loads a library, which no handler of signals may do
-  // A stack of its own: the library's may be used up.
+  what_is_busy();  // the first backtrace loads a library, which a signal handler must not do
+  // Separate stack: the stack of the library may be exhausted.
   static std::byte stack[stack_bytes];
   stack_t place{};
   place.ss_sp = stack;
@@ -126,15 +126,14 @@ CrashesExplained::CrashesExplained(int status) {
   for (std::size_t i = 0; i < crashes.size(); ++i)
     handle(crashes[i], explain, static_cast<int>(SA_RESETHAND), &earlier[i]);
   handle(SIGPROF, watch, SA_RESTART, nullptr);
-  const itimerval each_second{{1, 0}, {1, 0}};  // of processor time
+  const itimerval each_second{{1, 0}, {1, 0}};  // processor time
   setitimer(ITIMER_PROF, &each_second, nullptr);
   handle(SIGVTALRM, watch_waiting, SA_RESTART, nullptr);
   sigevent event{};
   event.sigev_notify = SIGEV_SIGNAL;
   event.sigev_signo = SIGVTALRM;
   timer_t timer{};
-  const itimerspec sometimes{{seconds_between_looks, 0},
-                             {seconds_between_looks, 0}};  // of a clock on the wall
+  const itimerspec sometimes{{seconds_between_looks, 0}, {seconds_between_looks, 0}};  // wall-clock time
   if (timer_create(CLOCK_MONOTONIC, &event, &timer) == 0) timer_settime(timer, 0, &sometimes, nullptr);
   is_running = 1;
   std::atexit(explain_exit);

@@ -2,13 +2,12 @@
 
 namespace pcor::tool {
 
-/// As long as one lives, a crash in the libraries that read files, as on a damaged flight, one from which
-/// they never come back, and their way of ending a program that has no memory left end like other errors:
-/// with a line that names the flight that was read, and nothing unfinished left behind. A crash of pcor
-/// itself stays what it is.
+/// During its lifetime, a crash or an endless loop in the libraries that read files, as on a damaged flight,
+/// and their exit if memory is exhausted, end like other errors: with a line that names the flight, and
+/// without unfinished files. A crash of pcor is unchanged.
 class CrashesExplained {
  public:
-  /// @param status with which the process ends then
+  /// @param status exit status of the process in these cases
   explicit CrashesExplained(int status);
   CrashesExplained(const CrashesExplained&) = delete;
   CrashesExplained& operator=(const CrashesExplained&) = delete;

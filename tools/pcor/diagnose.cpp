@@ -51,9 +51,9 @@ void print_finding(const Finding& finding) {
   }
   for (const Alias& alias : finding.aliases) {
     const std::string size = alias.size_to_usual == 0.0 ? ""
-                                                        : fmt::format(", {:.2g} times its usual size",
+                                                        : fmt::format(", {:.2g} times its typical size",
                                                                       std::abs(alias.size_to_usual));
-    say("  cannot be told from {} with {}: correlation {:+.3f}, chi2 {:.1f} {}{}\n", alias.effect,
+    say("  not distinguishable from {} with {}: correlation {:+.3f}, chi2 {:.1f} {}{}\n", alias.effect,
         estimates_text(alias.estimates), alias.correlation, std::abs(alias.chi2_less),
         alias.chi2_less < 0.0 ? "more" : "less", size);
   }
@@ -69,12 +69,12 @@ void print_findings(const std::vector<Finding>& findings) {
         estimates_text(finding.estimates), finding.rms, finding.worst, finding.chi2,
         probability(finding.p_value), finding.rms_before, finding.rms_after, finding.events);
   }
-  say("before and after: rms, hPa, of parts of the flights that were not fitted; events: separate times "
-      "that speak for the effect\n");
+  say("before and after: rms, hPa, on held-out parts of the flights; events: separate times that support the "
+      "effect\n");
   for (const Finding& finding : findings) print_finding(finding);
 }
 
-/// A list on one line; the rest of a long one is counted.
+/// Prints a list on one line; a long one ends with the number of omitted entries.
 void print_list(const std::string& title, std::vector<std::string> items, bool all) {
   if (items.empty()) return;
   const std::size_t more = all || items.size() <= shortened ? 0 : items.size() - shortened;
@@ -101,8 +101,8 @@ void print_others(const Diagnosis& diagnosis, bool all) {
   print_list("not testable", std::move(not_testable), all);
 }
 
-/// The command that adds the findings, or the traced variable, and fits; else the loop that does what one
-/// command cannot.
+/// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
+/// for findings that one command cannot add.
 std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   const std::string flights = advised_command_line(options.comparison);
   const std::string model = shell_path(options.model);
@@ -125,9 +125,7 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   const auto of_reference = [](const Finding& finding) { return finding.of_reference; };
   if (!findings.empty() && std::all_of(findings.begin(), findings.end(), of_reference)) {
     return fmt::format(
-        "It is of the system that the model is held against: the model stays as it is; to see it: {} "
-        "compare {} "
-        "-m {}",
+        "The effect belongs to the reference system; the model is unchanged. To see it: {} compare {} -m {}",
         program(), flights, model);
   }
   const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
@@ -137,8 +135,9 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
     for (const Finding& finding : findings) {
       add += " " + shell_quote(argument_of(finding.effect));
       if (finding.shape_beyond_model.empty()) continue;
-      without += fmt::format("{} was found {}, which no model file can hold: it is added without that.\n",
-                             finding.id(), finding.shape_beyond_model);
+      without += fmt::format(
+          "{} was found {}, which a model file cannot represent: it is added without this part.\n",
+          finding.id(), finding.shape_beyond_model);
     }
     return fmt::format("{}To add {} and fit: {}{}", without, findings.size() == 1 ? "it" : "them", add,
                        and_fit);
@@ -149,17 +148,16 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
            add_formula(effect.id, effect.formula, std::string(info_of(effect.location).name));
   }
   if (!findings.empty()) {
-    return fmt::format("To add what helps, one after another: {} improve {} -m {}{} -o best.toml", program(),
-                       flights, model, command_line(options.candidates));
+    return fmt::format("To add helpful effects one after another: {} improve {} -m {}{} -o best.toml",
+                       program(), flights, model, command_line(options.candidates));
   }
   for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty()) continue;
     return fmt::format(
-        "To see whether a formula of {} helps where it was not fitted: {} improve {} -m {} "
-        "--trace-variables -o best.toml",
+        "To test a formula of {} on data outside the fit: {} improve {} -m {} --trace-variables -o best.toml",
         variable.name, program(), flights, model);
   }
-  return fmt::format("To see where it lies: {} compare {} -m {}", program(), flights, model);
+  return fmt::format("To see where the residual is largest: {} compare {} -m {}", program(), flights, model);
 }
 
 void print(const Diagnosis& diagnosis, const ChosenReferences& references, const Options& options) {
@@ -241,15 +239,15 @@ std::function<void()> add_diagnose(CLI::App& program) {
   add_candidate_options(*command, options->candidates);
   add_fit_options(*command, options->held);
   add_list_option(*command, "--not-variable", options->not_variables,
-                  "a variable of the flights that is not searched for structure that no effect explains")
+                  "exclude a variable of the flights from the search for unexplained structure")
       ->type_name("NAME");
   command->add_flag("--no-file-variables", options->no_file_variables,
-                    "search no variable of the flights for structure that no effect explains");
+                    "do not search the variables of the flights for unexplained structure");
   command->add_flag("--trust-reference", options->trust_reference,
-                    "take the references for exact: no missing effect is looked for in them");
+                    "assume that the references are exact: do not test effects of the references");
   command
       ->add_option("--training-share", options->training_share,
-                   "use only this share of every flight, its first part")
+                   "use only this fraction of every flight, its first part")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   const char* const full = "print the lists of effects that were not found in full";

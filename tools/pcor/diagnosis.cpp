@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A list of what `as_one` makes of each.
+/// List of the results of `as_one` for each element.
 template <class Items, class Function>
 Json list_of(const Items& items, const Function& as_one) {
   Json list = Json::array();
@@ -120,7 +120,7 @@ Json step_as_json(const FlightOffset& step) {
 
 std::string option(const char* name, const std::string& value) { return " " + shell_option(name, value); }
 
-/// What a model's file is called, in letters that mean nothing to a shell.
+/// Name of a model's file, reduced to characters without a meaning in a shell.
 std::string plain_stem(const std::string& model) {
   std::string stem = std::filesystem::path(model).stem().string();
   for (char& letter : stem) {
@@ -142,7 +142,7 @@ void add_candidate_options(CLI::App& command, CandidateOptions& options) {
       ->type_name("FORMULA");
   command
       .add_option("--candidates", options.file,
-                  "a model whose formula effects are tested too, where MODEL lacks them")
+                  "a model whose formula effects are also tested, unless MODEL has them")
       ->type_name("MODEL2.toml");
 }
 
@@ -157,10 +157,8 @@ ModelEffect formula_effect(const std::string& id, const std::string& formula, co
   const auto parsed = Formula::parse(formula, effect.parameter_names, &error);
   if (!parsed) throw Error(fmt::format("{} '{}': {}; correct it", option, formula, error.message));
   if (!parsed->unused_parameters().empty()) {
-    throw Error(
-        fmt::format("{} '{}': there is no coefficient k in it, so nothing can be fitted; write e.g. "
-                    "'k * ENGTRQ / 100'",
-                    option, formula));
+    throw Error(fmt::format("{} '{}': the formula has no coefficient k to fit; write e.g. 'k * ENGTRQ / 100'",
+                            option, formula));
   }
   return effect;
 }
@@ -242,12 +240,12 @@ std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("
 
 void print_unexplained(const Unexplained& unexplained) {
   if (!unexplained.significant) return;
-  say("\nwhat no effect explains: {:.3f} hPa rms (p {}), of it {:.3f} hPa of slow drift{}{}\n",
+  say("\nunexplained residual: {:.3f} hPa rms (p {}), including {:.3f} hPa of slow drift{}{}\n",
       unexplained.rms, probability(unexplained.p_value), unexplained.drift_rms,
       unexplained.regime.empty() ? "" : "; most of it in ", unexplained.regime);
   if (!unexplained.variables.empty()) {
-    say("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "it goes with", "unit", "R2", "p", "hPa per unit",
-        "formula", "what it is");
+    say("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "correlates with", "unit", "R2", "p", "hPa per unit",
+        "formula", "description");
   }
   for (const EmpiricalPredictor& variable : unexplained.variables) {
     say("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit, variable.r2,
@@ -264,7 +262,7 @@ void print_unexplained(const Unexplained& unexplained) {
   }
   const std::size_t untested = unexplained.computed.size() + unexplained.shares_noise.size();
   if (untested > 0) {
-    say("{} variables were not tested, because they hold what the residual is computed from; --json and "
+    say("{} variables were not tested, because they derive from the inputs of the residual; --json and "
         "--report name them\n",
         untested);
   }

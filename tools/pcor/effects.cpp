@@ -162,7 +162,7 @@ void run(const Options& options) {
   if (!wants_text(options.common)) return;
   print_all();
   say_written({options.common.json});
-  say("To read more of one: {} effects {}\n", program(), effect_info.front().id);
+  say("For details: {} effects {}\n", program(), effect_info.front().id);
 }
 
 }  // namespace
@@ -170,7 +170,7 @@ void run(const Options& options) {
 std::function<void()> add_effects(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      program.add_subcommand("effects", "List the catalogue of effects, or all that is known of one");
+      program.add_subcommand("effects", "List the catalogue of effects, or describe one of them");
   command->add_option("id", options->id, "an effect, e.g. static-lag")->type_name("ID");
   add_common_options(*command, options->common, false);
   add_examples(*command, {"effects", "effects static-qp"});

@@ -10,7 +10,7 @@
 namespace pcor::tool {
 namespace {
 
-/// Holds or frees a coefficient, or all those of an effect.
+/// Fixes or frees a coefficient, or all coefficients of an effect.
 void set_fixed(ModelDefinition& model, const std::string& name, bool fixed, const char* option) {
   bool found = false;
   std::vector<std::string> known;
@@ -36,9 +36,9 @@ void set_fixed(ModelDefinition& model, const std::string& name, bool fixed, cons
 
 void add_fit_options(CLI::App& command, FitOptions& options) {
   add_list_option(command, "--fix", options.fix,
-                  "hold a coefficient, or all of an effect, at its value, e.g. static-qp.a2")
+                  "fix a coefficient, or all of an effect, at its value, e.g. static-qp.a2")
       ->type_name("NAME");
-  add_list_option(command, "--free", options.free, "fit a coefficient that the model file holds fixed")
+  add_list_option(command, "--free", options.free, "fit a coefficient that the model file fixes")
       ->type_name("NAME");
 }
 

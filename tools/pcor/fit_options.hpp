@@ -8,7 +8,7 @@
 
 namespace pcor::tool {
 
-/// Which coefficients refit, diagnose and improve leave as they are, and which they fit all the same.
+/// Coefficients that refit, diagnose and improve fix or free in addition to the model file.
 struct FitOptions {
   std::vector<std::string> fix;
   std::vector<std::string> free;
@@ -16,10 +16,10 @@ struct FitOptions {
 
 void add_fit_options(CLI::App& command, FitOptions& options);
 
-/// The model with its coefficients held and freed as the options say. @throws Error if it has none of a name.
+/// Model with its coefficients fixed and freed by the options. @throws Error if a name is unknown.
 ModelDefinition with_fit_options(ModelDefinition model, const FitOptions& options);
 
-/// The options as they stand on a command line, each with a blank before it.
+/// Options as on a command line, each after a blank.
 std::string command_line(const FitOptions& options);
 
 }  // namespace pcor::tool

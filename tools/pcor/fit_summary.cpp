@@ -8,19 +8,17 @@
 namespace pcor::tool {
 
 void add_trust_option(CLI::App& command, bool& trust) {
-  command.add_flag(
-      "--trust-reference", trust,
-      "take the calibration of the reference and of the thermometer for exact: standard errors leave "
-      "out what it may be wrong by, as [uncertainty] of the model or the usual sizes state, and no "
-      "missing effect is looked for in the reference");
+  command.add_flag("--trust-reference", trust,
+                   "assume exact calibrations of the reference and the thermometer: standard errors exclude "
+                   "their uncertainty ([uncertainty] of the model or default sizes), and effects of the "
+                   "reference are not tested");
 }
 
 void print_fit_summary(const RefitResult& fit) {
   const std::optional<HeldOutPart> held_out = worst_held_out(fit.flights);
   if (held_out && held_out->is_off()) say("Warning: {}.\n\n", held_out->text());
   if (fit.left > 0.0)
-    say("The law lacks {:.2f} hPa (rms) that varies with the flight state; slow drift of the noise: {:.2f} "
-        "hPa.\n",
+    say("Model error varying with the flight state: {:.2f} hPa (rms); slow drift of the noise: {:.2f} hPa.\n",
         fit.left, fit.drift_rms);
 }
 

@@ -10,11 +10,11 @@ namespace pcor::tool {
 /// Adds the option that sets `RefitOptions::trust_reference`.
 void add_trust_option(CLI::App& command, bool& trust);
 
-/// Prints first whether a held-out part is off, then what the law lacks and how much the noise drifts.
+/// Prints a significant bias of held-out parts first, then the model error and the drift of the noise.
 void print_fit_summary(const RefitResult& fit);
 
-/// Adds the keys that `refit` and `improve` share: estimator, misfit, drift, and the held-out part that is
-/// furthest off.
+/// Adds the keys that `refit` and `improve` share: estimator, misfit, drift, and the held-out part with the
+/// largest bias.
 void add_fit_summary(nlohmann::ordered_json& json, const RefitResult& fit);
 
 }  // namespace pcor::tool

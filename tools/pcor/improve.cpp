@@ -90,7 +90,7 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
   say("\n");
   const auto figure = [](double rms) { return std::isnan(rms) ? std::string() : fmt::format("{:.4f}", rms); };
   say("{:<24} {:>10} {:>10} {:>10} {:>13}\n", "rms, hPa", "training", "held out", "noise", "coefficients");
-  say("{:<24} {:>10} {:>10}\n", "as it came", figure(improvement.given_rms_train),
+  say("{:<24} {:>10} {:>10}\n", "input model", figure(improvement.given_rms_train),
       figure(improvement.given_rms_holdout));
   bool delivers_rivals = false;
   for (const ImproveStep& step : improvement.steps) {
@@ -99,7 +99,7 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
     delivers_rivals = delivers_rivals || step.delivered != step.added;
   }
   if (delivers_rivals) {
-    say("{:<24} {:>10} {:>10}\n", "as it is written", figure(improvement.rms_train),
+    say("{:<24} {:>10} {:>10}\n", "output model", figure(improvement.rms_train),
         figure(improvement.rms_holdout));
   }
   if (!options.holdout.empty()) {
@@ -108,9 +108,9 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
       names.push_back(std::filesystem::path(path).filename().string());
     say("held out: {}\n", fmt::join(names, ", "));
   } else if (improvement.holdout_is_flights) {
-    say("held out: of every flight the last {:.0f} %\n", 100.0 * (1.0 - options.training_share));
+    say("held out: the last {:.0f} % of every flight\n", 100.0 * (1.0 - options.training_share));
   } else {
-    say("held out are five parts of the flights in turn, without outliers; name whole flights with "
+    say("held out: five parts of the flights, one at a time, without outliers; hold out whole flights with "
         "--holdout\n");
   }
   say("\n");
@@ -191,14 +191,10 @@ void run(const Options& options) {
 std::function<void()> add_improve(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
-      "improve", "Refit, diagnose and add missing effects in turn, until none is missing");
+      "improve", "Refit, diagnose and add missing effects repeatedly, until no effect is missing");
   add_comparison_options(*command, options->comparison);
-  command->add_option("-m,--model", options->model, "the model to begin with")
-      ->required()
-      ->type_name("MODEL.toml");
-  command
-      ->add_option("-o,--output", options->output,
-                   "the best model, whole or not at all; - for standard output")
+  command->add_option("-m,--model", options->model, "initial model")->required()->type_name("MODEL.toml");
+  command->add_option("-o,--output", options->output, "output model (written atomically); - for stdout")
       ->required()
       ->type_name("BEST.toml");
   add_fit_options(*command, options->held);
@@ -207,14 +203,13 @@ std::function<void()> add_improve(CLI::App& program) {
       ->type_name("T.nc");
   command
       ->add_option("--training-share", options->training_share,
-                   "fit only this share of every flight, its first part; the rest tests every step")
+                   "fit only this fraction of every flight, its first part; the rest tests every step")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   add_candidate_options(*command, options->candidates);
   command->add_flag("--trace-variables", options->trace_variables,
-                    "where no effect of the catalogue explains what is left, add a formula, at the static "
-                    "ports unless total pressures have it too, of the "
-                    "variable that correlates with it");
+                    "if no effect of the catalogue explains the residual, add a formula of the correlated "
+                    "variable, at the static ports unless total pressures show it as well");
   command
       ->add_option("--loss", options->loss,
                    "loss function of the fits, which limits the weight of outliers; none: least squares")

@@ -35,12 +35,12 @@ double rate_of(const Inspection& flight) {
   return flight.rates.empty() ? 0.0 : flight.rates.rbegin()->first / flight.time.step;
 }
 
-/// A command of this program on the flight.
+/// Command of this program for the flight.
 std::string command(const std::string& name, const Inspection& flight, const std::string& options) {
   return fmt::format("{} {} {}{}", program(), name, shell_path(flight.path), options);
 }
 
-/// Up to three commands to paste, in order, that end with a corrected flight and a report.
+/// Up to three commands to paste, in order, that produce a corrected flight and a report.
 std::vector<std::string> next_commands(const Options& options, const Inspection& flight) {
   const std::string stamp =
       options.timestamp_alignment == "begin" ? "" : " --time-stamp " + options.timestamp_alignment;
@@ -168,7 +168,7 @@ void print_head(const Inspection& flight) {
     if (!part.empty()) who.push_back(part);
   }
   say("{}: {}\n", flight.path,
-      who.empty() ? "it does not say whose flight it is" : fmt::format("{}", fmt::join(who, ", ")));
+      who.empty() ? "unknown aircraft: the file does not name it" : fmt::format("{}", fmt::join(who, ", ")));
   say("{} to {} UTC, {} records of {:g} s, {} gap{} in time\n", utc_text(flight.time.first),
       utc_text(flight.time.last), flight.records, flight.time.step, flight.time.gap_count,
       flight.time.gap_count == 1 ? "" : "s");
@@ -177,19 +177,19 @@ void print_head(const Inspection& flight) {
     rates.push_back(fmt::format("{} of {} Hz", count, rate / flight.time.step));
   say("variables: {}\n", fmt::join(rates, ", "));
   if (flight.alike.empty()) {
-    say("names are looked for as in files of {}, since the file is like none that is known\n",
-        flight.family_title);
+    say("naming convention: {}, because the file resembles no known one\n", flight.family_title);
   } else if (flight.alike.size() > 1) {
-    say("it is like the files of {}; names are looked for as in those of {}; say which in the model by "
+    say("naming convention: files of {} match; names of {} are used; set the right one in the model by "
         "roles\n",
         fmt::join(flight.alike, " and of "), flight.family);
   } else {
-    say("names are those of {} ({})\n", flight.family_title, flight.family);
+    say("naming convention: {} ({})\n", flight.family_title, flight.family);
   }
 }
 
 void print_roles(const Inspection& flight) {
-  say("\n{:<33} {:<12} {:<10} {:>4} {:>8}  {}\n", "role", "variable", "unit", "Hz", "present", "also there");
+  say("\n{:<33} {:<12} {:<10} {:>4} {:>8}  {}\n", "role", "variable", "unit", "Hz", "present",
+      "alternatives");
   for (const InspectedRole& role : flight.roles) {
     say("{:<33} {:<12} {:<10} {:>4g} {:>7.1f}%  {}\n", role.role,
         role.variable + (role.is_verified ? "" : " ?"), role.unit, role.rate / flight.time.step,
@@ -197,33 +197,31 @@ void print_roles(const Inspection& flight) {
   }
   const bool doubt = std::any_of(flight.roles.begin(), flight.roles.end(),
                                  [](const InspectedRole& role) { return !role.is_verified; });
-  if (doubt)
-    say("?: no public document of this aircraft was found that has the name; make sure of what it is\n");
+  if (doubt) say("?: the meaning of the name on this aircraft is not documented publicly; verify it\n");
   for (const InspectedRole& role : flight.roles) {
     if (!role.trap.empty()) say("{}: {}\n", role.variable, role.trap);
   }
 }
 
-/// Variables that may play a role that none plays, or that another plays.
+/// Variables that may serve a role, whether it has a variable or not.
 void print_candidates(const Inspection& flight) {
   std::map<std::string, std::string> role_of;
   for (const InspectedRole& role : flight.roles) role_of[role.role] = role.variable;
   for (const InspectedRole& role : flight.roles) {
     if (!role.why.empty())
       say("{} is {}: {}{}\n", role.variable, role.role, role.why,
-          role.others.empty() ? "" : fmt::format("; rivals: {}", fmt::join(role.others, ", ")));
+          role.others.empty() ? "" : fmt::format("; alternatives: {}", fmt::join(role.others, ", ")));
   }
   bool any = false;
   for (const auto& [role, candidates] : flight.candidates) {
     for (const InspectedCandidate& each : candidates) {
       if (role_of.count(role) != 0) continue;
-      if (!any)
-        say("\n{:<33} {:<12} {:>5}  what speaks for it\n", "candidates, not taken", "variable", "score");
+      if (!any) say("\n{:<33} {:<12} {:>5}  evidence\n", "candidates, not used", "variable", "score");
       any = true;
       say("{:<33} {:<12} {:>5.2f}  {}\n", role, each.variable, each.score, each.why);
     }
   }
-  if (any) say("write the right one into the [variables] of the model\n");
+  if (any) say("set the right one in the [variables] of the model\n");
   if (!flight.not_used.empty()) say("\nnot used: {}\n", fmt::join(flight.not_used, ", "));
 }
 
@@ -239,7 +237,7 @@ void print_missing(const Inspection& flight) {
   bool any = false;
   for (const MissingRole& role : flight.missing) {
     if (role.cost.empty() && role.effects.empty()) continue;
-    if (!any) say("\n{:<33} what cannot be done without it\n", "missing");
+    if (!any) say("\n{:<33} consequence\n", "missing");
     any = true;
     say("{:<33} {}{}{}\n", role.role, role.cost, role.cost.empty() || role.effects.empty() ? "" : "; ",
         role.effects.empty() ? "" : fmt::format("no effects {}", fmt::join(role.effects, ", ")));
@@ -258,8 +256,8 @@ void print_flown(const Inspection& flight) {
     say("{:<18} {:>5} {:>8.1f}\n", info_of(regime).name, sum.first, sum.second / 60.0);
   for (const FrozenSpan& span : flight.frozen) {
     const std::vector<double>& time = flight.samples->time;
-    say("{} stands still from {} to {}\n", info_of(span.quantity).name,
-        utc_text(time[span.first], "%H:%M:%S"), utc_text(time[span.first + span.count - 1], "%H:%M:%S"));
+    say("{} is frozen from {} to {}\n", info_of(span.quantity).name, utc_text(time[span.first], "%H:%M:%S"),
+        utc_text(time[span.first + span.count - 1], "%H:%M:%S"));
   }
 }
 
@@ -268,11 +266,12 @@ void print_by_gps(const GpsDesign& gps) {
   const auto text = [](double error, const char* manoeuvre) {
     if (std::isnan(error)) return std::string("-");
     return error < known ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
-                         : fmt::format("open; {} would tell", manoeuvre);
+                         : fmt::format("undetermined; requires {}", manoeuvre);
   };
-  say("\nby GPS ({}) its manoeuvres determine of delta-p\n", gps.by_wind && gps.by_height ? "wind and height"
-                                                             : gps.by_wind                ? "wind"
-                                                                                          : "height");
+  say("\ndetermination of delta-p by GPS ({}) from the manoeuvres\n", gps.by_wind && gps.by_height
+                                                                          ? "wind and height"
+                                                                      : gps.by_wind ? "wind"
+                                                                                    : "height");
   say("  the level                     {}\n", text(gps.level, "circles or reverse headings"));
   say("  its change with the airspeed  {}\n", text(gps.slope, "a speed run"));
   say("  its change with the attack    {}\n", text(gps.attack, "a pitch manoeuvre"));
@@ -286,13 +285,13 @@ void print(const Inspection& flight) {
   print_problems(flight);
   print_flown(flight);
   if (flight.by_gps) print_by_gps(*flight.by_gps);
-  if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
+  if (!flight.laws.empty()) say("\nmodels for this aircraft\n");
   for (const ModelCandidate& law : flight.laws) {
     say("  {}: {}{}\n", law.path.stem().string(), law.model.model.name,
         !law.lacks.empty()     ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
-        : !law.is_in_time      ? "; stated for another time"
+        : !law.is_in_time      ? "; valid for another time"
         : !law.why_not.empty() ? "; " + law.why_not
-                               : "; fits the flight's pressures and its date");
+                               : "; matches the flight's pressures and its date");
   }
   for (const std::string& note : flight.notes) say("\nNote: {}.\n", note);
 }
@@ -300,7 +299,7 @@ void print(const Inspection& flight) {
 void print_next(const Options& options, const Inspection& flight) {
   const std::vector<std::string> commands = next_commands(options, flight);
   if (commands.empty()) {
-    say("To go on: name the variables of its pressures in the [variables] of a model "
+    say("To continue: name the variables of the pressures in the [variables] of a model "
         "(data/models/FORMAT.md)\n");
     return;
   }
@@ -308,8 +307,8 @@ void print_next(const Options& options, const Inspection& flight) {
   for (const std::string& each : commands) say("  {}\n", each);
 }
 
-/// Looks at the flights one after the other. Where there are several, one that cannot be read ends
-/// nothing.
+/// Inspects the flights one after the other. With several flights, an unreadable one does not stop the
+/// others.
 std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordered_json& result) {
   const std::vector<std::filesystem::path> laws = named_models();
   const TimestampAlignment timestamp_alignment =
@@ -328,11 +327,12 @@ std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordere
     result.push_back(as_json(options, all.back()));
     if (text) print(all.back());
   }
-  if (all.empty()) throw Error(fmt::format("none of the {} flights can be read", options.flights.size()));
+  if (all.empty())
+    throw Error(fmt::format("none of the {} flights is readable; check the files", options.flights.size()));
   return all;
 }
 
-/// The model, and as comments the variables that may play a role that it leaves open.
+/// Writes the model, with candidate variables of open roles as comments.
 void deliver_with_candidates(const Inspection& flight, const std::string& output) {
   std::string comments;
   for (const auto& [role, candidates] : flight.candidates) {
@@ -343,7 +343,7 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
       const bool is_used = std::any_of(variables.begin(), variables.end(), [&](const auto& variable) {
         return variable.second == each.variable;
       });
-      // A name that TOML would have to escape is no suggestion.
+      // A name that requires escapes in TOML is not suggested.
       const bool is_plain = each.variable.find_first_of("\"\\") == std::string::npos &&
                             sanitize_line(each.variable) == each.variable;
       if (is_open && !is_used && is_plain)
@@ -355,7 +355,7 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
   if (const std::size_t begin = text.find("[variables]\n"); begin != std::string::npos && !comments.empty()) {
     std::size_t end = text.find("\n\n", begin);
     end = end == std::string::npos ? text.size() : end + 1;
-    text.insert(end, "# others that may be meant, with what speaks for them:\n" + comments);
+    text.insert(end, "# other candidates, with their evidence:\n" + comments);
   }
   if (output == "-") {
     fmt::print("{}", text);
@@ -385,7 +385,7 @@ void run(const Options& options) {
   if (!options.model.empty()) {
     if (first.path != options.flights.front())
       throw Error(
-          fmt::format("{}: no model can be written, for the first flight cannot be read", options.model));
+          fmt::format("{}: no model can be written, because the first flight cannot be read", options.model));
     if (!first.model)
       throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
     deliver_with_candidates(first, options.model);
@@ -407,22 +407,19 @@ std::function<void()> add_inspect(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
       "inspect",
-      "See what a flight holds: aircraft, rates, roles of its variables, what is missing, what was flown");
+      "Show the content of a flight: aircraft, rates, roles of its variables, missing inputs, manoeuvres");
   command->add_option("flights", options->flights, "flights, netCDF files")->required()->type_name("IN.nc");
   command
-      ->add_option(
-          "--write-model", options->model,
-          "write a model of the first flight to FILE.toml, with its roles and terms that a refit finds")
+      ->add_option("--write-model", options->model,
+                   "write a model of the first flight to FILE.toml, with its roles and terms for a refit")
       ->type_name("FILE.toml");
   command
-      ->add_option(
-          "--roles", options->roles,
-          "look for the names of this aircraft, one of data/aircraft or a file of your own that ends in "
-          ".toml; without it, of the one that the flight tells")
+      ->add_option("--roles", options->roles,
+                   "naming convention to use: a name from data/aircraft or a .toml file (default: detected)")
       ->type_name("NAME");
   command
       ->add_option("--time-stamp", options->timestamp_alignment,
-                   "whether the time of a record is the beginning or the middle of its second")
+                   "position of the time of a record in its averaging interval")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
   add_common_options(*command, options->common);

@@ -23,7 +23,7 @@ struct Options {
   std::string folder;
 };
 
-/// A word or a name as troff takes it: a hyphen is one to copy.
+/// Word or name in troff: a hyphen remains one that can be copied.
 std::string troff(const std::string& text) {
   std::string result;
   for (const char letter : text) {
@@ -38,7 +38,7 @@ std::string troff(const std::string& text) {
   return result;
 }
 
-/// Running text in short lines, none of which is a request.
+/// Running text in short lines that are not requests.
 std::string paragraph(const std::string& text) {
   std::string result;
   for (const std::string& line : CLI::detail::split(folded(troff(text), max_line), '\n')) {
@@ -86,7 +86,7 @@ std::string options_section(const CLI::App& command) {
   return text;
 }
 
-/// What stands at the end of the help: words, one a line, and examples.
+/// End of the help: words, one per line, and examples.
 std::string closing_sections(const CLI::App& command) {
   const std::string footer = command.get_footer();
   const std::size_t heading = footer.find(examples_heading);
@@ -134,7 +134,7 @@ void write_page(const std::filesystem::path& path, const std::string& page) {
 }
 
 void run(const CLI::App& program, const Options& options) {
-  set_program("pcor");  // the examples are for whoever has it installed
+  set_program("pcor");  // the examples assume an installed program
   if (!options.folder.empty()) {
     const std::filesystem::path folder = options.folder;
     write_page(folder / "pcor.1", page_of_program(program));
@@ -152,7 +152,7 @@ void run(const CLI::App& program, const Options& options) {
     return;
   }
   throw Error(
-      fmt::format("there is no manual page of '{}', for there is no such sub-command", options.command));
+      fmt::format("there is no manual page of '{}', because it is not a sub-command", options.command));
 }
 
 }  // namespace
@@ -160,10 +160,9 @@ void run(const CLI::App& program, const Options& options) {
 std::function<void()> add_man(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("man", "Print a manual page in troff");
-  command->group("");  // for those who package the program, so the help does not show it
-  command->add_option("command", options->command, "the sub-command; without it, the page of the program");
-  command->add_option("--folder", options->folder, "write the pages of all into this folder")
-      ->type_name("FOLDER");
+  command->group("");  // hidden in the help, because it is for packagers
+  command->add_option("command", options->command, "sub-command (default: the page of the program)");
+  command->add_option("--folder", options->folder, "write all pages into this folder")->type_name("FOLDER");
   return [options, &program] { run(program, *options); };
 }
 

@@ -26,8 +26,8 @@ bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
 
-/// The user's folders first, then those of the program: beside where it is installed, in its source, and
-/// where it was to be installed.
+/// Folders of the user first, then folders of the program: relative to its installation, in its source, and
+/// at the configured installation path.
 std::vector<fs::path> model_folders() {
   std::vector<fs::path> folders;
   if (const char* const own = std::getenv("PCOR_MODELS")) {
@@ -44,7 +44,7 @@ std::vector<fs::path> model_folders() {
   return folders;
 }
 
-/// In the order of their names; empty where the folder cannot be read.
+/// Files in the order of their names; empty if the folder cannot be read.
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code code;
@@ -62,14 +62,14 @@ std::string model_file(const std::string& given) {
   if (given.empty() || fs::exists(given, code) || given.find('/') != std::string::npos ||
       ends_with(given, model_ending))
     return given;
-  std::set<std::string> known;  // a name may be in several folders
+  std::set<std::string> known;  // a name may occur in several folders
   for (const fs::path& folder : model_folders()) {
     const fs::path file = folder / (given + std::string(model_ending));
     if (fs::is_regular_file(file, code)) return fs::weakly_canonical(file, code).string();
     for (const fs::path& other : files_in(folder)) known.insert(other.stem().string());
   }
   const std::string meant = did_you_mean(given, {known.begin(), known.end()});
-  throw Error(fmt::format("there is no model file '{}', and no model of that name; {}", given,
+  throw Error(fmt::format("there is no model file or model named '{}'; {}", given,
                           meant.empty() ? "name a file, or a model in a folder of PCOR_MODELS" : meant));
 }
 
@@ -100,7 +100,7 @@ std::string reference_with_model_file(const std::string& given) {
   for (const std::string_view kind : {"static:", "total:"}) {
     if (given.compare(0, kind.size(), kind) != 0) continue;
     const std::string model = given.substr(kind.size());
-    if (model.find('+') != std::string::npos) break;  // a pair of variables
+    if (model.find('+') != std::string::npos) break;  // pair of variables
     return std::string(kind) + model_file(model);
   }
   return given;

@@ -10,16 +10,16 @@
 
 namespace pcor::tool {
 
-/// Reads a model that is to run on flights. What it leaves open, the first flight's aircraft names
-/// (`resolve_variables`); what was chosen goes to standard error where text is wanted, and is kept for
+/// Reads a model for flights. Unspecified variables follow from the aircraft of the first flight
+/// (`resolve_variables`); the choices are printed on standard error if text is requested, and kept for
 /// `choices_of_this_run`.
-/// @throws Error as `read_model` and `resolve_variables`
+/// @throws Error as do `read_model` and `resolve_variables`
 ModelDefinition read_model_for(const std::filesystem::path& model, const FlightSet& flights,
                                const CommonOptions& options);
 
-/// The model of a folder that a flight is to be corrected by (`model_candidate`), with what it leaves to the
-/// flight's aircraft. Which it is, is among the choices of this run.
-/// @throws Error as these
+/// Model of a folder that applies to a flight (`model_candidate`), with open variables from the flight's
+/// aircraft. The choice is recorded in the choices of this run.
+/// @throws Error as do these
 ModelDefinition model_for_flight(const std::vector<std::filesystem::path>& models,
                                  const std::filesystem::path& flight, const CommonOptions& options);
 

@@ -33,7 +33,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> inputs;
   std::string model;
-  std::string models;  ///< a folder, where each flight is to have its own
+  std::string models;  ///< folder of models, one of which is selected for each flight
   std::string output;
   std::string correct_with = "model";
   std::string timestamp_alignment = "begin";
@@ -46,7 +46,7 @@ struct Options {
   bool skip_unreadable = false;
 };
 
-/// What makes one output alone.
+/// Command that makes one output alone.
 std::string command_line(const ProcessTask& task, const Options& options) {
   std::string line =
       fmt::format("pcor " PCOR_VERSION " process {} {} {} -o {}", shell_path(task.input.string()),
@@ -129,7 +129,7 @@ void print_hint(const ProcessedFlight& flight) {
       shell_path(flight.output.string()));
 }
 
-/// All that is to be said of one flight.
+/// Prints the summary of one flight.
 void print(const ProcessedFlight& of) {
   const ProcessSummary& summary = of.summary;
   std::string flight;
@@ -143,12 +143,12 @@ void print(const ProcessedFlight& of) {
       summary.rate == 1 ? "" : "s");
   say("corrected {} of {} samples", summary.corrected, summary.samples);
   if (summary.in_flight > 0) {
-    say("; in flight, at a dynamic pressure of {:.0f} hPa and more, {} with delta-p {:.2f} hPa in the "
-        "mean, {:.2f} to {:.2f} hPa",
+    say("; in flight (dynamic pressure of {:.0f} hPa and more) {} with delta-p {:.2f} hPa on average, {:.2f} "
+        "to {:.2f} hPa",
         summary.flying_dynamic_pressure, summary.in_flight, summary.mean_defect, summary.min_defect,
         summary.max_defect);
   } else if (summary.corrected > 0) {
-    say("; none of them in flight, at a dynamic pressure of {:.0f} hPa and more",
+    say("; none of them in flight (dynamic pressure of {:.0f} hPa and more)",
         summary.flying_dynamic_pressure);
   }
   say("\n");
@@ -158,7 +158,7 @@ void print(const ProcessedFlight& of) {
   say("\nwrote {} to {}\n", fmt::join(summary.outputs, " "), of.output.string());
 }
 
-/// Several flights as a table, a row as soon as a flight is done, and at the end what they have in common.
+/// Several flights as a table: a row when a flight is done, and common notes at the end.
 class Table {
  public:
   Table(const std::vector<ProcessTask>& tasks, bool with_models) : with_models_(with_models) {
@@ -185,7 +185,7 @@ class Table {
   }
 
   static void end(const std::vector<ProcessedFlight>& flights, const std::string& folder) {
-    say("delta-p: the mean in flight, hPa, with the least and the greatest\n");
+    say("delta-p: mean in flight, hPa, with minimum and maximum\n");
     Flags flagged{};
     std::map<std::string, std::size_t> notes;
     for (const ProcessedFlight& flight : flights) {
@@ -218,7 +218,8 @@ UncertaintyPart part_named(const std::string& name) {
   return name == "none" ? UncertaintyPart::none : UncertaintyPart::total_if_stated;
 }
 
-/// Several flights go into a folder, which is made; one does where the output is a folder already.
+/// Several flights are written to a folder, which is created; a single one if the output is an existing
+/// folder.
 bool wants_folder(const Options& options) {
   std::error_code code;
   if (fs::is_directory(options.output, code)) return true;
@@ -226,8 +227,8 @@ bool wants_folder(const Options& options) {
   const bool looks_like_a_folder = !options.output.empty() && options.output.back() == '/';
   if (options.inputs.size() == 1 && !looks_like_a_folder) return false;
   if (is_there || fs::path(options.output).extension() == ".nc") {
-    throw Error(fmt::format("{} {}; several flights need a folder: name one that is there or is to be made",
-                            options.output, is_there ? "is a file" : "is named like a file"));
+    throw Error(fmt::format("{} {}; several flights need an output directory; give an existing or a new one",
+                            options.output, is_there ? "is a file" : "has the extension of a file"));
   }
   return true;
 }
@@ -249,14 +250,14 @@ std::vector<ProcessTask> tasks_of(const Options& options, bool folder) {
   return tasks;
 }
 
-/// The folder for several flights, made where it is not there, and taken away again if nothing came into it.
+/// Folder for several flights, created if absent, and removed if it remains empty.
 class OutputFolder {
  public:
   explicit OutputFolder(fs::path folder) : folder_(std::move(folder)) {
     std::error_code code;
     is_new_ = fs::create_directories(folder_, code);
     if (code) {
-      throw Error(fmt::format("the folder {} cannot be made: {}; choose another output", folder_.string(),
+      throw Error(fmt::format("{}: the folder cannot be created: {}; choose another output", folder_.string(),
                               code.message()));
     }
   }
@@ -285,20 +286,21 @@ ProcessOptions process_options(const Options& options) {
   return process;
 }
 
-/// As `process_flights`; what stops several flights says that the others can be done all the same.
+/// Like `process_flights`; an error that stops several flights adds how to process the others.
 std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, const ModelSelector& model_of,
                                          const ProcessFlightsOptions& options) {
   try {
     return process_flights(tasks, model_of, options);
   } catch (const Error& error) {
     if (tasks.size() == 1 || error.code() == Error::Code::output) throw;
-    throw Error(error.code(), fmt::format("{}; what was done before it stays, and --skip-unreadable does the "
-                                          "flights after it too",
-                                          error.what()));
+    throw Error(
+        error.code(),
+        fmt::format("{}; finished outputs are kept; --skip-unreadable processes the remaining flights",
+                    error.what()));
   }
 }
 
-/// One model for all, or of each flight its own.
+/// One model for all flights, or a selection for each flight.
 ModelSelector models_of(const Options& options) {
   if (!options.models.empty()) {
     return [models = models_in(options.models), &options](const fs::path& flight) {
@@ -338,7 +340,7 @@ void run(const Options& options) {
     if (table) table->add(flight);
   };
   std::optional<OutputTransaction> together;
-  if (!many) together.emplace();  // of many each is there as soon as it is done
+  if (!many) together.emplace();  // each of many outputs appears when it is done
   const std::vector<ProcessedFlight> flights = process_all(tasks, model_of, process);
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
   if (wants_report(options.common) && !none) {
@@ -357,8 +359,7 @@ void run(const Options& options) {
   if (!many && first.state == FlightState::processed) {
     print(first);
   } else if (!many) {
-    say("{} is up to date: this version made it of this flight with this model and these options\n",
-        first.output.string());
+    say("{} is up to date for this version, flight, model and options\n", first.output.string());
   }
   say_written({options.common.report, options.common.figures, options.common.json});
   const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
@@ -378,10 +379,9 @@ std::function<void()> add_process(CLI::App& program) {
       command->add_option("-m,--model", options->model, "the model of the pressure system")
           ->type_name("MODEL.toml");
   command
-      ->add_option(
-          "--models", options->models,
-          "instead of one model a folder of them: each flight is corrected by the one that is of its "
-          "aircraft, its date and variables that it has")
+      ->add_option("--models", options->models,
+                   "folder of models, instead of one model: each flight is corrected by the model for its "
+                   "aircraft, date and variables")
       ->excludes(model)
       ->type_name("FOLDER");
   command->parse_complete_callback([options] {
@@ -389,41 +389,39 @@ std::function<void()> add_process(CLI::App& program) {
   });
   command
       ->add_option("-o,--output", options->output,
-                   "the file to write, whole or not at all; of several flights the folder, where each gets a "
-                   "file of its own name")
+                   "output file (written atomically); for several flights a folder with one file each")
       ->required()
       ->check(is_file_name())
       ->type_name("OUT.nc");
   command->add_flag("--if-stale", options->if_stale,
-                    "leave an output alone that was made of the same flight, model and options by this "
-                    "version, as its hashes tell");
+                    "skip an output that was made from the same flight, model and options by this version, "
+                    "according to its hashes");
   command->add_flag("--skip-unreadable", options->skip_unreadable,
-                    "go on after a flight that cannot be read or lacks what the model needs, and give the "
+                    "continue after a flight that cannot be read or lacks inputs of the model, and give the "
                     "reason in its row");
   command
       ->add_option("--correct-with", options->correct_with,
-                   "what PSXC and QCXC are corrected with: the model, or the laser air-motion sensor (LAMS) "
-                   "where it is valid")
+                   "source of the correction of PSXC and QCXC: the model, or the laser air-motion sensor "
+                   "(LAMS) where it is valid")
       ->check(CLI::IsMember({"model", "lams"}))
       ->capture_default_str();
   command
       ->add_option("--time-stamp", options->timestamp_alignment,
-                   "whether the time of a record is the beginning or the middle of its second")
+                   "position of the time of a record in its averaging interval")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
   command
       ->add_option("--uncertainty", options->uncertainty,
-                   "write the standard uncertainties of results: total, or the part that is systematic or "
-                   "random alone, or none; without this option the total where the model states any")
+                   "write the standard uncertainties of results: total, only the systematic or only the "
+                   "random part, or none (default: total if the model states any)")
       ->check(CLI::IsMember({"total", "systematic", "random", "none"}));
   command->add_option("--suffix", options->suffix, "add S to the names of the derived variables")
       ->type_name("S");
-  command->add_flag("--all", options->copy_all,
-                    "copy every variable of the input but texts, and say which these are");
+  command->add_flag("--all", options->copy_all, "copy all non-text input variables; list those not copied");
   command->add_flag("--hydrostatic", options->hydrostatic,
                     "write HYDSTEP, the change of hydrostatic height per kelvin from sample to sample");
   command->add_flag("--keep-frozen", options->keep_frozen,
-                    "correct what a sensor reads while it is frozen, too, which else counts as missing");
+                    "correct the readings of frozen sensors as well (default: missing)");
   add_common_options(*command, options->common);
   add_examples(*command, {"process third.nc -m best.toml -o corrected.nc",
                           "process third.nc -m best.toml --all --suffix _NEW -o everything.nc"});

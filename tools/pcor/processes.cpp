@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view option = "--processes";
 constexpr std::size_t max_processes = 1024;
 
-/// The number that a word is, of those that are allowed; 0 where it is none.
+/// Number in a word, within the allowed range; 0 if invalid.
 std::size_t processes_in(std::string_view word) {
   std::size_t count = 0;
   const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), count);
@@ -21,17 +21,18 @@ std::size_t processes_in(std::string_view word) {
   return is_number && count <= max_processes ? count : 0;
 }
 
-bool may_copy_itself = false;  // as pcor, which asks how many processes to begin
+bool may_copy_itself = false;  // true in pcor, which starts the requested number of processes
 
 std::string trouble_with(const std::string& word) {
-  if (!may_copy_itself) return "is for pcor alone; mpirun or the like says how many processes pcor_mpi has";
-  if (processes_in(word) == 0) return fmt::format("{} is no number from 1 to {}", word, max_processes);
+  if (!may_copy_itself)
+    return "is supported by pcor only; pcor_mpi uses the number of processes given to mpirun or srun";
+  if (processes_in(word) == 0) return fmt::format("{} is not a number from 1 to {}", word, max_processes);
   return "";
 }
 
-/// A command line in two.
+/// Command line in two parts.
 struct Parted {
-  std::string number{};  // behind the option, where that is said; the last of several
+  std::string number{};  // word after the option; the last of several
   std::vector<std::string> rest{};
 };
 
@@ -56,8 +57,7 @@ void add_processes_option(CLI::App& command) {
   command
       .add_option_function<std::string>(
           std::string(option), [](const std::string&) {},
-          "share the flights between N processes of this machine, which read at the same time; the result is "
-          "the same")
+          "process flights in N parallel processes (the result does not depend on N)")
       ->check(CLI::Validator(trouble_with, ""))
       ->type_name("N")
       ->default_str("1");

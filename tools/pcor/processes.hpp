@@ -12,14 +12,14 @@ namespace pcor::tool {
 /// Adds `--processes` to a command whose flights several processes share.
 void add_processes_option(CLI::App& command);
 
-/// Where flights are opened that may be damaged: pcor may make a copy of itself, pcor_mpi may not.
+/// Process in which possibly damaged flights are opened: pcor may fork a child process, pcor_mpi may not.
 OpenedIn place_to_open();
 
-/// How many processes `--processes` asks for, to be begun before the command line is read. 1 where it does
-/// not ask, or not as it should, which is said when it is read.
+/// Number of processes requested by `--processes`, read before the command line is parsed. 1 if the option is
+/// absent or invalid, which the parser reports.
 std::size_t processes_to_begin(const std::vector<std::string>& words);
 
-/// The words of a command line without `--processes`, which changes nothing of what comes of it.
+/// Words of a command line without `--processes`, which does not change the results.
 std::vector<std::string> without_processes(const std::vector<std::string>& words);
 
 }  // namespace pcor::tool

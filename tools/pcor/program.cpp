@@ -38,7 +38,7 @@ namespace {
 constexpr int work_not_done = 1;
 constexpr int wrong_usage = 2;
 
-/// Leaves nothing unfinished behind when the program is stopped.
+/// Removes unfinished files when the program is stopped.
 extern "C" void stop(int signal) {
   pcor::remove_unfinished_files();
   std::signal(signal, SIG_DFL);
@@ -46,24 +46,24 @@ extern "C" void stop(int signal) {
 }
 
 void mind_signals() {
-  // A signal that the caller has ignored, as nohup does, stays so.
+  // Signals ignored by the caller, as by nohup, remain ignored.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGALRM, SIGXCPU, SIGUSR1, SIGUSR2})
     if (std::signal(signal, stop) == SIG_IGN) std::signal(signal, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // the write fails, and says why
+  std::signal(SIGXFSZ, SIG_IGN);  // the write fails with an error instead
 }
 
-/// Where a standard stream is closed, the first file that is opened would take its place, and what
-/// is said there.
+/// Opens closed standard streams: otherwise the first opened file would take their number, and receive their
+/// output.
 void fill_closed_streams() {
   while (true) {
-    // Nothing can be written to standard output so: what is said there is missed.
+    // A read-only descriptor makes writes fail: output to closed streams is discarded.
     const int place = open("/dev/null", O_RDONLY);
     if (place > STDERR_FILENO) close(place);
     if (place < 0 || place > STDERR_FILENO) return;
   }
 }
 
-/// What is printed on standard output comes from the first of a team, for all.
+/// Standard output of a run is printed by the first rank, for all.
 void print_nothing() {
   const int nowhere = open("/dev/null", O_WRONLY);
   if (nowhere < 0) return;
@@ -71,24 +71,24 @@ void print_nothing() {
   close(nowhere);
 }
 
-/// @throws CLI::ArgumentMismatch if several processes would all do the whole work of a command
+/// @throws CLI::ArgumentMismatch if a command does not distribute its work over processes
 void require_parallel_command(const CLI::App& program) {
   const std::string name = program.get_subcommands().front()->get_name();
   if (comm().size() == 1 ||
       std::find(parallel_commands.begin(), parallel_commands.end(), name) != parallel_commands.end())
     return;
-  throw CLI::ArgumentMismatch(fmt::format(
-      "several processes work together on {} only; run pcor {} as one process, or flight by flight as "
-      "docs/campaigns.md says",
-      fmt::join(parallel_commands, ", "), name));
+  throw CLI::ArgumentMismatch(
+      fmt::format("several processes are supported by {} only; run pcor {} as one process, or flight by "
+                  "flight as described in docs/campaigns.md",
+                  fmt::join(parallel_commands, ", "), name));
 }
 
-/// @throws Error if the processes of the team were given different commands
+/// @throws Error if the ranks were given different commands
 void require_one_command(const std::vector<std::string>& words) {
   comm().gather("", std::hash<std::string>()(fmt::format("{}", fmt::join(words, "\n"))));
 }
 
-/// Reads the command line and does what it says. @return the exit status
+/// Parses the command line and runs it. @return the exit status
 int run(int argc, char** argv) {
   remember_command(argc, argv);
   CLI::App program("Corrects the static and dynamic pressure that a research aircraft measures.", "pcor");
@@ -96,11 +96,10 @@ int run(int argc, char** argv) {
   program.set_help_flag("-h,--help", "print this help");
   program.require_subcommand(1);
   program.footer(
-      "delta-p: the correction, hPa, that is added to the static pressure and taken off the dynamic "
-      "pressure.\n"
-      "LAMS: the laser air-motion sensor, which measures the airspeed ahead of the aircraft.\n"
-      "Further words: docs/glossary.md.\n\n"
-      "Exit status: 0 done, 1 the work could not be done, 2 usage.");
+      "delta-p: the correction, hPa, that is added to the static pressure and subtracted from the dynamic "
+      "pressure.\nLAMS: the laser air-motion sensor, which measures the airspeed ahead of the "
+      "aircraft.\nFurther terms: docs/glossary.md.\n\nExit status: 0 done, 1 the work could not be done, 2 "
+      "usage.");
 
   std::vector<std::function<void()>> runs;
   for (const auto add : commands) runs.push_back(add(program));
@@ -130,26 +129,26 @@ int run(int argc, char** argv) {
   return 0;
 }
 
-/// Whether nothing more is to be done, not even at the exit.
+/// Whether the process must end at once, without the exit handlers.
 bool is_final(const Error& error) {
   return error.code() == Error::Code::output || error.code() == Error::Code::file;
 }
 
-/// Ends the work that failed here, or with another member of the team.
+/// Ends the work after an error on this rank or on another one.
 Ending failed(const Error& error, bool at_once) {
-  // What was said goes out before others know that this is the end.
+  // Output is flushed before other ranks learn of the end.
   finish_text();
   std::fflush(stdout);
   const Error of_all = comm().leave(error).value_or(error);
   if (*of_all.what() != '\0') tell(fmt::format("pcor: {}", of_all.what()));
-  // HDF5 may hold what it could not write, whatever the refusal was: it would try once more at the exit.
+  // HDF5 may keep unwritten data after any error, and would try to write it at exit.
   return {work_not_done, at_once || is_final(of_all) || comm().size() == 1};
 }
 
 }  // namespace
 
 Ending run_program(int argc, char** argv) {
-  fill_closed_streams();  // before there are connections of processes, which would take their places
+  fill_closed_streams();  // before connections of processes exist, which would take their numbers
   std::signal(SIGCHLD, SIG_DFL);
   try {
     ForkCommunicator comm(processes_to_begin({argv + 1, argv + argc}));
@@ -171,7 +170,7 @@ Ending run_program(int argc, char** argv, Communicator& comm, int status_of_cras
     const int status = run(argc, argv);
     finish_text();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      throw Error("standard output: cannot be written; check the space where it goes");
+      throw Error("standard output: cannot be written; check the space at its destination");
     if (const auto error = comm.leave()) return failed(*error, false);
     return {status};
   } catch (const Error& error) {
@@ -181,17 +180,16 @@ Ending run_program(int argc, char** argv, Communicator& comm, int status_of_cras
                                     error.code().message())),
                   false);
   } catch (const std::system_error& error) {
-    // fmt::print throws it where the text does not go out.
+    // Exception of fmt::print if the output fails.
     return failed(
-        Error(fmt::format("standard output: {}; check the space where it goes", error.code().message())),
+        Error(fmt::format("standard output: {}; check the space at its destination", error.code().message())),
         false);
   } catch (const std::bad_alloc&) {
     return failed(
-        Error("the memory is exhausted; give fewer or shorter flights at a time, or a machine with more"),
+        Error("the memory is exhausted; give fewer or shorter flights, or use a machine with more memory"),
         true);
   } catch (const std::exception& error) {
-    return failed(Error(fmt::format("a fault of the program itself, please report it: {}", error.what())),
-                  false);
+    return failed(Error(fmt::format("internal error, please report it: {}", error.what())), false);
   }
 }
 

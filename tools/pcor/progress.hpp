@@ -6,7 +6,7 @@
 
 namespace pcor::tool {
 
-/// A progress bar on standard error. It shows on a terminal only, after half a second of work, so that logs
+/// Progress bar on standard error. It appears on a terminal only, after half a second of work, so that logs
 /// and short runs stay clean.
 class Progress {
  public:
@@ -15,7 +15,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();
 
-  /// `done` of `total` parts are done.
+  /// Shows that `done` of `total` parts are done.
   void show(std::size_t done, std::size_t total);
 
  private:

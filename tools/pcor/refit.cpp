@@ -61,7 +61,7 @@ std::vector<std::string> parts_of(const std::string& text) {
   return parts;
 }
 
-/// "pitch manoeuvre, speed run: static-alpha" is a stage.
+/// Parses a stage like "pitch manoeuvre, speed run: static-alpha".
 FitStage parse_stage(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
@@ -174,7 +174,7 @@ void print_flights(const std::vector<FlightFit>& flights) {
   }
 }
 
-/// The flights with each further reference.
+/// Prints the flights with each further reference.
 void print_further(const std::vector<FlightFit>& further) {
   for (auto first = further.begin(); first != further.end();) {
     const auto end = std::find_if(
@@ -213,13 +213,12 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
       result.outliers);
   say("R2 {:.4f}; condition number {:.0f}\n", result.r_squared, result.condition_number);
   if (result.autocorrelation_time > 1.0) {
-    say("with memory and drift of the noise, {} samples tell as much of a mean as {:.0f} independent ones, "
-        "and "
-        "the standard errors allow for it\n",
+    say("effective sample size: {1:.0f} of {0} samples, because the noise is correlated and drifts; the "
+        "standard errors include this\n",
         result.samples, static_cast<double>(result.samples) / result.autocorrelation_time);
   }
   if (result.omissions.size() > 1) {
-    say("\n{:<36} {:>10} {:>10}\n", "left out, the others refitted", "rms, hPa", "R2");
+    say("\n{:<36} {:>10} {:>10}\n", "effect removed, others refitted", "rms, hPa", "R2");
     for (const Omission& omission : result.omissions)
       say("{:<36} {:>10.3f} {:>10.4f}\n", omission.effect, omission.rms, omission.r_squared);
   }
@@ -241,7 +240,7 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
 void print_next_step(const Options& options) {
   say_written({options.output, options.reference_output});
   if (options.reference_output.empty()) {
-    say("To see where it still fails: {} compare {} -m {} -m {}\n", program(),
+    say("To see where the errors are largest: {} compare {} -m {} -m {}\n", program(),
         advised_command_line(options.comparison), shell_path(options.model), shell_path(options.output));
     return;
   }
@@ -253,11 +252,11 @@ void print_next_step(const Options& options) {
     if (colon != std::string::npos && reference.substr(colon) == before)
       reference = reference.substr(0, colon) + ":" + options.reference_output;
   }
-  say("To see where they still fail: {} compare {} -m {}\n", program(), advised_command_line(fitted),
+  say("To see where the errors are largest: {} compare {} -m {}\n", program(), advised_command_line(fitted),
       shell_path(options.output));
 }
 
-/// The flights with the model before and after the fit, for the report.
+/// Comparison of the model before and after the fit, for the report.
 Comparison before_against_after(const RefitResult& result, const ModelDefinition& model,
                                 const References& references, const FlightSet& flights,
                                 const Options& options) {
@@ -278,7 +277,7 @@ Comparison before_against_after(const RefitResult& result, const ModelDefinition
       compare_options);
 }
 
-/// A row for each flight, with the coefficients that it finds alone.
+/// Row for each flight, with the coefficients fitted to it alone.
 FlightTable flight_table(const RefitResult& all, const ModelDefinition& model, const References& references,
                          const FlightSet& flights, RefitOptions with, const Options& options) {
   std::vector<std::string> columns{"flight",         "held_out",       "reference",
@@ -325,7 +324,7 @@ FlightTable flight_table(const RefitResult& all, const ModelDefinition& model, c
   return table;
 }
 
-/// Writes the fitted models. @throws Error, before anything is written, if they are refused.
+/// Writes the fitted models. @throws Error, before any file is written, if they are refused.
 void deliver_models(RefitResult& result, const std::vector<std::filesystem::path>& inputs,
                     const Options& options) {
   refuse_worse(result.worse, options.force, result.model);
@@ -335,7 +334,7 @@ void deliver_models(RefitResult& result, const std::vector<std::filesystem::path
   deliver(*result.reference, options.reference_output, inputs);
 }
 
-/// The first reference is the one that is fitted too.
+/// The first reference is also fitted.
 void put_static_systems_first(std::vector<std::string>& references) {
   std::stable_partition(references.begin(), references.end(),
                         [](const std::string& each) { return each.rfind("static:", 0) == 0; });
@@ -401,21 +400,18 @@ std::function<void()> add_refit(CLI::App& program) {
   CLI::App* command = program.add_subcommand("refit", "Fit the free coefficients of a model to measurements");
   add_comparison_options(*command, options->comparison);
   command->add_option("-m,--model", options->model, "the model to fit")->required()->type_name("MODEL.toml");
-  command
-      ->add_option("-o,--output", options->output,
-                   "the fitted model, whole or not at all; - for standard output")
+  command->add_option("-o,--output", options->output, "output model (written atomically); - for stdout")
       ->required()
       ->type_name("FITTED.toml");
   command
       ->add_option("--table", options->table,
                    "write a row for each flight to FILE.csv: its residuals before and after, and the "
-                   "coefficients that "
-                   "it finds alone")
+                   "coefficients fitted to it alone")
       ->check(is_file_name())
       ->type_name("FILE.csv");
   command
       ->add_option("--refit-reference", options->reference_output,
-                   "fit the model of the second static system too, and write it here")
+                   "fit the model of the second static system as well, and write it to this file")
       ->type_name("OTHER.toml");
   command
       ->add_option("--loss", options->loss,
@@ -423,28 +419,26 @@ std::function<void()> add_refit(CLI::App& program) {
       ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
       ->capture_default_str();
   add_fit_options(*command, options->held);
-  add_list_option(
-      *command, "--stage", options->stages,
-      "fit these coefficients to these regimes alone, each interval with an offset of its own, the "
-      "others to all samples, again and again until nothing moves: 'pitch manoeuvre: static-alpha'")
+  add_list_option(*command, "--stage", options->stages,
+                  "fit these coefficients using only these regimes (one free offset per interval); stages "
+                  "are iterated to convergence: 'pitch manoeuvre: static-alpha'")
       ->type_name("REGIMES: NAMES");
   add_list_option(*command, "--holdout", options->holdout, "a flight that is not fitted, but tests the fit")
       ->type_name("T.nc");
   command
       ->add_option("--training-share", options->training_share,
-                   "fit only this share of every flight, its first part; the rest tests the fit")
+                   "fit only this fraction of every flight, its first part; the rest tests the fit")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  command->add_flag(
-      "--prior", options->prior,
-      "take the starting values for measurements, with the covariance that the model file states, else with "
-      "the typical size of each effect as standard error");
+  command->add_flag("--prior", options->prior,
+                    "apply a Gaussian prior at the starting values, with the covariance in the model file, "
+                    "otherwise with the typical size of each effect as standard error");
   command->add_flag(
       "--search", options->search,
       "find the starting values by a global search between the bounds, for coefficients that are not linear");
   command
       ->add_option("--memory", options->memory_mib,
-                   "MiB of samples that are kept between passes over the flights; the rest is read again")
+                   "MiB of samples kept in memory between passes over the flights; the rest is read again")
       ->check(is_amount())
       ->capture_default_str();
   add_trust_option(*command, options->trust_reference);

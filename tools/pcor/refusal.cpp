@@ -10,17 +10,16 @@ namespace pcor::tool {
 
 void add_force_option(CLI::App& command, bool& force) {
   command.add_flag("--force", force,
-                   "write the result even where its own numbers call it worse than what it started from; the "
-                   "file then says so");
+                   "write the result even if the fit is worse than the input model; the file then states it");
 }
 
 void refuse_worse(const std::string& worse, bool force, ModelDefinition& model) {
-  // What was said of an earlier step does not hold for this one.
+  // The verdict on an earlier step does not apply to this one.
   Provenance& all = model.provenance;
   all.erase(std::remove_if(all.begin(), all.end(), [](const auto& entry) { return entry.first == "forced"; }),
             all.end());
   if (worse.empty()) return;
-  if (!force) throw Error(fmt::format("no model was written: {}; --force writes it all the same", worse));
+  if (!force) throw Error(fmt::format("no model was written: {}; use --force to write it", worse));
   all.emplace_back("forced", ProvenanceValue{worse});
 }
 

@@ -10,10 +10,10 @@ namespace pcor::tool {
 /// Adds `--force` to a sub-command that writes a model.
 void add_force_option(CLI::App& command, bool& force);
 
-/// Stops a model that its own numbers call worse than what it started from. Where the user insists
-/// it goes on, and the model says why it would have been refused: `forced` of its provenance.
+/// Refuses a model that is worse than its input by its statistics. With `force` it is accepted, and its
+/// provenance states the reason in `forced`.
 ///
-/// @param worse why it is worse, a sentence without its full stop; empty where it is not
+/// @param worse reason, a sentence without its full stop; empty if the model is not worse
 /// @throws Error with the reason, if `worse` is not empty and `force` is false
 void refuse_worse(const std::string& worse, bool force, ModelDefinition& model);
 

@@ -20,14 +20,14 @@ double number_in(const std::string& text, const std::string& argument) {
   const char* const end = text.data() + text.size();
   const auto [rest, status] = std::from_chars(text.data(), end, value);
   if (status != std::errc() || rest != end)
-    throw Error(fmt::format("{}: '{}' is no number; write name=number", argument, text));
+    throw Error(fmt::format("{}: '{}' is not a number; write NAME=NUMBER", argument, text));
   return value;
 }
 
 int power_in(const std::string& text, const std::string& argument) {
   const double power = number_in(text, argument);
   if (power != std::floor(power) || std::abs(power) > max_power) {
-    throw Error(fmt::format("{}: a power is a whole number from {} to {}, not {}", argument, -max_power,
+    throw Error(fmt::format("{}: a power must be a whole number from {} to {}, not {}", argument, -max_power,
                             max_power, text));
   }
   return static_cast<int>(power);
@@ -51,13 +51,13 @@ void set_shape(ModelEffect& effect, const std::string& name, const std::string& 
     if (shape.name == name) {
       effect.parameters[i] = number_in(value, argument);
       if (effect.parameters[i] >= shape.lower && effect.parameters[i] <= shape.upper) return;
-      throw Error(fmt::format("{}: {} = {} is impossible; give a number within [{}, {}]", argument, name,
-                              value, shape.lower, shape.upper));
+      throw Error(fmt::format("{}: {} = {} is out of range [{}, {}]", argument, name, value, shape.lower,
+                              shape.upper));
     }
     shapes.push_back(shape.name);
   }
   shapes.insert(shapes.end(), {"static_pressure", "dynamic_pressure"});
-  throw Error(fmt::format("{}: nothing called '{}' shapes the effect {}; what does is {}", argument, name,
+  throw Error(fmt::format("{}: '{}' is not a shape parameter of the effect {}; use {}", argument, name,
                           effect.id, fmt::join(shapes, ", ")));
 }
 
@@ -88,7 +88,7 @@ ModelEffect shaped_effect(const std::string& argument) {
   for (std::string shape; std::getline(text, shape, ',');) {
     const std::size_t sign = shape.find('=');
     if (sign == std::string::npos)
-      throw Error(fmt::format("{}: '{}' is no shape; write {}:name=number", argument, shape, id));
+      throw Error(fmt::format("{}: '{}' is not a shape; write {}:NAME=NUMBER", argument, shape, id));
     set_shape(effect, shape.substr(0, sign), shape.substr(sign + 1), argument);
   }
   return effect;

@@ -103,11 +103,11 @@ std::function<void()> add_simulate(CLI::App& program) {
                    "the flight plan, the atmosphere, and the errors of the instruments")
       ->required()
       ->type_name("SCENARIO.toml");
-  command->add_option("-o,--output", options->output, "the file to write, whole or not at all")
+  command->add_option("-o,--output", options->output, "output file (written atomically)")
       ->required()
       ->check(is_file_name())
       ->type_name("OUT.nc");
-  command->add_option("--seed", options->seed, "seed of the random numbers in place of the scenario's")
+  command->add_option("--seed", options->seed, "seed of the random numbers, overrides the scenario's")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
       ->type_name("N");
   add_common_options(*command, options->common, false);

@@ -26,7 +26,7 @@ struct Options {
   std::string output;
   std::string degree = "auto";
   std::string slope = "fitted";
-  double slope_size = TemperatureOptions{}.slope_size * 1e5;  // m in 100 km
+  double slope_size = TemperatureOptions{}.slope_size * 1e5;  // m per 100 km
   std::optional<double> pressure_error;
   bool force = false;
   double min_climb_rate = 0.0;
@@ -148,7 +148,7 @@ void print_flights(const TemperatureResult& result) {
       "warmest", "rms before", "rms after");
   for (const FlightHeights& flight : result.flights) {
     if (!flight.left_out.empty()) {
-      say("{:<28} left out: {}\n", flight.flight, flight.left_out);
+      say("{:<28} skipped: {}\n", flight.flight, flight.left_out);
       continue;
     }
     say("{:<28} {:>8} {:>10} {:>7.1f} C {:>7.1f} C {:>9.2f} m {:>8.2f} m\n", flight.flight, flight.samples,
@@ -157,7 +157,7 @@ void print_flights(const TemperatureResult& result) {
 }
 
 void print_parts(const TemperatureResult& result) {
-  say("\n{:<28} {:>11} {:>20} {:>12}\n", "part", "temperature", "by itself", "of all");
+  say("\n{:<28} {:>11} {:>20} {:>12}\n", "part", "temperature", "alone", "all flights");
   for (const std::vector<PartCorrection>* parts : {&result.parts_by_flight, &result.parts_by_climb}) {
     for (const PartCorrection& part : *parts)
       say("{:<28} {:>9.1f} C {:>18} K {:>+10.3f} K\n", part.part, part.temperature,
@@ -167,7 +167,8 @@ void print_parts(const TemperatureResult& result) {
 
 void print_law_errors(const TemperatureResult& result) {
   for (const LawError& error : result.law_errors)
-    say("By the heights {} of {} lacks {}, a range of {:.2f} hPa over the flights: it is taken off.\n",
+    say("According to the heights, {} of {} is too low by {}, a range of {:.2f} hPa over the flights; the "
+        "error was subtracted.\n",
         error.parameter, error.effect, with_error(error.change, error.standard_error), error.range);
   if (result.humidity_change != 0.0)
     say("The heights change the vapour pressure by {} of its value.\n",
@@ -188,17 +189,17 @@ void print(const TemperatureResult& result) {
                     result.least_squares.standard_errors[k]),
         coefficient_unit(k));
   }
-  say("Least squares takes heights for independent: its standard errors are too small.\n{}.\n",
+  say("Least squares assumes independent heights: its standard errors are too small.\n{}.\n",
       pressure_error_text(result));
   print_law_errors(result);
-  say("Least squares would add {} K, errors of the law taken off.\n",
+  say("Least squares gives {} K, after subtraction of errors of the model.\n",
       with_error(result.least_squares_add, result.least_squares_add_error));
   say("\n{:>12} {:>22}\n", "temperature", "correction");
   for (const TemperatureCorrection& at : result.corrections)
     say("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
   print_parts(result);
-  say("\nnoise of the GPS height: {:.2f} m in a sample, {:.2f} m correlated over {:.0f} s; the hydrostatic "
-      "height drifts by {:.3f} m in a minute\n",
+  say("\nnoise of the GPS height: {:.2f} m per sample, {:.2f} m correlated over {:.0f} s; the hydrostatic "
+      "height drifts by {:.3f} m per minute\n",
       result.gps_noise, result.gps_wander, result.gps_wander_time, result.drift);
   say("\n{:<12} {:>16} {:>26}\n", "-2 ln L", "all flights", "held-out flights");
   for (const DegreeChoice& choice : result.degrees)
@@ -219,11 +220,11 @@ void print(const IterativeCalibration& result) {
     say("{:<6} {:>10.4f} {:>22.4f} {:>24.4f}  {}\n", i + 1, round.rms_hpa, round.defect_change,
         round.temperature_change, coefficients);
   }
-  say("{}\n\n", result.converged ? "pressure and temperature agree with each other"
-                                 : "they still change: use the result with care");
+  say("{}\n\n", result.converged ? "pressure and temperature have converged"
+                                 : "not converged: use the result with care");
 }
 
-/// The first flight that took part, as it was named.
+/// First used flight, as named by the user.
 const std::string& first_used(const TemperatureResult& result, const Options& options) {
   const auto used = std::find_if(result.flights.begin(), result.flights.end(),
                                  [](const FlightHeights& flight) { return flight.left_out.empty(); });
@@ -237,9 +238,9 @@ void run(const Options& options) {
                      inputs);
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   if (options.iterate && options.archived)
-    throw Error("--iterate fits pressures again and needs flights as recorded; leave out --archived");
+    throw Error("--iterate refits the pressures and requires flights as recorded; remove --archived");
   if (!options.iterate && !options.comparison.references.empty())
-    throw Error("--reference is what --iterate fits the pressures to; give both or none");
+    throw Error("--reference gives the references of --iterate; give both or neither");
   require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
@@ -248,7 +249,7 @@ void run(const Options& options) {
   TemperatureResult result;
   IterativeCalibration in_turn;
   {
-    Progress bar(options.iterate ? "fitting and calibrating in turn" : "reading", !options.common.quiet);
+    Progress bar(options.iterate ? "fitting and calibrating iteratively" : "reading", !options.common.quiet);
     with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     if (options.iterate) {
       RefitOptions refit_with;
@@ -283,8 +284,8 @@ void run(const Options& options) {
     if (options.iterate) print(in_turn);
     print(result);
     if (!result.worse.empty())
-      say("\nIt is no better than none yet: add flights that climb and descend by 3 km and more, there and "
-          "back along the same way\n");
+      say("\nThe correction is not yet significant: add flights that climb and descend by 3 km and more, "
+          "there and back along the same track\n");
     say("\n");
     say_written({options.common.report, options.common.figures, options.common.json});
   }
@@ -308,40 +309,38 @@ std::function<void()> add_temperature(CLI::App& program) {
       ->type_name("MODEL.toml");
   command
       ->add_option("-o,--output", options->output,
-                   "the model with the correction, whole or not at all; - for standard output")
+                   "output model with the correction (written atomically); - for stdout")
       ->required()
       ->type_name("FITTED.toml");
   command->add_option("--degree", options->degree, "highest power of the temperature in the correction")
       ->check(CLI::IsMember({"auto", "0", "1", "2"}))
       ->capture_default_str();
-  command->add_option("--slope", options->slope, "how the slope of isobars is found")
+  command->add_option("--slope", options->slope, "treatment of the slope of isobars")
       ->check(CLI::IsMember({"fitted", "none", "level-legs", "climb-descent", "whole-flight", "geostrophic"}))
       ->capture_default_str();
   command
-      ->add_option(
-          "--slope-size", options->slope_size,
-          "standard deviation of the slope of isobars before it is fitted, m in 100 km; the other ways of "
-          "--slope leave a third of it")
+      ->add_option("--slope-size", options->slope_size,
+                   "prior standard deviation of the slope of isobars, m per 100 km; the other choices of "
+                   "--slope use a third of it")
       ->check(is_amount())
       ->capture_default_str();
   command
       ->add_option("--pressure-error", options->pressure_error,
-                   "standard deviation of errors of the static pressure that last, hPa, one the same at all "
-                   "pressures and one in proportion; they enter the standard errors (without it: 0.1 for the "
-                   "transducer, and for the law what the model states, 0.3 if nothing)")
+                   "standard deviation of constant errors of the static pressure, hPa, one the same at all "
+                   "pressures and one proportional to the pressure; part of the standard errors (default: "
+                   "0.1 for the transducer; for the model its stated value, otherwise 0.3)")
       ->check(is_amount());
   command
       ->add_option("--min-climb-rate", options->min_climb_rate,
-                   "climbs and descents that are slower are left out, m/s")
+                   "exclude climbs and descents below this rate, m/s")
       ->check(is_amount())
       ->capture_default_str();
-  command->add_flag("--skip-returning", options->skip_returning,
-                    "leave out flights that end where they began");
+  command->add_flag("--skip-returning", options->skip_returning, "skip flights that end where they began");
   command->add_flag(
       "--archived", options->archived,
       "the flights were written by 'pcor process --hydrostatic': start from their HYDSTEP and ATX");
   command->add_flag("--iterate", options->iterate,
-                    "refit the pressures and calibrate the temperature in turn until neither changes");
+                    "refit the pressures and calibrate the temperature alternately to convergence");
   add_force_option(*command, options->force);
   add_common_options(*command, options->common);
   add_examples(*command,

@@ -26,7 +26,7 @@ std::string& program_name() {
   return name;
 }
 
-/// The width of the terminal that standard output is, which COLUMNS may state; 0 where it is none.
+/// Width of the terminal at standard output, which COLUMNS may set; 0 if it is not a terminal.
 std::size_t terminal_width() {
   if (is_plain || isatty(fileno(stdout)) != 1) return 0;
   winsize size{};
@@ -35,7 +35,7 @@ std::size_t terminal_width() {
   return width <= 0 ? 0 : std::max(min_width, static_cast<std::size_t>(width));
 }
 
-/// How many columns a line has: what stands between two blanks or more.
+/// Number of columns of a line, separated by two blanks or more.
 std::size_t columns_in(std::string_view line) {
   std::size_t columns = 0;
   for (std::size_t at = line.find_first_not_of(' '); at != none; at = line.find_first_not_of(' ', at)) {
@@ -45,7 +45,7 @@ std::size_t columns_in(std::string_view line) {
   return columns;
 }
 
-/// Where the lines after the first one begin.
+/// Indent of the lines after the first one.
 std::size_t hanging_indent(std::string_view line, std::size_t width) {
   const std::size_t indent = line.find_first_not_of(' ');
   const std::size_t gap = line.find("  ", indent);
@@ -54,7 +54,7 @@ std::size_t hanging_indent(std::string_view line, std::size_t width) {
   return indent > width / 4 ? std::min(indent, width / 2) : indent + 2;
 }
 
-/// How many bytes of `text` make `width` letters of UTF-8 at most.
+/// Number of bytes of `text` in at most `width` characters of UTF-8.
 std::size_t bytes_of(std::string_view text, std::size_t width) {
   std::size_t letters = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -64,8 +64,8 @@ std::size_t bytes_of(std::string_view text, std::size_t width) {
   return text.size();
 }
 
-/// Takes a first line of at most `width` letters off `text`, of a row of a table whole columns; a longer word
-/// stays whole.
+/// Removes a first line of at most `width` characters from `text`; for a row of a table only complete
+/// columns; a longer word is not broken.
 std::string_view take_line(std::string_view& text, std::size_t width, bool is_row) {
   const std::size_t fits = bytes_of(text, width);
   if (fits == text.size()) return std::exchange(text, {});
@@ -101,7 +101,7 @@ std::string folded(std::string_view line, std::size_t width) {
 
 namespace {
 
-/// The begin of a line whose end is still to come; it can be folded only as a whole.
+/// Beginning of a line whose end is still missing; it can be folded only when complete.
 std::string& unfinished_line() {
   static std::string line;
   return line;
@@ -114,7 +114,7 @@ bool wants_colour() {
          std::string_view(terminal) != "dumb";
 }
 
-/// The begin of a note, and the verdict in a row of a table, as a terminal shows them.
+/// Beginning of a note, and verdict in a row of a table, with terminal colours.
 std::string coloured(std::string line) {
   constexpr std::string_view plain = "\033[0m";
   const auto paint = [&](std::size_t at, std::size_t length, std::string_view colour) {

@@ -19,7 +19,7 @@ std::string with_hint(const std::string& message, const std::string& hint, const
   return fmt::format("pcor: {};{}{} to list them: {}", message, hint.empty() ? "" : " ", hint, help);
 }
 
-/// The long options of a command line that `command` does not have.
+/// Long options of a command line that `command` does not have.
 std::vector<std::string> unknown_options(const CLI::App& command, const std::vector<std::string>& words,
                                          std::vector<std::string>& known) {
   for (const CLI::Option* option : command.get_options()) {
@@ -35,14 +35,14 @@ std::vector<std::string> unknown_options(const CLI::App& command, const std::vec
 
 bool is_option(const std::string& word) { return word.size() > 1 && word[0] == '-'; }
 
-/// True where the word after `word` is its value.
+/// True if the word after `word` is its value.
 bool takes_next(const CLI::App& command, const std::string& word) {
   if (!is_option(word) || word.find('=') != std::string::npos) return false;
   const CLI::Option* const option = command.get_option_no_throw(word);
   return option != nullptr && option->get_items_expected_max() > 0;
 }
 
-/// The sub-command that the first word of a command line names; null where there is none.
+/// Sub-command named by the first word of a command line; null if it does not exist.
 const CLI::App* command_of(const CLI::App& program, const std::vector<std::string>& words) {
   for (const CLI::App* each : program.get_subcommands({})) {
     if (!words.empty() && each->get_name() == words.front()) return each;
@@ -60,7 +60,7 @@ std::string usage_message(const CLI::App& program, const std::string& message,
   if (command == nullptr && words.front()[0] != '-') {
     std::vector<std::string> names;
     for (const CLI::App* each : shown_commands(program)) names.push_back(each->get_name());
-    return with_hint(fmt::format("there is no sub-command '{}'", words.front()),
+    return with_hint(fmt::format("unknown sub-command '{}'", words.front()),
                      did_you_mean(words.front(), names), help_of_all);
   }
   const std::string help =
@@ -69,7 +69,7 @@ std::string usage_message(const CLI::App& program, const std::string& message,
   const std::vector<std::string> unknown =
       unknown_options(command == nullptr ? program : *command, words, known);
   if (!unknown.empty()) {
-    return with_hint(fmt::format("there is no option '{}'", unknown.front()),
+    return with_hint(fmt::format("unknown option '{}'", unknown.front()),
                      did_you_mean(unknown.front(), known), help);
   }
   return fmt::format("pcor: {}; to list the options: {}", message, help);
@@ -87,9 +87,8 @@ std::string flights_behind_holdout(const CLI::App& program, const std::vector<st
     const bool lists = words[i] == "--holdout" && i + 2 < words.size() && !is_option(words[i + 2]);
     if (lists && has_flight) {
       return fmt::format(
-          "--holdout takes one flight, {}, and {} behind it would be fitted as those before it; say "
-          "--holdout "
-          "before each flight that is held out, or name all flights that are fitted in one place",
+          "--holdout takes one value; '{1}' would be fitted, not held out. Repeat the option: --holdout {0} "
+          "--holdout {1}",
           words[i + 1], words[i + 2]);
     }
     ++i;

@@ -4,9 +4,9 @@
 #include "program.hpp"
 #include "text.hpp"
 
-/// As pcor, on all processes that mpirun, srun or the like has begun.
+/// Runs pcor on all processes started by mpirun, srun or the like.
 int main(int argc, char** argv) {
-  // Threads of the program do not talk to other processes; its first one does.
+  // Only the main thread of the program calls MPI.
   int provided = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   pcor::MpiCommunicator comm;

@@ -5,13 +5,13 @@
 
 namespace pcor {
 
-/// A file that appears at `target` whole or not at all: write to `path()`, a hidden file beside it that is
-/// there and empty, then `commit`. The hidden name has in it those of the host and the process, so that what
-/// a killed process left behind is known: the next one of that host in that folder removes it.
+/// Atomic replacement of the file `target`: write to `path()`, an empty hidden file in the same directory,
+/// then `commit`. The hidden name contains host and process id, so that the next process of that host removes
+/// files of killed processes in the directory.
 class AtomicFile {
  public:
-  /// @throws Error if the target's directory is absent or not writable, or the target is something else than
-  /// a regular file (a directory, a device). A symbolic link is followed.
+  /// @throws Error if the target's directory is absent or not writable, or the target is not a regular file
+  /// (a directory, a device). A symbolic link is followed.
   explicit AtomicFile(const std::filesystem::path& target);
 
   /// Removes the file unless it was committed.
@@ -22,8 +22,8 @@ class AtomicFile {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Puts the file in the target's place once the disk holds it, with the permissions of what it replaces;
-  /// while an `OutputTransaction` lives, when that lets it appear. @throws Error if impossible.
+  /// Synchronises the file to disk and renames it to the target, with the permissions of the file it
+  /// replaces; during an `OutputTransaction`, the rename is deferred. @throws Error if impossible.
   void commit();
 
  private:
@@ -31,10 +31,10 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// While one lives, files that are committed wait beside their targets, whole and on the disk. They appear
-/// together: one right after the other, while signals wait; none does if it goes before. So only a SIGKILL or
-/// a failure of the machine within the microseconds between can part them. It is for the files of one thread;
-/// one that is made while another lives is a part of that.
+/// Transaction of output files. Committed files are complete on disk and wait in the directories of their
+/// targets. They are renamed in immediate succession with signals blocked, or all discarded if the
+/// transaction ends first; only a SIGKILL or a system failure between two renames can separate them. For the
+/// files of one thread; a nested transaction is part of the outer one.
 class OutputTransaction {
  public:
   OutputTransaction();
@@ -43,14 +43,14 @@ class OutputTransaction {
   OutputTransaction(const OutputTransaction&) = delete;
   OutputTransaction& operator=(const OutputTransaction&) = delete;
 
-  /// Makes a folder for outputs, and those above it. What is new of them goes again if nothing appears, also
-  /// where a signal ends the program. @throws Error if it cannot be there.
+  /// Creates a directory for outputs, and its parents. New directories are removed if no output appears, also
+  /// if a signal ends the program. @throws Error if it cannot be created.
   void make_folder(const std::filesystem::path& folder);
 
-  /// Has a file of an earlier run go when the outputs have appeared.
+  /// Removes a file of an earlier run after the outputs have appeared.
   void remove(const std::filesystem::path& earlier);
 
-  /// @throws Error if a file cannot be put in its place; those before it are.
+  /// Renames all waiting files to their targets. @throws Error if a rename fails; earlier ones remain.
   void appear();
 
  private:
@@ -60,18 +60,18 @@ class OutputTransaction {
   struct Waiting {
     std::filesystem::path shown, target, path;
   };
-  OutputTransaction* whole_;  // itself, or the one that it is a part of
+  OutputTransaction* whole_;  // the outermost transaction: itself or its parent
   std::vector<Waiting> waiting_;
-  std::vector<std::filesystem::path> folders_;  // that were made, each behind the one that it is in
+  std::vector<std::filesystem::path> folders_;  // created directories, parents first
   std::vector<std::filesystem::path> earlier_;
 };
 
-/// Where a file that was committed to `target` can be read: there, or beside it while it waits for
-/// others.
+/// Path at which a file committed to `target` can be read: the target, or its hidden file during a
+/// transaction.
 std::filesystem::path readable_output(const std::filesystem::path& target);
 
-/// Removes the hidden files of all that is being written in this process, at most 128, and the
-/// folders that were made for them; for a signal handler that then ends the process, as SIGINT would.
+/// Removes at most 128 unfinished files of this process, and the directories created for them; for a signal
+/// handler that then ends the process, as SIGINT would.
 void remove_unfinished_files() noexcept;
 
 }  // namespace pcor

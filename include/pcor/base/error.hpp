@@ -6,19 +6,19 @@
 
 namespace pcor {
 
-/// The one error of the offline library: work that cannot be done.
+/// Error of the offline library.
 ///
-/// The message is one line for people. It says which file, variable or line, what was wrong, and what to do
-/// about it. The code is for programs that can go on in another way: they never read the message.
+/// The message is one line: file, variable or line, the problem, and the action to take. The code is for
+/// programs that handle errors; they need not parse the message.
 class Error : public std::runtime_error {
  public:
   enum class Code : std::uint8_t {
     other,
-    file,      ///< it cannot be read, or is damaged
-    variable,  ///< a flight has no variable of that name, or no value of it
-    unit,      ///< a variable has no unit, one that is not known, or one that does not convert
-    model,     ///< the model cannot be used on what is recorded
-    output     ///< an output cannot be written where it was asked for
+    file,      ///< a file cannot be read, or is damaged
+    variable,  ///< a variable is absent or has no value
+    unit,      ///< a unit is missing, unknown or not convertible
+    model,     ///< the model cannot be used on the recorded variables
+    output     ///< an output cannot be written to its path
   };
 
   explicit Error(const std::string& message) : Error(Code::other, message) {}

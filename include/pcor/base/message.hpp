@@ -5,12 +5,11 @@
 
 namespace pcor {
 
-/// A message as people get to see it: one line of at most 2000 letters, an ellipsis and the number of letters
-/// where it has more. Control characters, which a terminal would obey, and bytes that are no UTF-8 become
-/// \x1b and the like.
+/// Message for display: one line of at most 2000 characters; longer messages end in an ellipsis and their
+/// length. Control characters and invalid UTF-8 bytes become \x1b and the like.
 std::string sanitize_line(std::string_view message);
 
-/// The same for a text, which keeps its lines and its length.
+/// Text for display: as `sanitize_line`, but lines and length are kept.
 std::string shown_text(std::string_view text);
 
 }  // namespace pcor

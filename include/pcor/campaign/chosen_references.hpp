@@ -7,22 +7,22 @@
 
 namespace pcor {
 
-/// What a model is held against, and what it could have been.
+/// References of a comparison, and reasons against the others.
 struct ChosenReferences {
   References used{};
-  std::vector<std::string> not_used{};  ///< where no text named any: which else there are, and why not these
+  /// Default selection only: other references, and reasons against them.
+  std::vector<std::string> not_used{};
 };
 
-/// The texts of references in the one order in which a command takes them, however they were given: the first
-/// decides where a single figure is told. LAMS comes first, then second systems, then what sees no single
-/// sample.
+/// Sorts reference names: LAMS first, then second systems, then references with a window of samples. The
+/// first one determines every single figure that is reported.
 std::vector<std::string> in_order(std::vector<std::string> texts);
 
-/// The references that `texts` name; without texts LAMS, and all else that the model and every flight allow:
-/// the total pressure of a second pair of pressures, heights, and wind.
+/// References that `texts` name. Default: LAMS and all others that the model and every flight permit: total
+/// pressure of a second pair of pressures, heights, and wind.
 ///
-/// @throws Error as `read_reference`, or if there is no text and no LAMS: the others do not tell a static
-/// pressure by themselves.
+/// @throws Error as `read_reference`, or if there are neither texts nor LAMS: the other references do not
+/// determine the static pressure alone.
 ChosenReferences read_references(const std::vector<std::string>& texts, const ModelDefinition& model,
                                  const FlightSet& flights);
 

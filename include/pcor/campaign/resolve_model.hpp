@@ -8,12 +8,13 @@
 
 namespace pcor {
 
-/// A model that leaves variables open, completed (`resolve_variables`) by the first flight that can be read
-/// and completes it. All others have to choose the same variables: a result must not depend on which flights
-/// stand beside.
+/// Model with its undefined variables resolved (`resolve_variables`) from the first readable flight that
+/// resolves it. All other flights must resolve to the same variables: the result must not depend on the
+/// combination of flights.
 /// @param flights at least one
-/// @param notes get what was chosen, a sentence each
-/// @throws Error that of the first flight where none completes the model, or Error if two choose differently
+/// @param notes receives the choices, one sentence each
+/// @throws Error of the first flight if no flight resolves the model, or if two flights resolve it
+/// differently
 ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flights,
                               std::vector<std::string>& notes);
 

@@ -17,108 +17,111 @@
 
 namespace pcor {
 
-/// Statistics of a part of the samples: a regime, or a band of a variable.
+/// Statistics of a subset of the samples: a regime, or a band of a variable.
 struct PartStatistics {
   std::string name;  ///< "climb", or "Mach 0.30 to 0.35"
   Statistics statistics;
 };
 
-/// A stretch of a flight in which a model fails most.
+/// Time range of a flight with the largest residuals.
 struct WorstInterval {
   std::string flight;
   double begin = 0.0;  ///< s since 1970 UTC
   double end = 0.0;
   Statistics statistics;
-  std::string regimes;  ///< what was flown, for example "climb, turn"
+  std::string regimes;  ///< e.g. "climb, turn"
 };
 
-/// One model held against one reference over all flights.
+/// Comparison of one model with one reference over all flights.
 struct ModelComparison {
   std::string name;
-  std::string reference;  ///< as `Reference::name` has it
+  std::string reference;  ///< see `Reference::name`
   Statistics all;
-  /// 1 - sum of squared residuals / sum of squared departures of the reference's delta-p from its mean; NaN
-  /// for a reference that is no static pressure.
+  /// 1 - sum of squared residuals / sum of squared deviations of the reference's delta-p from its mean; NaN
+  /// for a reference that is not a static pressure.
   double r_squared = 0.0;
-  /// The corrected static pressures, of the reference against that of the model, as distances from the line
-  /// (memo, figure 2). Where the reference is a static pressure.
+  /// Fit of the corrected static pressure of the reference against that of the model, as distances from the
+  /// line (memo, figure 2), if the reference is a static pressure.
   LineFit static_pressure{};
   double autocorrelation_time = 1.0;
-  /// By how much the calibration of the reference and of the thermometer may shift the bias of all samples,
-  /// hPa, beside `Statistics::bias_error`: usual sizes (`ParameterInfo::doubt`), or what `[uncertainty]` of
-  /// the models states. Zero for references of many samples (wind, height).
+  /// Standard deviation of the common bias due to the calibration of the reference and of the thermometer,
+  /// hPa, in addition to `Statistics::bias_error`: typical sizes (`ParameterInfo::doubt`), or `[uncertainty]`
+  /// of the models. Zero for references with a window (wind, height).
   double reference_error = 0.0;
-  std::vector<PartStatistics> regimes;  ///< those that occur, in the order of `Regime`
+  std::vector<PartStatistics> regimes;  ///< regimes that occur, in the order of `Regime`
   std::vector<PartStatistics> bands;    ///< altitude, Mach, angle of attack, sideslip
   std::vector<PartStatistics> flights;
-  std::vector<WorstInterval> worst;  ///< at most five, the worst first
-  Statistics flaps_out;              ///< of the samples that take no part because flaps are out
+  std::vector<WorstInterval> worst;  ///< up to five, sorted by decreasing size
+  Statistics flaps_out;              ///< samples excluded because of flaps
 };
 
-/// The residuals of one flight, one value for each record. Quantities with a single value for
-/// all models come from the first model by name, regardless of the order on the command line.
+/// Residuals of one flight, one value for each record. A quantity with one value for all models belongs to
+/// the first model by name, whatever the order on the command line.
 struct FlightResiduals {
   std::shared_ptr<const FlightSamples> samples;
-  std::vector<Mask> mask;                      ///< the samples used are those of all models
-  std::vector<std::vector<double>> values;     ///< of each model, hPa; NaN where the sample is not used
-  std::vector<std::vector<double>> flaps_out;  ///< the same at samples left out for nothing but their flaps
-  std::vector<std::vector<double>> reference_defects;  ///< delta-p that the reference asks of each model, hPa
-  std::vector<std::vector<double>> model_defects;      ///< delta-p of each model, hPa
+  /// Mask of the first model; used samples are common to all models.
+  std::vector<Mask> mask;
+  std::vector<std::vector<double>> values;     ///< residuals of each model, hPa; NaN for unused samples
+  std::vector<std::vector<double>> flaps_out;  ///< residuals of samples excluded only because of flaps
+  std::vector<std::vector<double>> reference_defects;    ///< delta-p of the reference for each model, hPa
+  std::vector<std::vector<double>> model_defects;        ///< delta-p of each model, hPa
   std::vector<std::vector<double>> corrected_pressures;  ///< static pressure of each model, hPa
-  std::vector<double> static_pressure;                   ///< as measured, hPa
-  std::vector<double> total_pressure;                    ///< p_m + q_m of the model, hPa
-  /// p_m + q_m of the reference, hPa, where that is a static system; else empty.
+  std::vector<double> static_pressure;                   ///< measured, hPa
+  std::vector<double> total_pressure;                    ///< p_m + q_m of the first model, hPa
+  /// Total pressure p_m + q_m of the reference, hPa, if it is a static system; otherwise empty.
   std::vector<double> reference_total_pressure;
-  std::vector<double> mach;           ///< Mach number of the corrected pressures
+  std::vector<double> mach;           ///< Mach number from the first model's corrected pressures
   std::vector<double> dynamic_ratio;  ///< q_m/p_m
 };
 
 struct Comparison {
-  std::string reference;           ///< in words
-  bool is_static_pressure = true;  ///< the reference; else the residual is of something else, in hPa
+  std::string reference;           ///< description
+  bool is_static_pressure = true;  ///< false: the residual is another quantity, in hPa
   std::vector<ModelComparison> models;
-  /// Those whose records are kept, in their order: all, or of many those in which the models fail most and
-  /// others spread over the time in which they were flown.
+  /// Flights whose records are kept, in their order: all, or, of many, those with the largest residuals and
+  /// others spread over the period of the flights.
   std::vector<FlightResiduals> flights;
-  std::vector<std::pair<std::string, Interval>> intervals;  ///< of all flights, with the flight's name
-  /// The total pressures of two systems, of the reference against that of the model: static defects cancel in
-  /// it (memo, figure 1). The model is the first by name. Absent unless the reference is a static system.
+  /// Intervals of all flights, with the flight's name.
+  std::vector<std::pair<std::string, Interval>> intervals;
+  /// Fit of the total pressure of the reference against that of the model, if the reference is a static
+  /// system: static defects cancel (memo, figure 1).
   std::optional<LineFit> total_pressure{};
-  std::array<std::size_t, mask_count> masks{};  ///< samples with each reason, over all flights
-  std::vector<std::string> notes;               ///< what a user should know, a sentence each
-  std::vector<Comparison> further{};  ///< with each of the further references, of the models that have it
+  std::array<std::size_t, mask_count> masks{};  ///< samples with each mask, over all flights
+  std::vector<std::string> notes;               ///< notes for the user, one sentence each
+  /// Comparisons with further references of the models.
+  std::vector<Comparison> further{};
 };
 
 struct CompareOptions {
   MaskOptions mask;
-  /// Of how many flights the records are kept; the numbers are of all. Where there are more, those
-  /// that are kept are read once more.
+  /// Maximum number of flights whose records are kept; statistics use all flights. If there are more, the
+  /// kept ones are read twice.
   std::size_t max_series = 16;
-  /// Told after every flight of this member with every reference.
+  /// Callback after every flight of this rank with every reference.
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
-/// A model, and what it is held against.
+/// Model with its references.
 struct ComparedModel {
-  std::string name;  ///< in tables
+  std::string name;  ///< label in tables
   ModelDefinition model;
   References references;
 };
 
-/// Holds the contenders against the first reference of the first of them by name over the flights, then
-/// against each of the further ones that any has. References are the same where they have one name; a
-/// contender without a reference of that name takes no part there. A sample counts where all models that do
-/// have a residual, so the figures of models can be compared. A further reference that leaves no sample is
-/// only noted.
+/// Compares the models with the first reference of the first model (by name) over the flights, then with each
+/// further reference that any model has. References with equal names are the same; a model without that
+/// reference is excluded from its comparison. A sample is used if all models of the comparison have a
+/// residual, so that their statistics are comparable. A further reference without usable samples only adds a
+/// note.
 ///
 /// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
-/// no sample is left: the message says which mask took how many.
+/// no sample remains: the message lists the number of samples of each mask.
 Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
                    const CompareOptions& options = {});
 
 /// Writes the residuals of a flight to a netCDF file: for each model RESIDUAL_1, RESIDUAL_2 ..., delta-p of
 /// the model PCOR_1 ... and of the reference PCOR_REFERENCE_1 ..., and the mask and the regimes as flags.
-/// @param number of the flight among those whose records are kept @param input the file of that flight
+/// @param number index of the flight among those whose records are kept @param input the file of that flight
 /// @throws Error if the file cannot be written.
 void write_residuals(const Comparison& comparison, std::size_t number, const Flight& input,
                      const std::filesystem::path& output, const std::string& history);

@@ -5,9 +5,9 @@
 
 namespace pcor {
 
-/// The report of a comparison: the residuals in time with the regimes shaded, against any variable, over the
-/// plane of pressure and Mach number, by regime; delta-p of the reference beside that of the model; and where
-/// the models fail most.
+/// Report of a comparison: residuals in time with the regimes shaded, against any variable, over the plane of
+/// pressure and Mach number, and by regime; delta-p of the reference and of the model; time ranges with the
+/// largest residuals.
 Report comparison_report(const Comparison& comparison);
 
 }  // namespace pcor

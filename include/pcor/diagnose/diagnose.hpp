@@ -18,151 +18,152 @@
 
 namespace pcor {
 
-/// What a diagnosis comes to.
+/// Outcome of a diagnosis.
 enum class Verdict {
-  silent,       ///< nothing is missing that these flights could show
+  silent,       ///< no missing effect detectable on these flights
   identified,   ///< effects are missing, and each can be named
-  ambiguous,    ///< an effect is missing, but these flights cannot tell it from others
-  partial,      ///< effects explain much, but structure is left that they do not explain
-  unexplained,  ///< structure is there, and no effect explains it
+  ambiguous,    ///< an effect is missing, but these flights do not separate it from others
+  partial,      ///< effects explain much of the residual, but significant structure remains
+  unexplained,  ///< significant structure that no effect explains
 };
 
-/// As JSON and text have it: "silent", "identified", "cannot be told apart", "partial", "unexplained".
+/// Text for JSON and reports: "silent", "identified", "cannot be told apart", "partial", "unexplained".
 std::string_view to_string(Verdict verdict);
 
 struct DiagnoseOptions {
   MaskOptions mask;
-  /// The flights, by number, of which `Diagnosis::flights` holds the records. If not said, all of up to
-  /// sixteen; of more those with the largest residual, and others spread over the time in which they were
-  /// flown.
+  /// Numbers of the flights whose records `Diagnosis::flights` keeps. Default: all of up to sixteen flights;
+  /// of more flights, those with the largest residual and others spread over the period of the flights.
   std::optional<std::vector<std::size_t>> series_of{};
-  /// Formula effects that are tried beside the catalogue. Those that the model has are part of the model.
+  /// Formula effects tested in addition to the catalogue. Effects of the model are not tested again.
   std::vector<ModelEffect> formulas{};
   bool whole_file = true;                    ///< look for structure in every variable of the files
-  std::vector<std::string> not_variables{};  ///< variables of the files that are not looked at
-  double training_share = 1.0;  ///< only the first part of every flight, this share of the samples
-  bool trust_reference =
-      false;  ///< the references are exact: no effect of a laser or of another system is tested
+  std::vector<std::string> not_variables{};  ///< variables of the files to exclude
+  double training_share = 1.0;               ///< fraction of each flight used, from its start, 0 to 1
+  /// True: references are exact; no effect of a laser or of another system is tested.
+  bool trust_reference = false;
   /// Ids of effects that an earlier diagnosis found and that the model has now. The shape of an effect of the
   /// flow is uncertain, so what the formula leaves of such an effect is not named as a further effect.
   std::vector<std::string> added{};
-  std::uint64_t seed = 20120106;  ///< of the draws that set thresholds
-  /// Told after every flight of this member.
+  std::uint64_t seed = 20120106;  ///< seed of the random draws that set thresholds
+  /// Callback after every flight of this rank.
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
-/// A coefficient as the diagnosis estimates it.
+/// Coefficient estimated by the diagnosis.
 struct Estimate {
-  std::string name;  ///< of the parameter, e.g. "tau"
+  std::string name;  ///< parameter, e.g. "tau"
   std::string unit;
   double value = 0.0;
-  double standard_error = 0.0;  ///< with the memory of the noise
-  double typical = 0.0;         ///< size met in practice; 0 where nobody knows
+  double standard_error = 0.0;  ///< includes the autocorrelation of the noise
+  double typical = 0.0;         ///< typical size; 0 if unknown
 };
 
-/// A stretch of a flight that speaks for an effect.
+/// Time range of a flight that supports an effect.
 struct Evidence {
   std::string flight;
   double begin = 0.0;   ///< s since 1970 UTC
   double end = 0.0;     ///< s since 1970 UTC
-  std::string regimes;  ///< what was flown, e.g. "level, yaw manoeuvre"
-  double share = 0.0;   ///< of all evidence for the effect, 0 to 1
+  std::string regimes;  ///< e.g. "level, yaw manoeuvre"
+  double share = 0.0;   ///< fraction of all evidence for the effect, 0 to 1
 };
 
-/// An effect that explains the data as well as the one that is named, within the uncertainty.
+/// Effect that explains the data as well as the named one within the uncertainty.
 struct Alias {
   std::string effect;
   std::string title;
-  double correlation = 0.0;    ///< of what the two leave after the model's own coefficients, -1 to 1
-  double chi2_less = 0.0;      ///< by so much its chi2 is below that of the one named; negative: above
-  double size_to_usual = 0.0;  ///< its coefficient over its typical size; 0 where nobody knows
+  /// Correlation of the two after projection onto the model's coefficients, -1 to 1.
+  double correlation = 0.0;
+  double chi2_less = 0.0;      ///< chi2 of the named effect minus chi2 of this one
+  double size_to_usual = 0.0;  ///< coefficient divided by its typical size; 0 if unknown
   std::vector<Estimate> estimates{};
-  /// As `chi2_less` of the logarithm of the marginal likelihood, which knows how large either is met.
+  /// Difference of the log marginal likelihoods, with the sign of `chi2_less`; includes the prior of either
+  /// size.
   double log_likelihood_less = 0.0;
-  double probability = 0.0;         ///< of being the one that is there, among the one named and its aliases
-  ModelEffect correction{};         ///< with the estimated coefficients, ready for a model
-  std::vector<std::string> held{};  ///< as `Finding::held`
-  bool is_alike = false;            ///< as `Finding::is_alike`
+  double probability = 0.0;         ///< posterior probability among the named effect and its aliases, 0 to 1
+  ModelEffect correction{};         ///< effect with the estimated coefficients, ready for a model
+  std::vector<std::string> held{};  ///< see `Finding::held`
+  bool is_alike = false;            ///< see `Finding::is_alike`
 };
 
-/// Which of the regimes that were flown, flown again, would separate rivals.
+/// Regime whose repetition would separate confounded effects.
 struct Advice {
-  /// For people: what to fly, how long, and how surely it would separate them; where no regime that was flown
-  /// helps, what separates the effect in general.
+  /// Recommended manoeuvre, its duration and its power; if no flown regime helps, a method that separates the
+  /// effect in general.
   std::string sentence{};
-  std::string manoeuvre{};  ///< the name of the regime, e.g. "yaw manoeuvre"; empty where none helps
-  double duration = 0.0;    ///< of all repeats, s
+  std::string manoeuvre{};  ///< regime, e.g. "yaw manoeuvre"; empty if no regime helps
+  double duration = 0.0;    ///< total of all repeats, s
   double power = 0.0;       ///< probability that it separates the effect from all rivals with 95 % confidence
 };
 
-/// The name of an effect, or of a coefficient, of a system that the model is held against: "reference:NAME".
-/// @param system which one, where there are several: "reference:PSFRD+QCFR:NAME"; else empty
+/// Id "reference:NAME" of an effect or coefficient of a system that the model is compared with.
+/// @param system needed if there are several systems: "reference:PSFRD+QCFR:NAME"; otherwise empty
 std::string id_on_other_system(const std::string& system, const std::string& name);
 
-/// A missing effect.
+/// Missing effect.
 struct Finding {
-  ModelEffect effect;         ///< with the estimated coefficients, ready for a model
-  bool is_alike = false;      ///< the systems that the model is held against have it too
-  bool of_reference = false;  ///< it acts on a system that the model is held against
-  std::string system{};       ///< which one, where there are several: "PSFRD+QCFR"; else empty
+  ModelEffect effect;         ///< effect with the estimated coefficients, ready for a model
+  bool is_alike = false;      ///< true: common mode, also present in the compared systems
+  bool of_reference = false;  ///< true: acts on a compared system
+  std::string system{};       ///< system, if several are compared: "PSFRD+QCFR"; otherwise empty
   std::string title;
   std::vector<Estimate> estimates{};
-  /// Parameters that the model's own coefficients imitate: neutral in `effect`, to be held in a fit.
+  /// Parameters absorbed by the model's coefficients: neutral in `effect`, fixed in a refit.
   std::vector<std::string> held{};
-  double rms = 0.0;    ///< of what it adds to the residual over the samples used, hPa
-  double worst = 0.0;  ///< the largest of it, with sign, hPa
+  double rms = 0.0;    ///< rms contribution to the residual over the samples used, hPa
+  double worst = 0.0;  ///< largest contribution, with sign, hPa
   std::string worst_flight;
   double worst_time = 0.0;  ///< s since 1970 UTC
-  double chi2 = 0.0;        ///< evidence: fall of the squared residuals in units of the noise
-  double p_value = 0.0;     ///< of the best of all candidates being as good on flights without any effect
-  /// Of residuals on stretches that took no part in the fit of model and effect (five parts in turn), hPa.
+  double chi2 = 0.0;        ///< evidence: decrease of chi2, the sum of squared whitened residuals
+  double p_value = 0.0;     ///< probability that the best candidate reaches this chi2 if no effect is present
+  /// Cross-validated rms residual without and with the effect (five folds), hPa.
   double rms_before = 0.0;
   double rms_after = 0.0;
-  /// On these stretches, with all references: fall of the squared innovations by the effect, in units of the
-  /// noise, and its error from how it differs between minutes.
+  /// Decrease of the sum of squared whitened innovations in the same cross-validation, all references; its
+  /// standard error follows from the scatter between minutes.
   double gain = 0.0;
   double gain_error = 0.0;
-  double events = 0.0;               ///< on how many separate events the evidence rests
-  std::vector<Evidence> evidence{};  ///< the strongest first, at most six
-  std::vector<Alias> aliases{};      ///< the most likely first
-  std::string family{};              ///< what it shares with its other shapes and places, e.g. "lag"
-  std::string shape{};               ///< in which it was found; empty: that of the catalogue
-  /// Of the shape what no model file can hold: "alike on the other system"; empty
-  /// where it can hold all of it.
+  double events = 0.0;               ///< number of separate events that support the finding
+  std::vector<Evidence> evidence{};  ///< up to six, sorted by decreasing evidence
+  std::vector<Alias> aliases{};      ///< sorted by decreasing probability
+  std::string family{};              ///< family of its alternative shapes and locations, e.g. "lag"
+  std::string shape{};               ///< detected shape; empty: the shape of the catalogue
+  /// Part of the shape that a model file cannot express, e.g. "alike on the other system"; otherwise empty.
   std::string shape_beyond_model{};
-  std::vector<std::string> variants{};  ///< shapes of it that do as well, empty text for the catalogue's
-  std::vector<std::string> places{};    ///< where it may act, e.g. "port", "other-system"; its own first
-  double probability = 1.0;             ///< of being the one that is there, among itself and its aliases
-  double times_usual = 0.0;             ///< its size over the usual one; 0 where nobody knows
-  /// By how much the corrected static pressure would differ, rms hPa, were the worst of the aliases the cause
-  /// and not this effect; 0 without aliases.
+  /// Equally good shapes; an empty string is the shape of the catalogue.
+  std::vector<std::string> variants{};
+  /// Possible locations, e.g. "port", "other-system"; location of `effect` first.
+  std::vector<std::string> places{};
+  double probability = 1.0;  ///< posterior probability among the finding and its aliases, 0 to 1
+  double times_usual = 0.0;  ///< size divided by the typical size; 0 if unknown
+  /// Difference of corrected static pressure between this effect and its worst alias, rms hPa; 0 without
+  /// aliases.
   double static_risk = 0.0;
-  /// By how much the corrected static pressure changes, rms hPa, when model and findings are fitted anew: for
-  /// an effect that the model nearly imitates, many times what it takes off the residual.
+  /// Change of corrected static pressure after a refit of model and findings, rms hPa. For an effect nearly
+  /// collinear with the model, it is many times the reduction of the residual.
   double static_change = 0.0;
   Advice advice{};
 
-  /// That of the effect; on another system "reference:ID", or "reference:PSFRD+QCFR:ID" where there are
-  /// several.
+  /// Id of the effect; on another system "reference:ID", or "reference:PSFRD+QCFR:ID" if there are several.
   std::string id() const;
 };
 
-/// An effect that the model's own coefficients imitate.
+/// Effect absorbed by the model's coefficients.
 struct AbsorbedEffect {
   std::string effect;
   std::string title;
   std::vector<std::string> by{};  ///< coefficients like "static-qp.a2"
-  double remaining = 0.0;         ///< the part of its variance that they leave, 0 to 1
+  double remaining = 0.0;         ///< fraction of its variance not absorbed, 0 to 1
 };
 
-/// An effect that was looked for and not found, and how large it may be nevertheless.
+/// Upper limit of an effect that was tested and not found.
 struct UpperLimit {
   std::string effect;
   std::string title;
-  std::vector<Estimate> estimates{};  ///< what came out
-  std::vector<double> limits{};       ///< of each coefficient's size, 95 % confidence, in its unit
-  double rms = 0.0;    ///< hPa that an effect at its limit would add beyond the model's coefficients
-  std::string note{};  ///< e.g. "would have to be impossible in size to explain what is left"
+  std::vector<Estimate> estimates{};  ///< estimated coefficients
+  std::vector<double> limits{};       ///< 95 % confidence limits of each coefficient's size, in its unit
+  double rms = 0.0;                   ///< contribution at the limit that the model does not absorb, hPa
+  std::string note{};  ///< e.g. "size needed to explain the residual is outside physical bounds"
 };
 
 struct NotTestable {
@@ -171,114 +172,115 @@ struct NotTestable {
   std::string reason;  ///< e.g. "needs the role 'cabin_pressure'"
 };
 
-/// A variable of the files with which unexplained structure goes.
+/// Variable of the files that correlates with unexplained structure.
 struct EmpiricalPredictor {
   std::string name;
   std::string unit;
   std::string description{};
-  double r2 = 0.0;         ///< part of the residual's variance that goes with it, 0 to 1
-  double p_value = 0.0;    ///< that the best of all variables does as well on residuals shifted in time
-  double linear_r2 = 0.0;  ///< part that a straight line explains; 0 for an angle
-  double slope = 0.0;      ///< of the line, hPa per unit of the variable
+  double r2 = 0.0;         ///< fraction of the residual variance explained, 0 to 1
+  double p_value = 0.0;    ///< probability that the best variable does as well on residuals shifted in time
+  double linear_r2 = 0.0;  ///< fraction explained by a straight line; 0 for an angle
+  double slope = 0.0;      ///< slope of that line, hPa per unit of the variable
   double slope_error = 0.0;
   double centre = 0.0;     ///< mean of the variable over the samples used
-  std::string formula{};   ///< of an effect that would describe it, e.g. "k * (ENGTRQ - 48)"
-  std::string sampling{};  ///< how it was brought to one value a record, in words; empty where it has one
-  /// Where what goes with it may act, as far as references that do not see the static ports tell it:
-  /// e.g. "port", "laser"; empty where they do not.
+  std::string formula{};   ///< formula of a corresponding effect, e.g. "k * (ENGTRQ - 48)"
+  std::string sampling{};  ///< method of reduction to one value per record; empty if the file has one
+  /// Possible locations according to references independent of the static ports, e.g. "port", "laser"; empty
+  /// if undetermined.
   std::vector<std::string> places{};
-  EffectLocation location =
-      EffectLocation::static_defect;  ///< of the formula: at the pitot where the total pressures have it too
+  /// Location of the formula: the pitot if the total pressures show the same structure.
+  EffectLocation location = EffectLocation::static_defect;
 };
 
-/// What is known of where the cause of a traced variable acts, a clause without its full stop.
+/// Clause on the location of the cause, without full stop.
 std::string places_text(const EmpiricalPredictor& variable);
 
-/// A flight whose residual lies above or below those of the others.
+/// Bias of a flight relative to the others.
 struct FlightOffset {
   std::string flight;
-  double size = 0.0;  ///< hPa; positive where delta-p should be larger than in the others
+  double size = 0.0;  ///< hPa; positive if delta-p should be larger than in the others
   double standard_error = 0.0;
-  double p_value = 1.0;  ///< after protection against chance over all flights
+  double p_value = 1.0;  ///< corrected for the number of flights
 };
 
-/// Structure that no effect explains.
+/// Structure not explained by any effect.
 struct Unexplained {
   bool significant = false;
   double rms = 0.0;        ///< hPa
-  double drift_rms = 0.0;  ///< of it the part that wanders slowly, with nothing that is recorded, hPa
+  double drift_rms = 0.0;  ///< part due to slow drift, uncorrelated with recorded variables, hPa
   double p_value = 1.0;
-  std::string regime{};                         ///< where most of it lies, e.g. "climb"
-  std::vector<EmpiricalPredictor> variables{};  ///< the strongest first
-  std::vector<FlightOffset> steps{};            ///< only those that are significant, the largest first
-  std::vector<std::string> shares_noise{};      ///< variables left out: their noise is that of the residual
-  /// Variables left out: the files say that they are computed from what the residual is computed from.
+  std::string regime{};                         ///< regime with most of the structure, e.g. "climb"
+  std::vector<EmpiricalPredictor> variables{};  ///< sorted by decreasing strength
+  std::vector<FlightOffset> steps{};            ///< significant offsets only, by decreasing size
+  /// Excluded variables whose noise is correlated with that of the residual.
+  std::vector<std::string> shares_noise{};
+  /// Variables excluded because, by attributes of the files, they derive from inputs of the residual.
   std::vector<std::string> computed{};
 };
 
-/// A flight as the diagnosis saw it, for pictures. All arrays have one value for each record.
+/// Diagnosed flight, for figures. All arrays have one value per record.
 struct FlightDiagnosis {
-  std::size_t number = 0;                        ///< of the flight
-  std::string name;                              ///< that of its file
-  std::shared_ptr<const FlightSamples> samples;  ///< none of a flight whose records are not held
+  std::size_t number = 0;                        ///< flight number
+  std::string name;                              ///< file name
+  std::shared_ptr<const FlightSamples> samples;  ///< records; nullptr if they are not kept
   std::vector<Mask> mask;
-  std::vector<double> before;  ///< residual, the model's own coefficients refitted, hPa; NaN where not used
-  std::vector<double> after;   ///< residual with all findings, everything refitted, hPa
-  std::vector<std::vector<double>> added;     ///< by each finding, hPa
-  std::vector<std::vector<double>> evidence;  ///< for each finding: gain in chi2 per minute around the sample
-  std::vector<double> drift;                  ///< what wanders slowly, hPa
-  std::vector<double> traced;                 ///< the first traced variable, in its unit; empty without
-  std::vector<double> static_pressure;        ///< corrected, hPa
+  /// Residual with the model's coefficients refitted, hPa; NaN for samples not used.
+  std::vector<double> before;
+  std::vector<double> after;               ///< residual with all findings and all coefficients refitted, hPa
+  std::vector<std::vector<double>> added;  ///< contribution of each finding, hPa
+  /// For each finding: chi2 reduction per minute around the sample.
+  std::vector<std::vector<double>> evidence;
+  std::vector<double> drift;            ///< drift of the residual, hPa
+  std::vector<double> traced;           ///< first empirical predictor, in its unit; otherwise empty
+  std::vector<double> static_pressure;  ///< corrected, hPa
   std::vector<double> mach;
-  std::vector<double> attack;    ///< deg; NaN where unknown
-  std::vector<double> sideslip;  ///< deg; NaN where unknown
+  std::vector<double> attack;    ///< deg; NaN if unknown
+  std::vector<double> sideslip;  ///< deg; NaN if unknown
 };
 
 struct Diagnosis {
   Verdict verdict = Verdict::silent;
   std::string reference;
-  std::vector<Finding> findings{};  ///< the strongest first
+  std::vector<Finding> findings{};  ///< sorted by decreasing strength
   Unexplained unexplained;
   std::vector<AbsorbedEffect> absorbed{};
-  std::vector<UpperLimit> limits{};  ///< the effect that could be largest first
+  std::vector<UpperLimit> limits{};  ///< sorted by decreasing size
   std::vector<NotTestable> not_testable{};
-  /// The model's own free coefficients fitted again, as `residual_rms` has them, by names like
-  /// "static-qp.a2"; behind them those of the models of the references.
+  /// Free coefficients of the model, refitted (see `residual_rms`), with names like "static-qp.a2", followed
+  /// by those of the references' models.
   std::vector<Estimate> own{};
-  std::size_t candidates = 0;  ///< effects that were tested
-  double threshold = 0.0;      ///< chi2 that an effect had to exceed
-  /// Of the residual with the model's coefficients as they are, hPa: what `compare` and `refit` tell of these
-  /// samples.
+  std::size_t candidates = 0;  ///< number of effects tested
+  double threshold = 0.0;      ///< chi2 threshold for a detection
+  /// rms residual of the unchanged model, hPa, as in `compare` and `refit`.
   double rms_given = 0.0;
-  double noise_rms = 0.0;  ///< the same of the noise
-  /// With the model's free coefficients fitted again by the diagnosis, hPa: linearised, by generalised least
-  /// squares.
+  double noise_rms = 0.0;  ///< rms noise with the unchanged model, hPa
+  /// rms residual after a linearised generalised least-squares refit of the model's free coefficients, hPa.
   double residual_rms = 0.0;
-  double residual_rms_held_out = 0.0;  ///< the same on stretches that took no part (five parts in turn), hPa
-  double noise_rms_with_findings = 0.0;  ///< of what is left when all findings are taken off, hPa
+  double residual_rms_held_out = 0.0;    ///< cross-validated rms residual (five folds), hPa
+  double noise_rms_with_findings = 0.0;  ///< rms noise of the residual with all findings, hPa
   std::size_t samples = 0;
-  Statistics flaps_out;                 ///< of samples left out because flaps are out, as the model is given
-  std::vector<HeldOutPart> held_out{};  ///< the later parts of flights, or flights that `improve` held out
+  Statistics flaps_out;                 ///< residuals of samples excluded because of flaps, model unchanged
+  std::vector<HeldOutPart> held_out{};  ///< later parts of flights, or flights held out by `improve`
   std::array<std::size_t, mask_count> masks{};
-  std::vector<FlightDiagnosis> flights{};  ///< against the first reference
+  std::vector<FlightDiagnosis> flights{};  ///< residuals of the first reference
   std::vector<std::string> notes{};
 
-  /// The numbers of the flights whose records are held.
+  /// Numbers of the flights whose records are kept.
   std::vector<std::size_t> flights_with_records() const;
 };
 
-/// What is held out is part of the verdict: where it is off, nothing is not an answer.
+/// Changes `silent` to `unexplained` if a held-out part has a significant bias.
 void judge_held_out(Diagnosis& diagnosis);
 
-/// Looks for the physical effect that a fitted model lacks.
+/// Searches for physical effects that a fitted model lacks.
 ///
-/// Every effect of the catalogue that is not in the model, and every formula of the options, is tested: does
-/// what it would add explain residuals that the model's own free coefficients cannot? Columns are derivatives
-/// through the whole chain where the model says that the air is; the noise is an autoregression with a level
-/// of its own every five minutes and a slow drift; the threshold is that of the best of all candidates on
-/// flights without any effect. The noise of several flights is found on all processors.
+/// Tests each formula of the options and each effect of the catalogue that the model lacks: does its
+/// contribution explain residuals that the model's free coefficients cannot? Columns are derivatives through
+/// the whole chain at the air data of the model. The noise model is an autoregression with a separate level
+/// every five minutes and a slow drift. The threshold is the distribution of the best of all candidates on
+/// flights without any effect. The noise of several flights is estimated on all processors.
 ///
-/// @throws Error if a flight cannot be read, a variable of the model is absent, or too few samples are left.
+/// @throws Error if a flight cannot be read, a variable of the model is absent, or too few samples remain.
 Diagnosis diagnose(const FlightSet& flights, const ModelDefinition& model, const References& references,
                    const DiagnoseOptions& options = {});
 

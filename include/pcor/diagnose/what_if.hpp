@@ -10,50 +10,50 @@
 
 namespace pcor {
 
-/// How many effects the reader of a report may try.
+/// Maximum number of effects in a what-if panel.
 inline constexpr std::size_t max_what_if_effects = 12;
 
-/// An effect that the reader of a report may add to the model.
+/// Effect that the reader of a report may add to the model.
 struct WhatIfCandidate {
-  std::string id;                       ///< as that of a finding
-  std::string why;                      ///< it is in the list, e.g. "found", "instead of static-lag"
-  std::optional<ModelEffect> effect{};  ///< with its shape; without, the shape is that of the catalogue
-  bool is_alike = false;                ///< as `Finding::is_alike`
-  std::string stands_for{};  ///< the effect that was found in whose place it stands, itself or another
+  std::string id;                       ///< id of a finding
+  std::string why;                      ///< reason for its inclusion, e.g. "found", "instead of static-lag"
+  std::optional<ModelEffect> effect{};  ///< effect with its shape; default: the shape of the catalogue
+  bool is_alike = false;                ///< see `Finding::is_alike`
+  std::string stands_for{};             ///< the finding that it represents or replaces
 };
 
 struct WhatIfOptions {
-  /// Masks, formulas and training share of the diagnosis. If its `series_of` is said,
-  /// `WhatIf::flights` are those flights alone, and all that are held out; else all.
+  /// Masks, formulas and training share of the diagnosis. If its `series_of` is given, `WhatIf::flights` are
+  /// those flights and all held-out ones; otherwise all flights.
   DiagnoseOptions diagnose;
-  FlightSet holdout{};    ///< flights that take no part in any fit
-  bool is_robust = true;  ///< outliers count less, as by the loss of a refit
-  /// The model's own coefficients at which the residual of the report was found; of the model without.
+  FlightSet holdout{};    ///< flights not used in any fit
+  bool is_robust = true;  ///< true: outliers are down-weighted, as by the loss of a refit
+  /// Coefficients of the model at the residual of the report; default: unchanged.
   std::vector<Estimate> own{};
 };
 
-/// What a what-if needs of a flight.
+/// Data of a flight for the what-if panel.
 struct WhatIfFlight {
   std::shared_ptr<const FlightSamples> samples{};
-  /// Of each coefficient of the panel, one value for each record.
+  /// Column of each coefficient of the panel, one value per record.
   std::vector<std::vector<double>> columns{};
 };
 
-/// A what-if, its columns still by flights and records.
+/// What-if panel with its columns by flights and records.
 struct WhatIf {
   WhatIfPanel panel;
-  std::vector<ModelEffect> effects{};  ///< of the panel, neutral, in their shapes
+  std::vector<ModelEffect> effects{};  ///< neutral effects of the panel, with their shapes
   std::vector<WhatIfFlight> flights{};
 };
 
-/// The effects of a diagnosis to try: what was found, with what it cannot be told from, the formulas of the
-/// user, and what comes nearest to a finding; at most `max_what_if_effects`.
+/// Effects of a diagnosis for the panel: findings, their alternatives, formulas of the user, and the closest
+/// effects to a finding; at most `max_what_if_effects`.
 std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
                                                 const std::vector<ModelEffect>& formulas);
 
-/// What a reader needs to add effects to a model under his hand: the derivatives of the residual by the
-/// coefficients of model and effects, sums in units of the noise for fits that are those of `refit`, but for
-/// effects in whose coefficients the residual is not linear, and what would tell the effects apart.
+/// Data for interactive addition of effects to a model: derivatives of the residual with respect to the
+/// coefficients of model and effects, whitened sums for fits equivalent to `refit` (except for effects with a
+/// nonlinear residual), and criteria that separate the effects.
 ///
 /// @throws Error as `diagnose`.
 WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const References& references,

@@ -60,7 +60,7 @@
 
 namespace pcor {
 
-/// Every effect of the program. To add one: write its file in `effects/` and name it here.
+/// All effects of the library. To add one: write its file in `effects/` and add it here.
 using Catalogue = std::tuple<effects::StaticLag,            //
                              effects::RecoveryFactorError,  //
                              effects::LamsElevation,        //
@@ -137,16 +137,16 @@ constexpr std::array<EffectFunction<S, P>, sizeof...(Effect)> functions_of_effec
 
 }  // namespace detail
 
-/// The facts of every effect, in the order of the catalogue.
+/// Metadata of every effect, in the order of the catalogue.
 inline constexpr std::array<EffectInfo, catalogue_size> effect_info =
     detail::facts_of_effects(static_cast<const Catalogue*>(nullptr));
 
-/// The formulas of every effect, for a state of scalar `S` and parameters of scalar `P`.
+/// Functions of all effects, for a state of scalar `S` and parameters of scalar `P`.
 template <class S, class P>
 inline constexpr auto effect_functions =
     detail::functions_of_effects<S, P>(static_cast<const Catalogue*>(nullptr));
 
-/// The place in the catalogue of the effect called `id`, or `catalogue_size` where there is none.
+/// Index of the effect `id` in the catalogue, or `catalogue_size` if unknown.
 constexpr std::size_t effect_named(std::string_view id) {
   for (std::size_t i = 0; i < catalogue_size; ++i) {
     if (effect_info[i].id == id) return i;

@@ -8,13 +8,13 @@ struct FlapsGear {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "flaps-gear";
-    info.title = "flaps, and the gear that goes with them";
+    info.title = "flaps and landing gear";
     info.family = "configuration";
     info.location = EffectLocation::static_defect;
     info.formula = "defect * flaps / 50";
     info.parameters[0] = {"defect", "hPa", 0.0, -50.0, 50.0, 1.5};
     info.needs = {Quantity::flaps, Quantity::count, Quantity::count, Quantity::count};
-    info.scalings[0] = {0, 1};  // with q
+    info.scalings[0] = {0, 1};  // proportional to q
     info.size = "C-130 1.3 to 1.7 hPa with flaps at 50 % and more; GV unknown";
     info.look_alikes = "static-alpha-quad, ground-effect, pcor-regime";
     info.manoeuvre = "level leg at one speed, repeated with flaps at 0 and 50 %";

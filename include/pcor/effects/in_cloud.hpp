@@ -4,8 +4,8 @@
 
 namespace pcor::effects {
 
-/// 1 where the `liquid_water` content, g/m3, is that of a cloud, else 0; NaN where it is missing. Above 0.05
-/// g/m3 a probe of liquid water shows more than its zero drifts.
+/// Cloud indicator: 1 if the `liquid_water` content, g/m3, exceeds 0.05 g/m3, above the zero drift of liquid
+/// water probes; otherwise 0; NaN if missing.
 template <class S>
 S in_cloud(const S& liquid_water) {
   const S cloud = select(liquid_water > S(0.05), S(1.0), S(0.0));

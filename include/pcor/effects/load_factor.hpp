@@ -15,7 +15,7 @@ struct LoadFactor {
     info.formula = "per_g * normal_acceleration / 9.80665";
     info.parameters[0] = {"per_g", "hPa", 0.0, -50.0, 50.0, 1.0};
     info.needs = {Quantity::normal_acceleration, Quantity::count, Quantity::count, Quantity::count};
-    info.scalings[0] = {0, 1};  // with q
+    info.scalings[0] = {0, 1};  // proportional to q
     info.size = "0.2 to 1 hPa for 0.4 g, estimated; King Air above 1.5 hPa in accelerated flight";
     info.look_alikes = "static-alpha, static-lag, lams-pod-flex";
     info.manoeuvre = "pitch manoeuvre with two periods, 10 and 30 s; steady turn";

@@ -17,7 +17,7 @@ struct RollStatic {
     info.formula = "defect * sin(roll * pi / 180)";
     info.parameters[0] = {"defect", "hPa", 0.0, -20.0, 20.0, 0.3};
     info.needs = {Quantity::roll, Quantity::count, Quantity::count, Quantity::count};
-    info.scalings[0] = {0, 1};  // with q
+    info.scalings[0] = {0, 1};  // proportional to q
     info.size = "0 to 0.3 hPa, estimated";
     info.look_alikes = "lams-azimuth, static-beta-odd, horizontal-gradient";
     info.manoeuvre = "circles to the left and to the right";

@@ -14,7 +14,7 @@ struct StaticAlpha {
     info.formula = "a1 * attack_ratio * static_pressure";
     info.parameters[0] = {"a1", "1", 0.0, -2.0, 2.0, 0.0213};
     info.needs = {Quantity::attack_ratio, Quantity::static_pressure, Quantity::count, Quantity::count};
-    info.scalings[0] = {-1, 1};  // with q instead of p
+    info.scalings[0] = {-1, 1};  // q instead of p
     info.size = "C-130 PSFD 0.0213, 1 hPa/deg at 700 hPa; PSFRD 0.0089";
     info.look_alikes = "lams-elevation, pitot-angle, adif-drift";
     info.manoeuvre = "pitch manoeuvre, speed run";

@@ -14,7 +14,7 @@ struct StaticAlphaQuad {
     info.formula = "a4 * dynamic_ratio * attack^2 * static_pressure";
     info.parameters[0] = {"a4", "1/deg2", 0.0, -0.2, 0.2, 0.0024};
     info.needs = {Quantity::dynamic_ratio, Quantity::attack, Quantity::static_pressure, Quantity::count};
-    info.scalings[0] = {1, -1};  // with p instead of q
+    info.scalings[0] = {1, -1};  // p instead of q
     info.size = "C-130 0.00245 (PSFD), 0.00163 (PSFRD): 2.6 hPa at 4 deg, 700 hPa";
     info.look_alikes = "flaps-gear, pitot-angle, lams-elevation";
     info.manoeuvre = "pitch manoeuvre at two speeds; slow half of a speed run";

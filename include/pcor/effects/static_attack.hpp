@@ -14,7 +14,7 @@ struct StaticAttack {
     info.formula = "a3 * attack * static_pressure";
     info.parameters[0] = {"a3", "1/deg", 0.0, -0.1, 0.1, 0.0014};
     info.needs = {Quantity::attack, Quantity::static_pressure, Quantity::count, Quantity::count};
-    info.scalings[0] = {-1, 1};  // with q instead of p
+    info.scalings[0] = {-1, 1};  // q instead of p
     info.size = "C-130 PSFD 0.00137/deg, PSFRD 0.0005/deg; GV 0.00215/deg";
     info.look_alikes = "lams-elevation, pitot-angle, adif-drift";
     info.manoeuvre = "pitch manoeuvre, speed run";

@@ -14,7 +14,7 @@ struct StaticBetaEven {
     info.formula = "b2 * sideslip^2 * static_pressure";
     info.parameters[0] = {"b2", "1/deg2", 0.0, -0.02, 0.02, -2e-5};
     info.needs = {Quantity::sideslip, Quantity::static_pressure, Quantity::count, Quantity::count};
-    info.scalings[0] = {-1, 1};  // with q instead of p
+    info.scalings[0] = {-1, 1};  // q instead of p
     info.size = "estimated 1e-5 to 4e-5 /deg2: -0.1 to -0.4 hPa at 4 deg";
     info.look_alikes = "pitot-angle, lams-azimuth";
     info.manoeuvre = "yaw manoeuvre, steady-heading sideslip";

@@ -14,7 +14,7 @@ struct StaticBetaOdd {
     info.formula = "b1 * sideslip_ratio * static_pressure";
     info.parameters[0] = {"b1", "1", 0.0, -2.0, 2.0, -0.0018};
     info.needs = {Quantity::sideslip_ratio, Quantity::static_pressure, Quantity::count, Quantity::count};
-    info.scalings[0] = {-1, 1};  // with q instead of p
+    info.scalings[0] = {-1, 1};  // q instead of p
     info.size = "C-130 -0.00177 (PSFD), -0.0008 (PSFRD): -0.37 hPa at 3.7 deg, 700 hPa";
     info.look_alikes = "lams-azimuth";
     info.manoeuvre = "yaw manoeuvre";

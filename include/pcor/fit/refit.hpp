@@ -15,88 +15,87 @@
 
 namespace pcor {
 
-/// A stage of a fit: some parameters from the samples of some regimes alone, each interval of which has an
-/// offset of its own, of delta-p/p. So the memo found the sensitivities of its eq. 19 from manoeuvres. Stages
-/// are repeated until no coefficient moves by a hundredth of its error.
+/// Stage of a fit: some parameters, fitted only to samples of some regimes, with one free offset of delta-p/p
+/// per interval, as the memo determined the sensitivities of its eq. 19 from manoeuvres. Stages are iterated
+/// until every coefficient changes by less than a hundredth of its standard error.
 struct FitStage {
   std::vector<Regime> regimes;
-  std::vector<std::string> parameters;  ///< like "static-alpha.a1"; or an effect: all of its parameters
+  /// Parameters such as "static-alpha.a1", or effects (all their parameters).
+  std::vector<std::string> parameters;
 };
 
 struct RefitOptions {
   MaskOptions mask;
   Loss loss = Loss::huber;
-  std::vector<std::string> fix{};   ///< parameters, or effects, held besides those that the file fixes
-  std::vector<std::string> free{};  ///< parameters, or effects, fitted although the file fixes them
+  std::vector<std::string> fix{};   ///< parameters or effects, fixed in addition to those that the file fixes
+  std::vector<std::string> free{};  ///< parameters or effects, fitted although the file fixes them
   std::vector<FitStage> stages{};
-  /// The model of a static system that is the reference is fitted together with the model.
+  /// The model of the reference, if it is a static system, is fitted together with the model.
   bool fit_reference = false;
-  /// Effects of the model that the systems of the references have alike: they cancel where two systems are
-  /// held against each other, and are left out there. A lag, for example, would be found there from the noise
-  /// of both sensors alone.
+  /// Effects of the model that are common to the systems of the references: they cancel in the difference of
+  /// two systems and are excluded there. Otherwise a lag, for example, would be estimated from the noise of
+  /// both sensors.
   std::vector<std::string> alike{};
-  /// Every coefficient is drawn to its starting value, as if that were measured: with the covariance that its
-  /// file states, else to within the typical size of its effect. Always so where the reference is fitted too:
-  /// two static systems tell only their difference, and what they have in common keeps its value, and the
-  /// prior as its error.
+  /// Gaussian prior at the starting value of every coefficient: covariance from the model file, otherwise the
+  /// typical size of the effect. Always used if the reference is fitted too: two static systems determine
+  /// only their difference, and common effects keep the value and error of the prior.
   bool use_prior = false;
-  /// The calibration of the references and of the thermometer counts as exact. Otherwise what it may be wrong
-  /// by is part of the standard errors: `ParameterInfo::doubt`, or what `[uncertainty]` of the model states.
+  /// The calibration of the references and of the thermometer is exact. Otherwise its error is part of the
+  /// standard errors: `ParameterInfo::doubt`, or `[uncertainty]` of the model.
   bool trust_reference = false;
-  /// Look for the start by a global search between the bounds, for parameters in which the residual is not
-  /// linear.
+  /// Global search of the starting point between the bounds, for parameters with a nonlinear residual.
   bool search = false;
-  /// The fit uses the first part of every flight, this share of the samples; the rest is held out.
+  /// Fraction of each flight used, from its start, 0 to 1; the rest is held out.
   double training_share = 1.0;
-  FlightSet holdout{};  ///< flights that take no part in the fit
-  /// Flights reduced at a time; 0: as many as processors, and one in a team of several.
+  FlightSet holdout{};  ///< flights excluded from the fit
+  /// Flights reduced in parallel; 0: number of processors, or one if there are several ranks.
   std::size_t threads = 0;
   std::function<void(std::size_t pass, std::size_t passes)> progress{};
 };
 
-/// A coefficient after the fit.
+/// Fitted coefficient.
 struct FittedParameter {
-  std::string name;  ///< like "static-qp.a2"; of the reference's model "reference:static-qp.a2"
+  std::string name;  ///< name such as "static-qp.a2"; for the reference's model "reference:static-qp.a2"
   std::string unit;
   double start = 0.0;
   double value = 0.0;
-  /// With the memory and the slow drift of the noise, the misfit of the law, what held coefficients may err
-  /// by, and the doubt of the reference's calibration; NaN where it was not fitted or is at a bound.
+  /// Includes autocorrelation and drift of the noise, the misfit of the model, and the uncertainties of fixed
+  /// coefficients and of the reference's calibration; NaN if it was not fitted or is at a bound.
   double standard_error = 0.0;
-  double noise_error = 0.0;  ///< the same without the misfit of the law and without the doubt
-  /// The standard error that leaving out one flight, or one part of a flight, after another gives, without a
-  /// model of the noise.
+  /// Standard error without the misfit of the model and the uncertainty of the calibration.
+  double noise_error = 0.0;
+  /// Jackknife standard error over flights, or parts of a flight; independent of the noise model.
   double jackknife_error = 0.0;
   bool fitted = false;
   bool at_bound = false;
-  int stage = 0;  ///< in which it was fitted, from 1; the last is that of all the rest
+  int stage = 0;  ///< stage of the fit, from 1; the last one fits all remaining parameters
 };
 
-/// What the fit becomes without an effect, the others fitted again.
+/// Fit statistics with one effect removed and the others refitted.
 struct Omission {
   std::string effect;
   double rms = 0.0;  ///< hPa
   double r_squared = 0.0;
 };
 
-/// A flight in the fit, before and after.
+/// Flight statistics before and after the fit.
 struct FlightFit {
   std::string flight;
   bool holdout = false;
   Statistics before;
   Statistics after;
   double expected_bias = 0.0;  ///< `HeldOutPart::expected` of a part that was held out, hPa
-  /// Fall of the squared residuals by the fit, in units of the noise, and its error from how it differs
-  /// between minutes.
+  /// Decrease of the sum of squared whitened residuals by the fit; its standard error follows from the
+  /// scatter between minutes.
   double gain = 0.0;
   double gain_error = 0.0;
-  std::string reference{};  ///< as `Reference::name` has it
+  std::string reference{};  ///< see `Reference::name`
 };
 
-/// Of the parts that were held out, that whose bias is largest compared with what the fit expects.
+/// Held-out part with the largest ratio of bias to expected bias.
 std::optional<HeldOutPart> worst_held_out(const std::vector<FlightFit>& flights);
 
-/// How coefficients and errors are found, in a sentence.
+/// Estimators of coefficients and errors, one sentence each.
 inline constexpr std::string_view refit_estimator =
     "Coefficients by least squares with Huber's loss, four robust deviations wide; errors from the noise "
     "with its "
@@ -107,72 +106,72 @@ inline constexpr std::string_view refit_estimator_of_gps =
     "both.";
 
 struct RefitResult {
-  ModelDefinition model;  ///< with coefficients, standard errors, covariance and provenance
-  std::optional<ModelDefinition> reference{};  ///< of the reference's model, where it was fitted too
+  ModelDefinition model;  ///< fitted model with coefficients, standard errors, covariance and provenance
+  std::optional<ModelDefinition> reference{};  ///< fitted model of the reference, if it was fitted too
   std::vector<FittedParameter> parameters{};
   std::vector<std::string> covariance_names{};
-  /// Of the fitted parameters, and of those that were held with a stated error, which the others carry;
-  /// behind them of the calibration of the thermometer, like "temp-offset.offset", where it is in doubt.
+  /// Covariance of the fitted parameters and of fixed parameters with a stated error, followed by the
+  /// calibration of the thermometer, such as "temp-offset.offset", if it is uncertain.
   std::vector<std::vector<double>> covariance{};
   std::size_t samples = 0;
-  double rms = 0.0;                ///< hPa, of all samples in the fit, outliers too
-  double rms_over_pressure = 0.0;  ///< of residual over static pressure
-  double bulk_rms = 0.0;           ///< robust deviation, hPa: without outliers
-  double noise_rms = 0.0;          ///< of the noise floor, hPa
-  double drift_rms = 0.0;          ///< of the slow parts of the noise, hPa: drift of the sensors
-  /// Rms of what the law lacks as a smooth function of the flight state, hPa. The fitted model states it as
-  /// the standard uncertainty of its delta-p in one sample.
+  double rms = 0.0;                ///< hPa, all samples in the fit including outliers
+  double rms_over_pressure = 0.0;  ///< rms of residual / static pressure
+  double bulk_rms = 0.0;           ///< robust standard deviation, hPa; insensitive to outliers
+  double noise_rms = 0.0;          ///< noise floor, hPa
+  double drift_rms = 0.0;          ///< drift of the sensors, hPa
+  /// Rms misfit of the model as a smooth function of the flight state, hPa. The fitted model states it as the
+  /// standard uncertainty of its delta-p in one sample.
   double left = 0.0;
-  double least_squares_rms = 0.0;  ///< of plain least squares of the same samples, hPa; NaN where not known
+  double least_squares_rms = 0.0;  ///< plain least squares on the same samples, hPa; NaN if unknown
   double r_squared = 0.0;
   double rms_before = 0.0;   ///< hPa, with the coefficients of the file
-  std::size_t outliers = 0;  ///< samples that depart from what the noise allows after those before them
-  /// Ratio of the largest to the smallest singular value of the derivatives, each column of length one.
+  std::size_t outliers = 0;  ///< samples that differ from their prediction by more than the noise permits
+  /// Ratio of the largest to the smallest singular value of the derivatives, each column normalised.
   double condition_number = 0.0;
   double autocorrelation_time = 1.0;
   std::array<std::size_t, mask_count> masks{};
-  std::size_t jackknife_parts = 0;  ///< flights, or parts of flights, that were left out one after another
+  std::size_t jackknife_parts = 0;  ///< number of flights, or parts of flights, left out in the jackknife
   std::vector<Omission> omissions{};
   std::vector<FlightFit> flights{};
-  std::vector<FlightFit> further{};  ///< the same with each further reference, flight by flight
-  Statistics
-      flaps_out;  ///< of samples that are in no fit because flaps are out, with the fitted coefficients
-  /// Standard error of delta-p by all fitted coefficients, hPa, rms over the flights; zero without the
+  std::vector<FlightFit> further{};  ///< fit statistics with each further reference, by flight
+  Statistics flaps_out;  ///< residuals, with the fitted coefficients, of samples excluded because of flaps
+  /// Standard error of delta-p due to all fitted coefficients, hPa, rms over the flights; zero without the
   /// references wind and height.
   double defect_error = 0.0;
   std::string reference_text{};
   std::string_view estimator = refit_estimator;
-  /// Why the model should not be used: the fit is worse than the coefficients of the file, or a held-out part
-  /// is off by more than the fit expects. Empty otherwise.
+  /// Reason for which the model should not be used: the fit is worse than the coefficients of the file, or a
+  /// held-out part has a significant bias. Otherwise empty.
   std::string worse{};
-  std::vector<std::string> warnings{};  ///< why the fit should not be trusted, a sentence each
-  std::vector<std::string> notes{};     ///< what a user should know, a sentence each, the gravest first
+  std::vector<std::string> warnings{};  ///< reasons to doubt the fit, one sentence each
+  std::vector<std::string> notes{};     ///< notes for the user, one sentence each, by decreasing severity
 };
 
-/// Fits the free coefficients of `model` to the flights, with all references at once: the sum of their
-/// likelihoods, each with a noise of its own. A reference that no free coefficient changes takes no part.
-/// Figures of the result that are of one residual are those of the first reference.
+/// Fits the free coefficients of `model` to the flights with all references: the sum of their likelihoods,
+/// each with a separate noise model. References that do not depend on a free coefficient are not used.
+/// Results for a single residual are those of the first reference.
 ///
-/// Coefficients: least squares with Huber's loss of residuals in bins of four seconds, each bin weighted by
-/// the root of its samples, each reference by the robust deviation of its residuals. Slow misfit of the law
-/// is not taken for drift: the correction is the best one over all that was flown. From the
-/// coefficients of the file the linear problem is solved in closed form; then Ceres does the full one, with
-/// bounds and loss. Every pass reduces each flight to a triangular factor, and the factors add up.
+/// Coefficients: least squares with Huber loss of residuals in bins of four seconds, each bin weighted by the
+/// square root of its sample count, each reference by the robust standard deviation of its residuals. Slow
+/// misfit of the model is not treated as drift: the correction is the best one over all flown conditions.
+/// From the coefficients of the file the linear problem is solved in closed form; Ceres then solves the full
+/// problem, with bounds and loss. Every pass reduces each flight to a triangular factor; the factors are
+/// combined.
 ///
-/// Standard errors: M (N + F) M' with the derivatives M of the coefficients by the residuals, the covariance
-/// N of the noise (an autoregression whose level changes every five minutes, and slow drift, by restricted
-/// likelihood) and the covariance F of the misfit of the law (`RefitResult::left`), and what the coefficients
-/// would be if the reference and the thermometer were calibrated otherwise (`RefitOptions::trust_reference`);
-/// beside each stands that of a jackknife.
+/// Standard errors: M (N + F) M' with the derivatives M of the coefficients with respect to the residuals,
+/// the covariance N of the noise (an autoregression with one level per five minutes, and drift, by restricted
+/// likelihood) and the covariance F of the misfit of the model (`RefitResult::left`), plus the sensitivity to
+/// calibration errors of the reference and the thermometer (`RefitOptions::trust_reference`). A jackknife
+/// error is reported with each.
 ///
 /// Wind and heights are fitted after the other references, by a likelihood with winds, D-value and errors of
 /// GPS as random processes (docs/gps.md). Coefficients of the other references and their covariance are the
 /// prior; without other references the prior has the typical sizes of the effects about the start, and
-/// directions in which delta-p would have an error above 1 hPa are held.
+/// directions in which delta-p would have an error above 1 hPa are fixed.
 ///
-/// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
-/// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the
-/// message names them and says which to fix.
+/// @throws Error if a flight cannot be read, no parameter is free, no sample remains (with the masks),
+/// samples are fewer than coefficients, bounds are empty, or coefficients are not identifiable together on
+/// these flights: the message names them and the ones to fix.
 RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const References& references,
                   const RefitOptions& options = {});
 
@@ -182,14 +181,14 @@ struct LevelByGps {
   double standard_error = 0.0;  ///< above 1 hPa the level is not determined
 };
 
-/// The constant part of the pressure that delta-p of the model lacks by GPS, with all other coefficients of
-/// the model: by the same likelihood as `refit`. Empty without the references wind and height.
+/// Constant error of the model's delta-p according to GPS, by the same likelihood as `refit`, fitted with all
+/// coefficients of the model. Empty without the references wind and height.
 /// @throws Error as `refit`
 std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelDefinition& model,
                                        const References& references, const MaskOptions& mask = {});
 
-/// The coefficients as each flight alone finds them, without held-out flights; none of a flight that cannot
-/// tell them.
+/// Coefficients fitted to each flight separately, without held-out flights; empty for a flight that does not
+/// determine them.
 /// @throws Error if a flight cannot be read
 std::vector<std::vector<FittedParameter>> refit_per_flight(const FlightSet& flights,
                                                            const ModelDefinition& model,

@@ -8,10 +8,10 @@
 
 namespace pcor {
 
-/// A flight that cannot be opened.
+/// Flight that cannot be opened, with the reason.
 struct UnreadableFlight {
   std::filesystem::path flight{};
-  std::string why{};  ///< a sentence
+  std::string why{};  ///< one sentence
 };
 
 /// Flights that can be opened, and those that cannot.
@@ -20,15 +20,15 @@ struct ReadableFlights {
   std::vector<UnreadableFlight> unreadable{};
 };
 
-/// Where flights are opened to see whether they can be.
+/// Process in which flights are probed.
 enum class OpenedIn {
   this_process,
-  /// One after another in a copy of this process, which has one thread: where the HDF5 library crashes on a
-  /// damaged file, it ends the copy alone. Not for a process of MPI, which must not be copied.
+  /// Sequentially in a single-threaded child process: if the HDF5 library crashes on a damaged file, only the
+  /// child ends. Not for an MPI process, which must not be forked.
   a_copy
 };
 
-/// Opens each flight and closes it again; the team shares the work.
+/// Opens and closes each flight; the flights are shared between the ranks.
 ReadableFlights readable_flights(const std::vector<std::filesystem::path>& flights,
                                  Communicator& comm = serial_communicator(),
                                  OpenedIn location = OpenedIn::this_process);

@@ -5,10 +5,10 @@
 
 namespace pcor {
 
-/// The report of an improvement: the ladder, why it ended, the residual at its foot and at its top, and for
-/// each effect that was added the page of its finding.
-/// @param start the model at the foot of the ladder
-/// @param what_if effects that the reader can add; null for none
+/// Report of an improvement: the selection path, the reason for its end, the residual before and after, and
+/// the page of the finding for each added effect.
+/// @param start the initial model
+/// @param what_if effects that the reader can add; nullptr: no such panel
 Report improvement_report(const Improvement& improvement, const ModelDefinition& start,
                           const WhatIf* what_if = nullptr);
 

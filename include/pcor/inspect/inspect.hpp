@@ -17,86 +17,86 @@
 
 namespace pcor {
 
-/// The variable that would play a role.
+/// Variable found for a role.
 struct InspectedRole {
-  std::string role;         ///< "vertical_speed"; also of a series that no model reads, as "longitude"
+  std::string role;         ///< "vertical_speed"; also series without a role in a model, such as "longitude"
   std::string variable;     ///< "VELD_GIN"
-  std::string unit;         ///< as the file says, or the data of its aircraft where these know better
-  bool is_turned = false;   ///< its sign is turned to be that of the role
-  int rate = 1;             ///< samples in a record
-  double present = 0.0;     ///< the part of the samples that have a value
-  std::string trap{};       ///< what a user of it should know; may be empty
+  std::string unit;         ///< unit in the file, corrected by the data of its aircraft
+  bool is_turned = false;   ///< true: its sign is opposite to that of the role
+  int rate = 1;             ///< samples per record
+  double present = 0.0;     ///< fraction of valid samples, 0 to 1
+  std::string trap{};       ///< caveat for its users; may be empty
   bool is_verified = true;  ///< the name is in a public document of the aircraft
-  std::vector<std::string> others{};  ///< further variables that could play it
-  std::string why{};  ///< the evidence where its name is not one of the aircraft's; else empty
+  std::vector<std::string> others{};  ///< other variables that match the role
+  std::string why{};                  ///< evidence, if the name is not one of the aircraft's; otherwise empty
 };
 
-/// What is wrong, or coarse, with a variable.
+/// Defect or coarse resolution of a variable.
 struct Problem {
   std::string variable;
   std::string kind;   ///< "jump", "recorded in steps"
   std::string times;  ///< UTC
   double number = 0.0;
   std::string unit;
-  std::string action;  ///< what is done about it, and how to have it otherwise
+  std::string action;  ///< action taken, and how to change it
 };
 
-/// A variable that may play a role, by name, long name, unit and values.
+/// Variable that may match a role, by name, long name, unit and values.
 struct InspectedCandidate {
   std::string variable;
   double score = 0.0;  ///< 0 to 1
   std::string why;
 };
 
-/// A role that no variable plays, and what cannot be done without it.
+/// Role without a variable, and the consequence.
 struct MissingRole {
   std::string role;
   std::string description;
-  std::vector<std::string> looked_for;  ///< names of variables
-  std::string cost;                     ///< a sentence without its end; empty where nothing needs it
-  std::vector<std::string> effects;     ///< of the catalogue, which cannot be fitted or diagnosed
+  std::vector<std::string> looked_for;  ///< searched names of variables
+  /// Consequence, a clause without full stop; empty if the role is not needed.
+  std::string cost;
+  std::vector<std::string> effects;  ///< effects of the catalogue that cannot be fitted or diagnosed
 };
 
-/// What a flight holds.
+/// Contents of a flight.
 struct Inspection {
   std::string path;
   std::string aircraft{};
   std::string project{};
   std::string flight{};
   std::string institution{};
-  std::string family{};  ///< whose names were looked for: "faam-core"
+  std::string family{};  ///< naming convention, e.g. "faam-core"
   std::string family_title{};
-  std::vector<std::string> alike{};  ///< the families whose files it is like; several are doubt, none a guess
+  std::vector<std::string> alike{};  ///< matching naming conventions; several: ambiguous, empty: unknown
   TimeAxis time{};
   std::size_t records = 0;
-  std::map<int, std::size_t> rates{};  ///< how many variables have so many samples in a record
+  std::map<int, std::size_t> rates{};  ///< number of variables for each number of samples per record
   std::vector<InspectedRole> roles{};
   std::vector<MissingRole> missing{};
-  std::map<std::string, std::vector<InspectedCandidate>> candidates{};  ///< of each role, the likeliest first
-  std::vector<std::string> not_used{};  ///< variables that play no role and are candidates for none
+  /// Candidates for each role, by decreasing score.
+  std::map<std::string, std::vector<InspectedCandidate>> candidates{};
+  std::vector<std::string> not_used{};  ///< variables without a role that are not candidates either
   std::vector<Problem> problems{};
-  /// What a law can be fitted to, as `--reference` takes it: "wind" and "height"; empty: nothing.
+  /// References to which a model can be fitted, as for `--reference`: "wind" and "height"; may be empty.
   std::vector<std::string> references{};
-  bool has_results = false;   ///< its inputs have names that `process` gives its results
-  bool is_corrected = false;  ///< the pressures of the model are corrected already
-  std::string
-      corrected_pressure{};  ///< the static pressure that the flight's own processing corrected; may be empty
-  std::vector<FrozenSpan>
-      frozen{};  ///< sensors that stand still in flight, for longer than their noise allows
-  std::vector<Interval> intervals{};   ///< what was flown; empty without pressures
-  std::vector<ModelCandidate> laws{};  ///< for this aircraft, those that fit first
+  bool has_results = false;            ///< true: its inputs have names used for results of `process`
+  bool is_corrected = false;           ///< true: the pressures of the model are already corrected
+  std::string corrected_pressure{};    ///< static pressure corrected in the flight file; may be empty
+  std::vector<FrozenSpan> frozen{};    ///< sensors with constant readings for longer than their noise permits
+  std::vector<Interval> intervals{};   ///< regimes of the flight; empty without pressures
+  std::vector<ModelCandidate> laws{};  ///< models for this aircraft, best match first
   std::optional<GpsDesign> by_gps{};   ///< empty without pressures or GPS
   std::vector<std::string> notes{};
-  std::optional<ModelDefinition>
-      model{};  ///< ready to run: the roles, and terms that a refit finds; none without pressures
-  std::shared_ptr<const FlightSamples> samples{};  ///< what pictures are made of; null without pressures
+  /// Runnable model: the roles, and terms with zero coefficients for a refit; empty without pressures.
+  std::optional<ModelDefinition> model{};
+  std::shared_ptr<const FlightSamples> samples{};  ///< samples of the figures; nullptr without pressures
 };
 
-/// Looks at a flight: what it is, which variable plays which role, what is missing and what that costs, what
-/// was flown, which of the `laws` (model files) are for it. A file of `laws` that cannot be read is a note.
-/// @param roles whose names are looked for: an aircraft of data/aircraft, or a file that ends in ".toml";
-/// empty for the one that the flight tells
-/// @throws Error if the flight cannot be read, or there are no such roles
+/// Inspects a flight: metadata, variables of the roles, missing roles and their consequences, regimes, and
+/// matching models among `laws` (model files). Unreadable files of `laws` are reported in a note.
+/// @param roles naming convention: an aircraft of data/aircraft, or a file with the suffix ".toml"; default:
+/// detected from the flight
+/// @throws Error if the flight cannot be read, or the naming convention does not exist
 Inspection inspect_flight(const std::filesystem::path& path,
                           const std::vector<std::filesystem::path>& laws = {},
                           TimestampAlignment timestamp_alignment = TimestampAlignment::begin,

@@ -7,8 +7,8 @@
 
 namespace pcor {
 
-/// The page of `pcor inspect`: track, height, speed and regimes of the flights, and the tables of roles and
-/// of what is missing.
+/// Page of `pcor inspect`: track, height, speed and regimes of the flights, and tables of roles and missing
+/// roles.
 Report inspection_report(const std::vector<Inspection>& flights);
 
 }  // namespace pcor

@@ -11,8 +11,8 @@
 
 namespace pcor {
 
-/// Where in the instrument an effect acts, from what was recorded to the air. The value of an effect
-/// is added to the quantity of its place.
+/// Location in the measurement chain at which an effect acts, from the recorded values to the air. The value
+/// of an effect is added to the quantity of its location.
 enum class EffectLocation : std::uint8_t {
   static_transducer,
   dynamic_transducer,
@@ -36,8 +36,8 @@ enum class EffectLocation : std::uint8_t {
 
 inline constexpr std::size_t location_count = static_cast<std::size_t>(EffectLocation::count);
 
-/// A stage where something acts: its name in model files, the unit of what acts there, what that is added to,
-/// and the place in the instrument that is to be looked at, which stages may share.
+/// Metadata of an effect location: name in model files, unit of the effect, corrected quantity, and
+/// instrument component, which several locations may share.
 struct EffectLocationInfo {
   std::string_view name;
   std::string_view unit;
@@ -48,7 +48,8 @@ struct EffectLocationInfo {
 inline constexpr std::array<EffectLocationInfo, location_count> effect_location_info{{
     {"static-transducer", "hPa", "measured static pressure", "p-transducer"},
     {"dynamic-transducer", "hPa", "measured dynamic pressure", "q-transducer"},
-    {"static-line", "hPa", "measured static pressure, and taken from the dynamic pressure", "static-line"},
+    {"static-line", "hPa", "measured static pressure, and subtracted from the dynamic pressure",
+     "static-line"},
     {"total-line", "hPa", "measured dynamic pressure", "pitot"},
     {"radome", "hPa", "radome dynamic pressure", "radome"},
     {"attack-ratio", "1", "radome attack ratio ADIFR/QCR", "radome"},
@@ -61,15 +62,15 @@ inline constexpr std::array<EffectLocationInfo, location_count> effect_location_
     {"lams-elevation", "deg", "elevation of the laser beam", "laser"},
     {"lams-azimuth", "deg", "azimuth of the laser beam", "laser"},
     {"lams", "m/s", "airspeed along the laser beam", "laser"},
-    {"static", "hPa", "delta-p: added to the static, taken from the dynamic pressure", "port"},
-    {"pitot", "hPa", "total pressure, and so the dynamic pressure", "pitot"},
+    {"static", "hPa", "delta-p: added to the static, subtracted from the dynamic pressure", "port"},
+    {"pitot", "hPa", "total pressure, and therefore the dynamic pressure", "pitot"},
 }};
 
 constexpr const EffectLocationInfo& info_of(EffectLocation location) {
   return effect_location_info[static_cast<std::size_t>(location)];
 }
 
-/// The place called `name`, or `EffectLocation::count` where there is none.
+/// Location with the given name, or `EffectLocation::count` if unknown.
 constexpr EffectLocation location_named(std::string_view name) {
   for (std::size_t i = 0; i < location_count; ++i) {
     if (effect_location_info[i].name == name) return static_cast<EffectLocation>(i);
@@ -77,23 +78,24 @@ constexpr EffectLocation location_named(std::string_view name) {
   return EffectLocation::count;
 }
 
-/// A coefficient of an effect.
+/// Coefficient of an effect.
 struct ParameterInfo {
   std::string_view name;
   std::string_view unit;
-  double neutral = 0.0;                                     ///< the value at which the effect is absent
-  double lower = -std::numeric_limits<double>::infinity();  ///< bounds of what physics allows
+  double neutral = 0.0;                                     ///< value at which the effect is zero
+  double lower = -std::numeric_limits<double>::infinity();  ///< physical bounds
   double upper = std::numeric_limits<double>::infinity();
-  double typical = 0.0;  ///< size met in practice
-  /// True where it only shapes the effect, as the Mach number from which the effect acts does. It is neutral
-  /// at its typical value, and the effect is absent, whatever the shape, when all others are neutral.
+  double typical = 0.0;  ///< typical size
+  /// True if the coefficient only shapes the effect, such as the Mach number at which the effect starts. Its
+  /// neutral value is its typical value; the effect is zero, for any shape, if all other coefficients are
+  /// neutral.
   bool shape = false;
-  /// Other values that nature may have, and 0 behind them: of a shape, and of a time over which a need is
-  /// found (`EffectInfo::memory`). A diagnosis tries them all, a fit begins at the best of them.
+  /// Alternative values, padded with 0: of a shape, and of a time constant of an input
+  /// (`EffectInfo::memory`). A diagnosis tests all of them, a fit starts at the best one.
   std::array<double, 10> tried{};
   /// Standard uncertainty of the calibration of a reference or of the thermometer, in the unit of the
-  /// coefficient. Stated errors include it unless the model states another value. Zero: no doubt by default.
-  /// Sources: `EffectInfo::source` and `size` of the effect.
+  /// coefficient. Stated errors include it unless the model states another value. Zero: no uncertainty by
+  /// default. Sources: `EffectInfo::source` and `size` of the effect.
   double doubt = 0.0;
 };
 
@@ -101,16 +103,16 @@ inline constexpr std::size_t parameter_capacity = 3;
 inline constexpr std::size_t need_capacity = 4;
 inline constexpr std::size_t scaling_capacity = 2;
 
-/// A need of an effect that is found over a time, which one of its coefficients says.
+/// Input of an effect that is computed from earlier samples with a time constant.
 struct Memory {
-  Quantity of = Quantity::count;  ///< airspeed_rate or wetness; or nothing is remembered
-  std::size_t parameter = 0;      ///< the number of the coefficient, in s
+  Quantity of = Quantity::count;  ///< airspeed_rate or wetness; count: no such input
+  std::size_t parameter = 0;      ///< index of the coefficient with the time constant, s
 };
 
-/// The gas constants of a model in which an effect has a meaning.
+/// Gas constants of the models in which an effect is meaningful.
 enum class GasConstants : std::uint8_t { any, dry, moist };
 
-/// A worked example of an effect: its inputs, coefficients and value, from outside this program.
+/// Worked example of an effect: inputs, coefficients and value, from an independent source.
 struct EffectExample {
   struct Input {
     Quantity quantity = Quantity::count;
@@ -121,29 +123,27 @@ struct EffectExample {
   double value = 0.0;
 };
 
-/// All that is known of an effect beside its formula in code. The help, the documentation, the law tests, the
-/// refit and the diagnosis read it.
-///
-/// An effect is a type with `static constexpr EffectInfo facts()` and
+/// Metadata of an effect, read by the help, the documentation, the law tests, the refit and the diagnosis.
 ///
 ///     template <class State, class P> static auto value(const State& state, const P* parameters)
 ///
-/// which gives what is added at its place: the correction, which brings what was recorded to what is true.
-/// The value is linear in its parameters, but for those that shape it, and zero at the neutral ones.
+/// that returns the correction added at its location, from the recorded to the true value. It is linear in
+/// its parameters, except shape parameters, and zero at the neutral ones.
 struct EffectInfo {
   std::string_view id;
   std::string_view title;
-  std::string_view family;  ///< what it shares with its other shapes and places, such as lag or attack
+  std::string_view family;  ///< group of its alternative shapes and locations, such as lag or attack
   EffectLocation location = EffectLocation::static_defect;
-  std::string_view formula;  ///< in the language of formula effects; a test holds it against `value`
+  std::string_view formula;  ///< formula in the language of formula effects; a test compares it with `value`
   std::array<ParameterInfo, parameter_capacity> parameters{};
   std::array<Quantity, need_capacity> needs{Quantity::count, Quantity::count, Quantity::count,
                                             Quantity::count};
   Memory memory{};
-  std::array<Scaling, scaling_capacity> scalings{};  ///< other ones that nature may have; behind them none
-  std::string_view size;                             ///< how large it is met, in words
-  std::string_view look_alikes;                      ///< effects that data easily confuse with it
-  std::string_view manoeuvre;                        ///< what separates it from them
+  /// Alternative scalings to test; unused entries are empty.
+  std::array<Scaling, scaling_capacity> scalings{};
+  std::string_view size;         ///< typical size, as text
+  std::string_view look_alikes;  ///< confounded effects
+  std::string_view manoeuvre;    ///< manoeuvre that separates it from them
   std::string_view source;
   EffectExample example{};
   GasConstants constants = GasConstants::any;
@@ -165,7 +165,8 @@ struct EffectInfo {
   }
 };
 
-/// The place in the instrument that an effect belongs to. A clock is no stage, but shifts one.
+/// Instrument component of an effect. A clock is a separate component, although it shifts the input of a
+/// location.
 constexpr std::string_view place_of(const EffectInfo& info) {
   return info.family == "clock" ? info.family : info_of(info.location).place;
 }

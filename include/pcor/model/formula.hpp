@@ -19,16 +19,16 @@
 
 namespace pcor {
 
-/// Why a text is not a formula.
+/// Parse error of a formula.
 struct FormulaError {
-  std::size_t column = 0;  ///< Where in the text, counted from 1; 0 when a declared parameter is at fault.
-  std::string message;     ///< One line that says what is wrong, the column included.
+  std::size_t column = 0;  ///< Position in the text, from 1; 0 for an error of a declared parameter.
+  std::string message;     ///< Message of one line, with the column.
 };
 
-/// A formula that a user wrote, such as `(c0 + c1*sqrt(dynamic_ratio)) * static_pressure`.
+/// User-defined formula, such as `(c0 + c1*sqrt(dynamic_ratio)) * static_pressure`.
 ///
-/// It is parsed once, when a model is set up, and evaluated for every sample: as double, as a vector pack or
-/// as a dual number. Units are the business of whoever wrote the formula.
+/// Parsed once, when a model is set up, and evaluated for every sample: as double, as a vector pack or as a
+/// dual number. Units are not checked.
 ///
 /// - Numbers: `1`, `.5`, `1e-3`, with a decimal point in every locale; `pi`.
 /// - Names: `[A-Za-z_][A-Za-z0-9_]*`; a name that is not a declared parameter is a variable.
@@ -38,40 +38,40 @@ struct FormulaError {
 ///   `min(a, b)`, `max(a, b)`, `pow(a, b)` (the same as `a^b`).
 /// - `if(a < b, x, y)` is x where the comparison (`<`, `<=`, `>`, `>=`) holds and y where it does not.
 ///
-/// Arithmetic is that of IEEE: outside its domain a function is NaN, a division by zero is infinite or NaN.
-/// A NaN is passed on, never chosen away: min, max and if give NaN when they compare one, a power when it is
-/// of or to one; only `x^0` with the number 0 is 1 for every x.
+/// Arithmetic follows IEEE 754: outside its domain a function is NaN, a division by zero is infinite or NaN.
+/// NaN always propagates: min, max and if are NaN if a compared value is NaN, a power if its base or exponent
+/// is NaN; only `x^0` with the number 0 is 1 for every x.
 class Formula {
  public:
-  static constexpr std::size_t max_instructions = 256;  ///< Numbers, names and operations together.
-  static constexpr std::size_t max_stack = 32;          ///< Intermediate results held at once.
-  static constexpr std::size_t max_nesting = 64;  ///< Parentheses, calls, signs and powers in each other.
+  static constexpr std::size_t max_instructions = 256;  ///< Total number of numbers, names and operations.
+  static constexpr std::size_t max_stack = 32;          ///< Intermediate results on the stack.
+  static constexpr std::size_t max_nesting = 64;  ///< Nesting depth of parentheses, calls, signs and powers.
 
   /// Parses `text`, in which the names in `parameters` are coefficients and all others variables.
   ///
-  /// Returns nothing when the text is not a formula, is larger than the limits above, or when a parameter's
-  /// name is not a name, is declared twice, or belongs to a function or to pi; `error`, unless null, then
-  /// says why.
+  /// Returns nullopt if the text is not a formula, exceeds the limits above, or if a parameter's name is
+  /// invalid, declared twice, or the name of a function or pi; `error`, unless nullptr, then holds the
+  /// reason.
   static std::optional<Formula> parse(std::string_view text, const std::vector<std::string>& parameters,
                                       FormulaError* error = nullptr);
 
-  /// The formula as the user wrote it.
+  /// Text of the formula.
   const std::string& text() const noexcept { return text_; }
 
-  /// The variables' names, each once, in the order of their first appearance in the text.
+  /// Names of the variables, without duplicates, in the order of their first appearance.
   const std::vector<std::string>& variables() const noexcept { return variables_; }
 
-  /// The parameters' names as declared, used or not.
+  /// Names of the parameters as declared, used or not.
   const std::vector<std::string>& parameters() const noexcept { return parameters_; }
 
-  /// The parameters that were declared and do not appear in the text.
+  /// Declared parameters that do not appear in the text.
   const std::vector<std::string>& unused_parameters() const noexcept { return unused_parameters_; }
 
-  /// The formula's value, of the type of a variable times a parameter.
+  /// Value of the formula, of the type of a variable times a parameter.
   ///
   /// `variables` and `parameters` hold one value for each name in variables() and in parameters(), in that
-  /// order; either may be null when it has no names. Allocates nothing and throws nothing. Both branches of
-  /// an if are evaluated, so every sample costs the same operations.
+  /// order; either may be nullptr if it has no names. Does not allocate or throw. Both branches of an if are
+  /// evaluated, so the cost per sample is constant.
   template <class X, class P>
   auto value(const X* variables, const P* parameters) const noexcept {
     using S = Promoted<X, P>;
@@ -110,11 +110,12 @@ class Formula {
     if_greater_equal,
   };
 
-  /// One step in postfix order: takes its operands from the top of the stack and leaves its result there.
+  /// Instruction in postfix order: pops its operands from the stack and pushes its result.
   struct Instruction {
     Operation operation;
-    std::uint32_t index = 0;  // which variable or parameter, or how many instructions are of variables alone
-    double number = 0.0;      // the constant, or the constant exponent of a power
+    // Index of the variable or parameter, or number of instructions that depend only on variables.
+    std::uint32_t index = 0;
+    double number = 0.0;  // constant, or constant exponent of a power
   };
 
   struct Function {
@@ -150,7 +151,7 @@ class Formula {
     return found == std::end(functions) ? nullptr : found;
   }
 
-  /// x^n by multiplication, so that every scalar type agrees where x is negative.
+  /// x^n by multiplication, so that all scalar types agree for negative x.
   template <class S>
   static S integer_power(S x, int n) noexcept {
     if (n == 0) return S(1.0);
@@ -164,33 +165,33 @@ class Formula {
     return result;
   }
 
-  /// One of two values by how a and b compare. Where the comparison neither holds nor fails one of
-  /// them is NaN, and so is their sum.
+  /// Selects a value by comparison of a and b. If the comparison neither holds nor fails, one of them is NaN,
+  /// and the result is their sum, NaN.
   template <class S, class Condition>
   static S choose(const Condition& holds, const Condition& fails, const S& a, const S& b, const S& yes,
                   const S& no) noexcept {
     return select(holds, yes, select(fails, no, S(a + b)));
   }
 
-  /// x^y for an exponent that is computed.
+  /// x^y for a computed exponent.
   template <class S>
   static S raise(const S& x, const S& y) noexcept {
     using std::pow;
     S result = pow(x, y);
-    if constexpr (!std::is_floating_point_v<S>) {  // some packs say 0^-1 is 0
+    if constexpr (!std::is_floating_point_v<S>) {  // some packs define 0^-1 as 0
       constexpr double infinity = std::numeric_limits<double>::infinity();
       result = select(x == S(0.0), select(y < S(0.0), S(infinity), result), result);
     }
     return choose(x < y, x >= y, x, y, result, result);  // NaN^0 and 1^NaN would be 1
   }
 
-  /// Executes instructions that are known to need no more than max_stack values at once.
+  /// Executes instructions that need at most max_stack values on the stack.
   template <class S, class X, class P>
   static S run(const Instruction* at, const Instruction* end, const X* variables,
                const P* parameters) noexcept {
     using std::abs, std::cos, std::exp, std::log, std::log10, std::sin, std::sqrt, std::tan, std::tanh;
     S stack[max_stack];
-    S* below = stack;  // the values under the top one end before here
+    S* below = stack;  // values below the top end before this element
     S top(0.0);
     for (; at != end; ++at) {
       switch (at->operation) {
@@ -233,7 +234,7 @@ class Formula {
           break;
         case Operation::constant_power:
           if constexpr (std::is_floating_point_v<S>) {
-            top = std::pow(top, at->number);  // of any base: a negative one too, where the exponent is whole
+            top = std::pow(top, at->number);  // any base: also a negative one, for a whole exponent
           } else {
             top = power(top, at->number);
           }
@@ -305,8 +306,8 @@ class Formula {
   std::vector<Instruction> code_;
 };
 
-/// Recursive descent over the text, one function for each level of precedence. Each leaves one more operand
-/// on the stack that the code will have, or tells the error and returns false.
+/// Recursive descent parser, one function for each level of precedence. Each function pushes one operand on
+/// the stack of the generated code, or sets the error and returns false.
 class Formula::Parser {
  public:
   Parser(Formula& formula, FormulaError& error)
@@ -326,7 +327,7 @@ class Formula::Parser {
   }
 
  private:
-  /// The part of the code that computes one value on the stack.
+  /// Range of the code that computes one stack value.
   struct Operand {
     std::size_t begin;
     bool has_parameters;
@@ -336,7 +337,7 @@ class Formula::Parser {
   static bool begins_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
   static bool continues_name(char c) { return begins_name(c) || is_digit(c); }
 
-  /// The next character that is not a space, NUL at the end.
+  /// Next non-space character, NUL at the end.
   char peek() {
     while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
       ++at_;
@@ -396,7 +397,7 @@ class Formula::Parser {
     }
   }
 
-  /// A value with its signs and its exponent. All nesting passes through here.
+  /// Operand with its signs and exponent. All nesting passes through this function.
   bool factor() {
     if (++nesting_ > max_nesting) {
       return fail(at_, "the formula is nested too deep at " + column(at_) + ": more than " +
@@ -458,7 +459,7 @@ class Formula::Parser {
     return push({Operation::variable, index});
   }
 
-  /// What follows the parenthesis of the function whose name is at `begin`.
+  /// Arguments after the parenthesis of the function whose name is at `begin`.
   bool call(const Function& called, std::size_t begin) {
     Operation operation = called.operation;
     const bool is_if = operation == Operation::if_less;
@@ -480,7 +481,7 @@ class Formula::Parser {
     return push({operation}, is_if ? 4 : arguments);
   }
 
-  /// Two operands, and which `operation` chooses by them.
+  /// Two operands and the comparison `operation`.
   bool comparison(Operation& operation) {
     if (!sum()) return false;
     if (accept('<')) {
@@ -516,7 +517,7 @@ class Formula::Parser {
     return true;
   }
 
-  /// A power whose exponent is a constant has an instruction of its own.
+  /// Powers with a constant exponent have a separate instruction.
   bool push_power() {
     const Instruction exponent = formula_.code_.back();
     if (exponent.operation != Operation::constant) return push({Operation::power}, 2);
@@ -527,7 +528,7 @@ class Formula::Parser {
     return push({is_integer ? Operation::integer_power : Operation::constant_power, 0, exponent.number}, 1);
   }
 
-  /// Puts the value in the place of an operation on constants, which begins at `begin`.
+  /// Replaces an operation on constants, which begins at `begin`, by its value.
   void fold(std::size_t begin, std::size_t operands) {
     auto& code = formula_.code_;
     if (code.size() != begin + operands + 1) return;
@@ -540,9 +541,9 @@ class Formula::Parser {
     code.push_back({Operation::constant, 0, result});
   }
 
-  /// Marks the code of those of the last operands that are computed from variables alone, so that it can run
-  /// in the type of the variables: it is quicker there, and a dual number of the parameters, which would make
-  /// a NaN of the derivative of sqrt(0), does not enter it.
+  /// Marks the code of those of the last operands that depend only on variables, so that it runs in the type
+  /// of the variables: this is faster, and avoids a NaN in dual numbers of the parameters from the derivative
+  /// of sqrt(0).
   void set_apart_variables(std::size_t operands) {
     auto& code = formula_.code_;
     std::size_t end = code.size();
@@ -555,13 +556,13 @@ class Formula::Parser {
     }
   }
 
-  /// Tells the error; `at` is where in the text it is.
+  /// Sets the error; `at` is its position in the text.
   bool fail(std::size_t at, std::string message) {
     error_ = {at + 1, std::move(message)};
     return false;
   }
 
-  /// Tells an error that is not in the text.
+  /// Sets an error without a position in the text.
   bool reject(std::string message) {
     error_ = {0, std::move(message)};
     return false;
@@ -586,7 +587,7 @@ class Formula::Parser {
 
   static std::string column(std::size_t at) { return "column " + std::to_string(at + 1); }
 
-  /// In quotes, and short and on one line whatever the text is.
+  /// Quoted, shortened to one line.
   static std::string quote(std::string_view text) {
     constexpr std::size_t longest = 40;
     std::string result = "'";
@@ -594,7 +595,7 @@ class Formula::Parser {
     return result + (text.size() > longest ? "...'" : "'");
   }
 
-  /// What is at the current place: a word, or one character, which may be several bytes of UTF-8.
+  /// Token at the current position: a word, or one character, which may be several bytes of UTF-8.
   std::string found() const {
     if (at_ == text_.size()) return "the end";
     if (continues_name(text_[at_])) return quote(word());

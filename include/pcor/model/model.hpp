@@ -12,72 +12,73 @@
 
 namespace pcor {
 
-/// One effect of a model with its coefficients.
+/// Effect of a model with its coefficients.
 ///
-/// An effect of the catalogue has its `id`; one of the user's own has a `formula`, a place and names for its
-/// parameters besides.
+/// An effect of the catalogue has an `id`; a user-defined effect also has a `formula`, a location and names
+/// of its parameters.
 struct ModelEffect {
   std::string id{};
-  std::vector<double> parameters{};  ///< in the order of the effect's parameters
+  std::vector<double> parameters{};  ///< values, in the order of the effect's parameters
 
-  std::vector<std::string> parameter_names{};  ///< of a formula; empty for an effect of the catalogue
-  std::string formula{};                       ///< empty for an effect of the catalogue
-  EffectLocation location = EffectLocation::static_defect;  ///< of a formula
-  std::string unit{};                                       ///< of a formula's value
-  std::string source{};                                     ///< of a formula
+  std::vector<std::string>
+      parameter_names{};  ///< names for a formula effect; empty for an effect of the catalogue
+  std::string formula{};  ///< empty for an effect of the catalogue
+  EffectLocation location = EffectLocation::static_defect;  ///< location of a formula effect
+  std::string unit{};                                       ///< unit of a formula effect
+  std::string source{};                                     ///< source of a formula effect
 
-  Scaling scaling{};  ///< of an effect of the catalogue
+  Scaling scaling{};  ///< scaling of an effect of the catalogue
 
   bool is_formula() const { return !formula.empty(); }
 };
 
-/// How the temperature enters delta-p from LAMS: the approaches of the memo. There is no fourth.
+/// Treatment of the temperature in delta-p from LAMS: the three approaches of the memo.
 enum class LamsApproach {
   simultaneous = 1,     ///< closed form from the recovery temperature
   iterated = 2,         ///< iteration from the recovery temperature
-  with_temperature = 3  ///< an ambient temperature measured without any pressure
+  with_temperature = 3  ///< an ambient temperature measured without pressure
 };
 
-/// How LAMS is mounted and used.
+/// Mounting and approach of LAMS.
 struct LamsMounting {
   double elevation = 0.0;  ///< theta_1, deg above the longitudinal axis
   double azimuth = 0.0;    ///< theta_2, deg to starboard
   LamsApproach approach = LamsApproach::simultaneous;
 };
 
-/// The one policy for what physics leaves open. What it does to a sample is told in the quality bits.
+/// Limits of the corrections. Their application to a sample is recorded in the quality bits.
 struct Policy {
-  /// Below this dynamic pressure (hPa) delta-p is multiplied by (q_m/taper_below)^taper_power; 0 for none.
+  /// Below this dynamic pressure (hPa) delta-p is multiplied by (q_m/taper_below)^taper_power; 0: no taper.
   double taper_below = 0.0;
   double taper_power = 3.0;
-  /// Delta-p (hPa) is not less than this, before the taper.
+  /// Minimum of delta-p (hPa), before the taper.
   double minimum = -std::numeric_limits<double>::infinity();
-  /// Below this dynamic pressure (hPa) nothing says that air flows: delta-p is missing, but under a taper,
-  /// and so are Mach number and airspeed. The default, 18 m/s at sea level, is ten times the 0.2 hPa of noise
-  /// that a transducer shows on the ramp; there such a noise is 5 % of the airspeed.
+  /// Minimum dynamic pressure (hPa) for detectable airflow: below it, delta-p (without a taper), Mach number
+  /// and airspeed are missing. The default, 18 m/s at sea level, is ten times the 0.2 hPa of noise of a
+  /// transducer on the ramp, so that this noise is 5 % of the airspeed.
   double min_dynamic_pressure = 2.0;
 };
 
-/// The range of a quantity over which the law was fitted. Outside it a sample is flagged.
+/// Range of a quantity over which the model was fitted. Samples outside it are flagged.
 struct DomainRange {
   std::string quantity{};
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// What an aircraft's pressure system is believed to be: its effects with their coefficients, and what else
-/// the chain from the recorded values to the air needs.
+/// Model of an aircraft's pressure system: effects with their coefficients, and other inputs of the chain
+/// from the recorded values to the air.
 struct Model {
   std::string name{};
   std::string aircraft{};
   std::vector<ModelEffect> effects{};
-  /// Places where an amount of its own is added, a parameter each behind those of the effects, zero: the
-  /// derivative by it is that by whatever an effect there gives. Where the model has no use for the
-  /// place the amount changes nothing. No model file has them.
+  /// Locations with an additional amount, one parameter each after those of the effects, zero: the derivative
+  /// with respect to it is that of any effect at that location. An amount at a location that the model does
+  /// not use has no effect. Not stored in model files.
   std::vector<EffectLocation> additions{};
   LamsMounting lams;
   RecoveryFactor recovery{{1.0, 0.0, 0.0, 0.0}};
-  bool moist = true;  ///< constants of moist air; of dry air where false
+  bool moist = true;  ///< true: constants of moist air; false: of dry air
   RadomeCalibration attack_radome;
   RadomeCalibration sideslip_radome;
   Policy policy;

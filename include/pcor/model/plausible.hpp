@@ -9,14 +9,13 @@
 
 namespace pcor {
 
-/// Between which values something is believed.
+/// Range of plausible values.
 struct Limits {
   double least = std::numeric_limits<double>::lowest();
   double most = std::numeric_limits<double>::max();
 };
 
-/// The limits of every place of a state: those of the facts, and for variables that are no quantities of the
-/// library any finite number.
+/// Limits of every element of a state: those of the quantities, and any finite number for other variables.
 inline constexpr std::array<Limits, state_capacity> limits_of_places = [] {
   std::array<Limits, state_capacity> limits{};
   for (std::size_t i = 0; i < quantity_count; ++i) {
@@ -25,7 +24,7 @@ inline constexpr std::array<Limits, state_capacity> limits_of_places = [] {
   return limits;
 }();
 
-/// True where the value, in the unit of the quantity, is infinite or beyond what is believed of it
+/// True if the value, in the unit of the quantity, is infinite or outside its plausible range
 /// (`QuantityInfo`). A missing value is not implausible.
 template <class S>
 constexpr auto is_implausible(Quantity quantity, const S& value) {
@@ -33,7 +32,7 @@ constexpr auto is_implausible(Quantity quantity, const S& value) {
   return value < S(limits.least) || value > S(limits.most);
 }
 
-/// The value where it is believed, else not a number.
+/// Value if it is plausible, otherwise NaN.
 template <class S>
 constexpr S plausible_or_missing(Quantity quantity, const S& value) {
   return select(is_implausible(quantity, value), missing<S>(), value);

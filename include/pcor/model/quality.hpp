@@ -6,10 +6,10 @@
 
 namespace pcor {
 
-/// What was wrong with a sample, or done to it. Each is one bit of the flag variable.
+/// Quality of a sample: defects and applied corrections. Each is one bit of the flag variable.
 ///
-/// In the sample loop `filter_window_incomplete` is of the sample that leaves the filter, `LowPass::delay`
-/// samples ago; in a processed flight it stands at that sample.
+/// In the sample loop `filter_window_incomplete` refers to the sample that leaves the filter,
+/// `LowPass::delay` samples ago; in a processed flight it is set at that sample.
 enum class Quality : std::uint32_t {
   static_pressure_missing = 1U << 0,
   dynamic_pressure_missing = 1U << 1,
@@ -34,7 +34,7 @@ enum class Quality : std::uint32_t {
   awaiting_later_samples = 1U << 20,
 };
 
-/// A quality bit and what it means.
+/// Quality bit and its meaning.
 struct QualityInfo {
   Quality bit;
   std::string_view name;
@@ -65,7 +65,7 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::tapered, "tapered", "delta-p tapered at low dynamic pressure"},
     {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law"},
     {Quality::outside_domain, "outside_domain", "an input lies outside the domain of the law: extrapolated"},
-    {Quality::after_gap, "after_gap", "beside a gap: effects of rates of change have too few neighbours"},
+    {Quality::after_gap, "after_gap", "near a gap: effects of rates of change have too few neighbours"},
     {Quality::corrected_with_lams, "corrected_with_lams",
      "pressures corrected with LAMS, not with the model"},
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
@@ -73,19 +73,20 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::filter_window_incomplete, "filter_window_incomplete",
      "filter window incomplete, or its result beyond all flights: no filtered LAMS temperature"},
     {Quality::no_airflow, "no_airflow",
-     "dynamic pressure too low to tell airflow from noise, as on the ramp: no Mach number, no airspeed"},
+     "dynamic pressure too low to distinguish airflow from noise, as on the ramp: no Mach number, no "
+     "airspeed"},
     {Quality::sensor_frozen, "sensor_frozen",
-     "an input stands still for much longer than its noise lets it: what comes of it is wrong"},
+     "a sensor is frozen, constant for much longer than its noise permits: dependent results are wrong"},
     {Quality::uneven_samples, "uneven_samples",
-     "samples at other intervals than those of the rate: effects of rates of change are wrong"},
+     "sample intervals differ from those of the rate: effects of rates of change are wrong"},
     {Quality::awaiting_later_samples, "awaiting_later_samples",
      "later samples are awaited, after the start or a gap in real time: no results yet"},
 }};
 
-/// The quality bits of one sample.
+/// Quality bits of one sample.
 class QualityFlags {
  public:
-  /// Sets `bit` where the condition holds.
+  /// Sets `bit` if the condition holds.
   constexpr void set(bool condition, Quality bit) {
     if (condition) bits_ |= static_cast<std::uint32_t>(bit);
   }
@@ -98,7 +99,7 @@ class QualityFlags {
   std::uint32_t bits_ = 0;
 };
 
-/// Stands in for `QualityFlags` where a computation keeps none, as over vector packs and in fits.
+/// Replacement of `QualityFlags` for computations without flags, such as vector packs and fits.
 class NoQualityFlags {
  public:
   template <class Condition>

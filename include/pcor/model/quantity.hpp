@@ -8,8 +8,8 @@
 
 namespace pcor {
 
-/// Every quantity that the library knows by name. The first ones are recorded by the aircraft: they are the
-/// roles that a model file may give to variables. The others are derived.
+/// Quantities that the library knows by name. The first ones, up to `date`, are recorded by the aircraft:
+/// they are the roles that a model file may assign to variables. The others are derived.
 enum class Quantity : std::uint8_t {
   static_pressure,
   dynamic_pressure,
@@ -82,26 +82,23 @@ constexpr std::size_t index(Quantity quantity) { return static_cast<std::size_t>
 
 inline constexpr std::size_t quantity_count = index(Quantity::count);
 
-/// How many quantities are roles: those before `time`.
+/// Number of roles: quantities before `time`.
 inline constexpr std::size_t role_count = index(Quantity::time);
 
-/// How many further variables one model or loop may name beyond the quantities of the library.
+/// Maximum number of further variables in one model or loop in addition to the quantities of the library.
 inline constexpr std::size_t extra_capacity = 24;
 
-/// The number of values that a state holds: the place of `Quantity::count`, which is no quantity, stays
-/// empty.
+/// Number of values of a state: the element of `Quantity::count`, which is not a quantity, stays empty.
 inline constexpr std::size_t state_capacity = quantity_count + 1 + extra_capacity;
 
-/// The place of the further variable number `number`, and the number of one that is no quantity of the
-/// library.
+/// Element of the further variable with the given index, and the inverse function.
 constexpr Quantity extra_quantity(std::size_t number) {
   return static_cast<Quantity>(quantity_count + 1 + number);
 }
 constexpr std::size_t extra_number(Quantity quantity) { return index(quantity) - quantity_count - 1; }
 
-/// What a quantity is called, its unit inside the library, what it is, and between which values it is
-/// believed: wide limits, which no flight comes near, and beyond which a value is not of this world but of a
-/// fault.
+/// Name, unit, description and plausible range of a quantity. The range is much wider than in any flight;
+/// values outside are faults.
 struct QuantityInfo {
   std::string_view name;
   std::string_view unit;
@@ -111,7 +108,7 @@ struct QuantityInfo {
   double most = std::numeric_limits<double>::max();
 };
 
-/// The facts of every quantity, in the order of the enumeration.
+/// Metadata of every quantity, in the order of the enumeration.
 inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
     {"static_pressure", "hPa", "static pressure as measured, p_m", Quantity::static_pressure, -2000.0,
      2000.0},
@@ -136,7 +133,7 @@ inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
     {"sideslip", "deg", "sideslip, beta, positive for wind from starboard", Quantity::sideslip, -180.0,
      180.0},
     {"lams_airspeed", "m/s", "airspeed along the laser beam, v_L", Quantity::lams_airspeed, -1500.0, 1500.0},
-    {"mach", "1", "Mach number in the laws: an independent one, else from the measured pair in dry air",
+    {"mach", "1", "Mach number in the laws: an independent one, otherwise from the measured pair in dry air",
      Quantity::mach, -3.0, 3.0},
     {"true_airspeed", "m/s", "true airspeed of the recording system", Quantity::true_airspeed, -1500.0,
      1500.0},
@@ -177,7 +174,7 @@ inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
     {"airspeed_rate", "m/s2",
      "rate of change of the airspeed along the laser's beam, by the corrected pressures",
      Quantity::airspeed_rate},
-    {"wetness", "1", "how wet the thermometer is: 1 in cloud, then less as it dries (temp-wetting)",
+    {"wetness", "1", "wetted fraction of the thermometer: 1 in cloud, decreasing outside (temp-wetting)",
      Quantity::wetness},
     {"port_static_pressure", "hPa", "static pressure at the port, after effects of transducer and line",
      Quantity::port_static_pressure},
@@ -218,7 +215,7 @@ inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
      Quantity::corrected_airspeed_uncertainty},
 }};
 
-/// True where every row of the facts stands at the place of its quantity.
+/// True if the index of every row equals its quantity.
 constexpr bool facts_are_in_order() {
   for (std::size_t i = 0; i < quantity_count; ++i) {
     if (index(quantity_info[i].quantity) != i) return false;
@@ -229,7 +226,7 @@ static_assert(facts_are_in_order(), "a quantity has its row of facts at its plac
 
 constexpr const QuantityInfo& info_of(Quantity quantity) { return quantity_info[index(quantity)]; }
 
-/// The quantity called `name`, or `Quantity::count` where there is none.
+/// Quantity with the given name, or `Quantity::count` if unknown.
 constexpr Quantity quantity_named(std::string_view name) {
   for (std::size_t i = 0; i < quantity_count; ++i) {
     if (quantity_info[i].name == name) return static_cast<Quantity>(i);
@@ -237,7 +234,7 @@ constexpr Quantity quantity_named(std::string_view name) {
   return Quantity::count;
 }
 
-/// A rate of change that is found from earlier and later samples, and the quantity that changes.
+/// Rate of change computed from earlier and later samples, and the quantity that changes.
 struct Rate {
   Quantity quantity;
   Quantity rate;

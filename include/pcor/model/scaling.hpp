@@ -2,13 +2,13 @@
 
 namespace pcor {
 
-/// How an effect goes with the measured pressures beyond its formula, whose value is multiplied by
+/// Dependence of an effect on the measured pressures in addition to its formula, whose value is multiplied by
 ///
 ///     (p_m / 700 hPa)^static_pressure (q_m / 70 hPa)^dynamic_pressure
 ///
-/// At these two pressures, which a C-130 meets at 3 km and 120 m/s (Cooper 2012), a coefficient means what it
-/// means without a scaling, and has its usual size. A law has to assume that a term goes with p or with q,
-/// and nature may do otherwise: `{-1, 1}` puts q in the place of p.
+/// At these two pressures, typical of a C-130 at 3 km and 120 m/s (Cooper 2012), a coefficient has the same
+/// meaning and typical size as without a scaling. A published law assumes a dependence on p or on q; the true
+/// dependence may differ: `{-1, 1}` replaces p by q.
 struct Scaling {
   int static_pressure = 0;
   int dynamic_pressure = 0;
@@ -20,7 +20,7 @@ constexpr bool operator==(const Scaling& a, const Scaling& b) {
   return a.static_pressure == b.static_pressure && a.dynamic_pressure == b.dynamic_pressure;
 }
 
-/// The largest power of a scaling, up or down: steeper is nothing that a port does.
+/// Maximum absolute exponent of a scaling; larger ones are not physical for a port.
 inline constexpr int max_power = 3;
 
 namespace detail {
@@ -34,8 +34,8 @@ S whole_power(const S& base, int power) {
 
 }  // namespace detail
 
-/// By what the scaling multiplies, at the measured static and dynamic pressure, hPa. A missing pressure that
-/// is asked for gives a missing factor.
+/// Factor of the scaling at the measured static and dynamic pressure, hPa. Missing if a pressure with a
+/// nonzero exponent is missing.
 template <class S>
 S factor(const Scaling& scaling, const S& static_pressure, const S& dynamic_pressure) {
   return detail::whole_power(S(static_pressure * S(1.0 / 700.0)), scaling.static_pressure) *

@@ -7,7 +7,7 @@
 
 namespace pcor {
 
-/// The values of all quantities at one sample, in the units of `quantity_info`. What is not known is NaN.
+/// Values of all quantities at one sample, in the units of `quantity_info`; unknown ones are NaN.
 template <class S>
 class State {
  public:

@@ -11,16 +11,17 @@
 
 namespace pcor {
 
-/// How well a model and the sensors that it reads are known: standard uncertainties (GUM 2.3.1), one standard
-/// deviation each. What is not stated is zero, and so left out of what follows from it.
+/// Standard uncertainties (GUM 2.3.1) of a model and its sensors, one standard deviation each. Contributions
+/// that are not stated are zero and therefore not included in results.
 struct ModelUncertainty {
-  /// Covariance of the parameters of all effects, in the order of the model, row after row, in their units.
-  /// It stays the same from sample to sample: what it makes is the systematic part of an uncertainty. Empty
-  /// where nothing is stated.
+  /// Covariance of the parameters of all effects, in the order of the model, row by row, in their units.
+  /// Constant from sample to sample (systematic component). Empty if not stated.
   std::vector<double> covariance{};
-  /// Of one sample of each role, in its unit. It is anew in every sample: the random part.
+  /// Standard uncertainty of one sample of each role, in its unit; independent in every sample (random
+  /// component).
   std::array<double, role_count> random{};
-  /// What the law leaves of delta-p in one sample: hPa, and a part of the static pressure. Both are counted.
+  /// Remaining error of delta-p in one sample after the model: hPa, and relative to the static pressure. Both
+  /// are added in quadrature.
   double static_defect = 0.0;
   double static_defect_ratio = 0.0;
 
@@ -32,7 +33,7 @@ struct ModelUncertainty {
            std::any_of(random.begin(), random.end(), [](double value) { return value > 0.0; });
   }
 
-  /// What of it does not change from sample to sample, and what does.
+  /// Components that are constant from sample to sample (systematic) and independent (random).
   ModelUncertainty systematic_part() const {
     ModelUncertainty part;
     part.covariance = covariance;
@@ -45,9 +46,8 @@ struct ModelUncertainty {
   }
 };
 
-/// True where the symmetric `matrix` of `size` rows, one after another, is a covariance: no combination of
-/// what it is of has a negative variance. Correlations may be wrong by 1e-6, as rounding to six digits leaves
-/// them.
+/// True if the symmetric `matrix` of `size` rows, row by row, is a covariance: no linear combination has a
+/// negative variance. Correlations may have rounding errors of 1e-6, as from six digits.
 inline bool is_covariance(std::vector<double> matrix, std::size_t size) {
   constexpr double rounding = 1e-6;
   const auto at = [&](std::size_t i, std::size_t j) -> double& { return matrix[i * size + j]; };
@@ -66,8 +66,8 @@ inline bool is_covariance(std::vector<double> matrix, std::size_t size) {
       }
     }
   }
-  // What remains of a covariance when one of its variables is known is a covariance, too: the variable of the
-  // greatest variance goes first (Cholesky with pivots).
+  // The conditional covariance for one known variable is also a covariance: pivoted Cholesky, starting with
+  // the variable of the largest variance.
   std::vector<std::size_t> left(size);
   for (std::size_t i = 0; i < size; ++i) left[i] = i;
   while (!left.empty()) {

@@ -4,8 +4,8 @@
 
 namespace pcor {
 
-/// The processes of a run under MPI, those of MPI_COMM_WORLD. It lives between MPI_Init and MPI_Finalize,
-/// which are the program's own. What MPI fails with ends the job.
+/// Processes of MPI_COMM_WORLD. Must exist only between MPI_Init and MPI_Finalize, which the program calls.
+/// An MPI error ends the job.
 class MpiCommunicator final : public Communicator {
  public:
   MpiCommunicator();

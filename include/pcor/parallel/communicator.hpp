@@ -14,12 +14,12 @@ namespace internal {
 struct Message;
 }
 
-/// Processes, or threads, that do one work together. All members run the same program on the same arguments,
-/// each looks at some of the flights, and what they made of them is gathered on all: so every member comes to
-/// the same result, which is that of one member alone, bit by bit, on processors of one kind.
+/// Group of processes or threads that work together. All ranks run the same program on the same arguments,
+/// each processes some of the flights, and results are gathered on all ranks: every rank obtains the same
+/// result, equal to that of a serial run bit by bit on identical processors.
 ///
-/// A class derived from it says how bytes are exchanged: `ForkCommunicator`, and `MpiCommunicator` of
-/// `pcor_mpi`. Members of a team call the same functions of it in the same order, each from one thread.
+/// Derived classes implement the exchange of bytes: `ForkCommunicator`, and `MpiCommunicator` of `pcor_mpi`.
+/// All ranks call the same functions in the same order, each from one thread.
 class Communicator {
  public:
   Communicator() = default;
@@ -27,28 +27,28 @@ class Communicator {
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
 
-  virtual std::size_t rank() const = 0;  ///< of this member, from 0
-  virtual std::size_t size() const = 0;  ///< members, at least 1
+  virtual std::size_t rank() const = 0;  ///< rank of this process, from 0
+  virtual std::size_t size() const = 0;  ///< number of ranks, at least 1
 
-  /// What every member has, in the order of ranks: one exchange.
+  /// Gathers the values of all ranks on every rank, in the order of ranks: one collective exchange.
   ///
-  /// @param state in which the members have to agree, such as a digest of the coefficients and of the place
-  ///        in the work
-  /// @throws Error the error that members failed with here instead: of the lowest place, then of the lowest
-  ///         rank. Error if the members are in different states.
+  /// @param state must be equal on all ranks, such as a digest of the coefficients and of the position in the
+  /// work
+  /// @throws Error if ranks called `fail` instead: the error of the lowest place, then of the lowest rank.
+  /// Error if the ranks are in different states.
   std::vector<std::string> gather(const std::string& own, std::uint64_t state = 0);
 
-  /// Fails where the others gather, and throws there what they throw; after that the members may go on.
-  /// @param place in which one member alone would come to the error: 0 before any flight, then by flight
+  /// Fails while the other ranks gather; all throw the same error and may continue after it.
+  /// @param place order of the error in a serial run: 0 before any flight, then by flight
   [[noreturn]] void fail(const Error& error, std::size_t place);
 
-  /// The last words of this member, whether its work succeeded or not, so that no other waits for it. After
-  /// that, and after those of another member, nothing is gathered any more.
-  /// @return the error that all of the team end with, or none
+  /// Last call of a rank, with or without an error, so that other ranks do not wait for it. No gather is
+  /// possible after it, or after that of another rank.
+  /// @return common error of all ranks, if any
   std::optional<Error> leave(const std::optional<Error>& error = std::nullopt);
 
  private:
-  /// Gives each member the bytes of all, in the order of ranks.
+  /// Gives each rank the bytes of all, in the order of ranks.
   virtual std::vector<std::string> exchange(const std::string& own) = 0;
 
   std::vector<internal::Message> talk(const internal::Message& own);
@@ -57,7 +57,7 @@ class Communicator {
   std::optional<Error> parted_with_{};
 };
 
-/// A team of one.
+/// Communicator of one rank.
 Communicator& serial_communicator();
 
 }  // namespace pcor

@@ -13,25 +13,24 @@ namespace internal {
 struct PeerProcess;
 }
 
-/// Processes of one machine that share a work: the process that makes the team, of rank 0, and copies of it,
-/// which go on from the same place with ranks of their own. They read at the same time, which threads of one
-/// process cannot, as the netCDF library reads for one of them at a time.
+/// Processes of one machine that share a computation: the creating process, rank 0, and its forked children
+/// with the other ranks. They read in parallel, which threads of one process cannot, because the netCDF
+/// library is serial.
 ///
-/// Where a copy ends before the others, rank 0 throws the Error of that from its next exchange, and
-/// the other copies get SIGTERM; so they do where rank 0 ends. The caller must not ignore SIGCHLD: the system
-/// would forget how copies ended.
+/// If a child ends before the others, rank 0 throws its Error at the next exchange, and the other children
+/// receive SIGTERM, as they do if rank 0 ends. The caller must not ignore SIGCHLD; otherwise exit statuses
+/// are lost.
 class ForkCommunicator final : public Communicator {
  public:
-  /// The status with which a copy ends that has told the user why it does: of that loss rank 0 throws an
-  /// Error without a text.
+  /// Exit status of a child that has already printed its error: rank 0 then throws an Error without text.
   static constexpr int has_told = 3;
 
-  /// To be made while the process has one thread and no open flight.
+  /// Must be created while the process has one thread and no open flight.
   /// @param size processes, at least 1
-  /// @throws Error if the system begins no more processes
+  /// @throws Error if the system cannot create the processes
   explicit ForkCommunicator(std::size_t size);
 
-  /// Of rank 0: waits for the copies to end.
+  /// Rank 0: waits for the children to end.
   ~ForkCommunicator() override;
 
   std::size_t rank() const override { return rank_; }
@@ -47,8 +46,8 @@ class ForkCommunicator final : public Communicator {
 
   std::size_t rank_ = 0;
   std::size_t size_ = 1;
-  std::vector<internal::PeerProcess> others_;  // of rank 0 all others, in the order of ranks; of these rank 0
-  std::optional<Error> loss_{};                // after which nothing is exchanged any more
+  std::vector<internal::PeerProcess> others_;  // rank 0: all other ranks in order; otherwise: rank 0
+  std::optional<Error> loss_{};                // no exchange is possible after it
 };
 
 }  // namespace pcor

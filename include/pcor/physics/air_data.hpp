@@ -4,8 +4,8 @@
 
 namespace pcor {
 
-/// By what part of its temperature air warms where it is brought to rest, from static pressure `p` and
-/// dynamic pressure `q` (same unit):
+/// Relative temperature rise of air brought to rest, from static pressure `p` and dynamic pressure `q` (same
+/// unit):
 ///
 ///     h = T*/T - 1 = ((p+q)/p)^(R_a/c_p) - 1 = M^2 (gamma - 1)/2 = v^2/(2 c_p T)
 ///
@@ -83,7 +83,7 @@ S true_airspeed(const S& mach, const S& temperature, const MoistAir<S>& air) {
 }
 
 /// True airspeed, m/s, of air of which `dynamic_heating` is `heating`, with the ambient `temperature` in K:
-/// v = (2 c_p T h)^(1/2). NaN where the product is below zero. Source: memo eq. 5.
+/// v = (2 c_p T h)^(1/2). NaN if the product is below zero. Source: memo eq. 5.
 template <class S>
 S true_airspeed_from_heating(const S& heating, const S& temperature, const MoistAir<S>& air) {
   using std::sqrt;

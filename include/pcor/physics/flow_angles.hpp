@@ -18,7 +18,7 @@ struct RadomeCalibration {
   constexpr bool is_calibrated() const { return slope != 0.0 || slope_mach != 0.0; }
   constexpr bool needs_mach() const { return slope_mach != 0.0; }
 
-  /// The flow angle, deg. NaN where the ratio is NaN.
+  /// The flow angle, deg. NaN if the ratio is NaN.
   template <class S>
   S operator()(const S& ratio, const S& mach) const {
     return S(offset) + ratio * (S(slope) + S(slope_mach) * mach);

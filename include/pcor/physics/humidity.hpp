@@ -24,8 +24,8 @@ S vapor_pressure_over_water(const S& temperature) {
   return S(0.01) * exp(warm + blend * cold);
 }
 
-/// A vapour pressure, hPa, that is surely below saturation over water at `temperature` in K, for a fraction
-/// of what `vapor_pressure_over_water` costs:
+/// Lower bound of the saturation vapour pressure over water, hPa, at `temperature` in K, at a fraction of the
+/// cost of `vapor_pressure_over_water`:
 ///
 ///     e = (1.160299 + 1.622958 x + 0.6518156 x^2 + 0.002964515 x^3 - 0.02742532 x^4)^4 hPa,
 ///     x = (T - 257.5 K)/67.5 K
@@ -64,7 +64,7 @@ S saturation_vapor_pressure(const S& temperature) {
                 vapor_pressure_over_water(temperature));
 }
 
-/// The factor by which air at `pressure` (hPa) raises the vapour pressure at `temperature` (K), 1:
+/// Enhancement factor of the vapour pressure at `temperature` (K) in air at `pressure` (hPa), 1:
 ///
 ///     f = 1 + 1e-5 p (4.923 - 0.0325 T + 5.84e-5 T^2)
 ///

@@ -10,11 +10,11 @@ namespace pcor {
 ///
 ///     dH/T = -(R_a/g0) ln(p/p_before)
 ///
-/// with the gas constant of the moist air between them, J/(kg K), and standard gravity. Times the mean
-/// temperature of the step (K) it is the thickness; the mean of both ends is exact where R_a T is linear in
-/// ln p. Positive upwards. Domain: pressures above zero in one unit, else NaN or an infinity.
-/// Source: memo eq. 22 and 24, in the exact form: the first-order form R_a dp/(g p) with the end-point
-/// pressure is short by 2 m over one scale height in 2000 steps.
+/// with the gas constant of the moist air between them, J/(kg K), and standard gravity. Multiplied by the
+/// mean temperature of the step (K) it is the thickness; the mean of both ends is exact if R_a T is linear in
+/// ln p. Positive upwards. Domain: pressures above zero in one unit, otherwise NaN or an infinity. Source:
+/// memo eq. 22 and 24, in the exact form: the first-order form R_a dp/(g p) with the end-point pressure is
+/// short by 2 m over one scale height in 2000 steps.
 template <class S>
 S hydrostatic_step(const S& pressure_before, const S& pressure, const S& gas_constant) {
   using std::log;

@@ -29,7 +29,7 @@ S airspeed_from_beam(const S& beam_speed, const S& cosine) {
   return beam_speed / cosine;
 }
 
-/// The correction delta-p, hPa, that LAMS asks of a pair of measured static and dynamic pressures:
+/// Correction delta-p, hPa, of a pair of measured static and dynamic pressures according to LAMS:
 ///
 ///     delta-p = (q_m - p_m chi)/(1 + chi) = (p_m + q_m)/(1 + chi) - p_m
 ///
@@ -40,11 +40,11 @@ S static_defect_from_pressure_ratio(const S& static_pressure, const S& dynamic_p
   return (static_pressure + dynamic_pressure) / (S(1.0) + chi) - static_pressure;
 }
 
-/// What LAMS says of a sample.
+/// Results of LAMS for a sample.
 template <class S>
 struct LamsSolution {
   S static_defect = missing<S>();  ///< delta-p, hPa
-  S temperature = missing<S>();    ///< ambient temperature that goes with it, K
+  S temperature = missing<S>();    ///< corresponding ambient temperature, K
   S mach = missing<S>();           ///< Mach number, 1
 };
 
@@ -67,9 +67,9 @@ struct Uncalibrated {
 /// `recovery` gives a_r at a Mach number. NaN in gives NaN out. Accuracy: 1e-9 hPa over the envelopes of the
 /// C-130 and GV. Source: memo, "Equations for correcting", approach 1.
 ///
-/// `calibrate` makes of an ambient temperature (K) the calibrated one, T_c, which is then the temperature of
-/// the air. The thermometer's is T = T_r/(1 + a_r M^2 (gamma - 1)/2) still, with M = v/c(T_c): its dynamic
-/// heating is the above times T/T_c, which is found with the passes.
+/// `calibrate` returns the calibrated temperature T_c of an ambient temperature (K), used as the temperature
+/// of the air. The thermometer still measures T = T_r/(1 + a_r M^2 (gamma - 1)/2), with M = v/c(T_c): its
+/// dynamic heating is the above times T/T_c, determined in the same passes.
 template <class S, class Recovery, class Calibration = Uncalibrated>
 LamsSolution<S> lams_simultaneous(const S& static_pressure, const S& dynamic_pressure, const S& airspeed,
                                   const S& recovery_temperature, const S& vapor_pressure,
@@ -148,7 +148,7 @@ LamsSolution<S> lams_with_temperature(const S& static_pressure, const S& dynamic
 /// delta-p. The airspeed cancels, so every value is a solution.
 inline constexpr std::string_view approach_4_refusal =
     "approach 4 of Cooper (2012) is an identity: a temperature computed from the airspeed and the Mach "
-    "number (eq. 12) makes eq. 11 return whatever delta-p was assumed, so nothing is learnt; use approach 1 "
+    "number (eq. 12) makes eq. 11 return any assumed delta-p, without information; use approach 1 "
     "(recovery temperature) or approach 3 (an ambient temperature measured without any pressure)";
 
 /// Temperature, K, from airspeed (m/s) and Mach number, without a thermometer: T = v^2/(gamma R_a M^2).

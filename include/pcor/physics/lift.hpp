@@ -13,7 +13,7 @@ namespace pcor {
 ///
 /// @param vertical_acceleration a_z of the aircraft over the ground, up positive, m/s2; 0 in level flight
 /// @param roll deg, less than 90
-/// NaN where one is NaN. Small angles of climb: n is too small by their cosine. Source: the balance of
+/// NaN if one is NaN. Small angles of climb: n is too small by their cosine. Source: the balance of
 /// forces.
 template <class S>
 S load_factor(const S& vertical_acceleration, const S& roll) {

@@ -39,7 +39,7 @@ constexpr MoistAir<S> moist_air(const S& e_over_p) {
           S(5.0) + e_over_p};
 }
 
-/// Constants of dry air: gamma = 7/5, R/c_p = 2/7. Nothing is computed, whatever the scalar.
+/// Constants of dry air: gamma = 7/5, R/c_p = 2/7. No computation, for any scalar.
 template <class S>
 constexpr MoistAir<S> dry_air() {
   constexpr MoistAir<double> dry = moist_air(0.0);

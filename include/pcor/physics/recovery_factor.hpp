@@ -7,15 +7,15 @@
 
 namespace pcor {
 
-/// The recovery factor of a thermometer in the airstream: the part of the dynamic heating that it feels.
+/// Recovery factor of a thermometer in the airstream: the measured fraction of the dynamic heating.
 ///
 ///     a_r(M) = c0 + c1 L + c2 L^2 + c3 L^3,   L = log10 M
 ///
-/// Result: 1. Domain: M > 0 where the law depends on the Mach number; M <= 0 gives NaN.
+/// Result: 1. Domain: M > 0 if the law depends on the Mach number; M <= 0 gives NaN.
 struct RecoveryFactor {
   std::array<double, 4> coefficients{};  ///< c0 .. c3, 1
 
-  /// True where the law does not depend on the Mach number.
+  /// True if the law does not depend on the Mach number.
   constexpr bool is_constant() const {
     return coefficients[1] == 0.0 && coefficients[2] == 0.0 && coefficients[3] == 0.0;
   }
@@ -26,7 +26,7 @@ struct RecoveryFactor {
     return is_constant() ? S(coefficients[0]) : at(decimal_logarithm(mach), S(mach));
   }
 
-  /// The recovery factor where the Mach number has the square `square`: its root is not waited for.
+  /// Recovery factor for the square of the Mach number, which avoids the latency of a root.
   template <class S>
   S at_square(const S& square) const {
     using std::log;
@@ -35,7 +35,7 @@ struct RecoveryFactor {
   }
 
  private:
-  // Missing where `moving`, the Mach number or its square, is not above zero.
+  // Missing unless `moving`, the Mach number or its square, is positive.
   template <class S>
   S at(const S& logarithm, const S& moving) const {
     const S factor = S(coefficients[0]) + logarithm * S(coefficients[1]) +
@@ -48,7 +48,7 @@ struct RecoveryFactor {
 struct PublishedRecoveryFactor {
   std::string_view name;
   std::string_view sensor;
-  std::string_view since;  ///< first use in processing, year or date; empty where not recorded
+  std::string_view since;  ///< first use in processing, year or date; empty if not recorded
   RecoveryFactor law;
   std::string_view source;
 };

@@ -19,29 +19,28 @@ namespace pcor {
 /// pack in batch processing, an automatically differentiated number in a fit. A scalar has the four
 /// operations, comparisons, construction from `double`, and `sqrt`, `exp`, `log`, `sin`, `cos`, `tan` by
 /// argument-dependent lookup. Comparisons of a vector pack give one truth value for each lane, so formulas
-/// choose with `select` instead of `if`. The formulas of users ask for `abs`, `log10`, `tanh` and `pow`
-/// besides.
+/// choose with `select` instead of `if`. Formula effects also require `abs`, `log10`, `tanh` and `pow`.
 
 /// The type of an expression in a state of scalar `X` and parameters of scalar `P`.
 template <class X, class P>
 using Promoted = decltype(std::declval<X>() * std::declval<P>());
 
-/// `yes` where the condition holds, else `no`.
+/// Returns `yes` if the condition holds, otherwise `no`.
 template <class S>
 constexpr S select(bool condition, const S& yes, const S& no) {
   return condition ? yes : no;
 }
 
-/// True where the condition holds in every lane.
+/// True if the condition holds in every lane.
 constexpr bool all(bool condition) { return condition; }
 
-/// True where the condition holds in some lane.
+/// True if the condition holds in some lane.
 template <class Condition>
 constexpr bool any(const Condition& condition) {
   return !all(!condition);
 }
 
-/// True where the value is not a number.
+/// True if the value is not a number.
 template <class S>
 constexpr auto is_missing(const S& value) {
   return !(value == value);
@@ -53,7 +52,7 @@ constexpr S missing() {
   return S(std::numeric_limits<double>::quiet_NaN());
 }
 
-/// True where the value is neither infinite nor missing.
+/// True if the value is neither infinite nor missing.
 template <class S>
 constexpr auto is_finite(const S& value) {
   return !is_missing(value - value);
@@ -61,10 +60,10 @@ constexpr auto is_finite(const S& value) {
 
 static_assert(is_missing(std::numeric_limits<double>::quiet_NaN()) &&
                   !is_missing(std::numeric_limits<double>::infinity()),
-              "pcor finds missing values by NaN, which this compiler is told to ignore");
+              "pcor detects missing values by NaN, which these compiler options disable");
 
-/// True where the arithmetic that a program is compiled with keeps NaN and infinity. It does not under
-/// options of fast mathematics, which a pragma or an attribute sets without a word to the preprocessor.
+/// True if the arithmetic of the compiled program keeps NaN and infinity. Fast-math options, which a pragma
+/// or an attribute can set without a macro, do not.
 inline bool arithmetic_keeps_nan() noexcept {
   const volatile double zero = 0.0;
   const volatile double greatest = std::numeric_limits<double>::max();
@@ -75,7 +74,7 @@ inline bool arithmetic_keeps_nan() noexcept {
          beyond > std::numeric_limits<double>::max();
 }
 
-/// The value where it is finite, else not a number.
+/// Value if finite, otherwise NaN.
 template <class S>
 constexpr S finite_or_missing(const S& value) {
   return select(is_finite(value), value, missing<S>());
@@ -83,8 +82,8 @@ constexpr S finite_or_missing(const S& value) {
 
 /// `base` to the `exponent`, for a base above zero. A negative base gives NaN.
 ///
-/// Within a few units in the last place where the result is between 0.001 and 1000, as all powers of the
-/// chain are; `std::pow`, which keeps that up to any size, takes nearly twice the time.
+/// Accurate to a few units in the last place for results between 0.001 and 1000, the range of all powers of
+/// the chain; `std::pow`, accurate for any size, takes nearly twice the time.
 template <class S>
 S power(const S& base, const S& exponent) {
   if constexpr (std::is_floating_point_v<S>) {
@@ -138,8 +137,8 @@ constexpr double polynomial(double x, const std::array<double, 8>& c) {
 
 /// (1 + part/whole)^exponent - 1, for part/whole above -1.
 ///
-/// With `double` within 1e-15 of the result where that is as in flight, below Mach 0.847: two polynomials, by
-/// ln(1 + x) = 2 artanh(x/(2 + x)), which are there before two calls of the library are.
+/// For `double` accurate to 1e-15 of the result in the range of flight, below Mach 0.847: two polynomials, by
+/// ln(1 + x) = 2 artanh(x/(2 + x)), faster than two calls of the library.
 template <class S>
 S power_less_one(const S& part, const S& whole, const S& exponent) {
   if constexpr (std::is_same_v<S, double>) {

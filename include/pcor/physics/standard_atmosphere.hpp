@@ -12,9 +12,9 @@ namespace pcor {
 /// A layer of the US Standard Atmosphere 1976, from `base` to the base of the next.
 struct StandardLayer {
   double base;         ///< geopotential height, m
-  double temperature;  ///< at the base, K
+  double temperature;  ///< temperature at the base, K
   double lapse;        ///< dT/dH, K/m
-  double pressure;     ///< at the base, hPa
+  double pressure;     ///< pressure at the base, hPa
 };
 
 /// The layers up to 71 km, table 4 of the source; the pressures at their bases follow from the layers below.
@@ -31,7 +31,7 @@ inline constexpr std::array<StandardLayer, 7> standard_layers{{
 /// g0 M0/R*, K/m: 0.034163195, with the constants of the US Standard Atmosphere 1976, which are its own.
 inline constexpr double standard_hydrostatic_constant = constants::standard_gravity * 28.9644 / 8314.32;
 
-/// Top of the standard atmosphere as it is here, geopotential m; below it down to -5000 m.
+/// Top of this standard atmosphere, geopotential m; it extends down to -5000 m.
 inline constexpr double standard_top = 84852.0;
 
 inline constexpr double standard_bottom = -5000.0;

@@ -14,27 +14,31 @@
 
 namespace pcor {
 
-/// Which part of the standard uncertainties of results is written: all of it, what stays the same from sample
-/// to sample (the covariance of the model's parameters), or what does not (sensors, and what the law leaves).
+/// Part of the standard uncertainties of results that is written: total; systematic, constant from sample to
+/// sample (covariance of the model's parameters); or random, independent between samples (sensors and the
+/// remaining error of the model).
 enum class UncertaintyPart { total_if_stated, total, systematic, random, none };
 
 /// How a flight is processed.
 struct ProcessOptions {
   CorrectWith correct_with = CorrectWith::model;
-  /// Copy every variable of the input but texts, not only coordinates and what was used.
+  /// Copy all variables of the input except text, instead of only coordinates and inputs.
   bool copy_all = false;
-  /// Write the steps of hydrostatic height, `HYDSTEP`, and copy what a fit of temperature needs besides.
+  /// Write `HYDSTEP`, the hydrostatic height per kelvin of each step, and copy the other inputs of a
+  /// temperature fit.
   bool hydrostatic = false;
   UncertaintyPart uncertainty = UncertaintyPart::total_if_stated;
-  /// Correct what a frozen sensor reads, too; else it is missing. The bit `sensor_frozen` stands either way.
+  /// Correct the readings of a frozen sensor, too; otherwise they are missing. The bit `sensor_frozen` is set
+  /// in both cases.
   bool keep_frozen = false;
   std::string suffix{};  ///< added to the name of every derived variable
   TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
-  std::string history{};  ///< what the output says of its making, e.g. the command line
-  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every block of records
+  std::string history{};  ///< history attribute of the output, e.g. the command line
+  /// Callback after every block of records.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
-/// What was done to a flight.
+/// Result of processing a flight.
 struct ProcessSummary {
   std::string aircraft;
   std::string project;
@@ -46,47 +50,48 @@ struct ProcessSummary {
   std::size_t gaps = 0;
   double first_time = 0.0;  ///< seconds since 1970 UTC
   double last_time = 0.0;
-  /// In flight: with a measured dynamic pressure (hPa) of this or more, that of the flying speed of the
-  /// aircraft (`RegimeCriteria::flying_speed`) at sea level in the standard atmosphere.
+  /// Minimum measured dynamic pressure of samples in flight, hPa: that of `RegimeCriteria::flying_speed` at
+  /// sea level in the standard atmosphere.
   double flying_dynamic_pressure = 0.0;
-  std::size_t in_flight = 0;  ///< of the corrected samples
-  double mean_defect = 0.0;   ///< of the delta-p applied in flight, hPa; NaN where none was
-  double min_defect = 0.0;    ///< in flight, hPa
-  double max_defect = 0.0;    ///< in flight, hPa
-  std::array<std::size_t, quality_info.size()> flagged{};  ///< samples with each quality bit, flown or not
-  std::vector<std::string> outputs;                        ///< names of the derived variables, in order
-  std::vector<std::string> notes;                          ///< what a user should know, a sentence each
+  std::size_t in_flight = 0;  ///< corrected samples in flight
+  double mean_defect = 0.0;   ///< mean delta-p applied in flight, hPa; NaN if no sample was corrected
+  double min_defect = 0.0;    ///< minimum in flight, hPa
+  double max_defect = 0.0;    ///< maximum in flight, hPa
+  /// Samples with each quality bit, in flight and on the ground.
+  std::array<std::size_t, quality_info.size()> flagged{};
+  std::vector<std::string> outputs;  ///< names of the derived variables, in order
+  std::vector<std::string> notes;    ///< notes for the user, one sentence each
 };
 
 /// Runs every sample of the flight `input` through the real-time loop of `model` and writes the derived
 /// variables to `output`: delta-p (`PCOR`, `PCOR_LAMS`), corrected pressures (`PSXC`, `QCXC`), `MACHX`,
 /// `ATX`, `TASX`, `ATLAMS`, `ATLAMSF`, `QCLAMS` and the quality bits `PCORFLAG`, under the names of the
-/// model's `[output]` table, with the coordinates and inputs they came from. Pressures in hPa, temperatures
-/// in degC, speeds in m/s. Without a temperature there is no TASX; without LAMS, none of its variables. ATX
-/// is written where it is found from a recovery temperature, and where a recorded one is calibrated.
+/// model's `[output]` table, with their coordinates and inputs. Pressures in hPa, temperatures in degC,
+/// speeds in m/s. TASX requires a temperature; the LAMS variables require LAMS. ATX is written if it is
+/// computed from a recovery temperature or if a recorded temperature is calibrated.
 ///
-/// ATLAMSF is ATLAMS without periods under 3 s (`LowPass`), each value at the time of the sample that it is
-/// of: the delay of the loop is taken out, and so it is for the bit `filter_window_incomplete`. Nothing goes
-/// across a gap. At 25 Hz the first and last 0.8 s of a stretch without gaps have none.
+/// ATLAMSF is ATLAMS without periods under 3 s (`LowPass`), each value at the time of its sample: the delay
+/// of the loop is compensated, also for the bit `filter_window_incomplete`. The filter does not extend across
+/// gaps: at 25 Hz the first and last 0.8 s of a contiguous segment have no value.
 ///
-/// Where the model states uncertainties (`uncertainty_of`), `PCOR_uncertainty`, `PSXC_uncertainty`,
-/// `QCXC_uncertainty`, `ATX_uncertainty` and `TASX_uncertainty` are written beside their results, which name
-/// them in `ancillary_variables` (`ResultUncertainty`); notes say what is not in them.
+/// If the model states uncertainties (`uncertainty_of`), `PCOR_uncertainty`, `PSXC_uncertainty`,
+/// `QCXC_uncertainty`, `ATX_uncertainty` and `TASX_uncertainty` are written with their results, which name
+/// them in `ancillary_variables` (`ResultUncertainty`); notes list the contributions that are not included.
 ///
-/// `hydrostatic` asks for `HYDSTEP`, -(R_a/g0) ln(p_i/p_(i-1)) in m/K (`hydrostatic_step`): times the mean
-/// temperature of two samples in K it is the step of geopotential height (standard gravity) between them. It
-/// has no value for the first sample, after a gap, and where either PSXC is missing. Its attribute
-/// `temperature_calibration` holds a0 (K), a1 and a2 (1/K) of the model's temp-calibration, which ATX has in
-/// it already, and its attribute `model` what of the rest of the model the pressures depend on.
+/// `hydrostatic` adds `HYDSTEP`, -(R_a/g0) ln(p_i/p_(i-1)) in m/K (`hydrostatic_step`): multiplied by the
+/// mean temperature of two samples in K it is the step of geopotential height (standard gravity) between
+/// them. It is missing for the first sample, after a gap, and if either PSXC is missing. Its attribute
+/// `temperature_calibration` holds a0 (K), a1 and a2 (1/K) of the model's temp-calibration, which ATX already
+/// includes, and its attribute `model` the other parts of the model on which the pressures depend.
 ///
-/// The loop runs at the higher rate of the two pressures; other inputs are brought to it
-/// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit, and so
-/// does a sensor that is frozen, which is found as comparisons and fits find it, from its whole series at one
-/// sample per record. But for such a series memory does not depend on the length of the flight.
+/// The loop runs at the higher rate of the two pressures; other inputs are resampled to it
+/// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit. The same
+/// holds for a frozen sensor, detected as in comparisons and fits from its whole series at one sample per
+/// record. Except for such a series, memory does not depend on the length of the flight.
 ///
-/// @throws Error, and leaves `output` as it was, if the flight or a variable that the model needs cannot be
-/// read, a unit is unknown, the model cannot be used, an uncertainty is asked for of which the model states
-/// nothing, a name is taken, or the output cannot be written.
+/// @throws Error, and leaves `output` unchanged, if the flight or a variable of the model cannot be read, a
+/// unit is unknown, the model cannot be used, an uncertainty is requested that the model does not state, a
+/// name is already used, or the output cannot be written.
 ProcessSummary process_flight(const std::filesystem::path& input, const ModelDefinition& model,
                               const std::filesystem::path& output, const ProcessOptions& options = {});
 

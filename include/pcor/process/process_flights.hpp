@@ -12,53 +12,55 @@
 
 namespace pcor {
 
-/// A flight that is to be processed.
+/// Input and output of one flight.
 struct ProcessTask {
   std::filesystem::path input;
   std::filesystem::path output;
-  std::string history{};  ///< what the output says of its making, e.g. a command line that makes it alone
+  /// History attribute of the output, e.g. a command line that reproduces this output alone.
+  std::string history{};
 };
 
-/// What became of a flight.
+/// Outcome for one flight.
 enum class FlightState { processed, up_to_date, unreadable };
 
-/// "processed", "up to date" or "unreadable".
+/// Text: "processed", "up to date" or "unreadable".
 std::string_view to_string(FlightState state);
 
 struct ProcessedFlight {
   std::filesystem::path input;
   std::filesystem::path output;
   FlightState state = FlightState::processed;
-  ModelDefinition model{};   ///< by which it was corrected; empty where none could be told
-  ProcessSummary summary{};  ///< of a flight that was processed
-  std::string reason{};      ///< why it could not be read, one line
+  ModelDefinition model{};   ///< model used; empty if no model could be selected
+  ProcessSummary summary{};  ///< empty unless the flight was processed
+  std::string reason{};      ///< reason for which it could not be read, one line
 };
 
-/// The model that a flight is to be corrected by. It may throw Error where there is none.
+/// Selects the model for a flight. May throw Error if there is no model.
 using ModelSelector = std::function<ModelDefinition(const std::filesystem::path& flight)>;
 
 /// How several flights are processed.
 struct ProcessFlightsOptions {
-  ProcessOptions process{};      ///< of each flight; the history is that of its task
-  bool if_stale = false;         ///< leave alone what `is_up_to_date`
-  bool skip_unreadable = false;  ///< go on after a flight that cannot be read or lacks what the model needs
-  /// In a copy of the process, all flights to be skipped for a crash are found before the first is processed;
-  /// of those with `if_stale` that have an output already none is opened for it.
+  ProcessOptions process{};  ///< options of each flight; the history is replaced by that of the task
+  bool if_stale = false;     ///< true: skip outputs that satisfy `is_up_to_date`
+  /// True: continue after a flight that cannot be read or lacks a variable of the model.
+  bool skip_unreadable = false;
+  /// With a child process, flights that crash the reader are detected before the first flight is processed;
+  /// with `if_stale`, flights with an existing output are not probed.
   OpenedIn opened_in = OpenedIn::this_process;
-  std::function<void(std::size_t task)> begins{};             ///< told before each flight
-  std::function<void(const ProcessedFlight& flight)> ends{};  ///< told after each flight
+  std::function<void(std::size_t task)> begins{};             ///< callback before each flight
+  std::function<void(const ProcessedFlight& flight)> ends{};  ///< callback after each flight
 };
 
-/// One task for each flight, into a folder under the name that it has.
-/// @throws Error if two flights have one name, or one lies in the folder itself.
+/// One task for each flight, with an output of the same file name in `folder`.
+/// @throws Error if two flights have the same file name, or one lies in the folder itself.
 std::vector<ProcessTask> tasks_in_folder(const std::vector<std::filesystem::path>& flights,
                                          const std::filesystem::path& folder);
 
-/// Processes flights one after the other, each by its model, as `process_flight` does. Memory does not grow
-/// with their number, but for what is said of each.
+/// Processes flights sequentially with `process_flight`, each by its selected model. Memory does not depend
+/// on the number of flights, except for their results.
 ///
-/// @throws Error as `process_flight`; what was done before stays. With `skip_unreadable` an error of a flight
-/// is the `reason` of its entry instead; one of an output is thrown all the same.
+/// @throws Error as `process_flight`; completed outputs remain. With `skip_unreadable` an error of a flight
+/// becomes the `reason` of its entry; an error of an output is still thrown.
 std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks,
                                              const ModelSelector& model_of,
                                              const ProcessFlightsOptions& options = {});

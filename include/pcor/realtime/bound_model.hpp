@@ -13,34 +13,33 @@
 
 namespace pcor {
 
-/// A model bound to what is recorded: its effects by the places where they act, with the quantities that they
-/// read, and what is needed, recorded and derived. `ModelBinder` makes one.
+/// Model bound to recorded quantities: effects by location with their inputs, and required, recorded and
+/// derived quantities. Created by `ModelBinder`.
 class BoundModel {
  public:
   /// The coefficients of all effects, one after another in the order of the model; after them, zero, what is
   /// added at each of the model's `additions`.
   const std::vector<double>& parameters() const { return parameters_; }
 
-  /// The variables that formulas use beyond the quantities of the library, by name. Number i belongs at
-  /// `extra_quantity(i)` of a state.
+  /// Further variables of formulas, by name. Number i belongs at `extra_quantity(i)` of a state.
   const std::vector<std::string>& extra_names() const { return extra_names_; }
 
-  /// The recorded quantities, those of formulas included.
+  /// Recorded quantities, including those of formulas.
   const std::vector<Quantity>& inputs() const { return inputs_; }
 
-  /// True where the quantity is recorded.
+  /// True if the quantity is recorded.
   bool recorded(Quantity quantity) const { return recorded_[index(quantity)]; }
 
-  /// True where some stage needs the quantity.
+  /// True if some stage needs the quantity.
   bool needs(Quantity quantity) const { return needed_[index(quantity)]; }
 
-  /// True where the chain computes the quantity from others because it is not recorded.
+  /// True if the chain computes the quantity from others because it is not recorded.
   bool derives(Quantity quantity) const { return needs(quantity) && !recorded(quantity); }
 
-  /// True where some effect acts at the place.
+  /// True if an effect acts at the location.
   bool acts(EffectLocation location) const { return acting_[static_cast<std::size_t>(location)]; }
 
-  /// What the effects at the place read, and at the static ports the domain of the model.
+  /// Inputs of the effects at a location; at the static ports also those of the domain of the model.
   std::vector<Quantity> read_at(EffectLocation location) const {
     std::vector<Quantity> read;
     for (std::size_t i = begin_of(location); i < begin_of(location, 1); ++i) {
@@ -65,30 +64,28 @@ class BoundModel {
     return recorded(Quantity::recovery_temperature) || recorded(Quantity::ambient_temperature);
   }
 
-  /// True where the ambient temperature is found from the recovery temperature; a recorded one goes before
-  /// it.
+  /// True if the ambient temperature is derived from the recovery temperature; a recorded one has priority.
   bool derives_temperature() const {
     return recorded(Quantity::recovery_temperature) && !recorded(Quantity::ambient_temperature);
   }
 
-  /// True where a recorded ambient temperature is calibrated, which `Chain::measure` does in its place.
+  /// True if a recorded ambient temperature is calibrated, in place, by `Chain::measure`.
   bool calibrates_recorded_temperature() const {
     return acts(EffectLocation::ambient_temperature) && recorded(Quantity::ambient_temperature);
   }
 
-  /// True where water vapour changes the constants of the air: with moist constants, or by an effect.
+  /// True if water vapour changes the gas constants: with moist constants, or by an effect.
   bool counts_vapor() const { return moist_ || acts(EffectLocation::humidity); }
 
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
 
-  /// How many effects the model has, and of each where it acts and the place of its first coefficient among
-  /// `parameters`.
+  /// Number of effects of the model; location of each and index of its first coefficient in `parameters`.
   std::size_t effect_count() const { return effects_.size(); }
   EffectLocation location_of(std::size_t effect) const { return effects_[effect].location; }
   std::size_t first_parameter_of(std::size_t effect) const { return effects_[effect].first_parameter; }
 
-  /// The time, s, over which the model finds a quantity that remembers (`EffectInfo::memory`): the
-  /// coefficient of the effect that says so; without it, as for a formula, its neutral value.
+  /// Time constant, s, of a quantity computed from earlier samples (`EffectInfo::memory`): the coefficient of
+  /// the effect; without such an effect, as for a formula, its neutral value.
   double time_of(Quantity remembered) const {
     for (const Term& term : effects_) {
       if (term.effect >= catalogue_size) continue;
@@ -101,16 +98,15 @@ class BoundModel {
     return 0.0;
   }
 
-  /// True where the value of the effect is linear in that coefficient of it, and zero where all such are
-  /// zero.
+  /// True if the effect is linear in this coefficient, and zero if all such coefficients are zero.
   bool is_linear(std::size_t effect, std::size_t parameter) const {
     const std::size_t place = effects_[effect].effect;
     return place < catalogue_size && !effect_info[place].parameters[parameter].shape;
   }
 
-  /// What effect number `effect` of the model gives for a state that `Chain::measure` has been through, in
-  /// the unit of its place. Zero for an effect on the laser's beam where there is no laser.
-  /// @param own the coefficients of this effect alone
+  /// Value of effect number `effect` of the model for a state after `Chain::measure`, in the unit of its
+  /// location. Zero for an effect on the laser's beam if there is no laser. @param own the coefficients of
+  /// this effect only
   template <class S, class P>
   Promoted<S, P> effect_value(std::size_t effect, const State<S>& state, const P* own) const {
     const Term& term = effects_[effect];
@@ -118,7 +114,7 @@ class BoundModel {
   }
 
  protected:
-  // The sum of what acts at a place.
+  // Sum of the effects at a location.
   template <class R, class S, class P>
   R sum(EffectLocation location, const State<S>& state, const P* parameters) const {
     return acts(location) ? sum_of_terms<R>(location, state, parameters) : R(0.0);
@@ -141,8 +137,8 @@ class BoundModel {
  private:
   friend class ModelBinder;
 
-  // What acts at a place: an effect of the catalogue, a formula of that number, or an amount that is a
-  // parameter itself.
+  // Term at a location: an effect of the catalogue, a formula with an index, or an amount that is a
+  // parameter.
   struct Term {
     static constexpr std::size_t is_formula = catalogue_size;
     static constexpr std::size_t is_addition = catalogue_size + 1;
@@ -200,10 +196,10 @@ class BoundModel {
     return value * R(factor(scaling, state[Quantity::static_pressure], state[Quantity::dynamic_pressure]));
   }
 
-  std::vector<Term> effects_;  // in the order of the model
+  std::vector<Term> effects_;  // order of the model
   std::vector<Term> terms_;    // what acts, by place
   std::array<std::size_t, location_count + 1> where_begin_{};
-  std::bitset<location_count> acting_;  // whether a term acts at each place
+  std::bitset<location_count> acting_;  // true for each location with a term
   std::vector<BoundFormula> formulas_;
   std::vector<double> parameters_;
   std::vector<std::string> extra_names_;

@@ -20,27 +20,28 @@ namespace pcor {
 ///             -> lams_static_defect
 ///
 /// Every stage reads and writes a `State`. It is a template over the scalars of the state, `S`, and of the
-/// parameters, `P`, so that the same lines serve the real-time loop (both `double`), batches (`S` a vector
-/// pack) and fits (`P` a dual number). Where effects act before the static ports, `S` must be the
-/// promoted type. After `build` a chain allocates nothing, throws nothing, and holds nothing of a sample.
+/// parameters, `P`, so that the same code serves the real-time loop (both `double`), batches (`S` a vector
+/// pack) and fits (`P` a dual number). If effects act before the static ports, `S` must be the promoted type.
+/// After `build` a chain does not allocate or throw, and keeps no data of samples.
 class Chain : public BoundModel {
  public:
-  /// Prepares `model` for states in which the roles `recorded` are known. Returns nothing where the model
-  /// cannot be used; `error` then says why and what to do.
+  /// Prepares `model` for states in which the roles `recorded` are known. Returns nullopt if the model cannot
+  /// be used; `error` then holds the reason and the action.
   static std::optional<Chain> build(const Model& model, const std::vector<Quantity>& recorded,
                                     BindingError* error) {
     BindingError unasked;
     return made(ModelBinder::bind(model, recorded, error != nullptr ? *error : unasked));
   }
 
-  /// This chain with one more effect at the end of its model, or nothing; `error` then says why.
+  /// Chain with one more effect at the end of its model, or nullopt with the reason in `error`.
   std::optional<Chain> with_effect(const ModelEffect& effect, BindingError* error) const {
     BindingError unasked;
     return made(ModelBinder::with_effect(*this, effect, error != nullptr ? *error : unasked));
   }
 
-  /// The quantities in which the laws stand, the pressures at the ports, and the calibration of a recorded
-  /// ambient temperature. A recorded value that no flight has (`is_implausible`) is missing from here on.
+  /// Inputs of the effects: pressure ratios and flow angles, the pressures at the ports, and the calibration
+  /// of a recorded ambient temperature. Implausible recorded values (`is_implausible`) are treated as
+  /// missing.
   template <class S, class P, class Flags>
   void measure(State<S>& state, const P* parameters, Flags& flags) const {
     for (const Quantity input : inputs()) drop_implausible(input, state);
@@ -59,7 +60,7 @@ class Chain : public BoundModel {
     }
     flow_angles(state, parameters, flags);
     if (acts(EffectLocation::radome)) {
-      // What the radome loses at an angle is found from the angles without that loss, which is small.
+      // Radome loss at an angle, computed from angles without that loss, which is small.
       add(EffectLocation::radome, Quantity::radome_dynamic_pressure, state, parameters);
       flow_angles(state, parameters, flags);
     }
@@ -82,11 +83,11 @@ class Chain : public BoundModel {
               Quality::effect_input_missing);
   }
 
-  /// Delta-p of the model, hPa: the sum of the effects at the static ports, under the policy. NaN where a
-  /// pressure or an input of an effect is missing. Where the dynamic pressure is below the least of
-  /// the policy, no airflow causes a defect: NaN, but under a taper, which ends in zero. A defect beyond the
-  /// dynamic pressure is none, NaN: above it the corrected dynamic pressure would be negative; below its
-  /// negative the port would feel half of the corrected one, ten times what static ports do.
+  /// Delta-p of the model, hPa: the sum of the effects at the static ports, limited by the policy. NaN if a
+  /// pressure or an input of an effect is missing; if the dynamic pressure is below the minimum of the policy
+  /// (no airflow), unless a taper, which ends in zero, is used; and if the absolute defect exceeds the
+  /// dynamic pressure: above it the corrected dynamic pressure would be negative; below its negative the port
+  /// error would be half of the corrected one, ten times that of static ports.
   template <class S, class P, class Flags>
   Promoted<S, P> static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     using R = Promoted<S, P>;
@@ -116,8 +117,8 @@ class Chain : public BoundModel {
     return select(enough, defect, missing<R>());
   }
 
-  /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum stays. One
-  /// that is negative, as where a law is carried on to the ground, or beyond all flights, is impossible: NaN.
+  /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum is unchanged.
+  /// Negative values, as from extrapolation to the ground, and implausible ones are NaN.
   template <class S, class Flags>
   void correct(State<S>& state, const S& defect, Flags& flags) const {
     put(Quantity::corrected_static_pressure, S(state[Quantity::port_static_pressure] + defect), state, flags,
@@ -127,11 +128,11 @@ class Chain : public BoundModel {
   }
 
   /// Humidity, Mach number, ambient temperature and airspeed from the corrected pressures. They depend on
-  /// each other through the constants of moist air and the limit of saturation over water, so they are found
-  /// together. An ambient temperature that is found from the recovery temperature is calibrated here.
-  /// Where the corrected dynamic pressure is below the least of the policy, as on the ramp, Mach
-  /// number and airspeed would be those of noise: NaN; the temperature, which such a flow hardly heats,
-  /// stays. A Mach number beyond all flights tells of an impossible pair of pressures.
+  /// each other through the constants of moist air and the limit of saturation over water, so they are solved
+  /// together. An ambient temperature derived from the recovery temperature is calibrated here. If the
+  /// corrected dynamic pressure is below the minimum of the policy, as on the ramp, Mach number and airspeed
+  /// would be noise and are NaN; the temperature, hardly affected by such a flow, is kept. An implausible
+  /// Mach number indicates an impossible pair of pressures.
   template <class S, class P, class Flags>
   void air(State<S>& state, const P* parameters, Flags& flags) const {
     const S p = state[Quantity::corrected_static_pressure];
@@ -157,9 +158,9 @@ class Chain : public BoundModel {
                true_airspeed_from_heating(air.heating, state[Quantity::ambient_temperature], air.constants));
   }
 
-  /// Delta-p that LAMS asks for at this sample, hPa, by the approach of the model. NaN where the laser or
-  /// anything that it needs is missing, without airflow, and beyond the dynamic pressure on either side,
-  /// where no airspeed of the laser can be right.
+  /// Delta-p from LAMS at this sample, hPa, by the approach of the model. NaN if the laser or another input
+  /// is missing, without airflow, and if its absolute value exceeds the dynamic pressure, because the laser
+  /// airspeed must then be wrong.
   template <class S, class P, class Flags>
   S lams_static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     const S& p = state[Quantity::port_static_pressure];
@@ -190,8 +191,8 @@ class Chain : public BoundModel {
     return beam_cosine(elevation, azimuth, state[Quantity::attack], sideslip);
   }
 
-  /// The airspeed by the corrected pressures along the beam of the laser, m/s; the true airspeed where there
-  /// is none. Of a state as it was recorded, with its rates of change. NaN where an input is missing.
+  /// Airspeed along the laser beam from the corrected pressures, m/s; the true airspeed without a laser. For
+  /// a state with recorded values and rates of change. NaN if an input is missing.
   template <class S, class P>
   S airspeed_along_beam(State<S> state, const P* parameters) const {
     NoQualityFlags flags;
@@ -211,9 +212,8 @@ class Chain : public BoundModel {
   }
 
   /// Ambient temperature (K, eq. 12) and dynamic pressure (hPa, eq. 8) from LAMS and the corrected pressures.
-  /// They test the model, not the laser: with pressures corrected by LAMS at this very sample they return
-  /// their inputs. NaN where the airspeed of the laser is missing, not above zero, or leads beyond all
-  /// flights.
+  /// They test the model, not the laser: with pressures corrected by LAMS at the same sample they return
+  /// their inputs. NaN if the airspeed of the laser is missing or not positive, or results are implausible.
   template <class S, class P, class Flags>
   void lams_air(State<S>& state, const P* parameters, Flags& flags) const {
     const S recorded = lams_airspeed(state, parameters);
@@ -227,7 +227,7 @@ class Chain : public BoundModel {
         state, flags, Quality::lams_missing);
   }
 
-  /// The part of the effects at the static ports that the taper leaves of delta-p: 1 without one.
+  /// Taper factor of the effects at the static ports: 1 without a taper.
   template <class S>
   S taper_fraction(const State<S>& state) const {
     const S q = state[Quantity::dynamic_pressure];
@@ -241,7 +241,8 @@ class Chain : public BoundModel {
     return recovery_(mach) + sum<S>(EffectLocation::recovery, state, parameters);
   }
 
-  /// By how much the ambient temperature changes with what it was before its calibration: 1 without one.
+  /// Derivative of the ambient temperature with respect to its value before calibration: 1 without a
+  /// calibration.
   template <class S, class P>
   S calibration_slope(const State<S>& state, const P* parameters) const {
     if (!acts(EffectLocation::ambient_temperature)) return S(1.0);
@@ -252,9 +253,8 @@ class Chain : public BoundModel {
     return S(1.0) + above - sum<S>(EffectLocation::ambient_temperature, moved, parameters);
   }
 
-  /// Adds to a quantity of a state that `measure` has been through, and takes along what the laws see of it:
-  /// the ratios and the Mach number of the pressures, the ratios of the radome and the angles found from
-  /// them.
+  /// Adds to a quantity of a state after `measure`, and updates the derived inputs of effects: the ratios and
+  /// the Mach number of the pressures, the ratios of the radome and its flow angles.
   template <class S>
   void change(State<S>& state, Quantity quantity, const S& by) const {
     const S radome = state[Quantity::radome_dynamic_pressure];
@@ -277,7 +277,8 @@ class Chain : public BoundModel {
   }
 
  private:
-  // hPa: that of 48 km height, and far less than any sensor resolves. A ratio to less than that says nothing.
+  // Minimum static pressure, hPa: that at 48 km height, far below the resolution of any sensor. Ratios to
+  // smaller pressures are not meaningful.
   static constexpr double min_static_pressure = 1.0;
   static constexpr double min_radome_pressure = 1e-6;
 
@@ -287,7 +288,7 @@ class Chain : public BoundModel {
     return bound ? std::optional<Chain>(Chain(std::move(*bound))) : std::nullopt;
   }
 
-  // Takes a value that no flight has out of the state. True where it did.
+  // Removes an implausible value from the state. True if there was one.
   template <class S>
   static auto drop_implausible(Quantity quantity, State<S>& state) {
     const auto implausible = is_implausible(quantity, state[quantity]);
@@ -307,7 +308,7 @@ class Chain : public BoundModel {
     if (acts(location)) state[quantity] = state[quantity] + sum<S>(location, state, parameters);
   }
 
-  // Adds to a ratio of the radome, and to the angle that is found from it.
+  // Adds to a ratio of the radome, and to the flow angle derived from it.
   template <class S>
   void turn(State<S>& state, Quantity ratio, const S& by, Quantity angle,
             const RadomeCalibration& radome) const {
@@ -319,7 +320,7 @@ class Chain : public BoundModel {
     state[angle] = state[angle] + slope * by;
   }
 
-  // The ratios of the radome pressures, and the angles of flow where they are found from these.
+  // Ratios of the radome pressures, and the flow angles derived from them.
   template <class S, class P, class Flags>
   void flow_angles(State<S>& state, const P* parameters, Flags& flags) const {
     if (needs(Quantity::attack_ratio) || needs(Quantity::sideslip_ratio)) radome_ratios(state, flags);
@@ -352,7 +353,7 @@ class Chain : public BoundModel {
     return radome.needs_mach() ? radome(state[ratio], state[Quantity::mach]) : radome(state[ratio]);
   }
 
-  // True where the dynamic pressure is more than the noise of its sensor.
+  // True if the dynamic pressure exceeds the noise of its sensor.
   template <class S>
   auto is_flowing(const S& q) const {
     return q > S(0.0) && q >= S(policy_.min_dynamic_pressure);
@@ -389,8 +390,8 @@ class Chain : public BoundModel {
     return missing<S>();
   }
 
-  // e/p at static pressure p, zero or above; zero where dry constants are asked for, nothing is recorded, or
-  // e is not below p, which no air is.
+  // Vapour pressure ratio e/p at static pressure p, zero or above; zero if dry constants are selected, no
+  // humidity is recorded, or e is not below p.
   template <class S, class P, class Flags>
   S recorded_humidity(const State<S>& state, const P* parameters, const S& p, Flags& flags) const {
     if (!counts_vapor()) return S(0.0);
@@ -408,11 +409,10 @@ class Chain : public BoundModel {
     return select(unknown || negative, S(0.0), e / p);
   }
 
-  // Brings a vapour pressure in units of `unit`, hPa, down to saturation over water. True where any was
-  // above.
+  // Limits a vapour pressure in units of `unit`, hPa, to saturation over water. True if any value was above.
   template <class S, class Flags>
   bool limit_to_saturation(S& vapor, const S& unit, const S& temperature, Flags& flags) const {
-    // Most air is far from saturation; only where it may not be is saturation itself computed.
+    // Saturation is computed only for air that may be saturated.
     if (!counts_vapor() || !any(vapor * unit > vapor_pressure_below_saturation(temperature))) return false;
     const S saturation = vapor_pressure_over_water(temperature) / unit;
     const auto above = vapor > saturation;
@@ -422,8 +422,7 @@ class Chain : public BoundModel {
     return true;
   }
 
-  // The ambient temperature after the effects that calibrate it, which are found from it as it was before
-  // them.
+  // Ambient temperature after calibration effects, whose input is the temperature before them.
   template <class S, class P, class Flags>
   S calibrated(const S& temperature, const State<S>& state, const P* parameters, Flags& flags) const {
     State<S> here = state;
@@ -435,7 +434,7 @@ class Chain : public BoundModel {
     return plausible_or_missing(Quantity::ambient_temperature, calibrated);
   }
 
-  // The same as a function of the temperature alone.
+  // Ambient temperature calibration as a function of the temperature only.
   template <class S, class P>
   struct Calibration {
     const Chain& chain;
@@ -463,7 +462,8 @@ class Chain : public BoundModel {
                            : lams_iterated(p, q, v, thermometer, e, recovery, 1e-7, 30, calibrate);
   }
 
-  // What goes on from the solution of a sample: the constants of its air, and its dynamic heating.
+  // Results of the solution of a sample that are used later: the constants of its air, and its dynamic
+  // heating.
   template <class S>
   struct AirOf {
     MoistAir<S> constants;

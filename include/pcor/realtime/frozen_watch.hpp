@@ -12,7 +12,7 @@
 
 namespace pcor {
 
-/// What no flying aircraft leaves at one value; flaps and liquid water may stay where they are.
+/// Quantities that always vary in flight; flaps and liquid water may be constant.
 inline constexpr std::array always_varying{Quantity::static_pressure,
                                            Quantity::dynamic_pressure,
                                            Quantity::radome_dynamic_pressure,
@@ -24,12 +24,12 @@ inline constexpr std::array always_varying{Quantity::static_pressure,
                                            Quantity::ambient_temperature,
                                            Quantity::lams_airspeed};
 
-/// Whether a sensor stands still, sample by sample.
+/// Detects a constant sensor, sample by sample.
 ///
-/// How long it may have one value follows from its resolution, the smallest step that it has made.
-/// Where its noise is at least three such steps it is frozen after 20 samples of one value, or, if
-/// that is more, 20 times its usual time at one value, or five times that of a usual sample. Else, and while
-/// fewer than 50 values are known, it is frozen after five minutes.
+/// The permitted duration of a constant value follows from the resolution, the smallest step observed. If the
+/// noise is at least three such steps, the sensor is frozen after 20 samples of one value, or, if more, 20
+/// times its usual time at one value, or five times that of a typical sample. Otherwise, and with fewer than
+/// 50 known values, it is frozen after five minutes.
 class SteadyValue {
  public:
   /// @param longest samples that any sensor may have one value
@@ -43,7 +43,7 @@ class SteadyValue {
     length_ = 0;
   }
 
-  /// Takes a sample, which is not missing. True where the sensor is frozen.
+  /// Adds a sample, which must not be missing. True if the sensor is frozen.
   bool operator()(double value) noexcept {
     if (value == last_) {
       ++length_;
@@ -58,9 +58,9 @@ class SteadyValue {
 
  private:
   static constexpr std::size_t fewest = 20;      // samples
-  static constexpr std::size_t min_values = 50;  // that tell what is usual
+  static constexpr std::size_t min_values = 50;  // required for typical values
   static constexpr double noisy = 3.0;           // steps of resolution in a second difference
-  static constexpr double part = 1.0 / 64.0;     // of a mean, the last
+  static constexpr double part = 1.0 / 64.0;     // weight of the latest value in a running mean
 
   void end_of_run(double step) noexcept {
     const bool was_frozen = length_ >= fewest && length_ >= limit_;
@@ -89,7 +89,7 @@ class SteadyValue {
   }
 
   std::size_t longest_;
-  std::array<std::size_t, 64> lengths_{};  // of the last runs of one value, in samples
+  std::array<std::size_t, 64> lengths_{};  // lengths of the last runs of one value, in samples
   std::size_t runs_ = 0;
   std::size_t limit_ = 0;
   std::size_t length_ = 0;
@@ -99,8 +99,8 @@ class SteadyValue {
   double is_bent_ = 0.0;  // the part of values whose second difference is large
 };
 
-/// Finds the inputs of a chain that are frozen in flight: what always varies there and stands still. After it
-/// is set up nothing is allocated.
+/// Detects inputs of a chain that are frozen in flight, among those that always vary. Does not allocate after
+/// construction.
 class FrozenWatch {
  public:
   /// @param rate samples in a second
@@ -117,7 +117,7 @@ class FrozenWatch {
     for (Sensor& sensor : sensors_) sensor.value.reset();
   }
 
-  /// True where one of them is frozen at this sample.
+  /// True if one of them is frozen at this sample.
   bool operator()(const State<double>& state) noexcept {
     constexpr double min_dynamic_pressure = 20.0;  // hPa, 57 m/s at sea level
     const bool flies = state[Quantity::dynamic_pressure] >= min_dynamic_pressure;

@@ -8,11 +8,11 @@
 
 namespace pcor {
 
-/// A derived variable, or a few that are found together: computed once for every sample from others.
+/// Derived variable, or several computed together, once for every sample from others.
 ///
-/// A functor declares what it reads and what it writes; the loop puts functors in order by that. What it both
-/// reads and writes it completes in place, before anyone else reads it. `compute` allocates nothing and
-/// throws nothing; for missing or impossible inputs it writes NaN and sets a quality bit.
+/// A functor declares its inputs and outputs; the loop orders functors by them. A quantity that is both is
+/// modified in place, before other functors read it. `compute` must not allocate or throw; for missing or
+/// impossible inputs it writes NaN and sets a quality bit.
 class Functor {
  public:
   Functor(std::vector<Quantity> inputs, std::vector<Quantity> outputs)
@@ -24,7 +24,7 @@ class Functor {
   const std::vector<Quantity>& inputs() const { return inputs_; }
   const std::vector<Quantity>& outputs() const { return outputs_; }
 
-  /// Forgets what was kept of earlier samples. Called at the start and after every gap.
+  /// Clears the state from earlier samples. Called at the start and after every gap.
   virtual void reset() noexcept {}
 
   /// Computes the outputs of one sample.

@@ -6,9 +6,9 @@
 
 namespace pcor {
 
-/// The step of geopotential height per kelvin (m/K) since the sample before, from the corrected pressures and
-/// the humidity of both: `hydrostatic_step`. NaN at a start, after a gap, and where either pressure is
-/// missing, which the quality bits of that sample tell.
+/// Step of geopotential height per kelvin (m/K) since the previous sample, from the corrected pressures and
+/// the humidity of both: `hydrostatic_step`. NaN at a start, after a gap, and if either pressure is missing;
+/// see the quality bits of that sample.
 class HeightStep final : public Functor {
  public:
   HeightStep()

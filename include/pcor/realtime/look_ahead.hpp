@@ -16,16 +16,17 @@ namespace pcor {
 /// `RateFilter::usual_period`.
 using ShortestPeriods = std::vector<std::pair<Quantity, double>>;
 
-/// Holds samples back until those after them are there from which their rates of change are found
-/// (`RateFilter`): real time knows no later sample, and a rate without them would be late, or noise.
+/// Delays samples until the later samples required for their rates of change are available (`RateFilter`): a
+/// causal rate would be late, or noisy.
 ///
-/// It belongs to a chain that reads rates. The rates of recorded quantities are derivatives. That of the
-/// airspeed is of the airspeed along the beam of the laser where there is one, by the corrected pressures,
-/// and the mean over the delay of the laser's clock, where the model has one; what lags take from the
-/// pressures themselves is left out of it. After the first use nothing is allocated.
+/// Belongs to a chain that reads rates. Rates of recorded quantities are derivatives. That of the airspeed is
+/// computed along the laser beam, if there is a laser, from the corrected pressures, as the mean over the
+/// delay of the laser's clock, if the model has one, without the contributions of lag effects to the
+/// pressures. Does not allocate after the first use.
 class LookAhead {
  public:
-  /// For `chain` at `rate` samples in a second; nothing where it reads no rate of change.
+  /// Look-ahead buffer for `chain` at `rate` samples per second; nullopt if the chain reads no rate of
+  /// change.
   static std::optional<LookAhead> build(const std::shared_ptr<const Chain>& chain, double rate,
                                         const ShortestPeriods& periods = {}) {
     const auto period_of = [&periods](Quantity quantity) {
@@ -51,26 +52,26 @@ class LookAhead {
     return result;
   }
 
-  /// How many samples later than it came a sample leaves, at this rate: 6 at 1 Hz, 75 at 25 Hz, by as much
-  /// more as the clock of the laser is early, and three of its shortest periods where these are longer than
-  /// usual.
+  /// Delay of the output in samples at this rate: 6 at 1 Hz, 75 at 25 Hz, plus the lead of the laser's clock,
+  /// and three of its shortest periods if these are longer than usual.
   std::size_t delay() const { return delay_; }
 
-  /// How many samples take part in the rates of one.
+  /// Number of samples in the window of a rate.
   std::size_t window() const { return before_ + 1 + delay_; }
 
-  /// Forgets all samples.
+  /// Clears all samples.
   void reset() noexcept {
     entered_ = 0;
     for (Change& change : changes_) std::fill(change.values.begin(), change.values.end(), missing<double>());
   }
 
-  /// Takes a sample and gives the one that came `delay` before it, with its rates of change. False, and all
-  /// is missing, where there is none yet. The bit `after_gap` says that a rate has too few neighbours.
+  /// Pushes a sample and returns the one from `delay` samples before, with its rates of change. False, with
+  /// all values missing, if there is no such sample yet. The bit `after_gap` marks a rate with too few
+  /// neighbours.
   bool exchange(State<double>& state, QualityFlags& flags) noexcept {
     const std::size_t length = before_ + 1 + delay_;
     for (Change& change : changes_) {
-      // Each value is kept twice, so that the window lies in one piece, the oldest first.
+      // Each value is stored twice, so that the window is contiguous in time order.
       const double value = change.of == Quantity::corrected_airspeed
                                ? airspeed_along_beam(state)
                                : plausible_or_missing(change.of, state[change.of]);
@@ -121,10 +122,10 @@ class LookAhead {
 
   std::shared_ptr<const Chain> chain_;
   std::vector<Change> changes_;
-  std::vector<State<double>> samples_;  // the last ones, as they came
+  std::vector<State<double>> samples_;  // latest samples without rates
   std::size_t before_ = 0;
   std::size_t delay_ = 0;
-  std::size_t next_ = 0;     // in the values of the changes
+  std::size_t next_ = 0;     // index in the values of the changes
   std::size_t entered_ = 0;  // samples since the last reset
 };
 

@@ -40,52 +40,49 @@ class StageFunctor final : public Functor {
   CorrectWith with_;
 };
 
-/// Whether a loop with a laser filters its temperature: 12 s of samples for every new one, 300 of them at 25
+/// True if a loop with a laser filters its temperature: 12 s of samples for every new one, 300 of them at 25
 /// Hz.
 enum class LaserFilter { with, without };
 
 /// The host of a sample loop at one rate: runs functors in the order of their dependencies, sample by sample.
 ///
-/// All memory is taken while the loop is set up. `run` allocates nothing, throws nothing, takes no lock and
-/// reads no global. What functors keep of earlier samples belongs to this loop alone, so 1 Hz and 25 Hz each
-/// have their own loop.
+/// All memory is allocated during construction. `run` does not allocate, throw, lock or read globals. State
+/// of functors belongs to this loop, so 1 Hz and 25 Hz use separate loops.
 ///
 ///     loop.state()[Quantity::static_pressure] = 702.3;   // every recorded quantity of this sample
 ///     loop.run(time);
 ///     use(loop.state()[Quantity::corrected_static_pressure], loop.quality());
 ///
-/// A model with effects of rates of change, as lags are, needs later samples to correct one. After `run` the
-/// state then is that of the sample `delay()` runs ago, inputs, time and all; missing until there is one,
-/// which the bit `awaiting_later_samples` says. Such effects are those of samples at the loop's rate: the bit
-/// `uneven_samples` stands at all samples whose rates of change samples at other intervals took part in
-/// (`SampleClock`). An input that stands still sets `sensor_frozen` (`FrozenWatch`). Of the last samples
-/// before a gap or the end the host gets the results by further runs without values.
+/// A model with effects of rates of change, such as lags, needs later samples. After `run` the state is then
+/// that of the sample `delay()` runs earlier, including inputs and time; missing until that sample exists
+/// (bit `awaiting_later_samples`). Rates assume samples at the loop's rate: the bit `uneven_samples` marks
+/// samples whose rates include other intervals (`SampleClock`). A frozen input sets `sensor_frozen`
+/// (`FrozenWatch`). To flush the last samples before a gap or the end, call `run` with missing inputs.
 class Loop {
  public:
   /// A loop at `rate` samples in a second. A step of more than one and a half samples is a gap.
   explicit Loop(double rate) : clock_(rate), max_step_(1.5 / rate) {}
 
-  /// A loop that runs `model` on the roles `recorded`: delta-p, corrected pressures, Mach number, humidity,
-  /// ambient temperature, airspeed, and what LAMS says where its airspeed is recorded, its temperature also
-  /// filtered (`LowPass`) unless that is left out; where only the model's correction is wanted leave out the
-  /// role, and nothing of the laser is run. Where an uncertainty is stated, those of the results,
-  /// too
-  /// (`ResultUncertainty`). Returns nothing where the model cannot be used; `error` says why.
+  /// Creates a loop that runs `model` on the roles `recorded`: delta-p, corrected pressures, Mach number,
+  /// humidity, ambient temperature, airspeed, and, if the laser airspeed is recorded, results of LAMS,
+  /// including its filtered temperature (`LowPass`) unless disabled; omit that role to skip the laser. If an
+  /// uncertainty is given, also the uncertainties of the results (`ResultUncertainty`). Returns nullopt if
+  /// the model cannot be used, with the reason in `error`.
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                    std::string* error, CorrectWith with = CorrectWith::model,
                                    const ModelUncertainty& uncertainty = {},
                                    LaserFilter filter = LaserFilter::with);
 
-  /// The same for a chain that is built already, whose rates of change have no periods shorter than
-  /// `periods`; the delay grows with these.
+  /// Creates a loop from an existing chain whose rates of change have no periods shorter than `periods`; the
+  /// delay increases with these.
   static std::optional<Loop> build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
                                    CorrectWith with = CorrectWith::model,
                                    const ModelUncertainty& uncertainty = {},
                                    const ShortestPeriods& periods = {},
                                    LaserFilter filter = LaserFilter::with);
 
-  /// The place of the variable `name` for functors of the user's own: the one it has already, as a quantity
-  /// of the library or in a formula, else a new one. Nothing where the room is used up.
+  /// Quantity of the variable `name` for user-defined functors: the existing one, of the library or of a
+  /// formula, otherwise a new one. nullopt if the capacity is exhausted.
   std::optional<Quantity> add_variable(const std::string& name) {
     const Quantity quantity = quantity_named(name);
     if (quantity != Quantity::count) return quantity;
@@ -99,11 +96,11 @@ class Loop {
   /// Adds a functor. The order of adding does not matter; call `order` after the last.
   void add(std::unique_ptr<Functor> functor) { functors_.push_back(std::move(functor)); }
 
-  /// Puts the functors in order. Returns false, and changes nothing, where two write one quantity or where
-  /// they wait for each other; `error` says which.
+  /// Orders the functors. Returns false without changes if two functors write one quantity or depend on each
+  /// other; `error` names them.
   bool order(std::string* error);
 
-  /// True where some functor writes the quantity.
+  /// True if some functor writes the quantity.
   bool writes(Quantity quantity) const {
     return std::any_of(functors_.begin(), functors_.end(), [quantity](const auto& functor) {
       const std::vector<Quantity>& outputs = functor->outputs();
@@ -118,24 +115,23 @@ class Loop {
   /// The quality bits of the sample that the state is of.
   QualityFlags quality() const { return quality_; }
 
-  /// The variables beyond the quantities of the library, by name; number i is at `extra_quantity(i)`.
+  /// Further variables, by name; number i is at `extra_quantity(i)`.
   const std::vector<std::string>& extra_names() const { return extra_names_; }
 
-  /// How many runs after its own the results of a sample are there: 0 for a model that reads no rate of
-  /// change.
+  /// Delay of the results of a sample, in runs: 0 for a model that reads no rate of change.
   std::size_t delay() const noexcept { return look_ahead_ ? look_ahead_->delay() : 0; }
 
   /// The time of the sample that was run last, s; NaN before the first.
   double last_time() const noexcept { return previous_time_; }
 
-  /// Leaves it to the host to find sensors that are frozen, as one that knows the whole flight can.
+  /// Disables the detection of frozen sensors, for hosts that detect them from the whole flight.
   void do_not_watch_sensors() noexcept { frozen_.reset(); }
 
-  /// Forgets all earlier samples.
+  /// Clears all earlier samples.
   void reset() noexcept { started_ = false; }
 
-  /// True where a sample at `time` would find every functor reset: the first one, one after a gap, and one
-  /// whose time does not advance.
+  /// True if a sample at `time` resets all functors: the first one, one after a gap, and one whose time does
+  /// not increase.
   bool starts_anew(double time) const noexcept {
     const double step = time - previous_time_;
     return !started_ || !(step > 0.0 && step <= max_step_);
@@ -185,7 +181,7 @@ class Loop {
   std::optional<Wetness> wetness_;
   std::optional<FrozenWatch> frozen_;
   SampleClock clock_;
-  std::size_t uneven_ = 0;       // runs whose rates of change uneven samples take part in
+  std::size_t uneven_ = 0;       // remaining runs whose rates of change include uneven samples
   LowPass* low_pass_ = nullptr;  // one of the functors
   std::vector<std::unique_ptr<Functor>> functors_;
   std::vector<std::string> extra_names_;
@@ -216,7 +212,7 @@ inline bool Loop::order(std::string* error) {
     }
     return nullptr;
   };
-  // Follows what is awaited until it is surely in a circle, then goes round once.
+  // Follows dependencies until it is inside a cycle, then traverses the cycle once.
   const auto cycle_from = [&](std::size_t start) {
     const auto next = [&](const Quantity* quantity) { return awaited(*writer[index(*quantity)]); };
     const Quantity* quantity = awaited(*functors_[start]);

@@ -12,34 +12,33 @@
 
 namespace pcor {
 
-/// Low-pass filter that takes away periods under 3 s and neither shifts nor biases what it leaves.
+/// Low-pass filter that removes periods under 3 s without phase shift or bias.
 ///
-/// A weighted mean over 6 s before and 6 s after a sample. The weights are those of a sinc of half amplitude
-/// at a period of 3 s under a Hamming window, their sum is 1, and they are the same forwards and backwards:
-/// a constant and a straight line pass exactly, and no period is moved in time. The amplitude that is left:
+/// Weighted mean over 6 s before and 6 s after a sample. The weights are those of a sinc of half amplitude at
+/// a period of 3 s under a Hamming window, normalised to 1 and symmetric: constants and straight lines pass
+/// exactly, without phase shift. Transmitted amplitude:
 ///
 ///     period, s   12      8       6       5       4      3      2.5    2.2     2       1.5    1
 ///     at 1 Hz     1.005   1.001   1.002   1.007   0.957  0.503  0.094  -0.001  0.001   -      -
 ///     at 25 Hz    1.005   1.003   1.003   0.998   0.927  0.500  0.132  0.012   -0.003  0.001  0.000
 ///
-/// So periods of 6 s and above keep their amplitude within 0.6 %, and of those of 2.2 s and below 1.2 % or
-/// less is left. At 1 Hz there is no shorter period than 2 s: what the samples hold of shorter ones looks
-/// like a longer one, and no filter can tell. A window of 4 s either side would leave 2 % at 2 s and take
-/// 2 % at 6 s; one of 8 s would be steeper, and later by 2 s.
+/// Periods of 6 s and above keep their amplitude within 0.6 %; those of 2.2 s and below are reduced to 1.2 %
+/// or less. At 1 Hz the shortest period is 2 s; shorter ones are aliased, and no filter can remove them. A
+/// window of 4 s on either side would leave 2 % at 2 s and remove 2 % at 6 s; a window of 8 s would be
+/// steeper, with 2 s more delay.
 ///
-/// Real time knows no later sample, so the value is that of the sample `delay` samples ago, as if every step
-/// had the length of the rate. It is missing where that sample is, which was told at its time. A sample
-/// before and one after it, as far away, count together or, where one of them is missing, not at all, so that
-/// lines still pass exactly. Where the weights that count sum up to less than half, the value is
-/// missing, and the bit `filter_window_incomplete` says so: of that earlier sample, not of the one that is
-/// being run. With part of its window the filter takes away less. Where it overshoots beyond what is
-/// believed of the result, that is missing too. After a reset all earlier samples are missing; the bit is set
-/// until the first sample after it leaves the filter.
+/// The value is that of the sample `delay` samples earlier, assuming even sampling. It is missing if that
+/// sample is missing, which its quality bits report. A sample before and one after it at the same distance
+/// are used in pairs, or not at all if one of them is missing, so that straight lines still pass exactly. If
+/// the sum of the weights used is less than half, the value is missing, with the bit
+/// `filter_window_incomplete` of that earlier sample, not of the current one. An incomplete window filters
+/// less. Implausible results of overshoot are missing, too. After a reset all earlier samples are missing.
+/// The bit is set until the first sample after a reset leaves the filter.
 ///
 /// Source: memo, recommendation 6; window: Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 7.
 class LowPass final : public Functor {
  public:
-  static constexpr double cutoff_period = 3.0;  ///< s, at which half the amplitude is left
+  static constexpr double cutoff_period = 3.0;  ///< s, period of half amplitude
   static constexpr double half_window = 6.0;    ///< s
 
   /// Filters `quantity` at `rate` samples in a second, above zero and finite, into `filtered`.
@@ -51,9 +50,8 @@ class LowPass final : public Functor {
         length_(2 * delay() + 1),
         samples_(2 * length_, missing<double>()) {}
 
-  /// How many samples ago the filtered value was, at `rate` samples in a second: 6 at 1 Hz, 150 at 25 Hz. In
-  /// seconds it is that over the rate. Zero, and the filter changes nothing, where samples are too far apart
-  /// to hold periods under 3 s.
+  /// Delay of the filtered value in samples, at `rate` samples per second: 6 at 1 Hz, 150 at 25 Hz; in
+  /// seconds, delay/rate. Zero, without filtering, if samples are too far apart to resolve periods under 3 s.
   static std::size_t delay(double rate) {
     const bool holds_short_periods = rate * cutoff_period > 2.0;
     return holds_short_periods ? static_cast<std::size_t>(std::lround(half_window * rate)) : 0;

@@ -14,7 +14,7 @@
 
 namespace pcor {
 
-/// Why a model cannot be used on what is recorded.
+/// Reason for which a model cannot be used on the recorded quantities.
 struct BindingError {
   enum class Code : std::uint8_t {
     unknown_effect,
@@ -26,15 +26,15 @@ struct BindingError {
   };
 
   Code code = Code::unknown_effect;
-  Quantity quantity = Quantity::count;  ///< that is missing
-  std::string who{};                    ///< e.g. "effect 'qcf-lag'"; empty where the sentence names it
+  Quantity quantity = Quantity::count;  ///< missing quantity
+  std::string who{};                    ///< e.g. "effect 'qcf-lag'"; empty if the message names it
   std::string what{};                   ///< what is wrong and what to do, e.g. "needs the role ..."
 
   /// Both in one line.
   std::string message() const { return who.empty() ? what : who + " " + what; }
 };
 
-/// Checks a model against what is recorded, and binds it.
+/// Checks a model against the recorded quantities, and binds it.
 class ModelBinder {
  public:
   /// `model` bound to the roles `recorded`, or why it cannot be.
@@ -163,7 +163,7 @@ class ModelBinder {
                     std::to_string(effect.parameters.size()));
   }
 
-  // What an effect corrects is there, and is computed.
+  // Checks that the quantity corrected by an effect is computed.
   bool require_place(EffectLocation location, const std::string& who) {
     if (location == EffectLocation::radome) return require(Quantity::radome_dynamic_pressure, who);
     if (location == EffectLocation::attack_ratio) return require(Quantity::attack_ratio, who);
@@ -176,7 +176,7 @@ class ModelBinder {
     return true;
   }
 
-  // What calibrates the ambient temperature is found from it, derived or recorded.
+  // Calibration effects of the ambient temperature use its derived or recorded value.
   static bool is_at_hand(Quantity quantity, EffectLocation location) {
     return location == EffectLocation::ambient_temperature && quantity == Quantity::ambient_temperature;
   }
@@ -188,7 +188,7 @@ class ModelBinder {
     if (bound_.is_within_reach(term.location)) add_term(term);
   }
 
-  // An amount at a place asks for nothing: where the place is of no use to the model, it changes nothing.
+  // Additional amounts have no inputs; at a location that the model does not use, they have no effect.
   void add_addition(EffectLocation location) {
     Term term;
     term.effect = Term::is_addition;
@@ -198,7 +198,7 @@ class ModelBinder {
     add_term(term);
   }
 
-  // Behind the others of its place.
+  // Inserted after the other terms of its location.
   void add_term(const Term& term) {
     const auto end = static_cast<std::ptrdiff_t>(bound_.begin_of(term.location, 1));
     bound_.terms_.insert(bound_.terms_.begin() + end, term);
@@ -207,7 +207,7 @@ class ModelBinder {
     bound_.acting_.set(place);
   }
 
-  // Finds the place of a further variable; a new one where the name is new. False where there is no room.
+  // Element of a further variable, added if the name is new. False if the capacity is exhausted.
   bool find_extra(const std::string& name, Quantity& place) {
     std::vector<std::string>& names = bound_.extra_names_;
     const auto found = std::find(names.begin(), names.end(), name);

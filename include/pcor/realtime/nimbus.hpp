@@ -28,10 +28,10 @@ struct HasTime<Host, std::void_t<decltype(Host::time())>> : std::true_type {};
 /// One pressure system in a host like NCAR nimbus: a table of derived variables, each with one output and a
 /// callback `void compute(Entry*)` that has no context pointer and runs at a low and at a high rate.
 ///
-/// One entry is the leader, say PCOR. Its dependency line lists all inputs, in the order that `install` was
-/// told; its callback `compute` runs the loop of the current rate and puts delta-p (hPa). Every other entry
-/// (PSXC, QCXC, MACHX, ATX, TASX, PCORFLAG ...) lists the leader in its dependency line, so that the host
-/// runs it later; its callback `fetch` puts one more result of that same run.
+/// One entry is the leader, say PCOR. Its dependency line lists all inputs, in the order given to `install`;
+/// its callback `compute` runs the loop of the current rate and puts delta-p (hPa). Every other entry (PSXC,
+/// QCXC, MACHX, ATX, TASX, PCORFLAG ...) lists the leader in its dependency line, so that the host runs it
+/// later; its callback `fetch` puts one further result of the same run.
 ///
 ///     using Fuselage = pcor::NimbusSystem<Host, struct FuselageTag>;
 ///     pcor::check_defaults(model, "PCOR", names, pcor::Overrides::some, &error);  // optional overrides,
@@ -47,32 +47,32 @@ struct HasTime<Host, std::void_t<decltype(Host::time())>> : std::true_type {};
 ///
 ///     struct Host {
 ///       using Entry = DERTBL;
-///       static double get(Entry*, std::size_t input);   // this sample's input; NaN where it is missing
+///       static double get(Entry*, std::size_t input);   // this sample's input; NaN if missing
 ///       static void put(Entry*, double);                // the output of the sample `delay()` ago
 ///       static bool high_rate();                        // which of the two rates is being computed
 ///       static double time();                           // of this sample, s; it grows, midnight or not
 ///     };
 ///
-/// The leader alone asks for the time, once in a sample. A host without a public `time` of no arguments is
-/// taken to call at every sample of a rate, without a gap; where there is one it calls `reset`.
-/// examples/nimbus is such a host.
+/// The leader requests the time, once per sample. A host without a public function `time` without arguments
+/// must call at every sample of a rate, without a gap; at a gap it must call `reset`. examples/nimbus is such
+/// a host.
 ///
-/// Units are those of the library but for temperatures: whatever it has in K travels in degC, both ways.
-/// Variables of formulas travel as they are.
+/// Units are those of the library except for temperatures: quantities in K are passed in degC, in both
+/// directions. Variables of formulas are passed unchanged.
 ///
-/// `System` names the pressure system, and nothing more: it need not be defined. As the callbacks have no
-/// context, each system keeps its two loops in static members of this template, apart from every other
-/// system; low and high rate share no state, and each forgets earlier samples at gaps in its own time. A host
-/// calls the callbacks from one thread. They allocate nothing and throw nothing.
+/// `System` is a tag type of the pressure system; it need not be defined. As the callbacks have no context,
+/// each system keeps its two loops in static members of this template, separate from every other system; low
+/// and high rate share no state, and each is reset at its gaps. A host calls the callbacks from one thread.
+/// They do not allocate or throw.
 template <class Host, class System>
 class NimbusSystem {
  public:
   using Entry = typename Host::Entry;
 
-  /// Sets `model` up for both rates (samples in a second), in place of what was installed before. `inputs`
-  /// are the names of roles, or of variables in the model's formulas, in the order of the leader's dependency
-  /// line. Where an `uncertainty` is stated entries may fetch those of the results. Returns false,
-  /// and changes nothing, where the model cannot be used; `error` says why.
+  /// Sets `model` up for both rates (samples per second), replacing any previous model. `inputs` are the
+  /// names of roles, or of variables in the model's formulas, in the order of the leader's dependency line.
+  /// If an `uncertainty` is given, entries may fetch those of the results. Returns false without changes if
+  /// the model cannot be used, with the reason in `error`.
   static bool install(const Model& model, const std::vector<std::string>& inputs, double low_rate,
                       double high_rate, std::string* error, CorrectWith with = CorrectWith::model,
                       const ModelUncertainty& uncertainty = {}) {
@@ -116,7 +116,7 @@ class NimbusSystem {
     return true;
   }
 
-  /// The callback of the leader: runs the sample and puts delta-p of the model, hPa. NaN where nothing is
+  /// Callback of the leader: runs the sample and puts delta-p of the model, hPa. NaN if no model is
   /// installed.
   static void compute(Entry* entry) {
     Rate& rate = current();
@@ -131,10 +131,10 @@ class NimbusSystem {
     Host::put(entry, state[Quantity::static_defect]);
   }
 
-  /// The callback of an entry that is another result of the leader's run. NaN where the leader has not run
-  /// since this entry was last put, and for good where the entry, or another of the same result, is called
-  /// before the leader's first run, as its values would be those of the sample before: its dependency line
-  /// lacks the leader.
+  /// Callback of an entry that puts another result of the leader's run. NaN if the leader has not run since
+  /// this entry was last put; permanently NaN if the entry, or another one of the same result, is called
+  /// before the leader's first run, because its values would be those of the previous sample: its dependency
+  /// line lacks the leader.
   template <Quantity quantity>
   static void fetch(Entry* entry) {
     Host::put(entry, has_turn(turns_[index(quantity)], entry) ? latest_->state()[quantity] - zero_of(quantity)
@@ -147,12 +147,12 @@ class NimbusSystem {
                                                     : missing<double>());
   }
 
-  /// How many samples ago the values were that are put at the current rate (`Loop::delay`): 0 for a model
-  /// without effects of rates of change. The host moves them back in its files, and has the last ones before
-  /// a gap and at the end by computing on with missing inputs.
+  /// Delay, in samples, of the values put at the current rate (`Loop::delay`): 0 for a model without effects
+  /// of rates of change. The host shifts them back in its files, and obtains the last ones before a gap and
+  /// at the end by further calls with missing inputs.
   static std::size_t delay() { return current().loop ? current().loop->delay() : 0; }
 
-  /// Forgets all earlier samples of both rates, as at the start of a flight.
+  /// Clears all earlier samples of both rates, as at the start of a flight.
   static void reset() {
     for (Rate* rate : {&low_, &high_}) {
       if (rate->loop) rate->loop->reset();
@@ -174,7 +174,8 @@ class NimbusSystem {
     std::size_t samples = 0;
   };
 
-  // The run of which a result was last put, and by which entry first; by none once that entry came again.
+  // Last run of which a result was put, and the first entry that did; no entry after that one is called
+  // again.
   struct Turn {
     std::size_t run = 0;
     const Entry* first = nullptr;
@@ -182,7 +183,7 @@ class NimbusSystem {
 
   static constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
 
-  // What the library calls the zero of the host's unit. An uncertainty in K is a difference.
+  // Zero of the host's unit in the unit of the library. An uncertainty in K is a difference.
   static constexpr double zero_of(Quantity quantity) {
     if (quantity == Quantity::ambient_temperature_uncertainty) return 0.0;
     return index(quantity) < quantity_count && info_of(quantity).unit == "K" ? constants::ice_point : 0.0;
@@ -198,8 +199,8 @@ class NimbusSystem {
     }
   }
 
-  // True where the entry comes after a run of the leader that it has not put yet. Entries of one result are
-  // judged together: once the first of them comes again, the host is at another sample.
+  // True if the entry is called after a run of the leader that it has not put yet. Entries of one result
+  // share this state: when the first of them is called again, the host is at another sample.
   static bool has_turn(Turn& turn, const Entry* entry) {
     if (turn.run < run_) {
       turn = {run_, entry};
@@ -215,11 +216,12 @@ class NimbusSystem {
   static inline Rate high_;
   static inline const Loop* latest_ = nullptr;
   static inline std::size_t run_ = 0;
-  static inline std::array<Turn, state_capacity + 1> turns_{};  // of every quantity, and of the quality bits
+  // One per quantity, and one for the quality bits.
+  static inline std::array<Turn, state_capacity + 1> turns_{};
 };
 
-/// The name in a defaults file of the coefficient number `number` of `effect`: `PCOR.static-alpha.a1`, where
-/// `prefix` is PCOR. The prefix keeps the systems of one aircraft apart.
+/// Name of coefficient number `number` of `effect` in a defaults file: `PCOR.static-alpha.a1` for the
+/// `prefix` PCOR. The prefix distinguishes the systems of one aircraft.
 inline std::string default_key(const std::string& prefix, const ModelEffect& effect, std::size_t number) {
   std::string name = std::to_string(number);
   if (number < effect.parameter_names.size()) {
@@ -247,9 +249,9 @@ inline std::string in_capitals(std::string name) {
   return name;
 }
 
-/// Replaces the coefficients of `model` that a defaults file names, as they are spelled or in capitals, and
-/// returns how many. `find(key)`, with a `const char*`, gives a pointer to the value (`const float*` or
-/// `const double*`), or null where the file does not have it. A `float` holds seven digits.
+/// Replaces the coefficients of `model` that a defaults file names, in original or upper case, and returns
+/// their number. `find(key)`, with a `const char*`, gives a pointer to the value (`const float*` or `const
+/// double*`), or nullptr if the file does not have it. A `float` holds seven digits.
 template <class Find>
 std::size_t read_defaults(Model& model, const std::string& prefix, Find find) {
   std::size_t replaced = 0;
@@ -268,7 +270,7 @@ std::size_t read_defaults(Model& model, const std::string& prefix, Find find) {
 
 namespace detail {
 
-// That of `names` which has most letters at its beginning and end in common with `name`, in whatever case.
+// Name in `names` that shares the longest prefix and suffix with `name`, case-insensitive.
 inline std::string nearest_name(const std::string& name, const std::vector<std::string>& names) {
   const std::string wanted = in_capitals(name);
   const auto in_common = [&wanted](const std::string& other) {
@@ -285,8 +287,8 @@ inline std::string nearest_name(const std::string& name, const std::vector<std::
 
 }  // namespace detail
 
-/// Those of the names `keys` of a defaults file that begin with `prefix` and a point and are no coefficient
-/// of `model`, in whatever case: overrides that nothing reads. A host reports them, and does not go on.
+/// Unused overrides: names among `keys` of a defaults file that begin with `prefix` and a point but do not
+/// match a coefficient of `model`, case-insensitive. A host should report them and stop.
 inline std::vector<std::string> unread_defaults(const Model& model, const std::string& prefix,
                                                 const std::vector<std::string>& keys) {
   std::vector<std::string> known = default_keys(model, prefix);
@@ -300,11 +302,11 @@ inline std::vector<std::string> unread_defaults(const Model& model, const std::s
   return unread;
 }
 
-/// Whether a defaults file may leave coefficients of a model to the model.
+/// True if a defaults file may leave coefficients of a model to the model.
 enum class Overrides { some, all };
 
-/// False where one of the names `keys` of a defaults file that begin with `prefix` and a point is no
-/// coefficient of `model`, or where `all` are expected and one is not there. `error` then says which, and the
+/// False if one of the names `keys` of a defaults file that begin with `prefix` and a point does not match a
+/// coefficient of `model`, or if `all` are expected and one is missing. `error` then names it, and the
 /// nearest name.
 inline bool check_defaults(const Model& model, const std::string& prefix,
                            const std::vector<std::string>& keys, Overrides expected, std::string* error) {

@@ -12,34 +12,34 @@
 
 namespace pcor {
 
-/// The rate of change of evenly spaced samples, or their mean rate over some seconds, without noise of short
-/// periods.
+/// Rate of change of evenly spaced samples, or their mean rate over a number of seconds, without noise of
+/// short periods.
 ///
 ///     R(t) = (x(t) - x(t - s)) / s,  for s = 0 the derivative dx/dt
 ///
-/// x is interpolated by a sinc under a Hann window of six zeros on either side, which takes periods under 1 s
-/// away. tau R is what a first-order lag of tau, and s R what a delay of s, takes from x, at the periods that
-/// are left. Of the derivative:
+/// x is interpolated by a sinc under a Hann window of six zeros on either side, which removes periods under 1
+/// s. tau R is the change of x by a first-order lag of tau, and s R that by a delay of s, at the transmitted
+/// periods. Transfer function of the derivative:
 ///
 ///     period, s   10      4       3       2.5     2.2     2       1.5     1       0.7
 ///     at 1 Hz     1.000   0.999   1.010   0.948   0.543   0       -       -       -
 ///     at 5 Hz     1.000   1.000   1.001   1.000   1.000   0.999   1.006   0.500   0.001
 ///     at 25 Hz    0.999   1.000   1.001   1.000   0.999   0.998   1.006   0.500   0.000
 ///
-/// A constant gives zero and a straight line its slope. White noise of deviation 1 becomes 1.5 per second at
-/// 1 Hz and 0.94 at 25 Hz, where the difference of neighbours has 35. Over as many missing samples as lie
-/// between two zeros a line is drawn; beyond more of them, and beyond the ends of what is there, the series
-/// goes on as it came, turned by half a turn about its last sample, but not as far as to where the delay
-/// begins.
+/// A constant gives zero and a straight line its slope. White noise of standard deviation 1 becomes 1.5 per
+/// second at 1 Hz and 0.94 at 25 Hz, compared with 35 for the difference of neighbours. Gaps of up to the
+/// distance of two zeros are interpolated linearly; beyond longer gaps, and beyond the ends, the series is
+/// extended by point reflection about its last sample, but not up to the start of the delay.
 ///
 /// Source: Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 4 and 7.
 class RateFilter {
  public:
   static constexpr double usual_period = 1.0;  ///< s
-  static constexpr double zeros = 6.0;         ///< of the sinc, on either side
+  static constexpr double zeros = 6.0;         ///< zeros of the sinc on either side
 
-  /// @param rate samples in a second, above zero and finite @param seconds over which the rate is the mean,
-  /// s; those to come where below zero; finite @param min_period of which half the amplitude is left, s
+  /// @param rate samples per second, positive and finite
+  /// @param seconds averaging time of the rate, s; negative: later samples; finite
+  /// @param min_period period of half amplitude, s
   explicit RateFilter(double rate, double seconds = 0.0, double min_period = usual_period)
       : shift_(std::abs(seconds) * rate < min_shift ? 0.0 : seconds * rate),
         band_(std::min(1.0, 2.0 / (min_period * rate))),
@@ -48,7 +48,7 @@ class RateFilter {
     const double width = std::round(zeros / band_);
     const double late = shift_ == 0.0 ? little : 0.0;
     const double early = shift_ == 0.0 ? -little : -shift_;
-    // Where the window ends, on both sides of both places.
+    // Ends of the window, on both sides of both positions.
     const double first = std::floor(std::min(0.0, -shift_) - width - 1.0) + 1.0;
     const double last = std::ceil(std::max(0.0, -shift_) + width + 1.0) - 1.0;
     before_ = static_cast<std::size_t>(-first);
@@ -58,16 +58,15 @@ class RateFilter {
     filled_.resize(3 * weights_.size());
   }
 
-  /// How many samples before and after one take part in its rate.
+  /// Number of samples before and after a sample that its rate depends on.
   std::size_t before() const { return before_; }
   std::size_t after() const { return weights_.size() - 1 - before_; }
 
-  /// What becomes of the variance of white noise, per second squared.
+  /// Variance of the rate for white noise of variance 1, s^-2.
   double gain() const { return std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0); }
 
-  /// The rate per second at `*sample`, of which `earlier` samples before it and `later` ones after it may be
-  /// read. NaN where no line can be drawn over it, it has no neighbour, or nothing is there `seconds` before
-  /// it.
+  /// Rate per second at `*sample`, with `earlier` available samples before it and `later` ones after it. NaN
+  /// if the sample cannot be interpolated, has no neighbour, or there is no sample `seconds` before it.
   double operator()(const double* sample, std::size_t earlier, std::size_t later) noexcept {
     if (earlier >= before_ && later >= after()) {
       const double rate = sum(sample - before_);
@@ -80,7 +79,8 @@ class RateFilter {
   static constexpr double min_shift = 0.02;  // samples, below which a mean rate is the derivative
 
   double sum(const double* first) const noexcept {
-    // Departures from the sample, so that a constant gives zero; four sums, none of which waits for another.
+    // Differences from the sample, so that a constant gives exactly zero; four independent sums for
+    // instruction-level parallelism.
     const double here = first[before_];
     std::array<double, 4> sums{};
     std::size_t k = 0;
@@ -91,12 +91,12 @@ class RateFilter {
     return (sums[0] + sums[1]) + (sums[2] + sums[3]);
   }
 
-  /// Fills a window where samples are missing. False where there is nothing to fill it with.
+  /// Fills missing samples of a window. False if there are no values for this.
   bool fill(const double* sample, std::size_t earlier, std::size_t later) noexcept {
     const auto at = [&](std::size_t place) {
       return sample[static_cast<std::ptrdiff_t>(place) - static_cast<std::ptrdiff_t>(before_)];
     };
-    // The samples at or next to the one in question, then all on either side up to a long gap.
+    // Samples at or next to the central one, then all on either side up to a long gap.
     const std::size_t begin = before_ - std::min(before_, earlier);
     const std::size_t end = before_ + std::min(after(), later);
     std::size_t first = before_;
@@ -111,7 +111,7 @@ class RateFilter {
       if (is_finite(at(++k))) last = k;
     }
     if (first == last) return false;
-    // A value so far beyond what is there would be made up.
+    // An extrapolation this far from the data is not meaningful.
     const double place = static_cast<double>(before_) - shift_;
     const auto reach = static_cast<double>(bridge_);
     if (place < static_cast<double>(first) - reach || place > static_cast<double>(last) + reach) return false;
@@ -134,12 +134,12 @@ class RateFilter {
     return true;
   }
 
-  /// Adds `scale` times the weights of the value at `place`, in samples from the one in question.
+  /// Adds `scale` times the weights of the value at `place`, in samples from the central one.
   void add_value(double place, double width, double scale) {
     constexpr double pi = 180.0 * constants::radians_per_degree;
     std::vector<double> taper(weights_.size());
     std::vector<double> value(weights_.size());
-    std::array<double, 3> moments{};  // of the taper
+    std::array<double, 3> moments{};  // moments of the taper
     double sum = 0.0;
     double first_moment = 0.0;
     const auto from_place = [&](std::size_t k) {
@@ -156,7 +156,7 @@ class RateFilter {
       sum += value[k];
       first_moment += value[k] * from;
     }
-    // A constant and a straight line pass as they are.
+    // Constants and straight lines are reproduced exactly.
     const double determinant = moments[0] * moments[2] - moments[1] * moments[1];
     const double constant = (moments[2] * (1.0 - sum) + moments[1] * first_moment) / determinant;
     const double slope = -(moments[1] * (1.0 - sum) + moments[0] * first_moment) / determinant;
@@ -165,7 +165,7 @@ class RateFilter {
   }
 
   double shift_;        // samples
-  double band_;         // part of the band of the samples that is left
+  double band_;         // transmitted fraction of the sampled band
   std::size_t bridge_;  // samples between two zeros
   std::size_t before_ = 0;
   std::vector<double> weights_;

@@ -34,21 +34,21 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 ///
 ///     u^2 = g' C g + sum_i (dy/dx_i u_i)^2
 ///
-/// with g the derivatives of the result by the coefficients, C their covariance, and u_i the random
-/// uncertainty of each input of the sample, and of the law itself. Derivatives by coefficients that an effect
-/// is not linear in are differences over two of their standard uncertainties (GUM 5.1.3, note 2). By
-/// pressures, temperature and humidity they are those of the equations of the air with the constants of dry
-/// air, which is within 2 % of the uncertainty. They change slowly, so a sample keeps the uncertainties that
-/// were found less than two seconds ago at pressures within 5 %: at 25 Hz that is what it can afford.
-/// docs/uncertainty.md says what is in them and what cannot be.
+/// with g the derivatives of the result with respect to the coefficients, C their covariance, and u_i the
+/// random uncertainty of each input of the sample, and of the model. Derivatives with respect to nonlinear
+/// coefficients are differences over two of their standard uncertainties (GUM 5.1.3, note 2). Those with
+/// respect to pressures, temperature and humidity use the equations of the air with the constants of dry air,
+/// accurate to 2 % of the uncertainty. They change slowly, so a sample reuses uncertainties computed less
+/// than two seconds ago at pressures within 5 %, to limit the cost at 25 Hz. docs/uncertainty.md lists the
+/// contributions.
 ///
-/// Where delta-p is raised to the minimum of the law it keeps the uncertainty of the law; where it
-/// is tapered that is tapered, too. Where a result is missing so is its uncertainty. EffectLocation
-/// LAMS corrects the sample all but that of delta-p of the model are missing: what the model knows of itself
-/// says nothing of the laser.
+/// If delta-p is raised to the minimum of the model, it keeps the uncertainty of the model; if it is tapered,
+/// the uncertainty is tapered, too. If a result is missing, its uncertainty is missing. If LAMS corrects the
+/// sample, only the uncertainty of the model's delta-p is given, because the model covariance does not apply
+/// to the laser.
 class ResultUncertainty final : public Functor {
  public:
-  /// Null where `uncertainty` is not of the model in `chain`; `error` says why.
+  /// nullptr if `uncertainty` does not match the model of `chain`, with the reason in `error`.
   static std::unique_ptr<ResultUncertainty> build(std::shared_ptr<const Chain> chain,
                                                   const ModelUncertainty& uncertainty, CorrectWith with,
                                                   std::string* error) {
@@ -73,7 +73,7 @@ class ResultUncertainty final : public Functor {
 
   void compute(State<double>& state, QualityFlags&) noexcept override {
     if (!still_holds(state)) find(state);
-    // Zero times a result is missing where the result is.
+    // The product with zero makes the uncertainty missing if the result is missing.
     for (std::size_t i = 0; i < uncertain_results.size(); ++i)
       state[uncertain_results[i].uncertainty] = found_[i] + 0.0 * state[uncertain_results[i].result];
     if (with_ == CorrectWith::lams && !is_missing(state[Quantity::lams_static_defect])) {
@@ -86,11 +86,11 @@ class ResultUncertainty final : public Functor {
   /// One value for each of `uncertain_results`.
   using Results = std::array<double, uncertain_results.size()>;
 
-  /// Changes of what the corrected air is found from.
+  /// Changes of the inputs of the corrected air.
   struct Changes {
     double static_defect = 0.0;
-    double static_pressure = 0.0;   // at the port
-    double dynamic_pressure = 0.0;  // at the ports
+    double static_pressure = 0.0;   // static pressure at the port, hPa
+    double dynamic_pressure = 0.0;  // dynamic pressure at the ports, hPa
     double thermometer = 0.0;
     double recovery = 0.0;
     double ambient = 0.0;  // before its calibration
@@ -98,7 +98,8 @@ class ResultUncertainty final : public Functor {
     double vapor = 0.0;
   };
 
-  /// What such changes do to the results of one sample. With h = (1 + q/p)^(R/c_p) - 1 = M^2 (gamma - 1)/2:
+  /// Sensitivity of the results of one sample to such changes. With h = (1 + q/p)^(R/c_p) - 1 = M^2 (gamma -
+  /// 1)/2:
   ///
   ///     dh = R/c_p (1 + h) (dq - q/p dp)/(p + q),   T = T_r/(1 + a_r h),   v^2 = 2 c_p T h
   ///
@@ -109,7 +110,7 @@ class ResultUncertainty final : public Functor {
       const double q = state[Quantity::corrected_dynamic_pressure];
       const double mach = state[Quantity::corrected_mach];
       const double temperature = state[Quantity::ambient_temperature];
-      const bool is_still = is_missing(mach);  // as on the ramp, where a temperature has its uncertainty, too
+      const bool is_still = is_missing(mach);  // ramp: the temperature still has an uncertainty
       const double heating = is_still ? 0.0 : 0.2 * mach * mach;
       const double by_pressure = 1.0 / p;
       ratio = q * by_pressure;
@@ -168,11 +169,12 @@ class ResultUncertainty final : public Functor {
   /// A coefficient with a standard uncertainty.
   struct Coefficient {
     std::size_t effect;
-    std::size_t number;  // among those of its effect
+    std::size_t number;  // index among the coefficients of its effect
     bool is_linear;
-    std::vector<double> own;  // those of its effect: where it is linear, one for itself and zero for others
-    double step;              // its standard uncertainty
-    double shape = 0.0;       // of this sample: the derivative of the effect's value
+    // Coefficients of its effect: if linear, one for this coefficient and zero for the others.
+    std::vector<double> own;
+    double step;         // its standard uncertainty
+    double shape = 0.0;  // derivative of the effect's value for this sample
   };
 
   /// The uncertain coefficients that act at one place.
@@ -180,14 +182,14 @@ class ResultUncertainty final : public Functor {
     EffectLocation location;
     std::size_t begin;
     std::size_t end;
-    Results by_amount{};  // of this sample
+    Results by_amount{};  // sensitivity for this sample
   };
 
   /// A role whose value is uncertain in every sample.
   struct Noise {
     Quantity role;
     double size;
-    bool moves_law;  // effects at the ports read it, or what is found from it
+    bool moves_law;  // effects at the ports read it, or a quantity computed from it
   };
 
   ResultUncertainty(std::shared_ptr<const Chain> chain, const ModelUncertainty& uncertainty, CorrectWith with)
@@ -240,7 +242,8 @@ class ResultUncertainty final : public Functor {
            location == EffectLocation::pitot;
   }
 
-  /// The quantity that is changed at the place and that laws stand in, or none.
+  /// Quantity that an effect at the location changes and other effects read; count if there is no such
+  /// quantity.
   static Quantity source_of(EffectLocation location) {
     switch (location) {
       case EffectLocation::radome:
@@ -256,7 +259,7 @@ class ResultUncertainty final : public Functor {
     }
   }
 
-  // The laser's beam is left out: it moves none of the results.
+  // Coefficients of the laser's beam are excluded: the results do not depend on them.
   void add_coefficients(const std::vector<double>& covariance) {
     const std::size_t count = chain_->parameters().size();
     std::vector<std::size_t> order;
@@ -309,7 +312,7 @@ class ResultUncertainty final : public Functor {
     return (above - below) / (2.0 * coefficient.step);
   }
 
-  // What the effects before and at the ports add in all.
+  // Total of the effects before and at the ports.
   Changes at_ports(const State<double>& state) const noexcept {
     Changes sum;
     const double* const parameters = chain_->parameters().data();
@@ -373,7 +376,7 @@ class ResultUncertainty final : public Functor {
   // A tenth of a degree or a hPa, and what that is as a ratio: laws are smooth over it.
   static double step_of(Quantity quantity) { return quantity == Quantity::attack_ratio ? 0.005 : 0.1; }
 
-  // An uncertainty of the last two seconds holds where the pressures that it was found at do.
+  // Uncertainties are reused for two seconds if the pressures have not changed significantly.
   bool still_holds(const State<double>& state) const noexcept {
     const double age = state[Quantity::time] - time_;
     if (!(is_complete_ && age >= 0.0 && age < 2.0)) return false;
@@ -417,7 +420,7 @@ class ResultUncertainty final : public Functor {
       for (const Place& b : places_) {
         const double both = shared(a, b);
         for (std::size_t i = 0; i < variance.size(); ++i) {
-          // What an effect lacks is nothing to a result that it does not move.
+          // A missing effect is irrelevant to a result that does not depend on it.
           const double slopes = a.by_amount[i] * b.by_amount[i];
           if (slopes != 0.0) variance[i] += slopes * both;
         }
@@ -460,7 +463,7 @@ class ResultUncertainty final : public Functor {
     for (std::size_t i = 0; i < variance.size(); ++i) variance[i] += results[i] * results[i] * square;
   }
 
-  // What a unit of the role is where the air is found from it.
+  // Change of the inputs of the air for a unit of the role.
   static void add_role(Changes& changes, Quantity role, const State<double>& state) noexcept {
     // Magnus: d(ln e)/dT = 17.62 * 243.12/(243.12 + t)^2 over water, within 5 % over ice.
     const auto by_point = [&](double point) {
@@ -501,11 +504,11 @@ class ResultUncertainty final : public Functor {
   std::vector<std::size_t> at_ports_;  // effects before and at them
   std::vector<Coefficient> coefficients_;
   std::vector<Place> places_;
-  std::vector<double> covariance_;  // of the coefficients, in their order
+  std::vector<double> covariance_;  // covariance of the coefficients, in their order
   std::vector<Noise> noises_;
   Results found_{};
   bool is_complete_ = false;  // all are finite
-  double time_ = 0.0;         // of the sample that they were found at
+  double time_ = 0.0;         // time of the sample for which they were computed
   double static_pressure_ = 0.0;
   double dynamic_pressure_ = 0.0;
 };

@@ -4,11 +4,11 @@
 
 namespace pcor {
 
-/// Whether samples come at the intervals of a rate.
+/// True if samples come at the intervals of a rate.
 ///
-/// What a sample is ahead of or behind an even clock is added up and forgotten, over five samples. So times
-/// that jitter by less than a tenth of a sample are even, and so is a rate that is less than 2 % off; one
-/// that is more is not, nor is one step that is longer or shorter by a tenth.
+/// Deviations of samples from an even clock are accumulated, with a decay time of five samples. Times that
+/// jitter by less than a tenth of a sample are even, and so is a rate error below 2 %; a larger rate error is
+/// uneven, and so is a step longer or shorter by a tenth.
 class SampleClock {
  public:
   /// @param rate samples in a second

@@ -13,16 +13,15 @@ namespace pcor {
 /// Which delta-p corrects the pressures.
 enum class CorrectWith { model, lams };
 
-/// What the stages work on: a chain, and which delta-p corrects the pressures.
+/// Arguments of the stages: a chain, and the source of delta-p for the correction.
 struct Correction {
   const Chain& chain;
   CorrectWith with = CorrectWith::model;
 };
 
-/// The stages of a chain. Each says what it reads and writes, and computes it for one sample, or one pack of
-/// samples; nothing is remembered. By what they say a sample loop puts them in order among functors of the
-/// user's own, and a batch runs those that it needs for what it is asked for. One that writes nothing for a
-/// chain is left out.
+/// Stages of a chain. Each declares its inputs and outputs, and computes them for one sample, or one pack of
+/// samples, without state. A sample loop orders them among user-defined functors; a batch runs those needed
+/// for the requested outputs. Stages without outputs for a chain are skipped.
 ///
 /// To add one: write it here, name it in `Stages`, and what it writes in `Quantity`.
 
@@ -34,7 +33,7 @@ inline Quantities joined(std::initializer_list<Quantities> lists) {
   return all;
 }
 
-/// Those of `quantities` that are recorded or derived.
+/// Subset of `quantities` that is recorded or derived.
 inline Quantities known(const Chain& chain, std::initializer_list<Quantity> quantities) {
   Quantities known;
   for (const Quantity quantity : quantities) {
@@ -43,8 +42,8 @@ inline Quantities known(const Chain& chain, std::initializer_list<Quantity> quan
   return known;
 }
 
-/// What temperature and humidity are found from: what is recorded of them, and what their effects read. What
-/// calibrates an ambient temperature takes that temperature from the stage that finds it.
+/// Inputs of temperature and humidity: recorded quantities, and inputs of their effects. Calibration effects
+/// of an ambient temperature use the temperature of the stage that computes it.
 inline Quantities read_of_air(const Chain& chain) {
   Quantities read =
       joined({chain.read_at(EffectLocation::temperature), chain.read_at(EffectLocation::recovery),
@@ -57,14 +56,14 @@ inline Quantities read_of_air(const Chain& chain) {
   return read;
 }
 
-/// What the airspeed from LAMS is found from: the speed along the beam and the angle of the beam to the wind.
+/// Inputs of the airspeed from LAMS: the speed along the beam and the angle of the beam to the wind.
 inline Quantities read_of_beam(const Chain& chain) {
   return joined({known(chain, {Quantity::lams_airspeed, Quantity::attack, Quantity::sideslip}),
                  chain.read_at(EffectLocation::beam_speed), chain.read_at(EffectLocation::beam_elevation),
                  chain.read_at(EffectLocation::beam_azimuth)});
 }
 
-/// Pressures at the ports, and the quantities in which the laws stand: `Chain::measure`.
+/// Pressures at the ports, and the inputs of the effects: `Chain::measure`.
 struct MeasuredQuantities {
   static Quantities reads(const Correction& correction) {
     const Chain& chain = correction.chain;
@@ -98,7 +97,7 @@ struct MeasuredQuantities {
     correction.chain.measure(state, parameters, flags);
   }
 
-  /// The recorded quantities that `quantity`, recorded or derived, is found from.
+  /// Recorded quantities from which `quantity`, recorded or derived, is computed.
   static Quantities sources(const Chain& chain, Quantity quantity) {
     const auto of = [&chain](Quantity other) { return sources(chain, other); };
     if (chain.recorded(quantity)) return {quantity};
@@ -132,7 +131,7 @@ struct MeasuredQuantities {
   }
 
  private:
-  // What is recorded and completed by effects.
+  // Recorded quantities modified by effects.
   static Quantities writes_in_place(const Chain& chain) {
     Quantities completed;
     const auto completes = [&](EffectLocation location, Quantity quantity) {
@@ -178,7 +177,7 @@ struct LamsStaticDefect {
 };
 
 /// Corrected static and dynamic pressure, hPa: `Chain::correct`, with delta-p of the model, or with that of
-/// LAMS where it is valid and the quality bit `corrected_with_lams` says so.
+/// LAMS if it is valid; the quality bit `corrected_with_lams` marks the latter.
 struct CorrectedPressures {
   static Quantities reads(const Correction& correction) {
     Quantities read{Quantity::port_static_pressure, Quantity::port_dynamic_pressure, Quantity::static_defect};
@@ -251,7 +250,7 @@ struct StageList {
   }
 };
 
-/// All stages, in an order in which each finds what it reads.
+/// All stages, in an order in which the inputs of each precede it.
 using Stages =
     StageList<MeasuredQuantities, StaticDefect, LamsStaticDefect, CorrectedPressures, AirState, LamsAir>;
 

@@ -10,12 +10,11 @@ namespace pcor {
 /// How wet a probe is, from 0, dry, to 1, sample by sample: in cloud it gets wet within seconds, after it
 /// dries.
 ///
-///     tau dw/dt = c - w     c = 1 in cloud, else 0;   tau = 1 s in cloud, the time of drying outside
+///     tau dw/dt = c - w     c = 1 in cloud, otherwise 0;   tau = 1 s in cloud, the time of drying outside
 ///
-/// The result is the mean of w over the sample, exact where all of the sample is in cloud or none of it, so
-/// that all rates give the same. Before the first sample the probe had long been in the cloud, or
-/// out of it, in which that sample is. A missing liquid
-/// water content gives NaN, and the probe dries meanwhile.
+/// The result is the mean of w over the sample, exact if the whole sample is in or out of cloud, so that all
+/// rates agree. The initial state is that of a probe that has long been in the conditions of the first
+/// sample. A missing liquid water content gives NaN, while the probe dries.
 class Wetness {
  public:
   static constexpr double wetting = 1.0;    ///< s, estimate
@@ -25,10 +24,11 @@ class Wetness {
   Wetness(double rate, double drying)
       : step_(1.0 / rate), drying_(drying), wet_(step_, wetting), dry_(step_, drying) {}
 
-  /// Forgets all samples.
+  /// Clears all samples.
   void reset() noexcept { wetness_ = missing<double>(); }
 
-  /// @param liquid_water g/m3 @param step s since the sample before; NaN: that of the rate
+  /// @param liquid_water g/m3
+  /// @param step s since the previous sample; NaN: the step of the rate
   double operator()(double liquid_water, double step = missing<double>()) noexcept {
     constexpr double alike = 1e-6;
     if (std::abs(step - step_) > alike * step_) {
@@ -46,7 +46,7 @@ class Wetness {
   }
 
  private:
-  /// Of a distance from the end, what is left after a sample and on average over it.
+  /// Remaining fraction of the distance from equilibrium, after a sample and averaged over it.
   struct Answer {
     Answer(double step, double tau)
         : left(tau > 0.0 ? std::exp(-step / tau) : 0.0), mean(tau / step * (1.0 - left)) {}

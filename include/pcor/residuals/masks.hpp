@@ -12,48 +12,49 @@
 
 namespace pcor {
 
-/// Why a sample takes no part in a comparison. The first reason that holds counts.
+/// Reason why a sample is not used in a comparison. If several apply, the first one counts.
 enum class Mask : std::uint8_t {
-  none,            ///< it takes part
-  excluded,        ///< the user excluded its time
-  missing,         ///< a variable that the model reads has no value
-  ground,          ///< the aircraft stands, taxis or rolls
+  none,            ///< the sample is used
+  excluded,        ///< time excluded by the user
+  missing,         ///< a variable of the model has no value
+  ground,          ///< the aircraft is parked, taxies or rolls
   low_speed,       ///< airspeed below the limit
-  regime,          ///< the user excluded the regime
-  frozen,          ///< a sensor that the model or the reference reads stands still
+  regime,          ///< regime excluded by the user
+  frozen,          ///< a sensor of the model or the reference is frozen
   reference,       ///< a variable of the reference has no value; the laser is off
-  laser_unlocked,  ///< the laser airspeed is far from what the pressures let expect
-  burst,           ///< a pressure is disturbed for some seconds
-  impossible,      ///< the values are there, but no delta-p follows from them
-  flaps,           ///< flaps are out, and nothing else speaks against the sample
+  laser_unlocked,  ///< laser airspeed differs too much from the airspeed by the pressures
+  burst,           ///< a pressure is disturbed for a few seconds
+  impossible,      ///< values are present, but delta-p cannot be computed from them
+  flaps,           ///< flaps are extended, and no other reason applies
   count
 };
 
 inline constexpr std::size_t mask_count = static_cast<std::size_t>(Mask::count);
 
 struct MaskInfo {
-  std::string_view name;     ///< as in JSON, for example "low_speed"
-  std::string_view meaning;  ///< in words that follow a number of samples
+  std::string_view name;     ///< key in JSON, for example "low_speed"
+  std::string_view meaning;  ///< clause after a number of samples
 };
 
 extern const std::array<MaskInfo, mask_count> mask_info;
 
-/// For messages: the reasons why samples are not used, the largest first: "1203 on the ground, 17 laser ...".
+/// Reasons for unused samples, by decreasing count, for messages: "1203 on the ground, 17 laser ...".
 std::string mask_text(const std::array<std::size_t, mask_count>& counts);
 
-/// Flaps up to here are in, percent.
+/// Upper limit of retracted flaps, percent.
 inline constexpr double flaps_in = 5.0;
 
-/// Which samples take part in a comparison.
+/// Selection of samples for a comparison.
 struct MaskOptions {
-  double min_airspeed = 60.0;  ///< m/s; an aircraft flies above it
-  /// Percent, where the flight records flaps. Not given it is `flaps_in`, but for a model of which an effect
-  /// reads the flaps: that describes all samples, and all take part.
+  double min_airspeed = 60.0;  ///< m/s; minimum airspeed in flight
+  /// Percent, for flights that record flaps. Default: `flaps_in`; no limit if an effect of the model reads
+  /// the flaps.
   std::optional<double> max_flaps{};
-  /// Robust standard deviations of the flight, beside 3 % of the airspeed, between the laser airspeed and
-  /// what the pressures let expect; beyond them the laser has lost its lock.
+  /// Limit of the difference between laser airspeed and pressure-derived airspeed, in robust standard
+  /// deviations of the flight and in addition to 3 % of the airspeed; larger differences count as loss of
+  /// lock.
   double max_laser_departure = 6.0;
-  std::vector<Regime> exclude{};  ///< regimes that take no part, besides the ground
+  std::vector<Regime> exclude{};  ///< excluded regimes, in addition to the ground
   std::optional<UserIntervals> intervals{};
 };
 

@@ -14,110 +14,111 @@ class ModelOnSamples;
 class ReferenceOnSamples;
 }  // namespace internal
 
-/// What a model is held against.
+/// Measurement that a model is compared with.
 ///
-/// The residual, what a model is off by, is in hPa and has the sign of the reference less the model. Most
-/// references say what the static pressure really was: the residual is positive where delta-p of the model
-/// should be larger. Others say something else that the pressures, the temperature and the speed of a model
-/// let expect: a total pressure, a difference of heights, a speed over the ground.
+/// The residual is in hPa and has the sign of reference minus model. Most references give the static
+/// pressure: the residual is positive if delta-p of the model should be larger. Others give a quantity
+/// predicted from the pressures, temperature and speed of the model: a total pressure, a difference of
+/// heights, a ground speed.
 ///
-/// A new one is a class in a file of its own in src/residuals/references, and a line in the list in
+/// A new reference is a class in a separate file in src/residuals/references, and a line in the list in
 /// src/residuals/reference.cpp.
 class Reference {
  public:
   virtual ~Reference() = default;
 
-  /// What it is in words, for example "static system 'C-130 PSFRD/QCFR, equation 18'".
+  /// Description, for example "static system 'C-130 PSFRD/QCFR, equation 18'".
   virtual std::string description() const = 0;
 
-  /// Its name in tables and in JSON results, as `--reference` takes it: "lams", "total:PSFRD+QCFR".
+  /// Name in tables and JSON results, as for `--reference`: "lams", "total:PSFRD+QCFR".
   virtual std::string name() const = 0;
 
-  /// True where the residual is the static pressure of the reference less that of the model.
+  /// True if the residual is the static pressure of the reference minus that of the model.
   virtual bool is_static_pressure() const { return true; }
 
-  /// True where a static defect at the ports changes its residual: not of total pressures, in which it
+  /// True if a static defect at the ports changes the residual: false for total pressures, in which it
   /// cancels.
   virtual bool sees_static_defect() const { return true; }
 
-  /// The model that corrects it, whose parameters can be fitted together with those of the model that is held
-  /// against it; null where it has none.
+  /// Model that corrects the reference, whose parameters can be fitted with those of the compared model;
+  /// nullptr if there is no such model.
   virtual const ModelDefinition* model() const { return nullptr; }
 
-  /// The same reference with another model of its own; null where it has none. It reads all that the other
-  /// model reads.
+  /// Copy of the reference with another model; nullptr if the reference has no model. It reads all variables
+  /// of the other model.
   virtual std::shared_ptr<const Reference> with_model(const ModelDefinition&) const { return nullptr; }
 
-  /// The variables of a flight that it reads for itself, beside those of the model that is held against it.
+  /// Variables of a flight that the reference reads in addition to those of the compared model.
   virtual std::vector<std::string> variables() const { return {}; }
 
-  /// True where it is made of the laser that the model names.
+  /// True if the reference uses the laser named by the model.
   virtual bool reads_laser() const { return false; }
 
-  /// A text that is the same for two references whose `read` gives the same of a flight.
+  /// Key of the inputs: equal for two references whose `read` gives equal results for a flight.
   virtual std::string inputs() const { return name(); }
 
-  /// Reads its own variables. @throws Error if one is absent, has no value, or its unit does not fit.
+  /// Reads the variables of the reference. @throws Error if one is absent, has no value, or its unit does not
+  /// fit.
   virtual ModelSamples read(const Flight& flight, const std::vector<double>& time,
                             std::vector<std::string>& notes) const;
 
-  /// True where its residual is of one sample alone, not of many around it.
+  /// True if the residual depends on one sample only, not on a window of samples.
   virtual bool is_of_one_sample() const { return true; }
 
-  /// Where its residual is a difference over so long a time, s: means over as much tell each
-  /// something new, and what a diagnosis holds against a model. Zero where it is no such difference.
+  /// Length of the window for a residual that is a difference in time, s: only means over this length are
+  /// independent, and a diagnosis uses them. Zero for other residuals.
   virtual double window() const { return 0.0; }
 
-  /// What it says of every sample. Both arguments must outlive the result.
+  /// Evaluates the reference at every sample. Both arguments must outlive the result.
   virtual std::unique_ptr<internal::ReferenceOnSamples> on(const FlightSamples& samples,
                                                            const internal::ModelOnSamples& model) const = 0;
 };
 
-/// What a model is held against at once. The first one decides wherever a single figure is told.
+/// References used together. The first one determines every single figure that is reported.
 using References = std::vector<std::shared_ptr<const Reference>>;
 
-/// The first. @throws Error if there is none.
+/// First reference. @throws Error if there are no references.
 const Reference& first_of(const References& references);
 
 /// LAMS: delta-p from the laser airspeed, memo eq. 11, from the same pressures as the model.
 std::shared_ptr<const Reference> lams_reference();
 
-/// Another static system of the aircraft, corrected by a model of its own.
+/// Another static system of the aircraft, corrected by its model.
 std::shared_ptr<const Reference> static_system_reference(ModelDefinition system);
 
-/// A variable that is a static pressure: of the avionics, or corrected already.
+/// Variable that is a static pressure: from the avionics, or already corrected.
 std::shared_ptr<const Reference> pressure_reference(std::string variable);
 
-/// The total pressure of another pair of the aircraft, corrected by a model of its own: the residual is
-/// (p + q) of the pair less (p + q) of the model, hPa. Static defects cancel; errors of transducers, pitot
-/// tubes and total lines of either remain.
+/// Total pressure of another pair of the aircraft, corrected by its model: the residual is (p + q) of the
+/// pair minus (p + q) of the model, hPa. Static defects cancel; errors of transducers, pitot tubes and total
+/// lines of either remain.
 std::shared_ptr<const Reference> total_pressure_reference(ModelDefinition system);
 
-/// The heights of GPS: by how much the height that pressure, temperature and humidity of the model say the
-/// aircraft climbed within a minute (hydrostatic equation) departs from that of GPS, in hPa of the pressure
-/// at its end. It sees the temperature and errors of the static pressure that change in a climb.
+/// GPS heights: climb within a minute by the hydrostatic equation, from the pressure, temperature and
+/// humidity of the model, minus the climb by GPS, in hPa of the pressure at its end. Sensitive to the
+/// temperature and to static-pressure errors that change in a climb.
 ///
-/// What it cannot know stays in its noise: the slope of surfaces of one pressure along the track, some metres
-/// in a minute, and the noise of the heights. @param model names altitude and latitude, where it does
+/// The slope of isobaric surfaces along the track, a few metres per minute, and the height noise are part of
+/// the noise. @param model names altitude and latitude, if it has them
 std::shared_ptr<const Reference> height_reference(const ModelDefinition& model);
 
-/// The speed over the ground along the heading: the true airspeed of the model less the speed over the
-/// ground, without what a wind of the quarter of an hour around it makes of that by the headings flown, in
-/// hPa of delta-p that would change the airspeed as much. It sees the airspeed where headings are turned, as
-/// in reverse headings and circles, and where it changes, as in speed runs.
+/// Ground speed along the heading: true airspeed of the model minus ground speed, after subtraction of the
+/// best-fitting wind of the surrounding quarter of an hour, in hPa of delta-p that would change the airspeed
+/// by the same amount. Sensitive to the airspeed if headings are reversed, as in reverse headings and
+/// circles, and if it changes, as in speed runs.
 ///
-/// What it cannot know stays in its noise: how the wind changes within the quarter of an hour. @param model
-/// names heading and ground velocity, where it does
+/// Changes of the wind within the quarter of an hour are part of the noise. @param model names heading and
+/// ground velocity, if it has them
 std::shared_ptr<const Reference> wind_reference(const ModelDefinition& model);
 
-/// The texts that name a reference, with what each is: "lams (the laser ...), static:OTHER.toml (...) or
+/// Accepted forms of a reference, each with a description: "lams (the laser ...), static:OTHER.toml (...) or
 /// ...".
 std::string reference_forms();
 
-/// The reference that `text` names, see `reference_forms`.
+/// Reference named by `text`, see `reference_forms`.
 ///
-/// @throws Error if the text is none of these, the file of a static system cannot be read, or the model of a
-/// LAMS comparison has no `lams_airspeed`.
+/// @throws Error if the text has another form, the file of a static system cannot be read, or the
+/// model of a LAMS comparison has no `lams_airspeed`.
 std::shared_ptr<const Reference> read_reference(const std::string& text, const ModelDefinition& model);
 
 }  // namespace pcor

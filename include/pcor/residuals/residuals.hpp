@@ -14,23 +14,23 @@
 
 namespace pcor {
 
-/// A coefficient that changes a parameter differently at every sample.
+/// Coefficient that changes a parameter differently at every sample.
 struct Direction {
   std::size_t parameter = 0;
-  std::vector<double> rate{};  ///< of every sample, units of the parameter per unit of the coefficient
+  std::vector<double> rate{};  ///< one value per sample, units of the parameter per unit of the coefficient
 };
 
-/// One model held against one reference on one flight.
+/// Comparison of one model with one reference on one flight.
 ///
-/// The residual is that of the reference less the model, hPa. Its parameters are those of the model, in the
-/// order of `Chain::parameters`, and after them those of the reference's model where the reference is a
-/// static system: both can be fitted.
+/// The residual is reference minus model, hPa. The parameters are those of the model, in the order of
+/// `Chain::parameters`, followed by those of the reference's model if the reference is a static system: both
+/// can be fitted.
 class Residuals {
  public:
   /// @throws Error if the model, or that of the reference, cannot be used on the samples.
   Residuals(std::shared_ptr<const FlightSamples> samples, const ModelDefinition& model,
             const Reference& reference, const MaskOptions& options = {});
-  /// The same with masks that are known: they were found on these samples, or on others of the same flight.
+  /// Constructor with known masks, from these samples or from others of the same flight.
   Residuals(std::shared_ptr<const FlightSamples> samples, const ModelDefinition& model,
             const Reference& reference, std::vector<Mask> mask);
   Residuals(Residuals&&) noexcept;
@@ -41,85 +41,85 @@ class Residuals {
   const std::shared_ptr<const FlightSamples>& shared_samples() const;
   std::size_t size() const;
 
-  /// The parameters as the models' files have them.
+  /// Parameters in the model files.
   const std::vector<double>& parameters() const;
 
-  /// True for each parameter in which the residual is exactly linear: where it is a static pressure, those of
-  /// effects of the catalogue at the static ports, where delta-p has no lower limit.
+  /// True for each parameter in which the residual is exactly linear: if it is a static pressure, those of
+  /// effects of the catalogue at the static ports, unless delta-p has a lower limit.
   const std::vector<bool>& is_linear() const;
 
-  /// The mask of every sample, at the parameters of the files unless `set_mask` replaced it.
+  /// Mask of every sample, at the parameters of the files unless `set_mask` replaced it.
   const std::vector<Mask>& mask() const;
 
-  /// The masks with the residual at these parameters: bursts are seen in it.
+  /// Masks for the residual at these parameters, on which the detection of bursts depends.
   std::vector<Mask> masks_at(const double* parameters, const MaskOptions& options) const;
   void set_mask(std::vector<Mask> mask);
 
   std::array<std::size_t, mask_count> mask_counts() const;
 
-  /// The residual of every sample, NaN where a value is missing. @param parameters all of them
+  /// Residual of every sample, NaN if a value is missing. @param parameters all of them
   std::vector<double> values(const double* parameters) const;
 
   /// Residuals and their derivatives at some samples.
   ///
-  /// @param samples `count` places of samples
+  /// @param samples `count` indices of samples
   /// @param parameters all of them
-  /// @param wanted the parameters whose derivatives are wanted
+  /// @param wanted requested parameters of the derivatives
   /// @param residual `count` values, hPa
-  /// @param derivatives `wanted.size()` columns of `count` values, one after another, hPa per unit of the
-  ///        parameter
-  /// Exact: linear ones from the model itself, others by dual numbers through the whole chain.
+  /// @param derivatives `wanted.size()` columns of `count` values, column by column, hPa per unit of the
+  /// parameter
+  /// Derivatives are exact: linear ones from the model, others by dual numbers through the whole chain.
   void evaluate(const std::size_t* samples, std::size_t count, const double* parameters,
                 const std::vector<std::size_t>& wanted, double* residual, double* derivatives) const;
 
-  /// As `evaluate`, with the residual measured where the noise of the reference's sensor is added to it: the
-  /// speed along the beam of LAMS less `predicted_sensor`, times the derivative of the residual by it where
-  /// the model of the file says that the air is. Equal to the residual to first order, hPa. The same as
+  /// Variant of `evaluate` with the residual at the sensor of the reference, to which its noise is added: the
+  /// LAMS speed along the beam minus `predicted_sensor`, multiplied by the derivative of the residual with
+  /// respect to it at the air data of the model. Equal to the residual to first order, hPa. Identical to
   /// `evaluate` for references without such a sensor.
   ///
   /// Delta-p from LAMS is a gain times the noisy speed, and an effect before it (the recovery factor, the
-  /// elevation of the beam) changes that gain: least squares of delta-p would shrink the gain to shrink the
-  /// noise, and find an effect that is not there.
+  /// elevation of the beam) changes that gain: least squares of delta-p would reduce the gain to reduce the
+  /// noise, and detect a false effect.
   void evaluate_at_sensor(const std::size_t* samples, std::size_t count, const double* parameters,
                           const std::vector<std::size_t>& wanted, double* residual,
                           double* derivatives) const;
 
-  /// How many samples on either side a residual is made of; zero where it is of one sample alone.
+  /// Half-width of the window of samples on which a residual depends; zero if it depends on one sample only.
   std::size_t reach() const;
 
-  /// Derivatives at some samples of residuals that are made of their neighbours too, by coefficients that
-  /// change from sample to sample: with the parameters a_k of the samples k, the sum of dr_i/da_k rate_k.
-  /// Exact: dual numbers through the whole chain and through the sums over neighbours. Samples whose rate is
-  /// zero need no finite derivative of their own.
+  /// Derivatives at some samples of residuals with a window, with respect to coefficients whose effect varies
+  /// from sample to sample: with the parameters a_k of the samples k, the sum of dr_i/da_k rate_k. Exact:
+  /// dual numbers through the whole chain and through the sums over the window. Samples whose rate is zero
+  /// need no finite derivative.
   ///
-  /// @param derivatives `directions.size()` columns of `count` values, one after another, hPa per unit of the
-  ///        coefficient
+  /// @param derivatives `directions.size()` columns of `count` values, column by column, hPa per unit of the
+  /// coefficient
   /// @pre `reach()` is not zero
   void differentiate_along(const std::size_t* samples, std::size_t count, const double* parameters,
                            const std::vector<Direction>& directions, double* derivatives) const;
 
-  /// The column of the model's samples that the sensor of the reference fills, and what the sensor would show
-  /// at every sample where the model says that the air is, without its noise: of LAMS the speed along the
-  /// beam, m/s. NaN where missing. Nothing for a reference whose noise is added to the residual itself.
+  /// Model column measured by the sensor of the reference, and its noise-free prediction at every sample from
+  /// the air data of the model: for LAMS the speed along the beam, m/s. NaN if missing. Empty for a
+  /// reference whose noise is added directly to the residual.
   std::optional<std::pair<Quantity, std::vector<double>>> predicted_sensor(const double* parameters) const;
 
-  /// The samples with the mean of what model and reference recorded as the static and the dynamic pressure of
-  /// both: where derivatives by coefficients of two static systems are to be taken. Null where the reference
-  /// is no static system.
+  /// Copy of the samples in which both systems have the mean of the two recorded static, and of the two
+  /// dynamic, pressures, for derivatives with respect to coefficients of two static systems. nullptr if the
+  /// reference is not a static system.
   ///
-  /// Of the same effect in both laws the flights know the difference alone, and there the two derivatives are
-  /// exactly opposite. At the recorded pressures they differ by the noise of the residual, which a fit takes
-  /// for a signal of what both systems have in common: it shrinks the noise by tens of hPa of static defect.
-  /// The pressures differ by the difference of the defects, less than 1 %, and so do the derivatives. The
-  /// mean still holds the noise of the noisier system, so the dynamic pressure is the one that the radome
-  /// predicts, where it is recorded.
+  /// If both models contain the same effect, only the difference of its coefficients is determined, and the
+  /// two derivatives must be exactly opposite. At the recorded pressures they differ by the noise of the
+  /// residual, which biases common coefficients: a fit would reduce the noise by tens of hPa of static
+  /// defect. The pressures differ by the difference of the defects, less than 1 %, and so do the derivatives.
+  /// The mean still contains the noise of the noisier system, so the dynamic pressure is predicted from the
+  /// radome, if it is recorded.
   std::shared_ptr<const FlightSamples> at_common_pressures() const;
 
-  /// Delta-p that the reference asks for, p(reference) - p at the port, hPa; NaN where missing.
+  /// Delta-p required by the reference, p(reference) - p at the port, hPa; NaN if missing.
   std::vector<double> target_defect(const double* parameters) const;
 
-  /// A quantity of the model's chain, for pictures and bands: e.g. mach, attack. NaN everywhere where the
-  /// chain does not have it.
+  /// Quantity of the model's chain, for figures and bands: e.g. mach, attack. NaN everywhere if the chain
+  /// does not compute it.
   std::vector<double> quantity(Quantity quantity, const double* parameters) const;
 
  private:
@@ -127,7 +127,7 @@ class Residuals {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// The names of all parameters in the order of `Residuals::parameters`, like "static-qp.a2"; those of the
+/// Names of all parameters in the order of `Residuals::parameters`, like "static-qp.a2"; parameters of the
 /// reference's model begin with "reference:".
 std::vector<std::string> residual_parameter_names(const ModelDefinition& model, const Reference& reference);
 

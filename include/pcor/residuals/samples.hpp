@@ -14,60 +14,60 @@ namespace pcor {
 
 class Reference;
 
-/// A sensor that stands still for much longer than its noise allows.
+/// Time range of a frozen sensor: constant readings for much longer than its noise permits.
 struct FrozenSpan {
   Quantity quantity = Quantity::count;
   std::size_t first = 0;  ///< sample
   std::size_t count = 0;
 };
 
-/// A column that hangs on a coefficient, as the mean rate of the airspeed does on the seconds over which it
-/// is the mean: how it changes with that coefficient.
+/// Column that depends on a coefficient, such as the mean rate of the airspeed on its averaging time, with
+/// its derivative.
 struct ParameterDependentColumn {
   Quantity quantity = Quantity::count;
   std::string effect{};
-  std::size_t parameter = 0;    ///< the number of the coefficient in its effect
-  double at = 0.0;              ///< the value of the coefficient at which the column was found
-  std::vector<double> slope{};  ///< of each sample, per unit of the coefficient
+  std::size_t parameter = 0;    ///< index of the coefficient in its effect
+  double at = 0.0;              ///< value of the coefficient for the column
+  std::vector<double> slope{};  ///< derivative of each sample with respect to the coefficient
 };
 
-/// What a model or a reference reads of a flight: quantities as arrays, one value for each record.
+/// Inputs of a model or a reference from a flight: quantities as arrays, one value for each record.
 struct ModelSamples {
-  std::vector<Quantity> roles{};  ///< those that `Chain::build` is told of
+  std::vector<Quantity> roles{};  ///< roles for `Chain::build`
   std::vector<std::pair<Quantity, std::vector<double>>> columns{};
-  std::vector<std::pair<Quantity, std::string>> variables{};  ///< of the file, for what is recorded
+  std::vector<std::pair<Quantity, std::string>> variables{};  ///< names in the file, for recorded quantities
   std::vector<FrozenSpan> frozen{};
   std::vector<ParameterDependentColumn> moving{};
-  FastSeries along_beam{};  ///< airspeed along the laser's beam, m/s, where a rate of it is read
+  FastSeries along_beam{};  ///< airspeed along the laser's beam, m/s, if its rate is used
 
   const std::vector<double>* find(Quantity quantity) const;
   std::vector<double>* find(Quantity quantity);
 };
 
-/// A flight as comparisons and fits see it: what was recorded, how it was flown, at one sample per record.
+/// Flight data for comparisons and fits: recorded values and regimes, at one sample per record.
 struct FlightSamples {
-  std::string name{};               ///< for tables: the file's name, or what the flight is called
-  std::string aircraft{};           ///< as the file says; may be empty
+  std::string name{};               ///< file name or title, for tables
+  std::string aircraft{};           ///< stated in the file; may be empty
   double step = 1.0;                ///< s
-  std::vector<double> time{};       ///< middles of the samples, s since 1970 UTC
-  std::vector<double> latitude{};   ///< deg, for pictures; empty: not recorded
-  std::vector<double> longitude{};  ///< deg, for pictures; empty: not recorded
+  std::vector<double> time{};       ///< centre times of the samples, s since 1970 UTC
+  std::vector<double> latitude{};   ///< deg, only for figures; empty: not recorded
+  std::vector<double> longitude{};  ///< deg, only for figures; empty: not recorded
   FlightMotion motion{};
   std::vector<double> flaps{};        ///< percent; empty: not recorded
-  std::string flaps_variable{};       ///< of the file
-  std::vector<bool> flaps_by_lift{};  ///< where the lift says that flaps are out; empty: recorded, or unknown
+  std::string flaps_variable{};       ///< name in the file
+  std::vector<bool> flaps_by_lift{};  ///< flaps extended, inferred from the lift; empty: recorded, or unknown
   std::vector<Interval> intervals{};  ///< regimes
   ModelSamples model{};
-  ModelSamples reference{};          ///< what the reference reads for itself
-  std::vector<std::string> notes{};  ///< what a user should know, a sentence each
+  ModelSamples reference{};          ///< inputs of the reference
+  std::vector<std::string> notes{};  ///< notes for the user, one sentence each
 };
 
-/// Reads what `model` and `reference` need of a flight, and finds its regimes.
+/// Reads the inputs of `model` and `reference` from a flight, and detects its regimes.
 ///
-/// How it was flown is taken from the roles of the model, and where it has none from the names that NCAR's
-/// files use (GGALT, ROLL, THDG, PLWCC and the like). Regimes of an aircraft that is not known are found by
-/// the criteria of the C-130, which a note says.
-/// @throws Error if a variable that is needed is absent, has no value, or its unit does not fit.
+/// The motion is read from the roles of the model, otherwise from variables with NCAR names (GGALT, ROLL,
+/// THDG, PLWCC and the like). Regimes of an unknown aircraft are detected with the criteria of the C-130,
+/// with a note.
+/// @throws Error if a required variable is absent, has no value, or its unit does not fit.
 FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, const Reference& reference,
                            const MaskOptions& options = {});
 

@@ -5,42 +5,43 @@
 
 namespace pcor {
 
-/// What residuals, hPa, amount to over some samples. NaN where there are too few samples.
+/// Statistics of residuals, hPa. NaN if there are too few samples.
 struct Statistics {
   std::size_t samples = 0;
-  double bias = 0.0;        ///< mean residual, hPa
-  double bias_error = 0.0;  ///< its standard error, hPa, with memory and drift of the noise
-  double rms = 0.0;         ///< about zero, hPa
-  double noise_rms = 0.0;   ///< of the noise floor over the same samples, hPa: the lowest of all models
+  double bias = 0.0;  ///< mean residual, hPa
+  /// Standard error of the bias, hPa, includes autocorrelation and drift of the noise.
+  double bias_error = 0.0;
+  double rms = 0.0;        ///< about zero, hPa
+  double noise_rms = 0.0;  ///< noise floor over the same samples, hPa: the lowest of all models
 
-  /// The scatter about the bias, hPa.
+  /// Standard deviation about the bias, hPa.
   double scatter() const;
-  /// By how much the rms is larger than the noise alone would make it; NaN where the noise is not known.
+  /// Ratio of the rms to that of the noise; NaN if the noise is unknown.
   double rms_over_noise() const;
 };
 
-/// Whether a model fails more in `a` than in `b`: by how much the mean square is above that of the noise.
-/// Where the noise is not known nothing is said to fail.
+/// True if the excess of the mean square over the noise is larger in `a` than in `b`. False if the noise is
+/// unknown.
 bool fails_more(const Statistics& a, const Statistics& b);
 
-/// "not in the fit: 712 samples with flaps out, residual +2.30 +- 0.40 hPa"; empty where there are none.
+/// Text "not in the fit: 712 samples with flaps out, residual +2.30 +- 0.40 hPa"; empty without samples.
 /// @param of_what for example "the fit"
 std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_what);
 
-/// Residuals of a part of a flight that took no part in a fit.
+/// Residuals of a part of a flight that was excluded from a fit.
 struct HeldOutPart {
   std::string flight;
   Statistics statistics;
-  /// The standard deviation of the bias, hPa, if the model were as right there as where it was fitted: from
-  /// how the means over five minutes, and over flights, wander in the fit; after a fit also from the errors
-  /// of its coefficients and from what the law lacks.
+  /// Expected standard deviation of the bias, hPa, for a model with the same accuracy as in the fit: from the
+  /// scatter of means over five minutes, and over flights, in the fit; after a fit also from the errors of
+  /// its coefficients and from the misfit of the model.
   double expected = 0.0;
 
-  std::size_t parts = 1;  ///< of which this one was chosen, being furthest off
+  std::size_t parts = 1;  ///< number of parts among which this one has the largest bias
 
-  /// Whether the bias is more than chance makes it, once in eighty times in all parts together (Sidak).
+  /// True if the bias is significant (p < 1/80 over all parts, Sidak).
   bool is_off() const;
-  /// What that says, a sentence without its full stop.
+  /// Clause on the bias and its significance, without full stop.
   std::string text() const;
 };
 

@@ -7,11 +7,10 @@
 
 namespace pcor {
 
-/// The model with `effects` besides, each with its neutral parameters unless it brings its own. Roles that
-/// they need and the model does not name get the variable that NCAR's files usually have for them.
-/// `variables` are those of a flight, to choose among usual names; empty where no flight is at hand.
-/// @throws Error if an effect is in the model already or is not known, or needs a role for which there is no
-/// usual variable.
+/// Model with additional `effects`, with neutral parameters unless given. Roles that they need and the model
+/// does not name get the usual variable of NCAR's files. `variables` are those of a flight, to choose among
+/// usual names; empty if no flight is available.
+/// @throws Error if an effect is already in the model or unknown, or needs a role without a usual variable.
 ModelDefinition add_effects(const ModelDefinition& model, const std::vector<ModelEffect>& effects,
                             const std::vector<std::string>& variables = {});
 

@@ -8,24 +8,21 @@
 
 namespace pcor {
 
-/// The model with the variables that it leaves open, by the names that the flight's aircraft has for them:
-/// those of `ModelDefinition::roles_from`, else of the aircraft that the flight's attributes and variables
-/// tell.
+/// Model with its undefined variables resolved by the names of the flight's aircraft:
+/// `ModelDefinition::roles_from`, otherwise the aircraft detected from the flight's attributes and variables.
 ///
-/// A model that names more than its pressures is complete: it gets the units alone that the data of its own
-/// aircraft (`roles_from`) state. Else its pressures, where it names none, are the first pair as measured
-/// that has values, or one that the flight's own processing corrected, which is noted; every further role is
-/// the first of its names that has values, in the unit, and with the sign, that the aircraft's data state;
-/// the temperature is a recovery temperature where one is recorded, with the recovery factor of its
-/// thermometer unless the model states one, else that of the air. Adds to `notes` what was chosen, and what a
-/// user of these variables should know, a sentence each.
-/// @throws Error if the flight has no pair of pressures that is known, or is like the files of several
-/// aircraft; the message says what to write into the model.
+/// A model that names more than its pressures is complete: only units in the data of its aircraft
+/// (`roles_from`) are added. Otherwise, pressures that are not named are the first measured pair with values,
+/// or a pair corrected in the flight file, with a note; every further role is the first of its names with
+/// values, with the unit and sign of the aircraft's data; the temperature is a recovery temperature if
+/// recorded, with the recovery factor of its thermometer unless the model states one, otherwise the ambient
+/// temperature. Adds the choices and caveats of these variables to `notes`, one sentence each.
+/// @throws Error if the flight has no known pair of pressures, or matches several aircraft; the message
+/// states the keys to add to the model.
 ModelDefinition resolve_variables(const ModelDefinition& model, const Flight& flight,
                                   std::vector<std::string>& notes);
 
-/// Whether a model names its two pressures and nothing else, so that `resolve_variables` gives it all other
-/// roles.
+/// True if a model names only its two pressures, so that `resolve_variables` adds all other roles.
 bool names_pressures_alone(const ModelDefinition& model);
 
 }  // namespace pcor

@@ -12,13 +12,13 @@
 
 namespace pcor {
 
-/// A flight to be simulated: the aircraft, the air, what is flown, the instruments, and what is wrong with
-/// them. `read_scenario` fills it with the defaults of the aircraft and checks it; data/scenarios/README.md
-/// is the reference of the file.
+/// Scenario of a simulated flight: aircraft, atmosphere, flight plan, instruments and their errors.
+/// `read_scenario` applies the defaults of the aircraft and checks it; data/scenarios/README.md describes the
+/// file.
 struct Scenario {
   enum class Aircraft { c130, gv };
 
-  /// Where the choice is left to the aircraft or to what came before.
+  /// Value to be chosen from the aircraft or the preceding leg.
   static constexpr double by_default = std::numeric_limits<double>::quiet_NaN();
 
   /// A layer of cloud.
@@ -26,10 +26,10 @@ struct Scenario {
     double base = 0.0;    ///< m
     double top = 0.0;     ///< m
     double liquid = 0.3;  ///< liquid water content, g/m3
-    double cover = 0.5;   ///< the part of the track that is in cloud, 0 to 1
+    double cover = 0.5;   ///< fraction of the track in cloud, 0 to 1
   };
 
-  /// The air. Heights are above the ellipsoid of the GPS, which here is also sea level.
+  /// Atmosphere. Heights are above the ellipsoid of the GPS, which here is also sea level.
   struct Atmosphere {
     double ground_pressure = 1000.0;     ///< hPa, at `ground_height`
     double ground_height = 100.0;        ///< m
@@ -39,12 +39,12 @@ struct Scenario {
     double inversion_strength = 2.0;     ///< K
     double tropopause = 11000.0;         ///< m
     double ground_humidity = 70.0;       ///< relative humidity over water below the inversion, %
-    double upper_humidity = 30.0;        ///< above the inversion, %
-    double wind_speed = 5.0;             ///< at the ground, m/s
+    double upper_humidity = 30.0;        ///< relative humidity above the inversion, %
+    double wind_speed = 5.0;             ///< wind speed at the ground, m/s
     double wind_from = 250.0;            ///< deg
     double wind_shear = 2.0;             ///< increase of the wind with height, m/s per km
     double wind_drift = 0.3;             ///< rms of the mesoscale drift of each component, m/s
-    double wind_drift_time = 300.0;      ///< its memory, s
+    double wind_drift_time = 300.0;      ///< correlation time of the drift, s
     double turbulence = 1e-4;            ///< dissipation rate of the free troposphere, m2/s3
     double boundary_layer = 2e-3;        ///< dissipation rate below the inversion, m2/s3
     double pressure_height_east = 0.0;   ///< slope of the isobars, m per 100 km eastward
@@ -52,8 +52,8 @@ struct Scenario {
     std::vector<Cloud> clouds{};
   };
 
-  /// What is flown, one after another. Which numbers a kind takes is in data/scenarios/README.md; the others
-  /// are not used.
+  /// Flight segment. The numbers used by each kind are listed in data/scenarios/README.md; the others are
+  /// ignored.
   struct Leg {
     enum class Kind {
       ground,
@@ -73,27 +73,27 @@ struct Scenario {
     double duration = by_default;   ///< s
     double altitude = by_default;   ///< m
     double speed = by_default;      ///< true airspeed, m/s
-    double rate = by_default;       ///< of climb, m/s; of a speed run, m/s2
-    double low = by_default;        ///< slowest speed of a speed run, m/s
-    double high = by_default;       ///< greatest speed of a speed run, m/s
+    double rate = by_default;       ///< climb rate, m/s; acceleration of a speed run, m/s2
+    double low = by_default;        ///< minimum speed of a speed run, m/s
+    double high = by_default;       ///< maximum speed of a speed run, m/s
     double period = by_default;     ///< s
     double cycles = by_default;     ///< 1
-    double amplitude = by_default;  ///< of the vertical acceleration, m/s2; of the sideslip, deg
+    double amplitude = by_default;  ///< vertical acceleration, m/s2; sideslip, deg
     double roll = by_default;       ///< deg, positive
     double angle = by_default;      ///< change of heading, deg, to starboard
     double flaps = by_default;      ///< percent
-    std::string place{};            ///< where it stands in the file, for messages
+    std::string place{};            ///< position in the file, for messages
   };
 
-  /// What a sensor adds to the truth.
+  /// Error of a sensor.
   struct Noise {
-    double rms = 0.0;         ///< of means over one second, in the variable's unit
+    double rms = 0.0;         ///< rms of means over one second, in the variable's unit
     double bias = 0.0;        ///< constant, in the variable's unit
-    double memory = 0.0;      ///< the time after which the noise has forgotten itself to 1/e, s; 0: white
-    double resolution = 0.0;  ///< values are whole multiples of it; 0: not rounded
+    double memory = 0.0;      ///< correlation time (1/e), s; 0: white
+    double resolution = 0.0;  ///< quantisation step, in the variable's unit; 0: not rounded
   };
 
-  /// The static defect of one pair of pressures as published laws have it, in what that pair measures:
+  /// Static defect of one pair of pressures in the form of published laws, in measured quantities:
   ///
   ///     d/p_m = a0 + a1 A + a2 x + a3 alpha + a4 x alpha^2 + m1 M + m2 M^2 + m3 M^3 + b1 B + b2 beta^2
   ///
@@ -116,68 +116,70 @@ struct Scenario {
     std::string static_pressure{};
     std::string dynamic_pressure{};
     Law law;
-    bool independent_mach = false;  ///< M is the true Mach number; else that of the pair in dry air
+    bool independent_mach =
+        false;  ///< true: M is the true Mach number; false: Mach number of the pair in dry air
   };
 
   /// The laser.
   struct Lams {
-    double elevation = 0.0;        ///< of the beam above the longitudinal axis, deg
-    double azimuth = 0.0;          ///< to starboard, deg
-    double mismatch = 0.20;        ///< air ahead of the pitot's: rms of 1-s means at 1e-4 m2/s3, m/s
+    double elevation = 0.0;        ///< elevation of the beam above the longitudinal axis, deg
+    double azimuth = 0.0;          ///< azimuth to starboard, deg
+    double mismatch = 0.20;        ///< wind difference to the pitot: rms of 1-s means at 1e-4 m2/s3, m/s
     double mismatch_memory = 2.0;  ///< s
-    double dropout = 0.0;  ///< part of the samples missing for lack of aerosol near the ground, 0 to 1
-    double clear_above = by_default;  ///< half of the samples are missing at this height, m
+    double dropout = 0.0;  ///< fraction of samples missing for lack of aerosol near the ground, 0 to 1
+    double clear_above = by_default;  ///< height at which half of the samples are missing, m
   };
 
-  /// The aircraft's own air data computer: PS_A, QC_A, MACH_A.
+  /// Air data computer of the aircraft: PS_A, QC_A, MACH_A.
   ///
   /// With a `law`, the error of MACH_A is such that the law, with MACH_A as M, gives the defect of the first
-  /// system. So a law in which M nearly cancels q/p, as equation 20 of the memo, can be true: with the true
-  /// Mach number as M it holds for one defect only, at cruise an absurd one.
+  /// system. Therefore a law in which M nearly cancels q/p, such as equation 20 of the memo, can be true:
+  /// with the true Mach number as M it holds only for one defect, which is unrealistic at cruise.
   struct Avionics {
-    double response = 0.5;  ///< time constant of its filter, s
+    double response = 0.5;  ///< time constant of the filter, s
     double delay = 0.1;     ///< s
     bool has_law = false;
     Law law;
   };
 
-  /// Something wrong that the processing does not know.
+  /// Error that is not corrected by the processing.
   struct Effect {
     std::string id{};
-    std::string on{};  ///< the variable it acts on; empty: all that it can act on
+    std::string on{};  ///< affected variable; empty: all possible ones
     std::map<std::string, double> parameters{};
-    std::string of{};        ///< of "unknown": the variable that causes it
-    std::string location{};  ///< of "unknown": static, total, lams or temperature
-    std::string shape{};     ///< of "unknown": linear, quadratic, step or sine
-    std::string place{};     ///< where it stands in the file, for messages
+    std::string of{};        ///< variable that causes an "unknown" effect
+    std::string location{};  ///< target of an "unknown" effect: static, total, lams or temperature
+    std::string shape{};     ///< shape of an "unknown" effect: linear, quadratic, step or sine
+    std::string place{};     ///< position in the file, for messages
   };
 
   /// Spikes in a variable.
   struct Outliers {
     std::string variable{};
-    double fraction = 0.0;  ///< of the samples
+    double fraction = 0.0;  ///< fraction of samples
     double size = 0.0;      ///< standard deviation, in the variable's unit
   };
 
   /// Missing data.
   struct Gap {
-    std::string variable{};  ///< empty: the records are not in the file at all
+    std::string variable{};  ///< empty: the records are absent from the file
     double start = 0.0;      ///< s after the first record
     double duration = 0.0;   ///< s
   };
 
-  std::string file{};  ///< what messages call it
+  std::string file{};  ///< file name for messages
   std::string name{};
   Aircraft aircraft = Aircraft::c130;
   std::uint64_t seed = 1;
-  double start = 1321560000.0;  ///< of the first record, seconds since 1970 UTC
-  int rate = 1;                 ///< samples a second of the fast variables: 1, 5 or 25
-  double latitude = 40.0;       ///< at the start, deg
+  double start = 1321560000.0;  ///< time of the first record, seconds since 1970 UTC
+  int rate = 1;                 ///< sample rate of the fast variables, Hz: 1, 5 or 25
+  double latitude = 40.0;       ///< initial latitude, deg
   double longitude = -105.0;    ///< deg
-  double heading = 90.0;        ///< at the start, deg
-  double weight = by_default;   ///< at the start, kg
+  double heading = 90.0;        ///< initial heading, deg
+  double weight = by_default;   ///< initial weight, kg
   double recovery_factor = by_default;
-  bool noise_on = true;  ///< false: no noise, no mismatch of the laser, no dropouts, whatever is stated
+  /// False: no noise, no mismatch of the laser, no dropouts, regardless of other settings.
+  bool noise_on = true;
   Atmosphere atmosphere;
   std::vector<Leg> legs{};
   std::vector<System> systems{};
@@ -189,23 +191,23 @@ struct Scenario {
   std::vector<Gap> gaps{};
 };
 
-/// Reads a scenario (format "pcor-scenario/1") and checks it. Nothing in the file is ignored.
-/// @throws Error with file:line:column if the file cannot be read, or says something that is not known,
-/// contradicts itself, or is impossible for the aircraft.
+/// Reads a scenario (format "pcor-scenario/1") and checks it. Every key must be known.
+/// @throws Error with file:line:column if the file cannot be read, or a value is unknown, contradictory or
+/// impossible for the aircraft.
 Scenario read_scenario(const std::filesystem::path& path);
 
-/// The same from a text, which messages call `name`.
+/// Parses and checks a scenario from text; `name` replaces the file name in messages.
 Scenario parse_scenario(std::string_view text, std::string_view name);
 
-/// How a flight is simulated.
+/// Options of a simulation.
 struct SimulateOptions {
-  std::string history{};  ///< what the output says of its making, e.g. the command line
-  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every variable
+  std::string history{};  ///< history attribute of the output, e.g. the command line
+  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< callback after every variable
 };
 
-/// A leg as it was flown.
+/// Leg with its simulated flight state.
 struct LegFlown {
-  std::string kind;         ///< as in the scenario, e.g. "speed-run"
+  std::string kind;         ///< kind in the scenario, e.g. "speed-run"
   double first_time = 0.0;  ///< seconds since 1970 UTC
   double last_time = 0.0;   ///< seconds since 1970 UTC
   double altitude = 0.0;    ///< mean, m
@@ -216,7 +218,7 @@ struct LegFlown {
   double max_attack = 0.0;
 };
 
-/// What was simulated.
+/// Result of a simulation.
 struct SimulationSummary {
   std::string name;
   std::string aircraft;  ///< e.g. "C-130 N130AR"
@@ -226,21 +228,21 @@ struct SimulationSummary {
   double first_time = 0.0;  ///< seconds since 1970 UTC
   double last_time = 0.0;
   std::vector<LegFlown> legs;
-  std::vector<std::string> variables;  ///< as recorded
-  std::vector<std::string> truth;      ///< what really was, names with TRUE_
-  std::vector<std::string> effects;    ///< the ids of what is wrong
+  std::vector<std::string> variables;  ///< recorded variables
+  std::vector<std::string> truth;      ///< true values, names with TRUE_
+  std::vector<std::string> effects;    ///< ids of the simulated errors
 };
 
-/// Flies the scenario and writes what the aircraft would have recorded to the netCDF file `output`, with the
-/// truth beside it.
+/// Simulates the flight and writes the recorded variables, and their true values, to the netCDF file
+/// `output`.
 ///
-/// The truth side has physics of its own, at 25 Hz, and shares only constants of nature with the corrections
-/// that are to find it. Recorded values are means over the sample intervals.
+/// The simulation has independent physics at 25 Hz and shares only constants of nature with the corrections
+/// under test. Recorded values are means over the sample intervals.
 ///
-/// The same scenario, seed and program give the same data, byte by byte, whatever the number of processors.
-/// On another machine the random numbers are the same; where its mathematics library rounds otherwise, values
-/// differ in the last digits. Every sensor has random numbers of its own, found from the seed and the
-/// variable's name: to change the noise of one leaves all others as they were.
+/// Equal scenario, seed and program give identical data, byte by byte, for any number of processors. On
+/// another machine the random numbers are identical; if its mathematics library rounds differently, values
+/// differ in the last digits. Every sensor has independent random numbers, derived from the seed and the
+/// variable's name: a change of the noise of one sensor does not affect the others.
 ///
 /// Memory: 200 bytes for each second of flight and variable of the truth, 65 MB for two hours in all.
 /// Pressures hPa, temperatures degC, speeds m/s, angles deg.

@@ -5,28 +5,29 @@
 
 namespace pcor {
 
-/// Whose unit is being read, for the messages. `file` and `role` may be empty.
+/// Origin of a unit, for messages. `file` and `role` may be empty.
 struct UnitOwner {
   std::string variable;  ///< the name in the file, e.g. "PSFD"
-  std::string file;      ///< where it is
-  std::string role;      ///< what the model file calls it, e.g. "static_pressure"
+  std::string file;      ///< file with the variable
+  std::string role;      ///< role in the model file, e.g. "static_pressure"
 };
 
-/// A linear conversion between two units: `value * scale + offset`, of what is possible in the second one.
+/// Linear conversion between two units: `value * scale + offset`, with limits in the second unit.
 class UnitConversion {
  public:
-  /// The conversion that changes nothing.
+  /// Identity.
   UnitConversion() = default;
 
   UnitConversion(double scale, double offset) : scale_(scale), offset_(offset) {}
 
-  /// From the unit `from`, as a file spells it, to the unit `to`, e.g. ("mbar", "hPa"). NaN stays NaN.
+  /// Conversion from the unit `from`, as spelled in a file, to the unit `to`, e.g. ("mbar", "hPa"). NaN stays
+  /// NaN.
   ///
-  /// @throws Error if `from` is empty or not known, if it measures something else than `to`, or if the two
-  /// are not related by a straight line (dBZ). The message says how to state the unit in the model file.
+  /// @throws Error if `from` is empty or unknown, if it measures a different quantity than `to`, or if the
+  /// relation is not linear (dBZ). The message explains how to state the unit in the model file.
   static UnitConversion between(const std::string& from, const std::string& to, const UnitOwner& owner);
 
-  /// The same of which nothing less than `least` or more than `greatest` comes out, but NaN.
+  /// Copy limited to [least, greatest]; results outside become NaN.
   UnitConversion within(double least, double greatest) const {
     UnitConversion limited = *this;
     limited.least_ = least;
@@ -52,15 +53,14 @@ class UnitConversion {
   double greatest_ = std::numeric_limits<double>::max();
 };
 
-/// A unit as real flight files spell it in the spelling of UDUNITS and CF: "C" is "degC", "M/s" is "m/s",
-/// "none" is "1". The spelling is looked up exactly, case and all; one that needs no change is returned as it
-/// is.
+/// UDUNITS and CF spelling of a unit in flight files: "C" is "degC", "M/s" is "m/s", "none" is "1". The
+/// lookup is exact and case-sensitive; other spellings are returned unchanged.
 std::string standard_unit(const std::string& unit);
 
-/// Whether the unit is known, after `standard_unit`. An empty unit is not.
+/// True if the unit is known, after `standard_unit`. An empty unit is unknown.
 bool is_known_unit(const std::string& unit);
 
-/// Whether `UnitConversion::between` has a conversion from the one unit to the other.
+/// True if `UnitConversion::between` has a conversion between the units.
 bool is_convertible(const std::string& from, const std::string& to);
 
 }  // namespace pcor

@@ -20,17 +20,17 @@
 
 namespace pcor::internal {
 
-/// How long the aircraft climbs between the heights that are compared, s: long enough that the climb is much
-/// more than the noise of GPS, and short enough that the surfaces of one pressure hardly slope on the way.
+/// Climb duration between the compared heights, s: long enough that the climb is much larger than the noise
+/// of GPS, and short enough that the slope of the isobars is negligible.
 inline constexpr double height_window = 60.0;
 
-/// The residual of sample i, with a and b half a window before and after it, is
+/// Residual of sample i, with a and b half a window before and after it:
 ///
 ///     r_i = p_i g0/(R T)_i [ sum_a^b dH - (H_b - H_a) ],   dH = hydrostatic_step times the mean temperature
 ///
-/// with the geopotential heights H of GPS: where the step of the model is too large, its pressure has fallen
-/// too far. In hPa. The factor before the brackets, which is a unit, is that of the model's file: if it moved
-/// with the coefficients, a derivative would hold the residual itself, and so its noise.
+/// with the geopotential heights H of GPS: if the step of the model is too large, its pressure has fallen too
+/// far. In hPa. The factor before the brackets, which converts the unit, uses the model file: if it changed
+/// with the coefficients, a derivative would contain the residual, and so its noise.
 class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
  public:
   HeightOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
@@ -61,7 +61,7 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
   template <class S>
   void find(const Span span, const std::vector<Parts<S>>& parts, const std::size_t* samples,
             std::size_t count, S* out) const {
-    std::vector<S> risen(span.size(), S(0.0));  // m since the first sample
+    std::vector<S> risen(span.size(), S(0.0));  // height change, m, since the first sample
     std::vector<std::size_t> missing_steps(span.size(), 0);
     for (std::size_t k = 0; k < span.size(); ++k) {
       const auto& [pressure, temperature, gas_constant] = parts[k];
@@ -89,7 +89,7 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
  private:
   bool is_next(std::size_t sample) const { return time_[sample] - time_[sample - 1] < 1.5 * step_; }
 
-  const std::vector<double>& height_;  // geopotential, m
+  const std::vector<double>& height_;  // geopotential height, m
   const std::vector<double>& time_;
   double step_;
   std::vector<double> pressure_of_height_{};  // hPa/m
@@ -99,7 +99,7 @@ class HeightReference final : public Reference {
  public:
   explicit HeightReference(ModelDefinition model) : model_(std::move(model)) {}
 
-  std::string description() const override { return "hydrostatic height against that of GPS"; }
+  std::string description() const override { return "hydrostatic height against GPS height"; }
   std::string name() const override { return "height"; }
   bool is_static_pressure() const override { return false; }
   bool is_of_one_sample() const override { return false; }
@@ -114,12 +114,12 @@ class HeightReference final : public Reference {
     if (height.values.empty() || latitude.values.empty()) {
       throw Error(Error::Code::variable,
                   flight.path().string() +
-                      ": no height of GPS and latitude with units (GGALT, GGLAT and the like), which the "
-                      "reference height needs; name them in the table [variables] of the model");
+                      ": no GPS height and latitude with units (GGALT, GGLAT and the like), which the "
+                      "reference height requires; name them in the table [variables] of the model");
     }
     const std::vector<Jump> jumps = find_jumps(height.values, time);
     for (const Jump& jump : jumps)
-      notes.push_back(told_of(height.variable, jump, time) + ", which are left out");
+      notes.push_back(told_of(height.variable, jump, time) + ", which are excluded");
     mask(jumps, height.values);
     for (std::size_t i = 0; i < height.values.size(); ++i)
       height.values[i] = geopotential_height(latitude.values[i], height.values[i]);
@@ -133,7 +133,7 @@ class HeightReference final : public Reference {
                                          const ModelOnSamples& model) const override {
     if (!model.chain().has_temperature()) {
       throw Error(Error::Code::model,
-                  "the model names no temperature, so it says nothing of heights; give it its "
+                  "the model has no temperature, which the reference height requires; set "
                   "recovery_temperature or ambient_temperature in the table [variables]");
     }
     return std::make_unique<HeightOnSamples>(samples, model);

@@ -14,8 +14,8 @@
 
 namespace pcor::internal {
 
-/// The laser on the samples of a flight: it has no pressures of its own, and asks for a delta-p of those of
-/// the model (memo eq. 11). Its noise is added to the speed along the beam.
+/// Laser on the samples of a flight: it implies a delta-p for the pressures of the model (memo eq. 11). Its
+/// noise is added to the speed along the beam.
 class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
  public:
   LamsOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
@@ -38,8 +38,8 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
   const NoisySensor* sensor() const override { return this; }
 
   Mask why_missing(std::size_t sample) const override {
-    // The chain of the laser needs more than the law: what the law alone lacks is missing, what the laser
-    // lacks is the reference's.
+    // The chain of the laser has more inputs than the model: a missing input of the model is reported for the
+    // model, others for the reference.
     if (!model_.is_missing_any(sample)) return Mask::impossible;
     State<double> state;
     model_.corrected_static_pressure(sample, model_.parameters().data(), state);
@@ -88,7 +88,7 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
     return model_.chain().lams_static_defect(state, parameters, flags) - state[Quantity::static_defect];
   }
 
-  /// The airspeed that pressures and temperature ask for, along the beam, m/s.
+  /// Airspeed along the beam implied by pressures and temperature, m/s.
   template <class S>
   S predicted_at(std::size_t sample, const S* parameters) const {
     State<S> state;
@@ -96,7 +96,7 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
     const Chain& chain = model_.chain();
     model_.corrected_static_pressure(sample, parameters, state);
     chain.correct(state, state[Quantity::static_defect], flags);
-    // The cosine of the beam, but for effects on its speed.
+    // Cosine of the beam, without effects on its speed.
     const S along = state[Quantity::lams_airspeed] / chain.lams_airspeed(state, parameters);
     chain.air(state, parameters, flags);
     return along * state[Quantity::corrected_airspeed];
@@ -116,7 +116,7 @@ class LamsReference final : public Reference {
   std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
                                          const ModelOnSamples& model) const override {
     if (samples.model.find(Quantity::lams_airspeed) == nullptr)
-      throw Error(Error::Code::model, "the model has no lams_airspeed, so LAMS is no reference for it");
+      throw Error(Error::Code::model, "the model has no lams_airspeed, which the reference lams requires");
     return std::make_unique<LamsOnSamples>(samples, model);
   }
 };

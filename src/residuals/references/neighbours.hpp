@@ -11,16 +11,16 @@
 
 namespace pcor::internal {
 
-/// A part of a flight without a break.
+/// Part of a flight without a break.
 struct Span {
   std::size_t first = 0;
-  std::size_t end = 0;  ///< after the last
+  std::size_t end = 0;  ///< one past the last sample
   std::size_t size() const { return end - first; }
 };
 
-/// A reference whose residual at a sample is made of the samples around it, in two steps: of each sample
-/// alone `part_count` numbers that follow from the model there, and the residuals from those of all samples.
-/// `Derived` gives beside `reach`
+/// Reference whose residual at a sample depends on the neighbouring samples, in two steps: for each sample
+/// `part_count` numbers from the model at the sample alone, then the residuals from the numbers of all
+/// samples. `Derived` defines, in addition to `reach`,
 ///
 ///     template <class S>
 ///     std::array<S, part_count> parts_of(std::size_t sample, const S* parameters) const
@@ -108,7 +108,7 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
     return result;
   }
 
-  /// The derivatives of the parts by each of the wanted parameters.
+  /// Derivatives of the parts with respect to each of the requested parameters.
   std::vector<std::vector<Parts<double>>> slopes_of_parts(const Span span, const double* parameters,
                                                           const std::vector<std::size_t>& wanted) const {
     std::vector<std::vector<Parts<double>>> slopes(wanted.size(), std::vector<Parts<double>>(span.size()));

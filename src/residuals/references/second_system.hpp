@@ -13,8 +13,8 @@
 
 namespace pcor::internal {
 
-/// A second system on the samples of a flight: what it reads, its law, and why a sample is missing are the
-/// same whatever of it is held against the model.
+/// Second system on the samples of a flight: its inputs, its model, and the reason for a missing sample,
+/// common to all comparisons with the model.
 class SecondSystemOnSamples : public ReferenceOnSamples {
  public:
   SecondSystemOnSamples(const ModelDefinition& system, const FlightSamples& samples,
@@ -30,10 +30,10 @@ class SecondSystemOnSamples : public ReferenceOnSamples {
   }
 
  protected:
-  /// The system's own law, and the model that is held against it.
+  /// The system's model, and the model under comparison.
   const ModelOnSamples& law() const { return own_; }
   const ModelOnSamples& held_against() const { return model_; }
-  /// Those of the system's own law, among all.
+  /// Parameters of the system's model, among all.
   template <class S>
   const S* own_of(const S* parameters) const {
     return parameters + model_.parameters().size();
@@ -44,7 +44,7 @@ class SecondSystemOnSamples : public ReferenceOnSamples {
   const ModelOnSamples& model_;
 };
 
-/// A reference that is another pair of pressures of the aircraft, corrected by a model of its own.
+/// Reference that is another pair of pressures of the aircraft, corrected by a separate model.
 class SecondSystem : public Reference {
  public:
   explicit SecondSystem(ModelDefinition system) : system_(std::move(system)) {}

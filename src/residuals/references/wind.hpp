@@ -20,22 +20,23 @@
 
 namespace pcor::internal {
 
-/// How long one wind is taken for, s: that of a pair of reverse headings, or of some circles.
+/// Time over which the wind is assumed constant, s: long enough for a pair of reverse headings, or a few
+/// circles.
 inline constexpr double wind_window = 900.0;
 
-/// The residual of sample i is
+/// Residual of sample i:
 ///
 ///     r_i = (d_i - w_i)/s_i,   d = V cos(beta) cos(gamma) - (ground velocity along the heading)
 ///
 /// with the true airspeed V of the model, the sideslip beta, the angle of climb gamma, and w the part of d
-/// that a constant wind over the window makes, W_e sin(heading) + W_n cos(heading), by least squares with a
-/// constant beside it, which stays. s is the airspeed that 1 hPa of delta-p takes away, m/s per hPa, for a
-/// given temperature:
+/// due to a constant wind over the window, W_e sin(heading) + W_n cos(heading), by least squares together
+/// with a constant, which remains in the residual. s is the decrease of the airspeed by 1 hPa of delta-p, m/s
+/// per hPa, for a given temperature:
 ///
 ///     s = V/2 (2/7) (1 + q/p)^(-5/7) (p + q)/p^2 / ((1 + q/p)^(2/7) - 1)
 ///
-/// Source: memo eq. 5-7, differentiated with the total pressure kept. Samples at which heading or ground
-/// velocity are frozen tell nothing of the wind.
+/// Source: memo eq. 5-7, differentiated at constant total pressure. Samples with a frozen heading or ground
+/// velocity are excluded from the wind fit.
 class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
  public:
   WindOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
@@ -50,7 +51,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
 
   std::size_t reach() const override { return reach_; }
 
-  /// d, m/s.
+  /// The quantity d, m/s.
   template <class S>
   Parts<S> parts_of(std::size_t sample, const S* parameters) const {
     if (!is_flying(sample)) return {missing<S>()};
@@ -68,7 +69,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
   template <class S>
   void find(const Span span, const std::vector<Parts<S>>& parts, const std::size_t* samples,
             std::size_t count, S* out) const {
-    std::vector<Sums<S>> sums(span.size() + 1);  // over the samples before
+    std::vector<Sums<S>> sums(span.size() + 1);  // sums over all previous samples
     for (std::size_t k = 0; k < span.size(); ++k) {
       sums[k + 1] = sums[k];
       const S& difference = parts[k][0];
@@ -86,7 +87,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
   }
 
  private:
-  /// Of least squares for the wind and a constant.
+  /// Sums of least squares for the wind and a constant.
   template <class S>
   struct Sums {
     Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
@@ -99,10 +100,10 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
         products[k] = products[k] + S(columns[static_cast<Eigen::Index>(k)]) * difference;
     }
 
-    /// The part of the wind along a heading, m/s, of the samples since `before`.
+    /// Component of the wind along a heading, m/s, from the samples since `before`.
     S wind_along(double heading, const Sums& before) const {
-      // On one heading wind and constant are one: a wind is some 30 m/s, an error of the airspeed 1 m/s, and
-      // the mean of all samples is known to 1 m/s.
+      // On one heading wind and constant are collinear: a wind is about 30 m/s, an error of the airspeed 1
+      // m/s, and the mean of all samples is known to 1 m/s.
       const Eigen::Vector3d prior(1.0 / 900.0, 1.0 / 900.0, 1.0);
       Eigen::Matrix3d matrix = moments - before.moments;
       matrix.diagonal() += prior;
@@ -119,7 +120,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
     }
   };
 
-  /// NaN where a sensor is frozen.
+  /// NaN if a sensor is frozen.
   std::vector<double> ground_speed_along_heading() const {
     std::vector<double> along = *read_.find(Quantity::ground_speed);
     const std::vector<double>& track = *read_.find(Quantity::ground_track);
@@ -130,13 +131,13 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
     return along;
   }
 
-  /// On the ground wheels make the speed, and slow flow gives none.
+  /// On the ground the wheels set the speed, and slow flow gives no airspeed.
   bool is_flying(std::size_t sample) const {
     constexpr double min_airspeed = 40.0;  // m/s
     return !motion_.airspeed.empty() && motion_.airspeed[sample] > min_airspeed;
   }
 
-  /// The part of the airspeed that is along the heading and level.
+  /// Horizontal component of the airspeed along the heading.
   double along_heading(std::size_t sample) const {
     double part = 1.0;
     if (!motion_.sideslip.empty() && std::isfinite(motion_.sideslip[sample]))
@@ -181,9 +182,8 @@ class WindReference final : public Reference {
     if (heading.values.empty() || ground.speed.values.empty()) {
       throw Error(Error::Code::variable,
                   flight.path().string() +
-                      ": no true heading and velocity over the ground with units (THDG, GGSPD, GGTRK and the "
-                      "like), which the reference wind needs; name them in the table [variables] of the "
-                      "model");
+                      ": no true heading and ground velocity with units (THDG, GGSPD, GGTRK and the like), "
+                      "which the reference wind requires; name them in the table [variables] of the model");
     }
     ModelSamples samples;
     const auto add = [&samples](Quantity quantity, RecordedSeries& series) {
@@ -199,10 +199,9 @@ class WindReference final : public Reference {
   std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
                                          const ModelOnSamples& model) const override {
     if (!model.chain().has_temperature()) {
-      throw Error(
-          Error::Code::model,
-          "the model names no temperature, so it has no airspeed; give it its recovery_temperature or "
-          "ambient_temperature in the table [variables]");
+      throw Error(Error::Code::model,
+                  "the model has no temperature, which the reference wind requires; set recovery_temperature "
+                  "or ambient_temperature in the table [variables]");
     }
     return std::make_unique<WindOnSamples>(samples, model);
   }
