@@ -1,12 +1,14 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <pcor/model/effect.hpp>
 #include <pcor/model/quantity.hpp>
+#include <pcor/model/surface.hpp>
 #include <pcor/physics/flow_angles.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 
@@ -15,20 +17,23 @@ namespace pcor {
 /// One effect of a model with its coefficients.
 ///
 /// An effect of the catalogue has its `id`; one of the user's own has a `formula`, a place and names for its
-/// parameters besides.
+/// parameters besides; a surface has knots instead, and its formula is a text for people.
 struct ModelEffect {
   std::string id{};
   std::vector<double> parameters{};  ///< in the order of the effect's parameters
 
   std::vector<std::string> parameter_names{};  ///< of a formula; empty for an effect of the catalogue
   std::string formula{};                       ///< empty for an effect of the catalogue
+  std::optional<Surface> surface{};            ///< of a surface, which acts at the static ports
   EffectLocation location = EffectLocation::static_defect;  ///< of a formula
   std::string unit{};                                       ///< of a formula's value
   std::string source{};                                     ///< of a formula
 
   Scaling scaling{};  ///< of an effect of the catalogue
 
+  /// True where it is none of the catalogue: a formula or a surface.
   bool is_formula() const { return !formula.empty(); }
+  bool is_surface() const { return surface.has_value(); }
 };
 
 /// How the temperature enters delta-p from LAMS: the approaches of the memo. There is no fourth.

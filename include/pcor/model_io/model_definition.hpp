@@ -122,6 +122,10 @@ std::vector<std::string> parameter_names(const ModelEffect& effect);
 /// meant, if there is none.
 ModelEffect neutral_effect(std::string_view id);
 
+/// A surface with all coefficients zero, which a refit finds.
+/// @param axes each is valid
+ModelEffect surface_effect(const std::string& id, const std::array<SurfaceAxis, 2>& axes);
+
 /// Reads a model file. @throws Error "file:line:column: what is wrong; what to do" for whatever the file says
 /// that has no meaning: nothing in it is ignored.
 ModelDefinition read_model(const std::filesystem::path& path);
