@@ -59,7 +59,7 @@ FitTask task_of(const ModelDefinition& model, const References& references, cons
   const Reference& reference = first_of(references);
   FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
   task.doubt = stated_covariance(model, reference);
-  task.surfaces = surfaces_of(model.model);
+  task.surfaces = surfaces_of(model.model, reference.model());
   task.start.resize(as_index(task.parameters.size()));
   for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
   task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
@@ -182,6 +182,14 @@ Fitted prepared_for_gps(const FitTask& task) {
     throw Error(
         "--stage: a fit to GPS alone has no stages; give a further reference, or leave the stages out");
   Fitted fitted = at_start(task, fit_stages(task.parameters, {}, task.model.model.name));
+  for (const std::size_t p : fitted.parameters) {
+    if (const SurfaceRoughness* const surface = task.surface_of(p)) {
+      throw Error(
+          fmt::format("{}: wind and heights do not determine a surface; hold it with --fix {} or give a "
+                      "further reference",
+                      surface->effect, surface->effect));
+    }
+  }
   fitted.flights = std::make_unique<FitFlights>(task, FitSetup{task.start, fitted.parameters});
   if (fitted.flights->samples() == 0) {
     throw Error(
@@ -405,6 +413,10 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.flaps_out = compared.flaps_out;
   list_coefficients(result, task, fitted, covariance);
   add_thermometer(result, fitted, covariance);
+  for (const SurfaceRoughness& surface : task.surfaces) {
+    if (surface.degrees_of_freedom > 0.0)
+      result.surfaces.push_back({surface.effect, surface.size, surface.degrees_of_freedom});
+  }
   result.drift_rms = flights.drift_rms();
   result.left = misfit.left;
   // Gusts are in the residual of the wind: a better law need not make it smaller.

@@ -101,15 +101,19 @@ Eigen::MatrixXd curvature_penalty(const Surface& surface) {
   return penalty;
 }
 
-std::vector<SurfaceRoughness> surfaces_of(const Model& model) {
+std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinition* other) {
   std::vector<SurfaceRoughness> surfaces;
   std::size_t first = 0;
-  for (std::size_t e = 0; e < model.effects.size(); ++e) {
-    const ModelEffect& effect = model.effects[e];
-    if (effect.is_surface())
-      surfaces.push_back({e, first, effect.parameters.size(), curvature_penalty(*effect.surface)});
-    first += effect.parameters.size();
-  }
+  const auto add = [&](const Model& of, const std::string& prefix) {
+    for (const ModelEffect& effect : of.effects) {
+      if (effect.is_surface())
+        surfaces.push_back(
+            {prefix + effect.id, first, effect.parameters.size(), curvature_penalty(*effect.surface)});
+      first += effect.parameters.size();
+    }
+  };
+  add(model, "");
+  if (other != nullptr) add(other->model, "reference:");
   return surfaces;
 }
 

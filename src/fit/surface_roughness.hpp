@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <pcor/model_io/model_definition.hpp>
@@ -16,8 +17,8 @@ struct Solution;
 /// deviation `size`. A ridge a thousandth as strong keeps planes, which have no second differences, from
 /// growing where the terms of the law do the same; these have no prior and keep what is theirs.
 struct SurfaceRoughness {
-  std::size_t effect = 0;  ///< of the model
-  std::size_t first = 0;   ///< parameter
+  std::string effect{};   ///< its name in the fit
+  std::size_t first = 0;  ///< parameter
   std::size_t count = 0;
   Eigen::MatrixXd penalty{};  ///< rows of second differences and of the ridge
   double size = 1e-3;         ///< standard deviation of a second difference
@@ -32,8 +33,8 @@ struct SurfaceRoughness {
 /// Rows of second differences along both axes of a surface, zero for a plane, and of the ridge.
 Eigen::MatrixXd curvature_penalty(const Surface& surface);
 
-/// The surfaces of a model, with a size to begin with.
-std::vector<SurfaceRoughness> surfaces_of(const Model& model);
+/// The surfaces of a model and of the static system that it is held against, with a size to begin with.
+std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinition* other);
 
 /// Finds the size of each surface by the marginal likelihood of the residuals at a solution, all others and
 /// the law fitted too. The likelihood is that of least squares over the inflation, so that memory and drift

@@ -109,8 +109,6 @@ class EffectReader final : TomlReader {
       made[k] = {quantity_named(axes[k].key), lower, upper, count};
       if (made[k].quantity == Quantity::count)
         fail(axes[k].place, fmt::format("there is no quantity {}; give {}", quote(axes[k].key), wanted));
-      if (!std::isfinite(lower) || !std::isfinite(upper))
-        fail(axes[k], fmt::format("the envelope of {} is not finite; give two numbers", quote(axes[k].key)));
       if (!made[k].is_valid())
         fail(*given.coefficients, fmt::format("{} has {} splines; give {} to {}", quote(axes[k].key), count,
                                               SurfaceAxis::min_count, SurfaceAxis::max_count));

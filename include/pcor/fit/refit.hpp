@@ -79,6 +79,13 @@ struct Omission {
   double r_squared = 0.0;
 };
 
+/// What the fit found of a surface beside its coefficients.
+struct SurfaceFit {
+  std::string effect;
+  double roughness = 0.0;  ///< standard deviation of a second difference of Cp, by marginal likelihood
+  double degrees_of_freedom = 0.0;  ///< that the flights determine, of as many as it has coefficients
+};
+
 /// A flight in the fit, before and after.
 struct FlightFit {
   std::string flight;
@@ -133,6 +140,7 @@ struct RefitResult {
   std::array<std::size_t, mask_count> masks{};
   std::size_t jackknife_parts = 0;  ///< flights, or parts of flights, that were left out one after another
   std::vector<Omission> omissions{};
+  std::vector<SurfaceFit> surfaces{};
   std::vector<FlightFit> flights{};
   std::vector<FlightFit> further{};  ///< the same with each further reference, flight by flight
   Statistics
