@@ -11,7 +11,9 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double ridge = 1e-3;  // of the second differences
+// Standard deviation of a coefficient: as large as the terms of a law, 3 hPa at 65 hPa. From 0.01 to 0.2 the
+// rms out of blocks of GOTEX rf06 changes by less than a tenth.
+constexpr double max_coefficient = 0.05;
 
 /// Products of (derivatives, residual) with each other in bins, weighted as least squares weighs them, and
 /// the covariance of the products with the noise.
@@ -80,12 +82,19 @@ Determined determined(const Products& products, const PriorRows& prior, double u
 
 }  // namespace
 
-Eigen::MatrixXd curvature_penalty(const Surface& surface) {
+Eigen::MatrixXd SurfaceRoughness::rows(double with_size) const {
+  Eigen::MatrixXd rows(differences.rows() + differences.cols(), differences.cols());
+  rows << differences / with_size,
+      Eigen::MatrixXd::Identity(differences.cols(), differences.cols()) / max_coefficient;
+  return rows;
+}
+
+Eigen::MatrixXd second_differences(const Surface& surface) {
   const auto rows = as_index(surface.axes[0].count);
   const auto columns = as_index(surface.axes[1].count);
   const Eigen::Index along_x = (rows - 2) * columns;
   const Eigen::Index along_y = rows * (columns - 2);
-  Eigen::MatrixXd penalty = Eigen::MatrixXd::Zero(along_x + along_y + rows * columns, rows * columns);
+  Eigen::MatrixXd penalty = Eigen::MatrixXd::Zero(along_x + along_y, rows * columns);
   Eigen::Index at = 0;
   const auto add = [&](Eigen::Index middle, Eigen::Index step) {
     penalty(at, middle - step) = penalty(at, middle + step) = 1.0;
@@ -97,7 +106,6 @@ Eigen::MatrixXd curvature_penalty(const Surface& surface) {
       if (j > 0 && j + 1 < columns) add(i * columns + j, 1);
     }
   }
-  penalty.bottomRows(rows * columns).diagonal().setConstant(ridge);
   return penalty;
 }
 
@@ -108,7 +116,7 @@ std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinit
     for (const ModelEffect& effect : of.effects) {
       if (effect.is_surface())
         surfaces.push_back(
-            {prefix + effect.id, first, effect.parameters.size(), curvature_penalty(*effect.surface)});
+            {prefix + effect.id, first, effect.parameters.size(), second_differences(*effect.surface)});
       first += effect.parameters.size();
     }
   };
@@ -135,27 +143,35 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
     Determined found = determined(products, prior_rows(flights.task(), wanted), unit, own);
     // About zero, not about the solution.
     found.right -= found.information * solution.values(wanted)(own);
-    const Eigen::MatrixXd rows = surface.penalty(Eigen::all, coefficients);
-    const Eigen::MatrixXd penalty = rows.transpose() * rows;
+    const auto precision = [&](double size) -> Eigen::MatrixXd {
+      const Eigen::MatrixXd rows = surface.rows(size)(Eigen::all, coefficients);
+      return rows.transpose() * rows;
+    };
     const Eigen::LLT<Eigen::MatrixXd> now(found.information +
-                                          unit * surface.inflation / (surface.size * surface.size) * penalty);
-    surface.inflation =
+                                          unit * surface.inflation * precision(surface.size));
+    const double inflation =
         std::max(1.0, now.solve(found.noise).trace() / (unit * now.solve(found.information).trace()));
+    changed = changed || std::abs(std::log(inflation / surface.inflation)) > 0.2;
+    // The noise is measured beside the surface of the round before: half steps end the to and fro.
+    surface.inflation = std::sqrt(inflation * surface.inflation);
     const double weight = 1.0 / (surface.inflation * unit);
     double best = -infinity;
     double size = surface.size;
-    // A second difference from 1e-7 to 0.1 of the dynamic pressure.
-    for (int step = -56; step <= -8; ++step) {
+    // A second difference from 1e-7 to 1 of the dynamic pressure.
+    for (int step = -56; step <= 0; ++step) {
       const double tried = std::pow(10.0, 0.125 * step);
-      const Eigen::LLT<Eigen::MatrixXd> factor(weight * tried * tried * found.information + penalty);
-      const double gain = 0.5 * weight * weight * tried * tried * found.right.dot(factor.solve(found.right)) -
+      const Eigen::MatrixXd prior = precision(tried);
+      const Eigen::LLT<Eigen::MatrixXd> alone(prior);
+      const Eigen::LLT<Eigen::MatrixXd> factor(weight * found.information + prior);
+      const double gain = 0.5 * weight * weight * found.right.dot(factor.solve(found.right)) +
+                          alone.matrixLLT().diagonal().array().log().sum() -
                           factor.matrixLLT().diagonal().array().log().sum();
       if (gain <= best) continue;
       best = gain;
       size = tried;
-      surface.degrees_of_freedom = weight * tried * tried * factor.solve(found.information).trace();
+      surface.degrees_of_freedom = weight * factor.solve(found.information).trace();
     }
-    changed = changed || size != surface.size;
+    changed = changed || std::abs(std::log(size / surface.size)) > 0.3;
     surface.size = size;
   }
   return changed;

@@ -14,24 +14,28 @@ struct FitTask;
 struct Solution;
 
 /// The prior of the coefficients of a surface: independent second differences along both axes of standard
-/// deviation `size`. A ridge a thousandth as strong keeps planes, which have no second differences, from
-/// growing where the terms of the law do the same; these have no prior and keep what is theirs.
+/// deviation `size`, and each coefficient of `max_coefficient`, which keeps planes, which have no second
+/// differences, from growing where the terms of the law do the same; these have no prior and keep what is
+/// theirs.
 struct SurfaceRoughness {
   std::string effect{};   ///< its name in the fit
   std::size_t first = 0;  ///< parameter
   std::size_t count = 0;
-  Eigen::MatrixXd penalty{};  ///< rows of second differences and of the ridge
-  double size = 1e-3;         ///< standard deviation of a second difference
+  Eigen::MatrixXd differences{};  ///< rows of `second_differences`
+  double size = 0.03;             ///< standard deviation of a second difference
   /// By how much the residuals tell less of the surface than as many independent ones, at least 1: by so much
   /// the prior weighs more in least squares, which takes them for independent.
   double inflation = 10.0;
   double degrees_of_freedom = 0.0;  ///< that the flights determine
 
   bool has(std::size_t parameter) const { return parameter >= first && parameter < first + count; }
+
+  /// Rows of the prior with that size, each of variance 1.
+  Eigen::MatrixXd rows(double with_size) const;
 };
 
-/// Rows of second differences along both axes of a surface, zero for a plane, and of the ridge.
-Eigen::MatrixXd curvature_penalty(const Surface& surface);
+/// Rows of second differences along both axes of a surface: zero for a plane.
+Eigen::MatrixXd second_differences(const Surface& surface);
 
 /// The surfaces of a model and of the static system that it is held against, with a size to begin with.
 std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinition* other);
@@ -39,7 +43,7 @@ std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinit
 /// Finds the size of each surface by the marginal likelihood of the residuals at a solution, all others and
 /// the law fitted too. The likelihood is that of least squares over the inflation, so that memory and drift
 /// of the noise do not count as structure (Pauli, Racugno and Ventura 2011, Statistica Sinica 21, 149).
-/// False where no size changed.
+/// False where size and inflation of all hardly changed.
 bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces);
 
 }  // namespace pcor::internal

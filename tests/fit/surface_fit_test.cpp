@@ -63,18 +63,17 @@ RefitResult fit(const ModelDefinition& model, const made::Plan& of) {
 
 }  // namespace
 
-TEST(SurfacePenalty, IsZeroForPlanesButForTheRidge) {
+TEST(SurfacePenalty, SecondDifferencesOfPlanesAreZero) {
   const Surface surface{flown};
-  const Eigen::MatrixXd penalty = internal::curvature_penalty(surface);
+  const Eigen::MatrixXd penalty = internal::second_differences(surface);
   Eigen::VectorXd plane(36);
   for (Eigen::Index i = 0; i < 36; ++i)
     plane[i] = 1.0 + 0.5 * static_cast<double>(i / 6) - 0.25 * static_cast<double>(i % 6);
   // 24 second differences along each axis.
-  ASSERT_EQ(penalty.rows(), 24 + 24 + 36);
-  EXPECT_LT((penalty.topRows(48) * plane).norm(), 1e-13);
-  EXPECT_NEAR((penalty.bottomRows(36) * plane).norm(), 1e-3 * plane.norm(), 1e-15);
+  ASSERT_EQ(penalty.rows(), 24 + 24);
+  EXPECT_LT((penalty * plane).norm(), 1e-13);
   const Eigen::VectorXd bent = plane.array().square();
-  EXPECT_GT((penalty.topRows(48) * bent).norm(), 1.0);
+  EXPECT_GT((penalty * bent).norm(), 1.0);
 }
 
 TEST(SurfaceColumns, AreDerivativesOfTheResidual) {
