@@ -68,8 +68,7 @@ PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& wanted
       own.push_back(as_index(wanted[k] - surface.first));
     }
     if (own.empty()) continue;
-    const Eigen::MatrixXd penalty =
-        std::sqrt(surface.inflation) * surface.rows(surface.size)(Eigen::all, own);
+    const Eigen::MatrixXd penalty = std::sqrt(surface.inflation) * surface.rows()(Eigen::all, own);
     const Eigen::Index before = prior.rows.rows();
     prior.rows.conservativeResizeLike(Eigen::MatrixXd::Zero(before + penalty.rows(), prior.rows.cols()));
     prior.rows.bottomRows(penalty.rows())(Eigen::all, columns) = penalty;

@@ -11,9 +11,10 @@
 namespace pcor::internal {
 namespace {
 
-// Standard deviation of a coefficient: as large as the terms of a law, 3 hPa at 65 hPa. From 0.01 to 0.2 the
-// rms out of blocks of GOTEX rf06 changes by less than a tenth.
-constexpr double max_coefficient = 0.05;
+// Parts of the dynamic pressure: a hundred-thousandth of it is nothing, a tenth is more than any law.
+constexpr double min_size = 1e-5;
+constexpr double max_size = 0.1;
+constexpr double next_size = 1.7782794100389228;  // a quarter of a decade
 
 /// Products of (derivatives, residual) with each other in bins, weighted as least squares weighs them, and
 /// the covariance of the products with the noise.
@@ -82,10 +83,10 @@ Determined determined(const Products& products, const PriorRows& prior, double u
 
 }  // namespace
 
-Eigen::MatrixXd SurfaceRoughness::rows(double with_size) const {
+Eigen::MatrixXd SurfaceRoughness::rows(double of_differences, double of_coefficients) const {
   Eigen::MatrixXd rows(differences.rows() + differences.cols(), differences.cols());
-  rows << differences / with_size,
-      Eigen::MatrixXd::Identity(differences.cols(), differences.cols()) / max_coefficient;
+  rows << differences / of_differences,
+      Eigen::MatrixXd::Identity(differences.cols(), differences.cols()) / of_coefficients;
   return rows;
 }
 
@@ -143,36 +144,36 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
     Determined found = determined(products, prior_rows(flights.task(), wanted), unit, own);
     // About zero, not about the solution.
     found.right -= found.information * solution.values(wanted)(own);
-    const auto precision = [&](double size) -> Eigen::MatrixXd {
-      const Eigen::MatrixXd rows = surface.rows(size)(Eigen::all, coefficients);
-      return rows.transpose() * rows;
+    const auto precision = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
+      return rows(Eigen::all, coefficients).transpose() * rows(Eigen::all, coefficients);
     };
     const Eigen::LLT<Eigen::MatrixXd> now(found.information +
-                                          unit * surface.inflation * precision(surface.size));
+                                          unit * surface.inflation * precision(surface.rows()));
     const double inflation =
         std::max(1.0, now.solve(found.noise).trace() / (unit * now.solve(found.information).trace()));
     changed = changed || std::abs(std::log(inflation / surface.inflation)) > 0.2;
     // The noise is measured beside the surface of the round before: half steps end the to and fro.
     surface.inflation = std::sqrt(inflation * surface.inflation);
     const double weight = 1.0 / (surface.inflation * unit);
+    const SurfaceRoughness before = surface;
     double best = -infinity;
-    double size = surface.size;
-    // A second difference from 1e-7 to 1 of the dynamic pressure.
-    for (int step = -56; step <= 0; ++step) {
-      const double tried = std::pow(10.0, 0.125 * step);
-      const Eigen::MatrixXd prior = precision(tried);
-      const Eigen::LLT<Eigen::MatrixXd> alone(prior);
-      const Eigen::LLT<Eigen::MatrixXd> factor(weight * found.information + prior);
-      const double gain = 0.5 * weight * weight * found.right.dot(factor.solve(found.right)) +
-                          alone.matrixLLT().diagonal().array().log().sum() -
-                          factor.matrixLLT().diagonal().array().log().sum();
-      if (gain <= best) continue;
-      best = gain;
-      size = tried;
-      surface.degrees_of_freedom = weight * factor.solve(found.information).trace();
+    for (double size = min_size; size < 1.1 * max_size; size *= next_size) {
+      for (double coefficient = min_size; coefficient < 1.1 * max_size; coefficient *= next_size) {
+        const Eigen::MatrixXd prior = precision(before.rows(size, coefficient));
+        const Eigen::LLT<Eigen::MatrixXd> alone(prior);
+        const Eigen::LLT<Eigen::MatrixXd> factor(weight * found.information + prior);
+        const double gain = 0.5 * weight * weight * found.right.dot(factor.solve(found.right)) +
+                            alone.matrixLLT().diagonal().array().log().sum() -
+                            factor.matrixLLT().diagonal().array().log().sum();
+        if (gain <= best) continue;
+        best = gain;
+        surface.size = size;
+        surface.coefficient = coefficient;
+        surface.degrees_of_freedom = weight * factor.solve(found.information).trace();
+      }
     }
-    changed = changed || std::abs(std::log(size / surface.size)) > 0.3;
-    surface.size = size;
+    const auto differ = [](double a, double b) { return std::abs(std::log(a / b)) > 0.6; };  // by a step
+    changed = changed || differ(surface.size, before.size) || differ(surface.coefficient, before.coefficient);
   }
   return changed;
 }

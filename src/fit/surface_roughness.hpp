@@ -14,7 +14,7 @@ struct FitTask;
 struct Solution;
 
 /// The prior of the coefficients of a surface: independent second differences along both axes of standard
-/// deviation `size`, and each coefficient of `max_coefficient`, which keeps planes, which have no second
+/// deviation `size`, and each coefficient of `coefficient`, which keeps planes, which have no second
 /// differences, from growing where the terms of the law do the same; these have no prior and keep what is
 /// theirs.
 struct SurfaceRoughness {
@@ -23,6 +23,7 @@ struct SurfaceRoughness {
   std::size_t count = 0;
   Eigen::MatrixXd differences{};  ///< rows of `second_differences`
   double size = 0.03;             ///< standard deviation of a second difference
+  double coefficient = 0.05;      ///< standard deviation of a coefficient
   /// By how much the residuals tell less of the surface than as many independent ones, at least 1: by so much
   /// the prior weighs more in least squares, which takes them for independent.
   double inflation = 10.0;
@@ -30,8 +31,9 @@ struct SurfaceRoughness {
 
   bool has(std::size_t parameter) const { return parameter >= first && parameter < first + count; }
 
-  /// Rows of the prior with that size, each of variance 1.
-  Eigen::MatrixXd rows(double with_size) const;
+  /// Rows of the prior with these sizes, each of variance 1.
+  Eigen::MatrixXd rows(double of_differences, double of_coefficients) const;
+  Eigen::MatrixXd rows() const { return rows(size, coefficient); }
 };
 
 /// Rows of second differences along both axes of a surface: zero for a plane.
@@ -40,7 +42,7 @@ Eigen::MatrixXd second_differences(const Surface& surface);
 /// The surfaces of a model and of the static system that it is held against, with a size to begin with.
 std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinition* other);
 
-/// Finds the size of each surface by the marginal likelihood of the residuals at a solution, all others and
+/// Finds both sizes of each surface by the marginal likelihood of the residuals at a solution, all others and
 /// the law fitted too. The likelihood is that of least squares over the inflation, so that memory and drift
 /// of the noise do not count as structure (Pauli, Racugno and Ventura 2011, Statistica Sinica 21, 149).
 /// False where size and inflation of all hardly changed.
