@@ -30,7 +30,7 @@ struct FitTask {
   /// The prior of each surface of the model, of which the fit finds the size.
   std::vector<SurfaceRoughness> surfaces{};
 
-  /// The surface of which the parameter is a coefficient; null where it is of none.
+  /// The surface of which the parameter is a coefficient; null for other parameters.
   const SurfaceRoughness* surface_of(std::size_t parameter) const {
     for (const SurfaceRoughness& surface : surfaces) {
       if (surface.has(parameter)) return &surface;

@@ -23,7 +23,7 @@ constexpr double weak_share = 0.25;
 
 double condition_number(const Reduction& reduction, const FitTask& task,
                         const std::vector<std::size_t>& wanted) {
-  // Coefficients of a surface have a prior, which tells them from all others.
+  // Coefficients of a surface have a prior, which makes them identifiable.
   std::vector<Eigen::Index> free;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     if (task.surface_of(wanted[k]) == nullptr) free.push_back(as_index(k));

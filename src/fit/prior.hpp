@@ -15,7 +15,7 @@ Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference&
 struct PriorRows {
   Eigen::MatrixXd rows{};
   Eigen::VectorXd centre{};
-  /// Of each row, by how much it weighs more than the prior itself (`SurfaceRoughness::inflation`).
+  /// Weight of each row relative to the prior itself (`SurfaceRoughness::inflation`).
   Eigen::VectorXd inflation{};
 };
 

@@ -11,7 +11,7 @@
 namespace pcor::internal {
 namespace {
 
-// Parts of the dynamic pressure: a hundred-thousandth of it is nothing, a tenth is more than any law.
+// Parts of the dynamic pressure: a hundred-thousandth is negligible, a tenth is more than any law has.
 constexpr double min_size = 1e-5;
 constexpr double max_size = 0.1;
 constexpr double next_size = 1.7782794100389228;  // a quarter of a decade
@@ -48,7 +48,7 @@ Products products_of(FitFlights& flights, const Eigen::VectorXd& values) {
   return sum;
 }
 
-/// What the flights tell of one surface, all other coefficients fitted.
+/// Information of the flights on one surface, all other coefficients fitted.
 struct Determined {
   Eigen::MatrixXd information{};
   Eigen::MatrixXd noise{};  ///< covariance of `right`
@@ -152,7 +152,7 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
     const double inflation =
         std::max(1.0, now.solve(found.noise).trace() / (unit * now.solve(found.information).trace()));
     changed = changed || std::abs(std::log(inflation / surface.inflation)) > 0.2;
-    // The noise is measured beside the surface of the round before: half steps end the to and fro.
+    // The noise is measured beside the surface of the round before: half steps make it converge.
     surface.inflation = std::sqrt(inflation * surface.inflation);
     const double weight = 1.0 / (surface.inflation * unit);
     const SurfaceRoughness before = surface;

@@ -24,10 +24,10 @@ struct SurfaceRoughness {
   Eigen::MatrixXd differences{};  ///< rows of `second_differences`
   double size = 0.03;             ///< standard deviation of a second difference
   double coefficient = 0.05;      ///< standard deviation of a coefficient
-  /// By how much the residuals tell less of the surface than as many independent ones, at least 1: by so much
-  /// the prior weighs more in least squares, which takes them for independent.
+  /// Number of residuals for each independent one, at least 1. Least squares assumes independent residuals,
+  /// so the prior gets this weight.
   double inflation = 10.0;
-  double degrees_of_freedom = 0.0;  ///< that the flights determine
+  double degrees_of_freedom = 0.0;  ///< number of coefficients that the flights determine
 
   bool has(std::size_t parameter) const { return parameter >= first && parameter < first + count; }
 
@@ -39,7 +39,7 @@ struct SurfaceRoughness {
 /// Rows of second differences along both axes of a surface: zero for a plane.
 Eigen::MatrixXd second_differences(const Surface& surface);
 
-/// The surfaces of a model and of the static system that it is held against, with a size to begin with.
+/// The surfaces of a model and of the static system of the reference, with initial sizes.
 std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinition* other);
 
 /// Finds both sizes of each surface by the marginal likelihood of the residuals at a solution, all others and

@@ -310,8 +310,8 @@ class Climb {
     measure(step, offer->fit, before.alike);
     step.rms_holdout = out.rms_after;
     step.learnt =
-        fmt::format("{}: {:.1f} degrees of freedom; {}; it describes what is left and names no cause", id,
-                    offer->fit.surfaces.front().degrees_of_freedom, figures);
+        fmt::format("{}: {:.1f} degrees of freedom; {}; it describes the residual and identifies no cause",
+                    id, offer->fit.surfaces.front().degrees_of_freedom, figures);
     delivered_ = {offer->fit.model, before.alike};
     result_.model = offer->fit.model;
     take(std::move(step), std::move(offer->fit), {}, before.alike);

@@ -21,7 +21,7 @@ constexpr EffectInfo surface_info_of(std::string_view id, std::string_view title
   info.needs = {Quantity::dynamic_pressure, angle, Quantity::mach, Quantity::count};
   info.size = "tenths of hPa where a law of a few terms was fitted; GOTEX 2004: 0.1 hPa rms";
   info.look_alikes =
-      "static-alpha, static-alpha-quad, static-qp, static-beta-odd and what else goes with its axes";
+      "static-alpha, static-alpha-quad, static-qp, static-beta-odd and all that varies with its axes";
   info.manoeuvre = "pitch and yaw manoeuvres at several speeds: only what was flown is determined";
   info.source = "tensor product of cubic B-splines with a curvature penalty (Eilers and Marx 1996)";
   return info;
@@ -29,7 +29,7 @@ constexpr EffectInfo surface_info_of(std::string_view id, std::string_view title
 
 }  // namespace detail
 
-/// The surfaces that `pcor add` makes. They are no effects of the catalogue: how many coefficients they have
+/// The surfaces that `pcor add` makes. They are not effects of the catalogue: how many coefficients they have
 /// and where their knots are is in the model (`Surface`). A diagnosis does not try them.
 inline constexpr std::array<EffectInfo, 2> surface_info{
     detail::surface_info_of("static-surface", "smooth pressure coefficient of attack and Mach number",
@@ -38,7 +38,7 @@ inline constexpr std::array<EffectInfo, 2> surface_info{
                             "sideslip", "dynamic_pressure * Cp(sideslip_ratio, mach)",
                             Quantity::sideslip_ratio)};
 
-/// The surface called `id`, or null where there is none.
+/// The surface called `id`; null if there is no such surface.
 constexpr const EffectInfo* surface_named(std::string_view id) {
   for (const EffectInfo& info : surface_info) {
     if (info.id == id) return &info;

@@ -79,11 +79,11 @@ struct Omission {
   double r_squared = 0.0;
 };
 
-/// What the fit found of a surface beside its coefficients.
+/// Result of the fit for one surface, in addition to its coefficients.
 struct SurfaceFit {
   std::string effect;
   double roughness = 0.0;  ///< standard deviation of a second difference of Cp, by marginal likelihood
-  double degrees_of_freedom = 0.0;  ///< that the flights determine, of as many as it has coefficients
+  double degrees_of_freedom = 0.0;  ///< number of coefficients that the flights determine
 };
 
 /// A flight in the fit, before and after.

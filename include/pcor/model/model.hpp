@@ -24,14 +24,14 @@ struct ModelEffect {
 
   std::vector<std::string> parameter_names{};  ///< of a formula; empty for an effect of the catalogue
   std::string formula{};                       ///< empty for an effect of the catalogue
-  std::optional<Surface> surface{};            ///< of a surface, which acts at the static ports
+  std::optional<Surface> surface{};            ///< knots of a surface, which acts at the static ports
   EffectLocation location = EffectLocation::static_defect;  ///< of a formula
   std::string unit{};                                       ///< of a formula's value
   std::string source{};                                     ///< of a formula
 
   Scaling scaling{};  ///< of an effect of the catalogue
 
-  /// True where it is none of the catalogue: a formula or a surface.
+  /// True for effects outside the catalogue: a formula or a surface.
   bool is_formula() const { return !formula.empty(); }
   bool is_surface() const { return surface.has_value(); }
 };

@@ -70,7 +70,7 @@ struct Surface {
     return values;
   }
 
-  /// How far outside the envelope a sample is, in intervals of knots; zero inside and where not known.
+  /// Distance of a sample from the envelope in intervals of knots; zero inside, and for missing values.
   double distance(double x, double y) const { return beyond(axes[0], x) + beyond(axes[1], y); }
 
   static double beyond(const SurfaceAxis& axis, double x) {

@@ -113,7 +113,7 @@ class BoundModel {
     return place < catalogue_size && !effect_info[place].parameters[parameter].shape;
   }
 
-  /// The surface that effect number `effect` of the model is; null where it is none.
+  /// The surface that effect number `effect` of the model is; null for other effects.
   const Surface* surface_of(std::size_t effect) const {
     const Term& term = effects_[effect];
     return term.effect == Term::is_surface ? &surfaces_[term.formula] : nullptr;
