@@ -79,6 +79,7 @@ class IcarttFile final : public FlightFile {
   double max_number(int variable) const override;
   std::vector<double> missing_values(int /*variable*/) const override { return {}; }
   std::array<double, 2> valid_range(int variable) const override;
+  std::vector<std::string> notes() const override { return notes_; }
   void read(int variable, RecordBlock records, double* out) const override;
 
  private:
@@ -100,6 +101,7 @@ class IcarttFile final : public FlightFile {
   std::filesystem::path path_;
   Attributes attributes_;
   std::vector<Variable> variables_;  // the time first
+  std::vector<std::string> notes_{};
 };
 
 /// Reads line after line.
@@ -230,6 +232,14 @@ class IcarttFile::Reader {
       ++line_;
       const char* at = line.c_str();
       if (trimmed(line).empty()) continue;
+      // Nothing tells whether a last line without an end lacks that alone, or digits too.
+      if (stream_.eof()) {
+        file_.notes_.push_back(fmt::format(
+            "line {} of {}, the last, has no end, as if the file were cut there; its record is left "
+            "out; fetch the file again from its source if more is wanted",
+            line_, file_.path_.filename().string()));
+        break;
+      }
       for (Variable& variable : file_.variables_) {
         char* end = nullptr;
         const double value = std::strtod(at, &end);

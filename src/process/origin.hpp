@@ -22,6 +22,9 @@ std::string options_text(const ProcessOptions& options);
 /// "static-qp.a2 = 0.0308 +- 0.0012; ...".
 std::string coefficients_text(const ModelDefinition& model);
 
+/// Whether a model leaves every pressure as it is: all its coefficients are those that do nothing.
+bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options);
+
 /// What an output says of its origin: names and texts of global attributes. The model is there whole, as the
 /// text of its file, so that the result can be found again from the output and the flight alone.
 /// @throws Error if the flight cannot be read, or the model cannot be written.

@@ -2,6 +2,7 @@
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/model_io/model_definition.hpp>
+#include "roles/jumps.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -11,9 +12,23 @@ namespace pcor::internal {
 struct GroundVelocity {
   RecordedSeries speed{};  ///< m/s
   RecordedSeries track{};  ///< deg from true north
+  /// Samples that are masked: where a component jumps, m/s, or departs from the positions' own rate.
+  std::vector<Jump> jumps{};
+  std::vector<Jump> against_position{};
 };
 
 /// From ground speed and track, by the roles of the model or the usual names; else from the usual components.
+/// What jumps, or contradicts the positions by more than 15 m/s for three samples and more, is missing.
 GroundVelocity read_ground_velocity(const Flight& flight, const ModelDefinition& model);
+
+/// The coordinates of a flight and where they leave their path.
+struct Positions {
+  RecordedSeries latitude{};            ///< deg; missing where it jumps
+  RecordedSeries longitude{};           ///< deg; missing where it jumps
+  std::vector<Jump> latitude_jumps{};   ///< m
+  std::vector<Jump> longitude_jumps{};  ///< m
+};
+
+Positions read_positions(const Flight& flight, const ModelDefinition& model, const std::vector<double>& time);
 
 }  // namespace pcor::internal

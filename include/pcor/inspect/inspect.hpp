@@ -77,8 +77,9 @@ struct Inspection {
   std::vector<Problem> problems{};
   /// What a law can be fitted to, as `--reference` takes it: "wind" and "height"; empty: nothing.
   std::vector<std::string> references{};
-  bool has_results = false;   ///< its inputs have names that `process` gives its results
-  bool is_corrected = false;  ///< the pressures of the model are corrected already
+  std::string why_no_model{};  ///< what its pressures lack; empty where there is a model
+  bool has_results = false;    ///< its inputs have names that `process` gives its results
+  bool is_corrected = false;   ///< the pressures of the model are corrected already
   std::string
       corrected_pressure{};  ///< the static pressure that the flight's own processing corrected; may be empty
   std::vector<FrozenSpan>
