@@ -257,6 +257,7 @@ class Look {
                      candidates.end());
     for (const char* const name : {"altitude", "other_altitude", "static_pressure"}) {
       const auto found = evidence_.find(name);
+      if (found == evidence_.end()) continue;
       if (found->second.empty()) {
         evidence_.erase(found);
         continue;
