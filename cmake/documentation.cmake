@@ -1,12 +1,25 @@
-# The pages of the public headers: cmake --build build/release --target documentation, where there is Doxygen.
+# The site: cmake --build build/release --target documentation writes build/release/html from the documents, the reference pages
+# that the program prints, and the public headers. It needs Doxygen.
 find_package(Doxygen QUIET)
-if(DOXYGEN_FOUND)
+find_package(Python3 3.9 QUIET COMPONENTS Interpreter)
+if(DOXYGEN_FOUND AND Python3_FOUND AND TARGET pcor_tool)
+  set(reference ${PROJECT_BINARY_DIR}/reference)
+  add_custom_command(OUTPUT ${reference}/options.md ${reference}/effects.md ${reference}/output-variables.md ${reference}/json.md
+    COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/tools/reference_pages $<TARGET_FILE:pcor_tool> ${reference}
+    DEPENDS pcor_tool ${PROJECT_SOURCE_DIR}/tools/reference_pages VERBATIM)
+  add_custom_target(reference_pages DEPENDS ${reference}/options.md)
+
   set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)
   set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/include)
+  set(DOXYGEN_IMAGE_PATH ${PROJECT_SOURCE_DIR}/data/example)
   set(DOXYGEN_EXCLUDE_SYMBOLS pcor::internal)
   set(DOXYGEN_EXTRACT_ALL YES)
+  set(DOXYGEN_GENERATE_TREEVIEW YES)
   set(DOXYGEN_JAVADOC_AUTOBRIEF YES)
   set(DOXYGEN_QUIET YES)
+  set(DOXYGEN_TOC_INCLUDE_HEADINGS 3)
   set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)
-  doxygen_add_docs(documentation include README.md docs data/models/FORMAT.md data/aircraft/README.md)
+  doxygen_add_docs(documentation include README.md CONTRIBUTING.md CHANGELOG.md docs data/models data/aircraft data/scenarios
+    data/reference tests/hidden/results.md ${reference})
+  add_dependencies(documentation reference_pages)
 endif()

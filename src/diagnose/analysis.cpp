@@ -6,6 +6,7 @@
 #include <string>
 
 #include "diagnose/rms.hpp"
+#include "diagnose/shape_uncertainty.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
@@ -42,7 +43,8 @@ std::size_t held_out_part(const FlightSamples& samples, double time) {
                                             static_cast<double>(held_out_parts)));
 }
 
-Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed, double explained)
+Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed,
+                   const std::vector<Eigen::VectorXd>& added)
     : share_(columns.share),
       first_share_(share_.of_entries(first_entries(columns.flights))),
       groups_(std::move(groups)),
@@ -53,6 +55,11 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
   first_bins_ = part(binned_.bins, 0, flights_.size());
+  const Eigen::Index columns_count = binned_.columns.front().cols();
+  for (const Eigen::VectorXd& effect : added) {
+    added_.push_back(Eigen::VectorXd::Zero(columns_count));
+    added_.back().head(base_) = effect;
+  }
   const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([this](std::size_t f) {
     const auto base = binned_.columns[f].leftCols(base_);
     Eigen::MatrixXd part(base_, base_ + 1);
@@ -63,17 +70,17 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
   // Slow effects and slow drift contend for the same part of the residuals, so noise is found from both ends:
   // with whatever might be an effect taken off first, and with none. The likelier end counts.
   const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1), min_eigenvalue);
-  const double by_effects = search_from(start, true, explained);
+  const double by_effects = search_from(start, true);
   const bool drifts =
       std::any_of(noise_.begin(), noise_.end(), [](const auto& each) { return each.drifts(); });
   if (result_.chosen.empty() || drifts) {
     const SearchResult result = result_;
-    const double by_drift = search_from(start, false, explained);
-    if (by_effects > by_drift && result.chosen != result_.chosen) search_from(start, true, explained);
+    const double by_drift = search_from(start, false);
+    if (by_effects > by_drift && result.chosen != result_.chosen) search_from(start, true);
   }
 }
 
-double Analysis::search_from(const Eigen::VectorXd& start, bool generous, double explained) {
+double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
   std::vector<std::size_t> chosen;
   Eigen::VectorXd estimate = start;
   Eigen::MatrixXd covariance;
@@ -83,10 +90,9 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous, double
       find_first_noise(estimate);
     else
       find_noise(chosen, estimate);
-    find_search();
+    find_search(round == 0 ? std::vector<std::size_t>() : chosen);
     SearchOptions options;
     options.seed = seed_;
-    options.explained = explained;
     if (round == 0) {
       options.threshold = generous_threshold;
       options.max_effects = generous_effects;
@@ -218,14 +224,46 @@ void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const E
   }
 }
 
-void Analysis::find_search() {
-  scores_ = std::make_unique<WhitenedSystem>(
-      find_scores(share_, binned_.bins, binned_.columns, binned_.residuals, noise_));
+std::vector<Eigen::MatrixXd> Analysis::find_shape_uncertainty(const std::vector<std::size_t>& chosen) {
+  std::vector<Eigen::VectorXd> effects;
+  Eigen::Index first = binned_.columns.front().cols();
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    ColumnGroup& group = groups_[g];
+    group.shape_count = 0;
+    if (!group.has_uncertain_shape || std::find(chosen.begin(), chosen.end(), g) == chosen.end()) continue;
+    group.shape_first = first - base_;
+    group.shape_count = shape_columns;
+    first += shape_columns;
+    effects.push_back(Eigen::VectorXd::Zero(coefficients_.size()));
+    effects.back().segment(base_ + group.first, group.count) =
+        coefficients_.segment(base_ + group.first, group.count);
+  }
+  effects.insert(effects.end(), added_.begin(), added_.end());
+  std::vector<const FlightColumns*> flights;
+  for (std::size_t f = 0; f < flight_count(); ++f) flights.push_back(&flight(f));
+  return shape_uncertainty(share_, flights, binned_, effects);
+}
+
+WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns) const {
+  std::vector<Eigen::MatrixXd> all;
+  for (std::size_t f = 0; f < columns.size(); ++f) {
+    Eigen::MatrixXd& both = all.emplace_back(columns[f].rows(), columns[f].cols() + uncertainty_[f].cols());
+    both << columns[f], uncertainty_[f];
+  }
+  return find_scores(share_, binned_.bins, all, binned_.residuals, noise_);
+}
+
+void Analysis::find_search(const std::vector<std::size_t>& chosen) {
+  uncertainty_ = find_shape_uncertainty(chosen);
+  scores_ = std::make_unique<WhitenedSystem>(whiten(binned_.columns));
   white_noise_.assign(binned_.bins.size(), {});
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
-    if (share_.owns(f)) white_noise_[f] = scores_->left(f, coefficients_);
+    if (!share_.owns(f)) continue;
+    const Eigen::MatrixXd& rows = scores_->rows[f];
+    white_noise_[f] = rows.rightCols(1) - rows.leftCols(coefficients_.size()) * coefficients_;
   }
   take_out_common_noise(*scores_);
+  marginalize(*scores_, shape_columns * as_index(added_.size()));
   search_ = std::make_unique<Search>(*scores_, base_, groups_);
 }
 
@@ -248,8 +286,9 @@ WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) c
     Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
     both << binned_.columns[f].leftCols(base_), more[f];
   }
-  WhitenedSystem scores = find_scores(share_, binned_.bins, columns, binned_.residuals, noise_);
+  WhitenedSystem scores = whiten(columns);
   take_out_common_noise(scores);
+  marginalize(scores, uncertainty_.front().cols());
   return scores;
 }
 

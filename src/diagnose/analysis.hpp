@@ -37,8 +37,10 @@ struct HeldOut {
 class Analysis {
  public:
   /// @param groups of columns of the flights' candidates, one for each effect that is tested
-  /// @param explained chi2 by effects that were found before and are in the model now
-  Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed, double explained = 0.0);
+  /// @param added coefficients of the base of effects of the flow that were found before and are in the model
+  /// now, one vector for each effect
+  Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed,
+           const std::vector<Eigen::VectorXd>& added = {});
 
   /// Of the flights against the first reference.
   const FlightPartition& share() const { return first_share_; }
@@ -88,7 +90,7 @@ class Analysis {
  private:
   /// Noise and effects in turn until they are stable; the likelihood of what came out, less what its effects
   /// cost. @param generous the first noise is found with whatever might be an effect taken off
-  double search_from(const Eigen::VectorXd& start, bool generous, double explained);
+  double search_from(const Eigen::VectorXd& start, bool generous);
   void replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_first_noise(const Eigen::VectorXd& estimate);
@@ -97,7 +99,13 @@ class Analysis {
   void for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
                           const FindNoise& find);
   void keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
-  void find_search();
+  /// @param chosen effects found so far; the shapes of those of the flow are uncertain
+  void find_search(const std::vector<std::size_t>& chosen);
+  /// Columns of the uncertain shapes of the chosen effects of the flow, in the order of the groups, then of
+  /// the effects that were added.
+  std::vector<Eigen::MatrixXd> find_shape_uncertainty(const std::vector<std::size_t>& chosen);
+  /// Whitens the columns, followed by those of uncertain shapes.
+  WhitenedSystem whiten(const std::vector<Eigen::MatrixXd>& columns) const;
   /// Out of the rows against further references.
   void take_out_common_noise(WhitenedSystem& scores) const;
   FlightColumns& flight(std::size_t number) {
@@ -125,6 +133,8 @@ class Analysis {
   NoiseModel first_noise_{};
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;
+  std::vector<Eigen::VectorXd> added_{};        // coefficients of all columns, of each effect that was added
+  std::vector<Eigen::MatrixXd> uncertainty_{};  // columns of uncertain shapes of each flight, in bins
   Eigen::VectorXd coefficients_{};              // of all columns, as the last noise was found with
   std::vector<Eigen::VectorXd> white_noise_{};  // what all that was found leaves of the whitened residuals
   std::unique_ptr<WhitenedSystem> scores_{};

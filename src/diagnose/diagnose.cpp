@@ -18,6 +18,7 @@
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/packed_diagnosis.hpp"
 #include "diagnose/rms.hpp"
+#include "diagnose/shape_uncertainty.hpp"
 #include "diagnose/step_dates.hpp"
 #include "diagnose/unexplained.hpp"
 #include "numerics/missing.hpp"
@@ -260,6 +261,21 @@ void overrule(Diagnosis& diagnosis) {
   }
 }
 
+/// Coefficients of the base of each effect of the flow that was added, as the model has them.
+std::vector<Eigen::VectorXd> added_of(const ModelDefinition& model, const std::vector<BaseCoefficient>& base,
+                                      const std::vector<std::string>& added) {
+  std::vector<Eigen::VectorXd> effects;
+  for (const ModelEffect& effect : model.model.effects) {
+    if (std::find(added.begin(), added.end(), effect.id) == added.end() || !has_uncertain_shape(effect))
+      continue;
+    Eigen::VectorXd& coefficients = effects.emplace_back(Eigen::VectorXd::Zero(as_index(base.size())));
+    for (std::size_t b = 0; b < base.size(); ++b) {
+      if (base[b].name.rfind(effect.id + ".", 0) == 0) coefficients[as_index(b)] = base[b].value;
+    }
+  }
+  return effects;
+}
+
 /// A diagnosis, and what its search found, also where a variable of the files overrules that.
 struct SearchedDiagnosis {
   Diagnosis diagnosis{};
@@ -296,7 +312,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
                     [](const Candidate& candidate) { return !candidate.is_variant; }));
 
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates), options.seed,
-                          options.explained);
+                          added_of(model, set.base, options.added));
   diagnosis.threshold = analysis.result().threshold;
   result.found = diagnosis.findings = findings_of(analysis, set.candidates);
   advise(analysis, set.candidates, diagnosis.findings);

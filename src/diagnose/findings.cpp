@@ -141,7 +141,7 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
                              std::size_t winner, const std::vector<std::size_t>& chosen) {
   constexpr double doubt_of_shape = 0.1;
   const Search& search = analysis.search();
-  const double best = search.evidence(chosen);
+  const double best = search.evidence(chosen, false);
   const auto margin = [](double chi2) {
     return 0.5 * (alias_margin + doubt_of_shape * doubt_of_shape * chi2);
   };
@@ -154,7 +154,7 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
     if (!search.score(g, others).possible) continue;
     std::vector<std::size_t> instead = others;
     instead.push_back(g);
-    const double less = best - search.evidence(instead);
+    const double less = best - search.evidence(instead, false);
     if (less < widest && less < margin(chi2_where_they_differ(analysis, others, winner, g)))
       rivals.push_back({g, less});
   }

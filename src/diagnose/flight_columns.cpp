@@ -10,6 +10,7 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
+#include "diagnose/shape_uncertainty.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -222,6 +223,7 @@ std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Ca
         effects.emplace(differences_alone ? candidate.effect.id : candidate.id, effects.size()).first->second;
     group.first = first;
     group.count = as_index(candidate.tested.size());
+    group.has_uncertain_shape = has_uncertain_shape(candidate.effect);
     for (const CandidateParameter& parameter : candidate.tested) {
       group.bounds.push_back(parameter.bounds);
       group.usual.push_back(parameter.typical);

@@ -21,7 +21,6 @@ constexpr double redundant_below = 1e-3;  // of what the base leaves, given othe
 /// Of a column's variance the base has to leave more than this: single precision leaves a millionth.
 constexpr double min_left = 1e-6;
 constexpr double errors_beyond_bounds = 2.0;
-constexpr double min_share = 0.08;  // of the rms that is explained already, for one more effect
 constexpr double enough_blocks = 12.0;
 constexpr double few_blocks_penalty = 6.0;
 
@@ -142,7 +141,10 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
     begin_.push_back(width);
     width += kept;
   }
-  Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(tested, width);
+  for (const ColumnGroup& group : groups) candidates_ += group.count;
+  const Eigen::Index shapes = tested - candidates_;
+  Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(tested, width + shapes);
+  turn.bottomRightCorner(shapes, shapes).setIdentity();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     turn.block(groups[g].first, begin_[g], groups[g].count, turned_[g].cols()) = turned_[g];
   }
@@ -158,11 +160,29 @@ std::vector<Eigen::Index> Search::places_of(const std::vector<std::size_t>& grou
   return places;
 }
 
+std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set) const {
+  std::vector<Eigen::Index> shapes;
+  for (const std::size_t group : set) {
+    for (Eigen::Index k = 0; k < groups_[group].shape_count; ++k)
+      shapes.push_back(groups_[group].shape_first + k);
+  }
+  return shapes;
+}
+
 Search::Conditional Search::given(const std::vector<std::size_t>& groups) const {
   Conditional result{information_, score_, squares_, 1.0};
-  const std::vector<Eigen::Index> places = places_of(groups);
+  std::vector<Eigen::Index> places = places_of(groups);
+  const std::size_t count = places.size();
+  const std::vector<Eigen::Index> shapes = shapes_of(groups);
+  const Eigen::Index turned = information_.cols() - (left_.cols() - candidates_);
+  for (const Eigen::Index shape : shapes) places.push_back(turned + shape - candidates_);
   if (!places.empty()) {
-    const Eigen::MatrixXd inverse = pseudo_inverse(information_(places, places), redundant_below);
+    Eigen::MatrixXd own = information_(places, places);
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      const double scale = scale_[base_ + shapes[k]];
+      own(as_index(count + k), as_index(count + k)) += scale * scale;
+    }
+    const Eigen::MatrixXd inverse = pseudo_inverse(own, redundant_below);
     const Eigen::MatrixXd across = information_(Eigen::all, places);
     const Eigen::MatrixXd solution = inverse * across.transpose();
     const Eigen::VectorXd score = score_(places);
@@ -170,8 +190,8 @@ Search::Conditional Search::given(const std::vector<std::size_t>& groups) const 
     result.score -= solution.transpose() * score;
     result.squares -= score.dot(inverse * score);
   }
-  const double freedom = static_cast<double>(scores_->row_count) - static_cast<double>(base_) -
-                         static_cast<double>(places.size());
+  const double freedom =
+      static_cast<double>(scores_->row_count) - static_cast<double>(base_) - static_cast<double>(count);
   result.variance = std::max(result.squares, 0.0) / std::max(freedom, 1.0);
   return result;
 }
@@ -329,11 +349,6 @@ Eigen::VectorXd Search::own_noise(std::size_t group, const std::vector<std::size
   return squares > 0.0 ? Eigen::VectorXd(sums / std::sqrt(squares)) : sums;
 }
 
-double Search::explained(const std::vector<std::size_t>& chosen) const {
-  const Conditional conditional = given(chosen);
-  return (squares_ - conditional.squares) / std::max(conditional.variance, 1e-300);
-}
-
 bool Search::is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const {
   return std::any_of(chosen.begin(), chosen.end(), [&](std::size_t each) {
     return each != group && groups_[each].effect == groups_[group].effect;
@@ -370,7 +385,7 @@ double Search::log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::
   return -0.5 * freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) - determinant;
 }
 
-double Search::evidence(const std::vector<std::size_t>& set) const {
+double Search::evidence(const std::vector<std::size_t>& set, bool with_shapes) const {
   std::vector<Eigen::Index> columns;
   std::vector<Eigen::Index> begin;
   for (const std::size_t group : set) {
@@ -379,6 +394,14 @@ double Search::evidence(const std::vector<std::size_t>& set) const {
   }
   if (columns.empty()) return 0.0;
   Eigen::VectorXd precision(as_index(columns.size()));
+  if (with_shapes) {
+    for (const Eigen::Index shape : shapes_of(set)) {
+      columns.push_back(shape);
+      const double scale = scale_[base_ + shape];
+      precision.conservativeResize(as_index(columns.size()));
+      precision[precision.size() - 1] = std::max(scale * scale, 1e-300);
+    }
+  }
   const auto choose = [&](std::size_t i, const Tail& tail) {
     precision.segment(begin[i], as_index(told_[set[i]].size())) =
         precision_of(set[i], tail.times)(told_[set[i]]);
@@ -485,7 +508,6 @@ SearchResult Search::run(const SearchOptions& options) const {
     if (winner == groups_.size() || chosen.size() >= options.max_effects || !(best.equivalent > threshold))
       break;
     if (!options.threshold && !(best.equivalent > level(winner, chosen, threshold))) break;
-    if (best.chi2 < min_share * min_share * (options.explained + explained(chosen))) break;
     chosen.push_back(winner);
     improve(chosen, price);
     if (std::find(seen.begin(), seen.end(), chosen) != seen.end()) break;

@@ -21,6 +21,11 @@ struct ColumnGroup {
   std::vector<Bounds> bounds{};  ///< of each column's coefficient; an effect beyond them is impossible
   /// As large as each coefficient is met in practice; 0, or nothing, where nobody knows.
   std::vector<double> usual{};
+  /// Columns of the uncertain shape, whose coefficients have a normal prior of variance 1; none before the
+  /// effect was chosen.
+  Eigen::Index shape_first = 0;
+  Eigen::Index shape_count = 0;
+  bool has_uncertain_shape = false;  ///< an effect of the flow; those of instruments have exact shapes
 
   /// Standard deviation of the size of a coefficient in nature; 0 where nobody knows.
   double deviation(std::size_t column) const {
@@ -33,7 +38,6 @@ struct SearchOptions {
   double confidence = 0.997;          ///< with which no effect is found where there is none
   std::optional<double> threshold{};  ///< instead of the one by draws, and then without the gates
   std::size_t max_effects = 4;
-  double explained = 0.0;  ///< chi2 by effects that the base has since an earlier search
   std::uint64_t seed = 1;
 };
 
@@ -79,7 +83,9 @@ class Search {
   /// own with all sizes alike, those of the effects with sizes about the usual ones. An effect of ten times
   /// its usual size is not impossible, but needs more of the flights than a usual one (the tails are those of
   /// a mixture of normal distributions).
-  double evidence(const std::vector<std::size_t>& set) const;
+  ///
+  /// @param with_shapes the shapes of effects of the flow are uncertain
+  double evidence(const std::vector<std::size_t>& set, bool with_shapes = true) const;
 
   /// Of what base and `others` leave of two groups, the largest correlation, with sign where both have one
   /// column.
@@ -109,6 +115,8 @@ class Search {
 
   Eigen::Index begin_of(std::size_t group) const { return begin_[group]; }
   std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& groups) const;
+  /// Columns of the uncertain shapes of a set, counted from the first candidate's.
+  std::vector<Eigen::Index> shapes_of(const std::vector<std::size_t>& set) const;
   Conditional given(const std::vector<std::size_t>& groups) const;
   GroupScore score_in(const Conditional& conditional, std::size_t group) const;
   /// Turns each group's columns to unit length and right angles in the conditional information; columns
@@ -129,7 +137,6 @@ class Search {
   void improve(std::vector<std::size_t>& chosen, double price) const;
   double log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& precision) const;
   Eigen::VectorXd precision_of(std::size_t group, double times) const;
-  double explained(const std::vector<std::size_t>& chosen) const;
   bool is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const;
   bool all_possible(const std::vector<std::size_t>& chosen) const;
 
@@ -143,6 +150,7 @@ class Search {
   std::vector<Eigen::Index> begin_;      // of each group among the turned columns
   Eigen::MatrixXd left_;                 // information of scaled candidates after the base
   Eigen::VectorXd left_score_;
+  Eigen::Index candidates_ = 0;  // columns of all groups; those of shapes follow
   Eigen::MatrixXd information_;  // the same of turned columns
   Eigen::VectorXd score_;
   double squares_ = 0.0;

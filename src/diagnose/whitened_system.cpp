@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "numerics/triangular_factor.hpp"
@@ -81,6 +82,24 @@ void sum_up(WhitenedSystem& scores) {
       scores.share
           .sum_of_each_flight<SymmetricPart>([&](std::size_t f) { return squares_of(scores.rows[f]); })
           .matrix;
+}
+
+void marginalize(WhitenedSystem& system, Eigen::Index count) {
+  if (count == 0) return;
+  const Eigen::Index first = system.columns() - count;
+  std::vector<Eigen::Index> kept(static_cast<std::size_t>(first));
+  std::iota(kept.begin(), kept.end(), Eigen::Index{0});
+  kept.push_back(system.columns());
+  const Eigen::MatrixXd across = system.information(kept, Eigen::all).middleCols(first, count);
+  Eigen::MatrixXd inner = system.information.block(first, first, count, count);
+  inner.diagonal().array() += 1.0;
+  system.information =
+      (system.information(kept, kept) - across * Eigen::LLT<Eigen::MatrixXd>(inner).solve(across.transpose()))
+          .eval();
+  system.plain = system.plain(kept, kept).eval();
+  for (Eigen::MatrixXd& rows : system.rows) {
+    if (rows.size() > 0) rows = rows(Eigen::all, kept).eval();
+  }
 }
 
 void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier, std::size_t later,

@@ -51,6 +51,10 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
 void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier, std::size_t later,
                            std::vector<Eigen::VectorXd>& noise, WhitenedSystem& scores);
 
+/// Takes the last `count` columns before the residual out of the system, as noise: their coefficients have a
+/// normal prior with variance 1 in units of the noise and are averaged over.
+void marginalize(WhitenedSystem& system, Eigen::Index count);
+
 /// Sums the rows of all flights.
 void sum_up(WhitenedSystem& scores);
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -561,7 +560,6 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   diagnose_with.trust_reference = options.refit.trust_reference;
   diagnose_with.progress = options.refit.progress;
 
-  std::map<std::string, double> found;  // chi2 of the findings of all rungs, by effect
   ImproveLoop loop;
   loop.refit = [&](const TrialModel& trial) {
     tell("fitting with " + last_of(trial.file));
@@ -571,17 +569,12 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   loop.diagnose = [&](const TrialModel& trial) {
     tell("looking for what is missing beside " + last_of(trial.file));
-    diagnose_with.explained = 0.0;
-    for (const ModelEffect& effect : trial.file.model.effects) {
-      const auto before = found.find(effect.id);
-      if (before != found.end()) diagnose_with.explained += before->second;
-    }
+    diagnose_with.added.clear();
+    for (std::size_t e = model.model.effects.size(); e < trial.file.model.effects.size(); ++e)
+      diagnose_with.added.push_back(trial.file.model.effects[e].id);
     Diagnosis diagnosis = diagnose(flights, trial.file, with_alike(ordered, trial, variables), diagnose_with);
     if (!diagnose_with.series_of)  // pictures of all rungs show the same flights
       diagnose_with.series_of = diagnosis.flights_with_records();
-    for (const Finding& finding : diagnosis.findings) {
-      if (!finding.of_reference) found.insert_or_assign(finding.effect.id, finding.chi2);
-    }
     return diagnosis;
   };
   loop.add = [&](const TrialModel& trial, const AddedEffect& added) {

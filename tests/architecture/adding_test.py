@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Adds a part to a copy of the sources, as docs/architecture.md says how to, and uses it.
+"""Adds a part to a copy of the sources, as CONTRIBUTING.md describes, and uses it.
 
     adding_test.py effect  SOURCE_FOLDER SCRATCH_FOLDER COMPILER
     adding_test.py command SOURCE_FOLDER SCRATCH_FOLDER

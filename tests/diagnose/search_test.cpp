@@ -481,3 +481,23 @@ TEST(OneDegreeEquivalent, IsAsRare) {
   EXPECT_NEAR(pcor::internal::chi2_one_dof(5.991, 2.0), 3.841, 1e-3);
   EXPECT_NEAR(pcor::internal::chi_squared_tail(12.592, 6.0), 0.05, 1e-5);
 }
+
+// An effect whose shape in nature differs from the formula leaves a rest; a second effect that resembles that
+// rest is not named where the uncertainty of the shape explains it, and another second effect is.
+TEST(Search, UncertainShapeIsNoSecondEffect) {
+  Problem problem(600, 4, 31);
+  const Eigen::VectorXd rest = problem.candidate(3);  // column of the uncertain shape of the first effect
+  problem.candidate(1) = rest + 0.2 * problem.candidate(1);
+  problem.residual += 2.0 * problem.candidate(0) + 0.5 * rest + 0.4 * problem.candidate(2);
+  problem.one_by_one();
+  problem.groups.pop_back();
+  const Search exact = problem.search();
+  EXPECT_THAT(exact.run({}).chosen, UnorderedElementsAre(0U, 1U, 2U));
+  const double evidence = exact.score(0, {}).chi2;
+  problem.groups[0].shape_first = 3;
+  problem.groups[0].shape_count = 1;
+  const Search search = problem.search();
+  EXPECT_THAT(search.run({}).chosen, UnorderedElementsAre(0U, 2U));
+  // The first effect keeps its evidence.
+  EXPECT_DOUBLE_EQ(search.score(0, {}).chi2, evidence);
+}

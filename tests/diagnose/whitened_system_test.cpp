@@ -126,6 +126,26 @@ TEST(WhitenedSystem, OfBlocksAddUpToTheScore) {
   EXPECT_EQ(scores.row_count, example.bins[0].size() + example.bins[1].size());
 }
 
+// Averaging over coefficients of unit variance adds the products of their columns to the covariance of the
+// noise.
+TEST(WhitenedSystem, MarginalizedColumnsAreNoise) {
+  const Example example({200}, 5, 4);
+  const auto system_of = [&](const Eigen::MatrixXd& columns) {
+    return pcor::internal::find_scores(pcor::internal::FlightPartition(1), example.bins, {columns},
+                                       example.residuals, example.noise);
+  };
+  WhitenedSystem system = system_of(example.columns[0]);
+  pcor::internal::marginalize(system, 2);
+  const Eigen::MatrixXd uncertain = example.columns[0].rightCols(2);
+  const Eigen::MatrixXd covariance = example.covariance(0) + uncertain * uncertain.transpose();
+  Eigen::MatrixXd all(example.columns[0].rows(), 4);
+  all << example.columns[0].leftCols(3), example.residuals[0];
+  // Rounding, of matrices whose condition is 1e5 at most.
+  EXPECT_TRUE(system.information.isApprox(all.transpose() * covariance.ldlt().solve(all), 1e-9));
+  EXPECT_TRUE(system.plain.isApprox(system_of(example.columns[0].leftCols(3)).plain, 1e-12));
+  EXPECT_EQ(system.rows[0].cols(), 4);
+}
+
 // What drift can be says nothing any more: a column that is a drift is worth little, one that is fast is
 // worth what it was.
 TEST(WhitenedSystem, WithDriftSlowColumnsAreWorthLittle) {

@@ -43,9 +43,9 @@ struct DiagnoseOptions {
   double training_share = 1.0;  ///< only the first part of every flight, this share of the samples
   bool trust_reference =
       false;  ///< the references are exact: no effect of a laser or of another system is tested
-  /// chi2 of effects that were found before and are in the model now: what is found further must be at least
-  /// 8 % of their rms, otherwise it may only refine earlier findings.
-  double explained = 0.0;
+  /// Ids of effects that an earlier diagnosis found and that the model has now. The shape of an effect of the
+  /// flow is uncertain, so what the formula leaves of such an effect is not named as a further effect.
+  std::vector<std::string> added{};
   std::uint64_t seed = 20120106;  ///< of the draws that set thresholds
   /// Told after every flight of this member.
   std::function<void(std::size_t done, std::size_t total)> progress{};

@@ -1,0 +1,97 @@
+#include "diagnose/shape_uncertainty.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <pcor/effects/catalogue.hpp>
+#include "campaign/model_parameters.hpp"
+#include "numerics/triangular_factor.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double power_sd = 0.3;    // of an exponent
+constexpr double delay_sd = 0.15;   // s
+constexpr double min_ratio = 0.01;  // of an effect to its rms: smaller values have the logarithm of this one
+constexpr Eigen::Index powers = 3;  // of dynamic pressure, static pressure and the effect itself
+
+/// Logarithms of dynamic pressure, static pressure and the effect, one row for each bin.
+Eigen::MatrixXd logarithms_of(const FlightColumns& flight, const Binning& bins, const Eigen::VectorXd& effect,
+                              double rms) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(effect.size(), powers);
+  Eigen::Index column = 0;
+  for (const Quantity pressure : {Quantity::dynamic_pressure, Quantity::static_pressure}) {
+    if (const std::vector<double>* const values = flight.samples->model.find(pressure)) {
+      result.col(column) =
+          bins.means(*values).unaryExpr([](double value) { return value > 0.0 ? std::log(value) : 0.0; });
+    }
+    ++column;
+  }
+  result.col(column) =
+      effect.unaryExpr([rms](double value) { return std::log(std::max(std::abs(value) / rms, min_ratio)); });
+  return result;
+}
+
+/// The rate of change from bin to bin, per second; zero in a segment of one bin.
+Eigen::VectorXd rate_of(const Eigen::VectorXd& effect, const Binning& bins) {
+  Eigen::VectorXd rate = Eigen::VectorXd::Zero(effect.size());
+  for (const Segment& segment : bins.segments()) {
+    for (std::size_t i = segment.first; i < segment.first + segment.count; ++i) {
+      const std::size_t before = i > segment.first ? i - 1 : i;
+      const std::size_t after = i + 1 < segment.first + segment.count ? i + 1 : i;
+      if (after > before)
+        rate[as_index(i)] =
+            (effect[as_index(after)] - effect[as_index(before)]) / (bins.time()[after] - bins.time()[before]);
+    }
+  }
+  return rate;
+}
+
+}  // namespace
+
+bool has_uncertain_shape(const ModelEffect& effect) {
+  const EffectLocation location = location_of(effect);
+  if (location != EffectLocation::static_defect && location != EffectLocation::pitot) return false;
+  const std::size_t known = effect_named(effect.id);
+  if (known == catalogue_size) return true;
+  const auto& inputs = effect_info[known].needs;
+  return std::none_of(inputs.begin(), inputs.end(),
+                      [](Quantity input) { return input == Quantity::time || input == Quantity::date; });
+}
+
+std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
+                                               const std::vector<const FlightColumns*>& flights,
+                                               const BinnedFlights& binned,
+                                               const std::vector<Eigen::VectorXd>& effects) {
+  const Eigen::Index count = as_index(effects.size());
+  std::vector<Eigen::MatrixXd> result(flights.size());
+  for (std::size_t f = 0; f < flights.size(); ++f)
+    result[f] = Eigen::MatrixXd::Zero(binned.columns[f].rows(), shape_columns * count);
+  for (Eigen::Index e = 0; e < count; ++e) {
+    const auto effect_on = [&](std::size_t f) -> Eigen::VectorXd {
+      return binned.columns[f] * effects[static_cast<std::size_t>(e)];
+    };
+    const auto squares = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
+      return Eigen::Vector2d(effect_on(f).squaredNorm(), static_cast<double>(binned.columns[f].rows()));
+    });
+    if (!(squares[0] > 0.0)) continue;
+    const double rms = std::sqrt(squares[0] / squares[1]);
+    const auto sums = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
+      const Eigen::VectorXd effect = effect_on(f);
+      return logarithms_of(*flights[f], binned.bins[f], effect, rms).transpose() * effect.cwiseAbs2();
+    });
+    const Eigen::RowVectorXd mean = sums.transpose() / squares[0];
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+      if (!share.owns(f)) continue;
+      const Eigen::VectorXd effect = effect_on(f);
+      const Eigen::MatrixXd logarithms =
+          logarithms_of(*flights[f], binned.bins[f], effect, rms).rowwise() - mean;
+      auto columns = result[f].middleCols(shape_columns * e, shape_columns);
+      columns.leftCols(powers) = power_sd * (effect.asDiagonal() * logarithms);
+      columns.col(powers) = delay_sd * rate_of(effect, binned.bins[f]);
+    }
+  }
+  return result;
+}
+
+}  // namespace pcor::internal

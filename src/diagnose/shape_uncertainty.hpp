@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "campaign/binned_flights.hpp"
+#include "parallel/flight_partition.hpp"
+
+namespace pcor::internal {
+
+/// Whether the flow makes an effect, so that its shape may differ from the formula: an effect at the static
+/// ports or the pitot tube that does not depend on time.
+bool has_uncertain_shape(const ModelEffect& effect);
+
+/// Number of columns that describe the uncertain shape of one effect.
+inline constexpr Eigen::Index shape_columns = 4;
+
+/// Columns of the uncertain shapes of some effects, in bins of each local flight, hPa.
+///
+/// The flow makes an effect that resembles the formula of the catalogue. An effect u may grow with another
+/// power of the dynamic pressure, the static pressure or its own driver, and may act a little earlier or
+/// later:
+///
+///     0.3 u ln q, 0.3 u ln p, 0.3 u ln |u|, 0.15 s du/dt
+///
+/// Each logarithm is less its mean over the flights, weighted by u^2, so that the columns do not change the
+/// size of the effect. The coefficient of each column has a normal prior of standard deviation 1. A value
+/// that is not known gives 0.
+///
+/// @param effects coefficients of all columns of the flights; each vector holds those of one effect, and
+/// zeros
+std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
+                                               const std::vector<const FlightColumns*>& flights,
+                                               const BinnedFlights& binned,
+                                               const std::vector<Eigen::VectorXd>& effects);
+
+}  // namespace pcor::internal

@@ -1,0 +1,92 @@
+// Columns of uncertain shapes against derivatives of powers and delays.
+#include "diagnose/shape_uncertainty.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+using namespace pcor::internal;
+using pcor::Quantity;
+
+namespace {
+
+constexpr Eigen::Index rows = 200;
+constexpr double step = 4.0;  // s: every record is a bin
+
+/// A flight with one column that varies slowly, in air whose pressures vary.
+struct Example {
+  FlightColumns flight;
+  BinnedFlights binned;
+  Eigen::VectorXd column{rows};
+  Eigen::VectorXd dynamic_pressure{rows};
+
+  Example() {
+    std::vector<double> time(rows);
+    auto samples = std::make_shared<pcor::FlightSamples>();
+    std::vector<double> dynamic(rows);
+    std::vector<double> still(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double phase = static_cast<double>(i) / 40.0;
+      time[k] = step * static_cast<double>(i);
+      column[i] = std::sin(phase) + 0.4;
+      dynamic_pressure[i] = dynamic[k] = 60.0 + 20.0 * std::cos(0.37 * phase);
+      still[k] = 700.0;
+    }
+    samples->model.columns.emplace_back(Quantity::dynamic_pressure, dynamic);
+    samples->model.columns.emplace_back(Quantity::static_pressure, still);
+    samples->time = time;
+    flight.samples = samples;
+    binned.bins.emplace_back(std::vector<double>(rows, 0.0), time, step);
+    binned.columns.emplace_back(column);
+  }
+
+  Eigen::MatrixXd uncertainty(double coefficient) const {
+    return shape_uncertainty(FlightPartition(1), {&flight}, binned,
+                             {Eigen::VectorXd::Constant(1, coefficient)})[0];
+  }
+};
+
+}  // namespace
+
+TEST(ShapeUncertainty, IsTheDerivativeByThePowerOfTheDynamicPressure) {
+  const Example example;
+  const Eigen::VectorXd found = example.uncertainty(2.0).col(0);
+  const Eigen::VectorXd effect = 2.0 * example.column;
+  const Eigen::ArrayXd logarithm = example.dynamic_pressure.array().log();
+  const double mean = (effect.array().square() * logarithm).sum() / effect.squaredNorm();
+  constexpr double change = 1e-6;  // of the power; what is left of the difference is of its order
+  const Eigen::ArrayXd ratio = (change * (logarithm - mean)).exp();
+  const Eigen::VectorXd difference = (effect.array() * (ratio - 1.0) / change).matrix();
+  EXPECT_TRUE(found.isApprox(0.3 * difference, 1e-5));
+}
+
+TEST(ShapeUncertainty, DoesNotChangeTheSize) {
+  const Example example;
+  const Eigen::MatrixXd found = example.uncertainty(2.0);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    // Rounding of a sum over 200 bins of values about one.
+    EXPECT_NEAR(found.col(k).dot(example.column), 0.0, 1e-10) << k;
+  }
+}
+
+TEST(ShapeUncertainty, AConstantPressureGivesNothing) {
+  const Example example;
+  EXPECT_NEAR(example.uncertainty(2.0).col(1).cwiseAbs().maxCoeff(), 0.0, 1e-12);
+}
+
+TEST(ShapeUncertainty, DelaysByTheRateOfChange) {
+  const Example example;
+  const Eigen::VectorXd found = example.uncertainty(1.0).col(3);
+  for (Eigen::Index i = 1; i + 1 < rows; ++i) {
+    const double rate = std::cos(static_cast<double>(i) / 40.0) / 40.0 / step;
+    EXPECT_NEAR(found[i], 0.15 * rate, 1e-3 * 0.15 / 40.0 / step) << i;  // second order in the step
+  }
+}
+
+TEST(ShapeUncertainty, ScalesWithTheEffect) {
+  const Example example;
+  EXPECT_TRUE(example.uncertainty(6.0).isApprox(3.0 * example.uncertainty(2.0), 1e-12));
+}

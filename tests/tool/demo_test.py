@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""tools/demo, without a flight and on each flight of PCOR_FLIGHTS.
+
+    demo_test.py TOOL SOURCE_DIRECTORY
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+TOOL = Path(sys.argv[1]).resolve()
+SOURCE = Path(sys.argv[2]).resolve()
+FLIGHTS = sorted(Path(os.environ["PCOR_FLIGHTS"]).glob("*.nc")) if os.environ.get("PCOR_FLIGHTS") else []
+
+
+class Demo(unittest.TestCase):
+    def run_demo(self, flight):
+        with tempfile.TemporaryDirectory() as folder:
+            result = subprocess.run([SOURCE / "tools/demo", flight, folder], env={**os.environ, "PCOR": str(TOOL)},
+                                    capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            made = {path.name for path in Path(folder).iterdir()}
+        self.assertLessEqual({"corrected.nc", "model.toml", "inspect.html", "process.html"}, made)
+        # One screen for each command and the summary.
+        self.assertLess(result.stdout.count("\n"), 65)
+        return result.stdout
+
+    def test_without_a_flight_it_first_says_that_it_simulates_one(self):
+        self.assertIn("simulated", self.run_demo("").splitlines()[0])
+
+    @unittest.skipUnless(FLIGHTS, "PCOR_FLIGHTS is not set")
+    def test_every_real_flight_is_corrected(self):
+        for flight in FLIGHTS:
+            with self.subTest(flight=flight.name):
+                self.assertNotIn("simulated", self.run_demo(flight))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
