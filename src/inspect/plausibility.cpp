@@ -133,7 +133,7 @@ class Plausibility {
 
   void ground_speed_against_position() {
     const RecordedSeries latitude = read(Q::latitude);
-    const RecordedSeries longitude = read_usual(flight_, family_of(model_, flight_), "longitude");
+    const RecordedSeries longitude = read_longitude(flight_, model_);
     const RecordedSeries speed = read(Q::ground_speed);
     if (latitude.values.empty() || longitude.values.empty() || speed.values.empty()) return;
     constexpr std::size_t apart = 20;

@@ -83,8 +83,7 @@ std::vector<Jump> contradictions(const std::vector<double>& east, const std::vec
 
 Positions read_positions(const Flight& flight, const ModelDefinition& model,
                          const std::vector<double>& time) {
-  Positions positions{read_role(flight, model, Quantity::latitude),
-                      read_usual(flight, family_of(model, flight), "longitude")};
+  Positions positions{read_role(flight, model, Quantity::latitude), read_longitude(flight, model)};
   const double middle = median(positions.latitude.values);
   positions.latitude_jumps = take_jumps_out(positions.latitude.values, time, metres_per_degree);
   if (std::isfinite(middle))

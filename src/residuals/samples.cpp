@@ -268,8 +268,8 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
   for (std::string& note : notes_on_law(flight, model)) samples.notes.push_back(std::move(note));
   samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
   samples.reference = reference.read(flight, samples.time, samples.notes);
-  samples.latitude = read_usual(flight, family_of(model, flight), "latitude").values;
-  samples.longitude = read_usual(flight, family_of(model, flight), "longitude").values;
+  samples.latitude = read_role(flight, model, Quantity::latitude).values;
+  samples.longitude = read_longitude(flight, model).values;
   samples.motion = read_motion(flight, model, samples);
   for (std::string& note : contradicting_signs(samples, options.min_airspeed))
     samples.notes.push_back(std::move(note));

@@ -239,7 +239,11 @@ std::vector<std::string> plain_words(std::string_view text) {
   return words;
 }
 
-std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& flight) {
+namespace {
+
+/// Of one series, or of all where none is named.
+std::map<std::string, std::vector<RoleCandidate>> candidates_of(const Flight& flight,
+                                                                std::string_view series) {
   std::map<std::string, std::vector<RoleCandidate>> all;
   for (const std::string& name : flight.variables()) {
     const VariableInfo& info = flight.variable(name);
@@ -249,15 +253,26 @@ std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& 
     const Described described{info, plain_words(info.name), plain_words(info.long_name),
                               attribute_of(info, "standard_name")};
     for (const Signs& sign : signs) {
+      if (!series.empty() && sign.series != series) continue;
       if (std::optional<RoleCandidate> candidate = candidate_of(flight, described, sign))
         all[std::string(sign.series)].push_back(std::move(*candidate));
     }
   }
-  for (auto& [series, candidates] : all) {
+  for (auto& [name, candidates] : all) {
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const RoleCandidate& a, const RoleCandidate& b) { return a.score > b.score; });
   }
   return all;
+}
+
+}  // namespace
+
+std::vector<RoleCandidate> role_candidates(const Flight& flight, std::string_view series) {
+  return candidates_of(flight, series)[std::string(series)];
+}
+
+std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& flight) {
+  return candidates_of(flight, "");
 }
 
 bool is_sure(const std::vector<RoleCandidate>& candidates) {

@@ -93,6 +93,23 @@ TEST_F(Icartt, RecordWithoutLineEndIsLeftOut) {
   EXPECT_TRUE(Flight(write(head + values)).file().notes().empty());
 }
 
+TEST_F(Icartt, RecordWithoutLineEndIsKeptWhereComplete) {
+  // All last fields have two decimals, or are flags; a cut would leave fewer.
+  const std::string fixed = "47076, 850, 300, 0.30\n47077, 850, 300, -9999\n47078, 851, 300, 0.31\n";
+  const Flight whole(write(head + fixed + "47079, 850, 300, 0.35"));
+  EXPECT_EQ(whole.records(), 4U);
+  EXPECT_EQ(values_of(whole, "mach").back(), 0.35);
+  EXPECT_TRUE(whole.file().notes().empty());
+  for (const char* const cut : {"47079, 850, 300, 0.3", "47079, 850, 300, 0.", "47079, 850, 300,",
+                                "47079, 850, 0.35", "47079, 850, 0.35,"}) {
+    const Flight flight(write(head + fixed + cut));
+    EXPECT_EQ(flight.records(), 3U) << cut;
+    EXPECT_EQ(flight.file().notes().size(), 1U) << cut;
+  }
+  // Of whole numbers with and without a third digit nothing tells 31 from the begin of 310.
+  EXPECT_EQ(Flight(write(head + "47076, 1, 1, 31\n47077, 1, 1, 310\n47078, 1, 1, 31")).records(), 2U);
+}
+
 TEST_F(Icartt, ACompressedFileIsToUnpack) {
   path_ = folder_.path() / "flight.ict.gz";
   write("\x1f\x8b");
