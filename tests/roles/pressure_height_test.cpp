@@ -30,9 +30,16 @@ TEST(PressureHeight, HeightOfThePressureIsFound) {
 
 TEST(PressureHeight, HeightInOtherWeatherIsOfGps) {
   std::vector<double> height;
-  // 5 hPa of weather are 45 m, and air 3 % warmer than the standard one.
-  for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure + 5.0));
+  // A high of 5 hPa adds 45 m, and air 3 % warmer than the standard adds 30 to 60 m: 7 to 10 hPa together.
+  for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure - 5.0));
   EXPECT_EQ(compare_height(height, pressures()).kind, Kind::gps);
+}
+
+TEST(PressureHeight, CancellingPressureAndTemperatureAreUndecided) {
+  std::vector<double> height;
+  // A low of 5 hPa subtracts 45 m, warm air adds 30 to 60 m: 0.6 hPa remain, with a scatter of 1.0 hPa.
+  for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure + 5.0));
+  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::undecided);
 }
 
 TEST(PressureHeight, HeightOfOtherPressureIsUndecided) {
