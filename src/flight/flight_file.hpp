@@ -61,7 +61,7 @@ class FlightFile {
   /// "valid_range = \"all\"". Empty where there is nothing of the kind.
   virtual std::string ignored_range(int /*variable*/) const { return {}; }
 
-  /// What a user of the file should know of how it was read, sentences without their end.
+  /// Notes on how the file was read, for its user: sentences without a full stop.
   virtual std::vector<std::string> notes() const { return {}; }
 
   /// How many records should be read, one variable after the other, before the next are.

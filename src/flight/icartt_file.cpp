@@ -228,14 +228,14 @@ class IcarttFile::Reader {
     }
   }
 
-  /// How a file writes its last field: the characters behind the point, or all of them where there is none.
+  /// How a file writes its last field: the characters behind the point, or all of them without a point.
   static std::pair<bool, std::size_t> format_of(const std::string& field) {
     const std::size_t point = field.find('.');
     return {point != std::string::npos, field.size() - (point == std::string::npos ? 0 : point)};
   }
 
   void read_values() {
-    std::set<std::pair<bool, std::size_t>> formats;  // of the last field, where it has a value
+    std::set<std::pair<bool, std::size_t>> formats;  // those of the last fields that have a value
     for (std::string line; std::getline(stream_, line);) {
       ++line_;
       const char* at = line.c_str();

@@ -90,7 +90,7 @@ std::vector<std::string> effects_that_need(Quantity role) {
   return effects;
 }
 
-/// Whether a file says that a height is none of the pressure.
+/// Whether the words of a file state that a height is geometric.
 bool says_geometric(const VariableInfo& variable) {
   std::vector<std::string> words = plain_words(variable.name);
   for (const std::string& word : plain_words(variable.long_name)) words.push_back(word);
@@ -206,7 +206,7 @@ class Look {
     }
   }
 
-  /// A pressure altitude is no height of GPS, whatever it is called; one that may be either is not sure.
+  /// A pressure altitude is not a height of GPS under any name; a height that may be either is not sure.
   void tell_heights_apart() {
     constexpr std::string_view series = "altitude";
     std::vector<std::string> pressures = static_pressures_of(flight_, ModelDefinition());
@@ -312,12 +312,12 @@ class Look {
         has_static ? std::pair("static_pressure", "dynamic") : std::pair("dynamic_pressure", "static");
     return fmt::format(
         "{}: it has {} ({}), but no {} pressure of a known name, unit and size, without which nothing can be "
-        "corrected; {}ask for the file with the {} pressure, or name it in the [variables] of a model",
+        "corrected; {}get the file with the {} pressure, or name it in the [variables] of a model",
         flight_.path().string(), evidence_.at(there).front().variable, evidence_.at(there).front().why,
         wanted, has_static ? dynamic_pressure_by_airspeed() : "", wanted);
   }
 
-  /// How a dynamic pressure follows from a Mach number or an airspeed; empty where there is neither.
+  /// The formula of a dynamic pressure by a Mach number or an airspeed; empty without both.
   std::string dynamic_pressure_by_airspeed() const {
     const std::string pressure = in_unit(evidence_.at("static_pressure").front().variable, "hPa");
     const auto found = [this](const char* series) {
@@ -344,7 +344,7 @@ class Look {
       return "";
     }
     return fmt::format(
-        "the archive made {} from a dynamic pressure that it corrected, which comes back as QC = {} in hPa; "
+        "the archive made {} from a dynamic pressure that it corrected, which equals QC = {} in hPa; "
         "with QC in a copy of the file and both named in the [variables] of a model, a fit finds what that "
         "correction left, and not the raw error; ",
         source, formula);

@@ -22,7 +22,7 @@ std::string options_text(const ProcessOptions& options);
 /// "static-qp.a2 = 0.0308 +- 0.0012; ...".
 std::string coefficients_text(const ModelDefinition& model);
 
-/// Whether a model leaves every pressure as it is: all its coefficients are those that do nothing.
+/// Whether a model changes no pressure: all its coefficients are neutral.
 bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options);
 
 /// What an output says of its origin: names and texts of global attributes. The model is there whole, as the

@@ -340,7 +340,7 @@ void Processing::note_uncertainty() {
   }
 }
 
-/// What the results are where the archive corrected the pressures, or the model changes none.
+/// Notes that the archive corrected the pressures, or that the model changes no pressure.
 void Processing::note_archive() {
   const std::string& static_pressure = file_.variables.at(Quantity::static_pressure);
   const std::string& dynamic_pressure = file_.variables.at(Quantity::dynamic_pressure);

@@ -17,14 +17,15 @@ struct GroundVelocity {
   std::vector<Jump> against_position{};
 };
 
-/// From ground speed and track, by the roles of the model or the usual names; else from the usual components.
-/// What jumps, or contradicts the positions by more than 15 m/s for three samples and more, is missing.
+/// From ground speed and track, by the roles of the model or the usual names; otherwise from the usual
+/// components. Samples that jump, or contradict the positions by more than 15 m/s for 3 samples or more, are
+/// missing.
 GroundVelocity read_ground_velocity(const Flight& flight, const ModelDefinition& model);
 
-/// The coordinates of a flight and where they leave their path.
+/// The coordinates of a flight and their jumps.
 struct Positions {
-  RecordedSeries latitude{};            ///< deg; missing where it jumps
-  RecordedSeries longitude{};           ///< deg; missing where it jumps
+  RecordedSeries latitude{};            ///< deg; its jumps are missing
+  RecordedSeries longitude{};           ///< deg; its jumps are missing
   std::vector<Jump> latitude_jumps{};   ///< m
   std::vector<Jump> longitude_jumps{};  ///< m
 };

@@ -18,7 +18,7 @@ inline constexpr double min_height_rate = 20.0;     ///< m/s
 inline constexpr double min_velocity_rate = 12.0;   ///< m/s2, of a component over the ground
 inline constexpr double min_position_rate = 100.0;  ///< m/s, of a coordinate
 
-/// Where a series leaves its path and comes back within a minute: its rate departs from that of the seconds
+/// Where a series leaves its path and returns within a minute: its rate departs from that of the seconds
 /// around by eight of its robust deviations and by more than `min_rate`. @param time s
 std::vector<Jump> find_jumps(const std::vector<double>& values, const std::vector<double>& time,
                              double min_rate = min_height_rate);

@@ -40,7 +40,7 @@ HeightEvidence compare_height(const std::vector<double>& height, const std::vect
   for (double& each : differences) each = std::abs(each - evidence.bias);
   evidence.scatter = deviation_of_median * median(std::move(differences));
   const auto [least, most] = std::minmax_element(pressures.begin(), pressures.end());
-  // Of the steps in which both are recorded; a step of height is one of pressure by the gradient there.
+  // Both are recorded in steps; the gradient converts a step of height to one of pressure.
   const double middle = pressure_altitude(median(pressures));
   const double gradient = standard_pressure(middle) - standard_pressure(middle + 1.0);
   const double rounding =

@@ -8,25 +8,25 @@
 
 namespace pcor::internal {
 
-/// What the pressures of a flight say of a height.
+/// The result of comparing a height with the pressures of its flight.
 struct HeightEvidence {
   enum class Kind {
     gps,                ///< it departs from the heights of all static pressures as a geometric height does
-    undecided,          ///< it is close to one of them, and the flight is no test
+    undecided,          ///< it is close to one of them, and the flight cannot decide
     pressure_altitude,  ///< it is the height of one of them in the standard atmosphere
   };
   Kind kind = Kind::gps;
-  std::string pressure{};  ///< the static pressure that it is closest to; empty where there is none
+  std::string pressure{};  ///< the static pressure that it is closest to; empty without any
   double bias = 0.0;       ///< hPa, the median of the pressure of the height less that pressure
   double scatter = 0.0;    ///< hPa, about the median, robust
 };
 
 /// Compares a height with one static pressure by the standard atmosphere. A pressure altitude agrees to the
-/// resolution of both, within 1 hPa in the mean; a height of GPS departs by the weather, some hPa.
+/// resolution of both, within 1 hPa in the mean; a height of GPS departs by the weather, about 5 to 12 hPa.
 /// @param height m  @param pressure hPa
 HeightEvidence compare_height(const std::vector<double>& height, const std::vector<double>& pressure);
 
-/// The same with those of several static pressures that speaks most against GPS.
+/// Compares a height with several static pressures; returns the comparison that is closest.
 HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& height,
                                const std::vector<std::string>& pressures);
 

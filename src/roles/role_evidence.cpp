@@ -241,7 +241,7 @@ std::vector<std::string> plain_words(std::string_view text) {
 
 namespace {
 
-/// Of one series, or of all where none is named.
+/// The candidates for one series, or for all if `series` is empty.
 std::map<std::string, std::vector<RoleCandidate>> candidates_of(const Flight& flight,
                                                                 std::string_view series) {
   std::map<std::string, std::vector<RoleCandidate>> all;

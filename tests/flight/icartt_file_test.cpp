@@ -106,7 +106,7 @@ TEST_F(Icartt, RecordWithoutLineEndIsKeptWhereComplete) {
     EXPECT_EQ(flight.records(), 3U) << cut;
     EXPECT_EQ(flight.file().notes().size(), 1U) << cut;
   }
-  // Of whole numbers with and without a third digit nothing tells 31 from the begin of 310.
+  // Whole numbers have two or three digits, so 31 may be 310 without its end.
   EXPECT_EQ(Flight(write(head + "47076, 1, 1, 31\n47077, 1, 1, 310\n47078, 1, 1, 31")).records(), 2U);
 }
 

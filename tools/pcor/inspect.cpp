@@ -67,7 +67,7 @@ std::vector<std::string> next_commands(const Options& options, const Inspection&
     const std::string roles = options.roles.empty() ? "" : " --roles " + shell_quote(options.roles);
     commands.push_back(command("inspect", flight, roles + stamp + " --write-model model.toml"));
   }
-  // What a corrected pair still needs a fit finds only where the flight determines the level.
+  // A fit corrects a corrected pair further only if the flight determines the level.
   const bool determines_level = flight.by_gps && flight.by_gps->level < 1.0;
   if (reference.empty() || (flight.is_corrected && !determines_level)) {
     commands.push_back(command("process", flight, model + corrected));

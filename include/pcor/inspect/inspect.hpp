@@ -77,7 +77,7 @@ struct Inspection {
   std::vector<Problem> problems{};
   /// What a law can be fitted to, as `--reference` takes it: "wind" and "height"; empty: nothing.
   std::vector<std::string> references{};
-  std::string why_no_model{};  ///< what its pressures lack; empty where there is a model
+  std::string why_no_model{};  ///< what its pressures lack; empty if it has a model
   bool has_results = false;    ///< its inputs have names that `process` gives its results
   bool is_corrected = false;   ///< the pressures of the model are corrected already
   std::string
