@@ -1,0 +1,2 @@
+TOOL: str
+MODELS: str
