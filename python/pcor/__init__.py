@@ -13,7 +13,8 @@ from ._flight import open
 from ._model import Loop, Model, model, quality, quantities
 from ._pcor import version as __version__
 from ._result import Result
-from ._tool import run
+from ._tool import data, run
 
-__all__ = ["Error", "Loop", "Model", "Result", "add", "check", "compare", "diagnose", "effects", "help", "improve",
-           "inspect", "model", "open", "process", "quality", "quantities", "refit", "run", "simulate", "temperature"]
+__all__ = ["Error", "Loop", "Model", "Result", "add", "check", "compare", "data", "diagnose", "effects", "help",
+           "improve", "inspect", "model", "open", "process", "quality", "quantities", "refit", "run", "simulate",
+           "temperature"]

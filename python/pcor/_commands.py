@@ -11,12 +11,13 @@ from typing import Any, Optional, Sequence, Union
 import xarray as xr
 
 from . import _flight
+from ._error import Error
 from ._flight import PathLike
 from ._model import Model
 from ._result import Result
 from ._tool import Progress, run
 
-Flight = Union[PathLike, xr.Dataset]
+Flight = Union[PathLike, xr.Dataset, Result]
 Flights = Union[Flight, Sequence[Flight]]
 ModelLike = Union[PathLike, Model, Result]
 
@@ -24,7 +25,9 @@ ModelLike = Union[PathLike, Model, Result]
 def _word(value: Any, folder: Path) -> str:
     """A value as the tool takes it; what is in memory goes through a file in the folder."""
     if isinstance(value, Result):
-        value = value.fitted_model
+        if value.output is None:
+            raise Error(f"the result of {value.command} is neither a model nor a flight", "usage")
+        value = value.output
     if isinstance(value, str) and "\n" in value:
         value = Model(value)
     if isinstance(value, Model):
@@ -105,7 +108,8 @@ def process(flights: Flights, *, output: Optional[PathLike] = None, **options: A
 
 def simulate(scenario: PathLike, *, output: Optional[PathLike] = None, **options: Any) -> Result:
     """Simulates a flight whose true pressures are known. The result has the `dataset`."""
-    return _call("simulate", scenario, {"output": output, **options}, "flight.nc")
+    name = "-".join([Path(scenario).stem, *(str(seed) for seed in [options.get("seed")] if seed is not None)])
+    return _call("simulate", scenario, {"output": output, **options}, f"{name}.nc")
 
 
 def effects(id: Optional[str] = None, **options: Any) -> Result:

@@ -20,3 +20,6 @@ class Error(Exception):
         self.code = code
         self.status = status
         self.command = command
+
+
+Error.__module__ = "pcor"

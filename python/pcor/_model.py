@@ -12,7 +12,7 @@ import xarray as xr
 from . import _pcor
 from ._error import Error
 from ._flight import PathLike, values
-from ._tool import models
+from ._tool import data
 
 quantities: dict[str, tuple[str, str, bool]] = _pcor.quantities
 """Unit, description and whether it is recorded (a role) of every quantity, by name."""
@@ -21,7 +21,6 @@ quality: dict[str, tuple[int, str]] = _pcor.quality
 """Bit and meaning of every quality flag, by name."""
 
 standard_names = {
-    "static_defect": None,
     "corrected_static_pressure": "air_pressure",
     "ambient_temperature": "air_temperature",
     "lams_temperature": "air_temperature",
@@ -32,7 +31,7 @@ standard_names = {
 def model_folders() -> list[Path]:
     """Where models are found by name: the folders of the environment variable PCOR_MODELS, then the package's."""
     own = [Path(folder) for folder in os.environ.get("PCOR_MODELS", "").split(":") if folder]
-    return [*own, models]
+    return [*own, data / "models"]
 
 
 def _find(source: str) -> Path:
@@ -51,6 +50,8 @@ class Model:
 
     `source` is a name ("c130-psfd-eq18"), the path of a model file, or the text of one.
     """
+
+    _definition: _pcor.ModelDefinition
 
     def __init__(self, source: Union[PathLike, "Model"]):
         self.path: Optional[Path] = None
@@ -168,7 +169,7 @@ def _as_dataset(results: Mapping[str, np.ndarray], flight: xr.Dataset, like: str
     for name, array in results.items():
         unit, description, _ = quantities[name]
         attributes = {"units": unit, "long_name": description}
-        if standard_names.get(name):
+        if name in standard_names:
             attributes["standard_name"] = standard_names[name]
         dataset[name] = xr.DataArray(array, dims=template.dims, attrs=attributes)
     return dataset

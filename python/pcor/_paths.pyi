@@ -1,2 +1,2 @@
 TOOL: str
-MODELS: str
+DATA: str

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import io
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -21,7 +21,7 @@ def _regimes(result: Any, ax: Any, model: int = 0) -> None:
     error = np.array([row.bias_stderr_hpa or np.nan for row in rows])
     ax.errorbar(bias, places, xerr=error, fmt="o", capsize=3, label="bias with standard error")
     ax.plot([row.rms_hpa for row in rows], places, "|", ms=12, label="rms")
-    ax.plot([row.noise_rms_hpa or np.nan for row in rows], places, "k:", marker=".", lw=0, label="noise rms")
+    ax.plot([row.noise_rms_hpa or np.nan for row in rows], places, "k.", label="noise rms")
     ax.axvline(0, color="0.7", lw=0.8, zorder=0)
     ax.set_yticks(places, [row.name for row in rows])
     ax.invert_yaxis()
@@ -31,11 +31,11 @@ def _regimes(result: Any, ax: Any, model: int = 0) -> None:
 
 def _variable(result: Any, ax: Any, variable: str = "", model: int = 0, bins: int = 12) -> None:
     x, y = [], []
-    paths = [word for word in result._arguments if not word.startswith("--")]
-    for path, residuals in zip(paths, result.residuals()):
-        with _flight.open(path) as flight:
+    paths = {Path(word).name: word for word in result._arguments if not word.startswith("--")}
+    for of, residuals in zip(result.models[0].flights, result.residuals()):
+        with _flight.open(paths[of.name]) as flight:
             if variable not in flight:
-                raise Error(f"{Path(path).name} has no variable '{variable}'; give variable=NAME", "variable")
+                raise Error(f"{of.name} has no variable '{variable}'; give variable=NAME", "variable")
             used = residuals.MASK.values == 0
             values = flight[variable].values.astype(float)
             ax.set_xlabel(f"{variable}, {flight[variable].attrs.get('units', '')}")
@@ -97,9 +97,11 @@ def _holdout(result: Any, ax: Any) -> None:
     ax.legend(fontsize="small")
 
 
-_pictures = {"compare": {"regimes": _regimes, "variable": _variable},
-             "refit": {"coefficients": _coefficients, "holdout": _holdout},
-             "improve": {"ladder": _ladder}}
+_pictures: dict[str, dict[str, Callable[..., None]]] = {
+    "compare": {"regimes": _regimes, "variable": _variable},
+    "refit": {"coefficients": _coefficients, "holdout": _holdout},
+    "improve": {"ladder": _ladder},
+}
 
 
 def draw(result: Any, kind: Optional[str] = None, ax: Any = None, **options: Any) -> Any:

@@ -51,6 +51,8 @@ _tables = {"compare": "regimes", "refit": "coefficients", "diagnose": "findings"
            "check": "checks", "inspect": "roles", "effects": "effects"}
 
 _summaries: dict[str, Callable[[Any], str]] = {
+    "inspect": lambda r: "; ".join(f"{f.path}: {f.aircraft}, {f.begin} to {f.end}, {len(f.roles)} roles"
+                                   for f in r.flights),
     "compare": lambda r: "; ".join(f"{m.name} against {m.reference}: rms {m.rms_hpa:.3f} hPa, bias {m.bias_hpa:+.3f} "
                                    f"hPa, noise {m.noise_rms_hpa:.3f} hPa, {m.samples} samples" for m in r.models),
     "refit": lambda r: f"rms {r.rms_before_hpa:.3f} hPa before, {r.rms_hpa:.3f} hPa after the fit, noise "

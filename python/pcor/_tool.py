@@ -12,11 +12,13 @@ from pathlib import Path
 from typing import Any, Callable, NamedTuple, Optional
 
 from ._error import Error
-from ._paths import MODELS, TOOL
+from ._paths import DATA, TOOL
 
 _here = Path(__file__).parent
 tool = _here / TOOL
-models = _here / MODELS
+
+data = _here / DATA
+"""The folder of the models and scenarios that come with the package."""
 
 Progress = Callable[[str, int, int], None]
 
@@ -38,15 +40,15 @@ class _Bar:
         except ImportError:
             tqdm = None
         self._tqdm = tqdm
+        self._task = ""
         self._bar: Any = None
 
     def __call__(self, task: str, done: int, total: int) -> None:
         if self._tqdm is None:
             return
-        if self._bar is None or self._bar.desc != task:
+        if self._bar is None or self._task != task:
             self.close()
-            self._bar = self._tqdm(total=total, leave=False)
-            self._bar.desc = task
+            self._task, self._bar = task, self._tqdm(total=total, desc=task, leave=False)
         self._bar.total = total
         self._bar.update(done - self._bar.n)
 
