@@ -92,7 +92,8 @@ class ArrayModel {
   }
 
   std::map<std::string, Array> run(const std::map<std::string, Array>& arrays,
-                                   const std::vector<std::string>& wanted) const {
+                                   const std::vector<std::string>& wanted,
+                                   const std::map<std::string, Array>& out) const {
     std::vector<py::ssize_t> shape;
     std::vector<Batch::Input> inputs;
     for (const auto& [name, array] : arrays) {
@@ -109,7 +110,8 @@ class ArrayModel {
     std::map<std::string, Array> results;
     std::vector<Batch::Output> outputs;
     for (const std::string& name : wanted) {
-      const auto [result, is_new] = results.emplace(name, Array(shape));
+      const auto given = out.find(name);
+      const auto [result, is_new] = results.emplace(name, given == out.end() ? Array(shape) : given->second);
       if (is_new) outputs.push_back({known_quantity(name), result->second.mutable_data()});
     }
     {

@@ -57,6 +57,17 @@ def test_shapes_and_other_number_types_are_kept():
     assert model.delta_p(**{name: array[:0] for name, array in arrays.items()}).shape == (0,)
 
 
+def test_results_are_written_into_given_arrays():
+    arrays, model = recorded(), pcor.Model("c130-psfd-eq18")
+    out = {"static_defect": np.empty(SAMPLES)}
+    result = model.correct(**arrays, outputs=["static_defect"], out=out)
+    assert np.shares_memory(result["static_defect"], out["static_defect"])
+    np.testing.assert_array_equal(out["static_defect"], model.delta_p(**arrays))
+    for wrong in np.empty(SAMPLES - 1), np.empty(SAMPLES, np.float32), np.empty(2 * SAMPLES)[::2], arrays["static_pressure"]:
+        with pytest.raises(pcor.Error, match="static_defect"):
+            model.correct(**arrays, out={"static_defect": wrong})
+
+
 def test_missing_values_stay_missing():
     arrays = recorded()
     arrays["static_pressure"][3] = np.nan
