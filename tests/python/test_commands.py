@@ -80,8 +80,8 @@ def test_flights_in_memory_serve_as_flights(in_folder):
     from_file = pcor.compare("first.nc", model="model.toml", reference="lams").models[0]
     # float32 in both files: the very same values
     assert from_memory.rms_hpa == from_file.rms_hpa and from_memory.samples == from_file.samples
-    # What is changed in memory is what counts: with 1 hPa more at the port the total pressure is higher by as much, and
-    # the static pressure of the laser by its share p/(p+q) of it.
+    # The values in memory are used: 1 hPa more at the port raises the total pressure by 1 hPa, and the static pressure
+    # of the laser by p/(p+q) hPa.
     changed = flight.assign(PSFD=(flight.PSFD + 1.0).assign_attrs(flight.PSFD.attrs))
     moved = pcor.compare(changed, model="model.toml", reference="lams").models[0]
     flying = flight.where(flight.TASX > 60)

@@ -10,7 +10,7 @@
 namespace pcor::tool {
 namespace {
 
-/// The file descriptor for events; 0 where none is wanted.
+/// The file descriptor for events; 0 without PCOR_EVENTS.
 int descriptor() {
   static const int number = [] {
     const char* const given = std::getenv("PCOR_EVENTS");
