@@ -102,8 +102,9 @@ def temperature(flights: Flights, *, model: ModelLike, output: Optional[PathLike
 
 def process(flights: Flights, *, output: Optional[PathLike] = None, **options: Any) -> Result:
     """Corrects flights by the real-time loop, with quality flags and uncertainties. Of one flight the result has the
-    `dataset` with PCOR, PSXC, QCXC, MACHX, ATX, TASX and their units; several need a folder as `output`."""
-    return _call("process", flights, {"output": output, **options}, "corrected.nc")
+    `dataset` with PCOR, PSXC, QCXC, MACHX, ATX, TASX and their units; several are written into the folder `output`."""
+    several = isinstance(flights, (list, tuple)) and len(flights) > 1
+    return _call("process", flights, {"output": output, **options}, "corrected" if several else "corrected.nc")
 
 
 def simulate(scenario: PathLike, *, output: Optional[PathLike] = None, **options: Any) -> Result:

@@ -47,6 +47,12 @@ def _rows(result: "Result", name: str) -> list[dict[str, Any]]:
     raise Error(f"there is no table '{name}' in this result", "usage")
 
 
+def _without_outputs(text: str) -> Any:
+    """A result without the names of what was written, which differ from run to run."""
+    return json.loads(text, object_hook=lambda each: {key: value for key, value in each.items()
+                                                      if key not in ("model", "output", "choices")})
+
+
 _tables = {"compare": "regimes", "refit": "coefficients", "diagnose": "findings", "improve": "steps",
            "check": "checks", "inspect": "roles", "effects": "effects"}
 
@@ -61,6 +67,8 @@ _summaries: dict[str, Callable[[Any], str]] = {
                                                        if r.findings else "no effect of the catalogue was found"),
     "improve": lambda r: f"added: {', '.join(s.added for s in r.steps if s.added and not s.get('refused')) or 'nothing'}; "
                          f"{r.why_stopped}",
+    "process": lambda r: "; ".join(f"{f.input}: {f.corrected} of {f.samples} samples corrected"
+                                   for f in r.get("flights", [r]) if f.state == "processed"),
     "check": lambda r: "; ".join(f"{c.name}: {c.verdict}" for c in r.checks if c.ran),
 }
 
@@ -145,17 +153,14 @@ class Result:
             if self.output is not None:
                 arguments.append(f"--output={folder}/{self.output.name}")
             stdout = run([self.command, *arguments, "--json=-", option], self._progress).stdout
-        paths = ("model", "output", "choices")
-        first, second = ({key: value for key, value in json.loads(text).items() if key not in paths}
-                         for text in (self._text, stdout))
-        if first != second:
+        if _without_outputs(self._text) != _without_outputs(stdout):
             raise Error("the inputs have changed since this result: it is not that of the report or the residuals; "
                         "run the command again", "file")
 
     def to_frame(self, table: Optional[str] = None) -> Any:
         """A table of the result as a pandas.DataFrame: a list of the JSON by its name ("regimes", "bands", "flights",
         "findings", "steps", "checks"), "coefficients" of a fit or "roles" of an inspection."""
-        import pandas
+        import pandas  # type: ignore[import-untyped]
 
         name = table or _tables.get(self.command)
         if name is None:

@@ -112,6 +112,19 @@ def test_report_is_written_and_leaves_the_output(in_folder):
     assert os.stat("kept.toml").st_mtime_ns == time_written
 
 
+def test_several_flights_are_processed_into_a_folder(in_folder):
+    for result in pcor.process(FLIGHTS, model="model.toml"), pcor.process(FLIGHTS, model="model.toml", output="made/"):
+        assert pcor.open(result.flights[1].output).PSXC.attrs["units"] == "hPa"
+        result.report("processed.html")
+        with pytest.raises(pcor.Error, match="no single flight"):
+            result.dataset
+
+
+def test_processes_share_the_work(in_folder):
+    assert (pcor.refit(FLIGHTS, model="model.toml", processes=2).to_json()
+            == pcor.refit(FLIGHTS, model="model.toml").to_json())
+
+
 def test_report_of_changed_inputs_is_an_error(in_folder):
     pcor.Model("model.toml").save("changing.toml")
     result = pcor.compare("first.nc", model="changing.toml")
