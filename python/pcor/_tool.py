@@ -48,7 +48,7 @@ class _Bar:
             return
         if self._bar is None or self._task != task:
             self.close()
-            self._task, self._bar = task, self._tqdm(total=total, desc=task, leave=False)
+            self._task, self._bar = task, self._tqdm(total=total, desc=task, leave=False, delay=0.5)
         self._bar.total = total
         self._bar.update(done - self._bar.n)
 

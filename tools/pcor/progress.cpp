@@ -19,7 +19,7 @@ constexpr auto min_wait = std::chrono::milliseconds(500);
 Progress::Progress(std::string task, bool wanted)
     : task_(std::move(task)),
       wanted_(wanted && (wants_events() || isatty(fileno(stderr)) == 1)),
-      last_(std::chrono::steady_clock::now()) {}
+      last_(wants_events() ? std::chrono::steady_clock::time_point() : std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() { erase(); }
 

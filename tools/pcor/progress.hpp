@@ -7,7 +7,8 @@
 namespace pcor::tool {
 
 /// A progress bar on standard error. It shows on a terminal only, after half a second of work, so that logs
-/// and short runs stay clean. A program that wants events gets the numbers instead.
+/// and short runs stay clean. A program that wants events gets the
+/// numbers instead, the first at once.
 class Progress {
  public:
   Progress(std::string task, bool wanted);
