@@ -15,6 +15,8 @@
 #include "numerics/missing.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "residuals/masks.hpp"
+#include "roles/jumps.hpp"
+#include "roles/pressure_height.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -77,6 +79,14 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
 void find_heights(const Flight& flight, const ModelDefinition& model, FlightAir& air) {
   RecordedSeries height = read_role(flight, model, Quantity::altitude);
   air.height_variable = height.values.empty() ? height.without_unit : height.variable;
+  const HeightEvidence evidence = height_evidence(flight, height.values, static_pressures_of(flight, model));
+  if (evidence.kind == HeightEvidence::Kind::pressure_altitude) {
+    air.notes.push_back(fmt::format("{} is a pressure altitude and no height of GPS: {}", height.variable,
+                                    to_string(evidence)));
+    air.height_variable.clear();
+    height.values.clear();
+  }
+  mask(find_jumps(height.values, record_times(flight)), height.values);
   air.height = std::move(height.values);
   air.latitude = read_role(flight, model, Quantity::latitude).values;
   air.pressure_altitude.resize(air.size());

@@ -222,7 +222,7 @@ std::vector<BaseCoefficient> base_of(const ModelDefinition& model) {
     const std::vector<std::string> names = parameter_names(effect);
     const EffectInfo* const info = effect.is_formula() ? nullptr : &effect_info[effect_named(effect.id)];
     for (std::size_t p = 0; p < names.size(); ++p) {
-      if (model.fit(e, p).fixed) continue;
+      if (model.fit(e, p).fixed || effect.is_surface()) continue;  // coefficients of a surface are held
       base.push_back({effect.id + "." + names[p],
                       std::string(info == nullptr ? "" : info->parameters[p].unit), effect.parameters[p],
                       model.bounds(e, p), false, info == nullptr ? 0.0 : info->parameters[p].typical});

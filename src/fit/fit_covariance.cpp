@@ -305,10 +305,10 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
     }
     first += own;
   }
-  const Eigen::MatrixXd prior = prior_rows(task, parameters);
-  const Eigen::MatrixXd drawn = last.solution.deviation * last.solution.deviation * prior.transpose() * prior;
-  derivatives.leftCols(fitted) += drawn;
-  score += last.solution.deviation * last.solution.deviation * drawn;
+  const PriorRows prior = prior_rows(task, parameters);
+  const double unit = last.solution.deviation * last.solution.deviation;
+  derivatives.leftCols(fitted) += unit * prior.rows.transpose() * prior.rows;
+  score += unit * unit * prior.rows.transpose() * prior.inflation.asDiagonal() * prior.rows;
 
   FitCovariance found;
   found.information = information_of(*last.flights);

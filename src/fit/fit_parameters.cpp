@@ -25,6 +25,7 @@ void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition
       parameter.start = effect.parameters[p];
       parameter.bounds = file.bounds(e, p);
       parameter.fixed = !fitted || file.fit(e, p).fixed;
+      if (effect.is_surface()) parameter.unit = "1";
       if (effect.is_formula()) continue;
       const EffectInfo& info = effect_info[effect_named(effect.id)];
       parameter.unit = info.parameters[p].unit;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/fit_parameters.hpp"
+#include "fit/surface_roughness.hpp"
 #include "parallel/flight_partition.hpp"
 #include "parallel/workers.hpp"
 
@@ -25,6 +26,17 @@ struct FitTask {
   /// Whether the parameters after those of the model also belong to this reference's system. A system that
   /// only a further reference reads keeps the values of its file.
   bool shares_system = true;
+
+  /// The prior of each surface of the model, of which the fit finds the size.
+  std::vector<SurfaceRoughness> surfaces{};
+
+  /// The surface of which the parameter is a coefficient; null for other parameters.
+  const SurfaceRoughness* surface_of(std::size_t parameter) const {
+    for (const SurfaceRoughness& surface : surfaces) {
+      if (surface.has(parameter)) return &surface;
+    }
+    return nullptr;
+  }
 
   /// Flights at a time, in one process.
   std::size_t threads() const { return Workers(flights.comm(), options.threads).threads; }

@@ -41,13 +41,14 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
   const FitTask& task = flights.task();
   const ScaledLoss loss(task.options.loss, solution.deviation);
   const Eigen::Index size = as_index(wanted.size());
-  const Eigen::MatrixXd prior = solution.deviation * prior_rows(task, wanted);
-  // Rows of derivatives and residual at some coefficients, with prior rows.
+  const PriorRows drawn = prior_rows(task, wanted);
+  const Eigen::MatrixXd prior = solution.deviation * drawn.rows;
+  // Rows of derivatives and residual at some coefficients, with what draws these to their start.
   const auto rows_at = [&](const Eigen::VectorXd& values) {
     Eigen::MatrixXd rows(size + prior.rows(), size + 1);
     rows.topRows(size) = flights.reduce(values, loss).factor.topRows(size);
     rows.bottomLeftCorner(prior.rows(), size) = prior;
-    rows.bottomRightCorner(prior.rows(), 1) = prior * (values(wanted) - task.start(wanted));
+    rows.bottomRightCorner(prior.rows(), 1) = prior * (values(wanted) - drawn.centre);
     task.tell();
     return rows;
   };

@@ -23,13 +23,16 @@ Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference&
   return covariance;
 }
 
-Eigen::MatrixXd prior_rows(const FitTask& task, const std::vector<std::size_t>& wanted) {
+namespace {
+
+Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>& wanted) {
   const Eigen::Index size = as_index(wanted.size());
   if (!task.uses_prior()) return Eigen::MatrixXd(0, size);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, size);
   std::vector<Eigen::Index> stated;
   for (Eigen::Index k = 0; k < size; ++k) {
     const std::size_t parameter = wanted[static_cast<std::size_t>(k)];
+    if (task.surface_of(parameter) != nullptr) continue;
     const double typical = task.parameters[parameter].typical;
     if (task.doubt(as_index(parameter), as_index(parameter)) > 0.0) {
       stated.push_back(k);
@@ -49,6 +52,30 @@ Eigen::MatrixXd prior_rows(const FitTask& task, const std::vector<std::size_t>& 
       solver.eigenvalues().cwiseMax(min_eigenvalue).cwiseSqrt().cwiseInverse().asDiagonal() *
       solver.eigenvectors().transpose() * scale.asDiagonal();
   return rows;
+}
+
+}  // namespace
+
+PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& wanted) {
+  PriorRows prior{stated_rows(task, wanted), task.start(wanted), {}};
+  prior.inflation = Eigen::VectorXd::Ones(prior.rows.rows());
+  for (const SurfaceRoughness& surface : task.surfaces) {
+    std::vector<Eigen::Index> columns;
+    std::vector<Eigen::Index> own;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      if (!surface.has(wanted[k])) continue;
+      columns.push_back(as_index(k));
+      own.push_back(as_index(wanted[k] - surface.first));
+    }
+    if (own.empty()) continue;
+    const Eigen::MatrixXd penalty = std::sqrt(surface.inflation) * surface.rows()(Eigen::all, own);
+    const Eigen::Index before = prior.rows.rows();
+    prior.rows.conservativeResizeLike(Eigen::MatrixXd::Zero(before + penalty.rows(), prior.rows.cols()));
+    prior.rows.bottomRows(penalty.rows())(Eigen::all, columns) = penalty;
+    prior.inflation.conservativeResizeLike(Eigen::VectorXd::Constant(prior.rows.rows(), surface.inflation));
+    prior.centre(columns).setZero();
+  }
+  return prior;
 }
 
 }  // namespace pcor::internal

@@ -59,6 +59,7 @@ FitTask task_of(const ModelDefinition& model, const References& references, cons
   const Reference& reference = first_of(references);
   FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
   task.doubt = stated_covariance(model, reference);
+  task.surfaces = surfaces_of(model.model, reference.model());
   task.start.resize(as_index(task.parameters.size()));
   for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
   task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
@@ -144,7 +145,14 @@ Fitted at_start(const FitTask& task, const std::vector<std::vector<std::size_t>>
   return fitted;
 }
 
-Fitted fit_in_stages(const FitTask& task) {
+/// The size of surfaces and their coefficients, in turn.
+void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
+  constexpr int max_rounds = 6;
+  for (int round = 0; round < max_rounds && find_roughness(flights, solution, task.surfaces); ++round)
+    solution = solve(flights, std::move(solution));
+}
+
+Fitted fit_in_stages(FitTask& task) {
   const std::vector<std::vector<std::size_t>> stages =
       fit_stages(task.parameters, task.options.stages, task.model.model.name);
   Fitted fitted = at_start(task, stages);
@@ -153,7 +161,8 @@ Fitted fit_in_stages(const FitTask& task) {
   for (int round = 0; round < max_masks; ++round) {
     fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
     solution = solve(*fitted.flights, std::move(solution));
-    // The masks use the solution, so that the start does not matter.
+    if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution);
+    // The masks are those of the solution, so that the start does not decide.
     if (!fitted.flights->masks_change_at(solution.values)) break;
   }
   if (stages.size() > 1) {
@@ -184,6 +193,14 @@ Fitted prepared_for_gps(const FitTask& task) {
                     "or give a further reference",
                     to_string(task.options.loss)));
   Fitted fitted = at_start(task, fit_stages(task.parameters, {}, task.model.model.name));
+  for (const std::size_t p : fitted.parameters) {
+    if (const SurfaceRoughness* const surface = task.surface_of(p)) {
+      throw Error(
+          fmt::format("{}: wind and heights do not determine a surface; hold it with --fix {} or give a "
+                      "further reference",
+                      surface->effect, surface->effect));
+    }
+  }
   fitted.flights = std::make_unique<FitFlights>(task, FitSetup{task.start, fitted.parameters});
   if (fitted.flights->samples() == 0) {
     throw Error(
@@ -355,7 +372,7 @@ Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
 RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, const References& references,
                 const RefitOptions& options) {
   const Reference& reference = first_of(references);
-  const FitTask task = task_of(model, references, options, fitted_flights);
+  FitTask task = task_of(model, references, options, fitted_flights);
   const bool by_gps_alone = is_by_gps(reference);
   Fitted fitted = by_gps_alone ? prepared_for_gps(task) : fit_in_stages(task);
   const Solution& solution = fitted.solution;
@@ -410,6 +427,10 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.flaps_out = compared.flaps_out;
   list_coefficients(result, task, fitted, covariance);
   add_thermometer(result, fitted, covariance);
+  for (const SurfaceRoughness& surface : task.surfaces) {
+    if (surface.degrees_of_freedom > 0.0)
+      result.surfaces.push_back({surface.effect, surface.size, surface.degrees_of_freedom});
+  }
   result.drift_rms = flights.drift_rms();
   result.left = misfit.left;
   // Gusts are in the residual of the wind: a better law need not make it smaller.

@@ -195,14 +195,14 @@ class Solver {
     return reduction.cost;
   }
 
-  Prior prior() const { return {task_.start(wanted_), solution_.deviation * prior_}; }
+  Prior prior() const { return {prior_.centre, solution_.deviation * prior_.rows}; }
 
   /// True if no unknown moved by a hundredth of its uncertainty from flights and prior.
   bool has_converged(const Eigen::VectorXd& before) {
     const Reduction reduction = flights_.reduce(solution_.values, {});
     const Eigen::VectorXd step = unknowns_ - before;
     const double by_flights = (reduction.factor.leftCols(step.size()) * step).norm();
-    const double by_prior = (prior_ * step).norm();
+    const double by_prior = (prior_.rows * step).norm();
     return std::max(by_flights, by_prior) < 0.01 * std::max(solution_.deviation, 1e-300);
   }
 
@@ -246,7 +246,7 @@ class Solver {
   const FitTask& task_;
   const std::vector<std::size_t>& wanted_;
   Solution solution_;
-  Eigen::MatrixXd prior_;
+  const PriorRows prior_;
   Eigen::VectorXd unknowns_;
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;

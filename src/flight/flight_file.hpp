@@ -61,6 +61,9 @@ class FlightFile {
   /// "valid_range = \"all\"". Empty where there is nothing of the kind.
   virtual std::string ignored_range(int /*variable*/) const { return {}; }
 
+  /// Notes on how the file was read, for its user: sentences without a full stop.
+  virtual std::vector<std::string> notes() const { return {}; }
+
   /// How many records should be read, one variable after the other, before the next are.
   virtual std::size_t records_at_once() const { return records_per_block; }
 

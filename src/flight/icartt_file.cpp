@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -79,6 +80,7 @@ class IcarttFile final : public FlightFile {
   double max_number(int variable) const override;
   std::vector<double> missing_values(int /*variable*/) const override { return {}; }
   std::array<double, 2> valid_range(int variable) const override;
+  std::vector<std::string> notes() const override { return notes_; }
   void read(int variable, RecordBlock records, double* out) const override;
 
  private:
@@ -100,6 +102,7 @@ class IcarttFile final : public FlightFile {
   std::filesystem::path path_;
   Attributes attributes_;
   std::vector<Variable> variables_;  // the time first
+  std::vector<std::string> notes_{};
 };
 
 /// Reads line after line.
@@ -225,11 +228,31 @@ class IcarttFile::Reader {
     }
   }
 
+  /// How a file writes its last field: the characters behind the point, or all of them without a point.
+  static std::pair<bool, std::size_t> format_of(const std::string& field) {
+    const std::size_t point = field.find('.');
+    return {point != std::string::npos, field.size() - (point == std::string::npos ? 0 : point)};
+  }
+
   void read_values() {
+    std::set<std::pair<bool, std::size_t>> formats;  // those of the last fields that have a value
     for (std::string line; std::getline(stream_, line);) {
       ++line_;
       const char* at = line.c_str();
       if (trimmed(line).empty()) continue;
+      const std::string last = trimmed(std::string_view(line).substr(line.rfind(',') + 1));
+      // A last line without an end may lack digits too, unless it ends as all others do.
+      if (stream_.eof()) {
+        const bool has_all =
+            fields_of(line).size() == file_.variables_.size() && formats == std::set{format_of(last)};
+        if (!has_all) {
+          file_.notes_.push_back(fmt::format(
+              "line {} of {} is left out: it is the last, ends without a line break, and may be cut "
+              "(\"{}\" at its end); fetch the file again from its source to have that record",
+              line_, file_.path_.filename().string(), last));
+          break;
+        }
+      }
       for (Variable& variable : file_.variables_) {
         char* end = nullptr;
         const double value = std::strtod(at, &end);
@@ -242,6 +265,7 @@ class IcarttFile::Reader {
         variable.values.push_back(is_missing ? nan : value * variable.scale);
         at = end + (*end == ',' ? 1 : 0);
       }
+      if (!std::isnan(file_.variables_.back().values.back())) formats.insert(format_of(last));
     }
   }
 

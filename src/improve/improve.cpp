@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <pcor/base/error.hpp>
+#include <pcor/effects/static_surface.hpp>
 #include <pcor/flight/flight.hpp>
 #include "diagnose/traced_effect.hpp"
 #include "fit/lineage.hpp"
@@ -176,6 +177,7 @@ class Climb {
     result_.model = result_.fit.model;
     result_.refitted = refitted_;
     choose_among_rivals();
+    add_surface();
     compare_with_the_given();
     return std::move(result_);
   }
@@ -280,7 +282,41 @@ class Climb {
     return tested[*choice.rival];
   }
 
-  /// Result of the whole ladder.
+  /// Where structure is left, or what goes with attack in a shape that is not determined: a smooth surface,
+  /// if it takes more than chance off what took no part in its fit.
+  void add_surface() {
+    const Diagnosis& now = diagnosis();
+    const bool has_attack = std::any_of(now.findings.begin(), now.findings.end(),
+                                        [](const Finding& finding) { return finding.family == "attack"; });
+    const bool is_open = now.verdict == Verdict::partial || now.verdict == Verdict::unexplained || has_attack;
+    if (!loop_.offer_surface || !is_open) return;
+    const TrialModel before{result_.model, delivered_.alike};
+    std::optional<SurfaceOffer> offer = loop_.offer_surface(before);
+    if (!offer) return;
+    const std::string id = offer->fit.surfaces.front().effect;
+    const Comparison& out = offer->out_of_fit;
+    const std::string figures = fmt::format(
+        "{} the rms is {} with it and {} without it (its squared residuals fall by {:.0f} +- {:.0f} in "
+        "units of the noise)",
+        offer->held_out, shown(out.rms_after), shown(out.rms_before), out.gain, out.gain_error);
+    if (!out.is_better() || !(out.rms_after <= unnamed_limit * out.rms_before)) {
+      result_.why_stopped += fmt::format("; {} was tried and dropped: {}", id, figures);
+      return;
+    }
+    ImproveStep step;
+    step.added = id;
+    step.title = std::string(surface_named(id)->title);
+    measure(step, offer->fit, before.alike);
+    step.rms_holdout = out.rms_after;
+    step.learnt =
+        fmt::format("{}: {:.1f} degrees of freedom; {}; it describes the residual and identifies no cause",
+                    id, offer->fit.surfaces.front().degrees_of_freedom, figures);
+    delivered_ = {offer->fit.model, before.alike};
+    result_.model = offer->fit.model;
+    take(std::move(step), std::move(offer->fit), {}, before.alike);
+  }
+
+  /// What the whole ladder came to.
   void compare_with_the_given() {
     std::vector<TrialFlight> tried =
         loop_.try_models({given_, {refitted_}, {result_.model, delivered_.alike}, top()});
@@ -585,6 +621,10 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   loop.try_models = [&](const std::vector<TrialModel>& models) {
     return try_models(flights, models, ordered, options.refit);
+  };
+  loop.offer_surface = [&](const TrialModel& trial) {
+    tell("testing a surface beside " + last_of(trial.file));
+    return offer_surface(flights, trial, ordered, options.refit);
   };
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
   loop.trace_variables = options.trace_variables;

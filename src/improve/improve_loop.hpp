@@ -4,6 +4,7 @@
 
 #include <pcor/improve/improve.hpp>
 #include "improve/model_trials.hpp"
+#include "improve/surface_offer.hpp"
 
 namespace pcor::internal {
 
@@ -20,7 +21,9 @@ struct ImproveLoop {
   std::function<Diagnosis(const TrialModel& model)> diagnose;
   std::function<TrialModel(const TrialModel& model, const AddedEffect& added)> add;
   std::function<std::vector<TrialFlight>(const std::vector<TrialModel>& models)> try_models;
-  bool has_holdout = false;     ///< the refit has held-out samples
+  /// May be empty: then no surface is offered.
+  std::function<std::optional<SurfaceOffer>(const TrialModel& model)> offer_surface;
+  bool has_holdout = false;     ///< the refit tells of samples that are held out
   bool trace_variables = true;  ///< as in `ImproveOptions`
   std::size_t max_steps = 8;    ///< maximum number of added effects
   std::string flights{};        ///< description for the source of a traced formula

@@ -15,6 +15,7 @@
 #include <pcor/roles/resolve_variables.hpp>
 #include "inspect/plausibility.hpp"
 #include "residuals/ground_velocity.hpp"
+#include "roles/pressure_height.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/resolution.hpp"
 #include "roles/role_evidence.hpp"
@@ -89,6 +90,21 @@ std::vector<std::string> effects_that_need(Quantity role) {
   return effects;
 }
 
+/// Whether the words of a file state that a height is geometric.
+bool says_geometric(const VariableInfo& variable) {
+  std::vector<std::string> words = plain_words(variable.name);
+  for (const std::string& word : plain_words(variable.long_name)) words.push_back(word);
+  for (const auto& [name, value] : variable.attributes) {
+    if (name == "standard_name" && (value == "altitude" || value == "height_above_reference_ellipsoid"))
+      return true;
+  }
+  constexpr std::array<std::string_view, 7> geometric{"gps",   "gnss",      "wgs", "geometric",
+                                                      "geoid", "ellipsoid", "msl"};
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return std::find(geometric.begin(), geometric.end(), word) != geometric.end();
+  });
+}
+
 /// One flight that is looked at.
 class Look {
  public:
@@ -106,7 +122,10 @@ class Look {
     find_roles();
     find_unused();
     look_at_samples();
-    if (result_.model) result_.problems = find_problems(flight_, *result_.model);
+    if (result_.model) {
+      for (Problem& problem : find_problems(flight_, *result_.model))
+        result_.problems.push_back(std::move(problem));
+    }
     state_rounding();
     result_.laws = model_candidates(flight_, laws, result_.notes);
     result_.corrected_pressure = processed_static_pressure(flight_, family_);
@@ -152,7 +171,8 @@ class Look {
     } catch (const Error& error) {
       if (error.code() == Error::Code::file) throw;
       if (!take_pressures_by_evidence(model)) {
-        result_.notes.emplace_back(what_pressures_lack(error));
+        result_.why_no_model = what_pressures_lack(error);
+        result_.notes.push_back(result_.why_no_model);
         return;
       }
     }
@@ -162,6 +182,9 @@ class Look {
         result_.notes.push_back(note);
       }
     }
+    if (const auto altitude = model.variables.find(Quantity::altitude);
+        altitude != model.variables.end() && pressure_altitudes_.count(altitude->second) != 0)
+      model.variables.erase(altitude);
     add_roles_by_evidence(model);
     const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
     model.model.effects = {neutral_effect("static-constant"), neutral_effect("static-qp")};
@@ -176,9 +199,71 @@ class Look {
 
   void find_candidates() {
     evidence_ = role_candidates(flight_);
+    tell_heights_apart();
     for (const auto& [series, candidates] : evidence_) {
       for (const RoleCandidate& each : candidates)
         result_.candidates[series].push_back({each.variable, each.score, each.why});
+    }
+  }
+
+  /// A pressure altitude is not a height of GPS under any name; a height that may be either is not sure.
+  void tell_heights_apart() {
+    constexpr std::string_view series = "altitude";
+    std::vector<std::string> pressures = static_pressures_of(flight_, ModelDefinition());
+    for (const RoleCandidate& each : evidence_["static_pressure"]) {
+      if (std::find(pressures.begin(), pressures.end(), each.variable) == pressures.end())
+        pressures.push_back(each.variable);
+    }
+    const QuantityInfo& info = *series_named(series);
+    const auto evidence_of = [&](const std::string& variable) {
+      const UnitConversion conversion =
+          flight_.conversion(variable, std::string(info.unit), "", family_.unit_of(variable));
+      const HeightEvidence evidence = height_evidence(
+          flight_, read_values(flight_, variable, believed(conversion, info)).values, pressures);
+      if (evidence.kind == HeightEvidence::Kind::pressure_altitude &&
+          pressure_altitudes_.insert(variable).second) {
+        result_.problems.push_back(
+            {variable, "pressure altitude, by that of " + evidence.pressure,
+             fmt::format("{} to {}", utc_text(flight_.time().first),
+                         utc_text(flight_.time().last, "%H:%M:%S")),
+             evidence.scatter, "hPa",
+             "not taken as altitude, which is a height of GPS: a fit to it would be circular"});
+      }
+      return evidence;
+    };
+    for (const std::string& name : family_.names_of(series)) {
+      if (has_values(flight_, name, std::string(info.unit), family_.unit_of(name))) evidence_of(name);
+    }
+    std::vector<RoleCandidate>& candidates = evidence_[std::string(series)];
+    for (RoleCandidate& each : candidates) {
+      if (!is_convertible(flight_.variable(each.variable).units, std::string(info.unit))) continue;
+      const HeightEvidence evidence = evidence_of(each.variable);
+      if (evidence.kind == HeightEvidence::Kind::gps) continue;
+      each.why += "; " + to_string(evidence);
+      if (evidence.kind == HeightEvidence::Kind::pressure_altitude) {
+        evidence_["other_altitude"].push_back(each);
+      } else if (!says_geometric(flight_.variable(each.variable))) {
+        each.score = std::min(each.score, sure_score - 0.01);
+        result_.notes.push_back(
+            fmt::format("{} may be a height of GPS or a pressure altitude: {}; it is not taken; if it is a "
+                        "height of GPS, write altitude = \"{}\" into the [variables] of the model",
+                        each.variable, to_string(evidence), each.variable));
+      }
+    }
+    candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                    [this](const RoleCandidate& each) {
+                                      return pressure_altitudes_.count(each.variable) != 0;
+                                    }),
+                     candidates.end());
+    for (const char* const name : {"altitude", "other_altitude", "static_pressure"}) {
+      const auto found = evidence_.find(name);
+      if (found == evidence_.end()) continue;
+      if (found->second.empty()) {
+        evidence_.erase(found);
+        continue;
+      }
+      std::stable_sort(found->second.begin(), found->second.end(),
+                       [](const RoleCandidate& a, const RoleCandidate& b) { return a.score > b.score; });
     }
   }
 
@@ -227,9 +312,68 @@ class Look {
         has_static ? std::pair("static_pressure", "dynamic") : std::pair("dynamic_pressure", "static");
     return fmt::format(
         "{}: it has {} ({}), but no {} pressure of a known name, unit and size, without which nothing can be "
-        "corrected; ask for the file with the {} pressure, or name it in the [variables] of a model",
+        "corrected; {}get the file with the {} pressure, or name it in the [variables] of a model",
         flight_.path().string(), evidence_.at(there).front().variable, evidence_.at(there).front().why,
-        wanted, wanted);
+        wanted, has_static ? dynamic_pressure_by_airspeed() : "", wanted);
+  }
+
+  /// The formula of a dynamic pressure by a Mach number or an airspeed; empty without both.
+  std::string dynamic_pressure_by_airspeed() const {
+    const std::string pressure = in_unit(evidence_.at("static_pressure").front().variable, "hPa");
+    const auto found = [this](const char* series) {
+      const auto candidates = evidence_.find(series);
+      return candidates == evidence_.end() ? std::string() : candidates->second.front().variable;
+    };
+    const std::string mach = found("mach");
+    const std::string airspeed = found("true_airspeed");
+    const std::string temperature = found("ambient_temperature");
+    const std::string indicated = indicated_airspeed();
+    std::string source;
+    std::string formula;
+    if (!mach.empty()) {
+      source = mach;
+      formula = fmt::format("{} * ((1 + 0.2 * {}^2)^3.5 - 1)", pressure, in_unit(mach, "1"));
+    } else if (!indicated.empty()) {
+      source = indicated;
+      formula = fmt::format("1013.25 * ((1 + 0.2 * ({} / 340.294)^2)^3.5 - 1)", in_unit(indicated, "m/s"));
+    } else if (!airspeed.empty() && !temperature.empty()) {
+      source = fmt::format("{} and {}", airspeed, temperature);
+      formula = fmt::format("{} * ((1 + {}^2 / (2009 * {}))^3.5 - 1)", pressure, in_unit(airspeed, "m/s"),
+                            in_unit(temperature, "K"));
+    } else {
+      return "";
+    }
+    return fmt::format(
+        "the archive made {} from a dynamic pressure that it corrected, which equals QC = {} in hPa; "
+        "with QC in a copy of the file and both named in the [variables] of a model, a fit finds what that "
+        "correction left, and not the raw error; ",
+        source, formula);
+  }
+
+  /// A variable in a unit, as a formula has it.
+  std::string in_unit(const std::string& variable, const std::string& unit) const {
+    const UnitConversion conversion = flight_.conversion(variable, unit);
+    std::string text = variable;
+    if (conversion.scale() != 1.0) text = fmt::format("{:.6g} * {}", conversion.scale(), text);
+    if (conversion.offset() != 0.0) text = fmt::format("{} {:+.6g}", text, conversion.offset());
+    return text == variable ? text : "(" + text + ")";
+  }
+
+  /// By its words; no model reads one.
+  std::string indicated_airspeed() const {
+    for (const std::string& name : flight_.variables()) {
+      const VariableInfo& info = flight_.variable(name);
+      if (!info.is_series || !has_values(flight_, name, "m/s")) continue;
+      for (const std::vector<std::string>& words : {plain_words(name), plain_words(info.long_name)}) {
+        const auto has = [&words](const char* word) {
+          return std::find(words.begin(), words.end(), word) != words.end();
+        };
+        if (has("ias") || has("cas") ||
+            ((has("indicated") || has("calibrated")) && (has("airspeed") || has("speed"))))
+          return name;
+      }
+    }
+    return {};
   }
 
   /// Roles that the aircraft's names leave open. A Mach number of the recording system is made of the
@@ -316,11 +460,11 @@ class Look {
     const ModelDefinition& model = *result_.model;
     const auto has = [&](Quantity role) { return model.variables.count(role) != 0; };
     constexpr const char* avionics = "PS_A";
-    const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) &&
-                             (has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature));
+    const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
+    const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) && has_temperature;
     const std::string& corrected = result_.corrected_pressure;
-    const bool has_wind =
-        has_heights && has(Quantity::heading) && !read_ground_velocity(flight_, model).speed.values.empty();
+    const bool has_wind = has_temperature && has(Quantity::heading) &&
+                          !read_ground_velocity(flight_, model).speed.values.empty();
     std::vector<std::string>& references = result_.references;
     if (has(Quantity::lams_airspeed)) {
       references = {"lams"};
@@ -330,9 +474,9 @@ class Look {
     } else if (!corrected.empty() && (family_.name != aircraft_families().front().name ||
                                       (!has_heights && !result_.is_corrected))) {
       references = {"pressure:" + corrected};
-    } else if (has_heights) {
+    } else {
       if (has_wind) references.emplace_back("wind");
-      references.emplace_back("height");
+      if (has_heights) references.emplace_back("height");
     }
     for (const auto& [role, variable] : model.variables) {
       const bool is_input = role == Quantity::static_pressure || role == Quantity::dynamic_pressure ||
@@ -378,7 +522,9 @@ class Look {
       const std::vector<std::string> names = names_of(series);
       std::vector<std::string> found;
       for (const std::string& name : names) {
-        if (has_values(flight_, name, std::string(info.unit), family_.unit_of(name))) found.push_back(name);
+        const bool is_wrong_height = series == "altitude" && pressure_altitudes_.count(name) != 0;
+        if (!is_wrong_height && has_values(flight_, name, std::string(info.unit), family_.unit_of(name)))
+          found.push_back(name);
       }
       if (const RoleCandidate* const candidate = sure_candidate(series);
           found.empty() && candidate != nullptr) {
@@ -442,6 +588,7 @@ class Look {
   std::string roles_;
   const VariableNaming& family_;
   std::map<std::string, std::vector<RoleCandidate>> evidence_;
+  std::set<std::string> pressure_altitudes_;
   Inspection result_;
 };
 

@@ -12,7 +12,6 @@
 #include "report/present_columns.hpp"
 #include "report/residual_pictures.hpp"
 #include "residuals/wind.hpp"
-#include "roles/recorded_series.hpp"
 
 namespace pcor {
 
@@ -95,12 +94,6 @@ Report inspection_report(const std::vector<Inspection>& flights) {
   }
   if (!report.time.empty()) {
     FlightColumns columns(report, flights);
-    const auto recorded = [](const char* series) {
-      return [series](const Inspection& inspected) {
-        const Flight flight(inspected.path);
-        return read_usual(flight, family_of(flight), series).values;
-      };
-    };
     columns.add("altitude", "altitude", "m", [](const Inspection& f) { return f.samples->motion.altitude; });
     columns.add("airspeed", "true airspeed", "m/s",
                 [](const Inspection& f) { return f.samples->motion.airspeed; });
@@ -108,8 +101,8 @@ Report inspection_report(const std::vector<Inspection>& flights) {
                 [](const Inspection& f) { return f.samples->motion.ground_speed; });
     columns.add("pitch", "pitch", "deg", [](const Inspection& f) { return f.samples->motion.pitch; });
     columns.add("roll", "roll", "deg", [](const Inspection& f) { return f.samples->motion.roll; });
-    columns.add("latitude", "latitude", "deg", recorded("latitude"));
-    columns.add("longitude", "longitude", "deg", recorded("longitude"));
+    columns.add("latitude", "latitude", "deg", [](const Inspection& f) { return f.samples->latitude; });
+    columns.add("longitude", "longitude", "deg", [](const Inspection& f) { return f.samples->longitude; });
     add_strip(report);
     add_if_present(
         report,

@@ -15,6 +15,7 @@
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
+#include "residuals/ground_velocity.hpp"
 #include "roles/jumps.hpp"
 #include "roles/plausible_pressure.hpp"
 #include "roles/recorded_series.hpp"
@@ -135,7 +136,7 @@ class Plausibility {
 
   void ground_speed_against_position() {
     const RecordedSeries latitude = read(Q::latitude);
-    const RecordedSeries longitude = read_usual(flight_, family_of(model_, flight_), "longitude");
+    const RecordedSeries longitude = read_longitude(flight_, model_);
     const RecordedSeries speed = read(Q::ground_speed);
     if (latitude.values.empty() || longitude.values.empty() || speed.values.empty()) return;
     constexpr std::size_t apart = 20;
@@ -155,14 +156,28 @@ class Plausibility {
           "taken as it is; state its unit in the [units] of the model");
   }
 
-  void jumps() {
-    const RecordedSeries altitude = read(Q::altitude);
-    for (const Jump& jump : find_jumps(altitude.values, time_)) {
-      problems_.push_back({altitude.variable, "jump",
+  void add_jumps(const std::string& variable, const char* kind, const std::vector<Jump>& jumps,
+                 const char* unit, const char* action) {
+    for (const Jump& jump : jumps) {
+      problems_.push_back({variable, kind,
                            fmt::format("{} to {}", utc_text(time_[jump.first]),
                                        utc_text(time_[jump.first + jump.count - 1], "%H:%M:%S")),
-                           jump.size, "m", "masked where heights are compared"});
+                           jump.size, unit, action});
     }
+  }
+
+  void jumps() {
+    const RecordedSeries altitude = read(Q::altitude);
+    add_jumps(altitude.variable, "jump", find_jumps(altitude.values, time_), "m",
+              "masked where heights are compared");
+    const Positions positions = read_positions(flight_, model_, time_);
+    constexpr const char* masked = "masked where velocities are compared with positions";
+    add_jumps(positions.latitude.variable, "jump", positions.latitude_jumps, "m", masked);
+    add_jumps(positions.longitude.variable, "jump", positions.longitude_jumps, "m", masked);
+    const GroundVelocity velocity = read_ground_velocity(flight_, model_);
+    add_jumps(velocity.speed.variable, "jump", velocity.jumps, "m/s", "masked where winds are compared");
+    add_jumps(velocity.speed.variable, "velocity against position", velocity.against_position, "m/s",
+              "masked where winds are compared");
   }
 
   void steps() {

@@ -9,6 +9,7 @@
 
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/effects/static_surface.hpp>
 #include <pcor/model/formula.hpp>
 #include <pcor/units/units.hpp>
 
@@ -30,7 +31,7 @@ class EffectReader final : TomlReader {
   // The keys of one [[effect]] that were given.
   struct EffectEntries {
     std::optional<Entry> id, location, formula, scaling, parameters, unit, source, standard_errors, fixed,
-        bounds;
+        bounds, axes, coefficients;
   };
 
   void read_effect(const toml::table& table) {
@@ -48,13 +49,17 @@ class EffectReader final : TomlReader {
           {"source", keep(given.source)},
           {"stderr", keep(given.standard_errors)},
           {"fixed", keep(given.fixed)},
-          {"bounds", keep(given.bounds)}});
+          {"bounds", keep(given.bounds)},
+          {"axes", keep(given.axes)},
+          {"coefficients", keep(given.coefficients)}});
     if (!given.id) fail(table, "an effect has no id; give id = \"...\"");
     const std::string id = text(*given.id);
     if (id.empty()) fail(*given.id->node, "the id of an effect is empty; give it a name");
     check_new(id, *given.id);
 
-    ModelEffect effect = given.formula ? formula_effect(id, given) : catalogue_effect(id, given);
+    ModelEffect effect = is_surface(id, given) ? surface(id, given)
+                         : given.formula       ? formula_effect(id, given)
+                                               : catalogue_effect(id, given);
     EffectFit fit = effect_fit(effect, given);
     file_.model.effects.push_back(std::move(effect));
     file_.fits.push_back(std::move(fit));
@@ -65,6 +70,54 @@ class EffectReader final : TomlReader {
     if (is_new) return;
     fail(entry,
          fmt::format("effect {} is in the model already, at line {}; remove one", quote(id), first->second));
+  }
+
+  static bool is_surface(const std::string& id, const EffectEntries& given) {
+    return given.axes || given.coefficients || surface_named(id) != nullptr;
+  }
+
+  ModelEffect surface(const std::string& id, const EffectEntries& given) const {
+    const std::string wanted =
+        "axes = { attack_ratio = [lower, upper], mach = [lower, upper] } and coefficients = [[...], ...], "
+        "one "
+        "row for each spline of the first axis";
+    if (!given.axes || !given.coefficients)
+      fail(*given.id->node,
+           fmt::format("surface {} lacks its knots or coefficients; give {}", quote(id), wanted));
+    if (effect_named(id) != catalogue_size)
+      fail(given.axes->place, fmt::format("effect {} has its formula in the catalogue; remove 'axes' and "
+                                          "'coefficients', or give an id of your own",
+                                          quote(id)));
+    for (const std::optional<Entry>* entry :
+         {&given.location, &given.unit, &given.source, &given.formula, &given.parameters, &given.scaling}) {
+      if (*entry) fail((*entry)->place, fmt::format("a surface takes no '{}'; remove it", (*entry)->key));
+    }
+    std::vector<std::vector<double>> rows;
+    for (const toml::node& node : array(*given.coefficients, wanted)) {
+      rows.push_back(numbers({given.coefficients->key, given.coefficients->place, &node, {}}, wanted));
+      if (rows.back().size() != rows.front().size())
+        fail(node, fmt::format("this row has {} coefficients, the first one {}; give as many in each",
+                               rows.back().size(), rows.front().size()));
+    }
+    const std::vector<Entry> axes = entries_of(table(*given.axes, wanted), quote(given.axes->key));
+    if (axes.size() != 2)
+      fail(*given.axes, fmt::format("a surface has two axes, not {}; give {}", axes.size(), wanted));
+    std::array<SurfaceAxis, 2> made;
+    for (std::size_t k = 0; k < made.size(); ++k) {
+      const auto [lower, upper] = range(axes[k]);
+      const std::size_t count = k == 0 ? rows.size() : rows.empty() ? 0 : rows.front().size();
+      made[k] = {quantity_named(axes[k].key), lower, upper, count};
+      if (made[k].quantity == Quantity::count)
+        fail(axes[k].place, fmt::format("there is no quantity {}; give {}", quote(axes[k].key), wanted));
+      if (!made[k].is_valid())
+        fail(*given.coefficients, fmt::format("{} has {} splines; give {} to {}", quote(axes[k].key), count,
+                                              SurfaceAxis::min_count, SurfaceAxis::max_count));
+    }
+    ModelEffect effect = surface_effect(id, made);
+    effect.parameters.clear();
+    for (const std::vector<double>& row : rows)
+      effect.parameters.insert(effect.parameters.end(), row.begin(), row.end());
+    return effect;
   }
 
   ModelEffect catalogue_effect(const std::string& id, const EffectEntries& given) const {

@@ -115,6 +115,21 @@ ModelEffect neutral_effect(std::string_view id) {
   return effect;
 }
 
+ModelEffect surface_effect(const std::string& id, const std::array<SurfaceAxis, 2>& axes) {
+  ModelEffect effect;
+  effect.id = id;
+  effect.surface = Surface{axes};
+  effect.formula = fmt::format("dynamic_pressure * Cp({}, {})", info_of(axes[0].quantity).name,
+                               info_of(axes[1].quantity).name);
+  effect.unit = info_of(effect.location).unit;
+  effect.parameters.assign(effect.surface->parameter_count(), 0.0);
+  for (std::size_t i = 1; i <= axes[0].count; ++i) {
+    for (std::size_t j = 1; j <= axes[1].count; ++j)
+      effect.parameter_names.push_back(fmt::format("c{}_{}", i, j));
+  }
+  return effect;
+}
+
 ModelDefinition read_model(const fs::path& path) {
   ModelDefinition file = parse_model(text_of_file(path, "a model file"), path.string());
   // A file with the variable names of an aircraft lies in the folder of the model.

@@ -220,19 +220,37 @@ class Writer {
     }
     heading("[[effect]]");
     line("id", text(effect.id));
-    if (effect.is_formula()) {
+    if (effect.is_surface()) {
+      write_surface(effect);
+    } else if (effect.is_formula()) {
       line("where", text(info_of(effect.location).name));
       line("formula", text(effect.formula));
     }
     if (!effect.scaling.is_none()) line("scaling", inline_table(powers(effect.scaling)));
-    line("parameters", inline_table(values));
+    if (!effect.is_surface()) line("parameters", inline_table(values));
     if (!standard_errors.empty()) line("stderr", inline_table(standard_errors));
     if (!fixed.empty()) line("fixed", list(fixed));
     if (!ranges.empty()) line("bounds", inline_table(ranges));
-    if (effect.is_formula()) {
+    if (effect.is_formula() && !effect.is_surface()) {
       line_unless_empty("unit", effect.unit);
       line_unless_empty("source", effect.source);
     }
+  }
+
+  void write_surface(const ModelEffect& effect) {
+    std::vector<std::string> axes;
+    for (const SurfaceAxis& axis : effect.surface->axes)
+      axes.push_back(fmt::format("{} = {}", key(info_of(axis.quantity).name),
+                                 bounds({axis.lower, axis.upper}, "an axis of " + effect.id)));
+    line("axes", inline_table(axes));
+    const std::size_t columns = effect.surface->axes[1].count;
+    std::string rows;
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      rows += i % columns == 0 ? "  [" : ", ";
+      rows += number(effect.parameters[i], effect.id);
+      if (i % columns == columns - 1) rows += "],\n";
+    }
+    line("coefficients", "[\n" + rows + "]");
   }
 
   // Whether a shape has its default value, which the file omits.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "process/sha256.hpp"
@@ -53,6 +54,14 @@ std::string coefficients_text(const ModelDefinition& model) {
   return text;
 }
 
+bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options) {
+  const std::vector<ModelEffect>& effects = model.model.effects;
+  return options.correct_with == CorrectWith::model &&
+         std::all_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
+           return !effect.is_formula() && effect.parameters == neutral_effect(effect.id).parameters;
+         });
+}
+
 std::vector<std::pair<std::string, std::string>> origin_attributes(const std::filesystem::path& input,
                                                                    const ModelDefinition& model,
                                                                    const ProcessOptions& options) {
@@ -62,6 +71,9 @@ std::vector<std::pair<std::string, std::string>> origin_attributes(const std::fi
           {"pcor_model_source", model.law.source},
           {"pcor_model_aircraft", model.model.aircraft},
           {"pcor_model_coefficients", coefficients_text(model)},
+          {"pcor_correction", changes_no_pressure(model, options) ? "none: the model changes no pressure"
+                              : options.correct_with == CorrectWith::lams ? "by LAMS"
+                                                                          : "by the model"},
           {"pcor_model_toml", text},
           {model_hash_attribute, sha256_of_text(text)},
           {"pcor_options", chosen},

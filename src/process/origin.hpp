@@ -21,6 +21,9 @@ std::string options_text(const ProcessOptions& options);
 /// Coefficients of a model with stated standard errors: "static-qp.a2 = 0.0308 +- 0.0012; ...".
 std::string coefficients_text(const ModelDefinition& model);
 
+/// Whether a model changes no pressure: all its coefficients are neutral.
+bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options);
+
 /// Provenance of an output: names and texts of global attributes. Contains the complete text of the model
 /// file, so that the output and the flight suffice to reproduce the result.
 /// @throws Error if the flight cannot be read, or the model cannot be written.

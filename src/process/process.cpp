@@ -19,6 +19,7 @@
 #include <pcor/realtime/height_step.hpp>
 #include <pcor/realtime/loop.hpp>
 #include <pcor/regimes/regimes.hpp>
+#include "flight/flight_file.hpp"
 #include "model_io/archived_model.hpp"
 #include "model_io/output_table.hpp"
 #include "model_io/sensor_doubt.hpp"
@@ -99,6 +100,7 @@ class Processing {
   void leave_out_noise(Quantity rate, const SignalBand& band);
   ModelDefinition doubted() const;
   ModelUncertainty uncertainty();
+  void note_archive();
   void note_uncertainty();
   bool states(std::initializer_list<EffectLocation> places, std::initializer_list<Quantity> roles) const;
   FileDescription describe() const;
@@ -337,6 +339,26 @@ void Processing::note_uncertainty() {
   }
 }
 
+/// Notes that the archive corrected the pressures, or that the model changes no pressure.
+void Processing::note_archive() {
+  const std::string& static_pressure = file_.variables.at(Quantity::static_pressure);
+  const std::string& dynamic_pressure = file_.variables.at(Quantity::dynamic_pressure);
+  const std::vector<PressurePair>& processed = family_of(file_, flight_).processed;
+  const bool is_corrected = std::any_of(processed.begin(), processed.end(), [&](const PressurePair& pair) {
+    return pair.static_pressure == static_pressure && pair.dynamic_pressure == dynamic_pressure;
+  });
+  if (changes_no_pressure(file_, options_)) {
+    note(
+        "the model changes no pressure: all its coefficients are zero, so the pressures of the output are {} "
+        "and {} "
+        "{}; pcor refit finds coefficients where the flight determines them",
+        static_pressure, dynamic_pressure, is_corrected ? "as the archive corrected them" : "as recorded");
+  } else if (is_corrected) {
+    note("{} and {} were corrected by the archive; the model corrects what that left", static_pressure,
+         dynamic_pressure);
+  }
+}
+
 FileDescription Processing::describe() const {
   FileDescription description;
   description.history = options_.history;
@@ -560,7 +582,9 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   summary_.max_defect = -std::numeric_limits<double>::infinity();
 
   choose_roles();
+  for (std::string& each : flight_.file().notes()) summary_.notes.push_back(std::move(each));
   for (std::string& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
+  note_archive();
   choose_inputs();
   find_frozen_sensors();
   choose_rate();

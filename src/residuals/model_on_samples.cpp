@@ -67,7 +67,8 @@ std::vector<bool> ModelOnSamples::linear() const {
     const bool is = !has_minimum && !effect.is_formula() && place != catalogue_size &&
                     effect_info[place].location == EffectLocation::static_defect;
     for (std::size_t p = 0; p < effect.parameters.size(); ++p)
-      linear.push_back(is && !effect_info[place].parameters[p].shape);
+      linear.push_back((effect.is_surface() && !has_minimum) ||
+                       (is && !effect_info[place].parameters[p].shape));
   }
   linear.resize(linear.size() + model_.additions.size(), false);
   return linear;
@@ -95,6 +96,7 @@ double ModelOnSamples::step_of(std::size_t parameter) const {
   std::size_t first = 0;
   for (const ModelEffect& effect : model_.effects) {
     if (parameter < first + effect.parameters.size()) {
+      if (effect.is_surface()) return 0.001;
       const double typical = effect_info[effect_named(effect.id)].parameters[parameter - first].typical;
       return 0.1 * std::abs(typical);
     }

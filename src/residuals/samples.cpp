@@ -15,6 +15,7 @@
 #include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/realtime/chain.hpp>
 #include <pcor/residuals/reference.hpp>
+#include "flight/flight_file.hpp"
 #include "numerics/missing.hpp"
 #include "residuals/contradicting_signs.hpp"
 #include "residuals/flaps_by_lift.hpp"
@@ -260,11 +261,12 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
   samples.aircraft = flight.aircraft();
   samples.step = flight.time().step;
   samples.time = record_times(flight);
-  samples.notes = notes_on_law(flight, model);
+  samples.notes = flight.file().notes();
+  for (std::string& note : notes_on_law(flight, model)) samples.notes.push_back(std::move(note));
   samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
   samples.reference = reference.read(flight, samples.time, samples.notes);
-  samples.latitude = read_usual(flight, family_of(model, flight), "latitude").values;
-  samples.longitude = read_usual(flight, family_of(model, flight), "longitude").values;
+  samples.latitude = read_role(flight, model, Quantity::latitude).values;
+  samples.longitude = read_longitude(flight, model).values;
   samples.motion = read_motion(flight, model, samples);
   for (std::string& note : contradicting_signs(samples, options.min_airspeed))
     samples.notes.push_back(std::move(note));

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <pcor/base/error.hpp>
+#include "roles/role_evidence.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -54,6 +55,15 @@ RecordedSeries read_usual(const Flight& flight, const VariableNaming& family, st
   RecordedSeries series;
   for (const std::string& variable : family.names_of(name))
     try_variable(flight, variable, family.unit_of(variable), *series_named(name), series);
+  return series;
+}
+
+RecordedSeries read_longitude(const Flight& flight, const ModelDefinition& model) {
+  constexpr std::string_view name = "longitude";
+  RecordedSeries series = read_usual(flight, family_of(model, flight), name);
+  if (!series.values.empty()) return series;
+  const std::vector<RoleCandidate> candidates = role_candidates(flight, name);
+  if (is_sure(candidates)) try_variable(flight, candidates.front().variable, "", *series_named(name), series);
   return series;
 }
 

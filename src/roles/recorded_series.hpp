@@ -41,6 +41,9 @@ std::vector<double> record_times(const Flight& flight);
 /// @param name of the series (`series_named`)
 RecordedSeries read_usual(const Flight& flight, const VariableNaming& family, std::string_view name);
 
+/// The longitude, which no model names: the usual one, or the variable that is sure by the evidence.
+RecordedSeries read_longitude(const Flight& flight, const ModelDefinition& model);
+
 /// The series of a role: the model's variable in the unit that the model states, else the usual one.
 RecordedSeries read_role(const Flight& flight, const ModelDefinition& model, Quantity role);
 

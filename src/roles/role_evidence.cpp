@@ -63,8 +63,8 @@ constexpr std::array<Signs, 32> signs{{
     {"mach", "mach number;mach", "squared", "", 0.05, 2.5},
     {"true_airspeed", "true airspeed;true air speed;tas", "indicated calibrated", "platform_speed_wrt_air",
      20, 350},
-    {"altitude", "gps altitude;altitude;gps height", "pressure radar density above ground radio naca",
-     "altitude", -500, 25000},
+    {"altitude", "gps altitude;altitude;gps height;wgs height;ellipsoid height;geometric height",
+     "pressure radar density ground radio naca", "altitude", -500, 25000},
     {"other_altitude", "pressure altitude;inertial altitude", "density radar", "barometric_altitude", -1000,
      25000},
     {"vertical_speed", "vertical speed;vertical velocity;climb rate", "wind gust air up upward", "", -20, 20},
@@ -239,7 +239,11 @@ std::vector<std::string> plain_words(std::string_view text) {
   return words;
 }
 
-std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& flight) {
+namespace {
+
+/// The candidates for one series, or for all if `series` is empty.
+std::map<std::string, std::vector<RoleCandidate>> candidates_of(const Flight& flight,
+                                                                std::string_view series) {
   std::map<std::string, std::vector<RoleCandidate>> all;
   for (const std::string& name : flight.variables()) {
     const VariableInfo& info = flight.variable(name);
@@ -249,15 +253,26 @@ std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& 
     const Described described{info, plain_words(info.name), plain_words(info.long_name),
                               attribute_of(info, "standard_name")};
     for (const Signs& sign : signs) {
+      if (!series.empty() && sign.series != series) continue;
       if (std::optional<RoleCandidate> candidate = candidate_of(flight, described, sign))
         all[std::string(sign.series)].push_back(std::move(*candidate));
     }
   }
-  for (auto& [series, candidates] : all) {
+  for (auto& [name, candidates] : all) {
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const RoleCandidate& a, const RoleCandidate& b) { return a.score > b.score; });
   }
   return all;
+}
+
+}  // namespace
+
+std::vector<RoleCandidate> role_candidates(const Flight& flight, std::string_view series) {
+  return candidates_of(flight, series)[std::string(series)];
+}
+
+std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& flight) {
+  return candidates_of(flight, "");
 }
 
 bool is_sure(const std::vector<RoleCandidate>& candidates) {

@@ -27,6 +27,9 @@ inline constexpr double clear_lead = 0.015;
 /// is none.
 std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& flight);
 
+/// The candidates for one series; reads only variables with words of that series.
+std::vector<RoleCandidate> role_candidates(const Flight& flight, std::string_view series);
+
 /// Whether the first of these is sure, and clear of the second.
 bool is_sure(const std::vector<RoleCandidate>& candidates);
 

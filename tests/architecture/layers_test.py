@@ -14,7 +14,7 @@ import sys
 root = pathlib.Path(sys.argv[1])
 layers = [line.split() for line in (root / "tests/architecture/layers.txt").read_text().splitlines() if line and line[0] != "#"]
 layer_of = {module: number for number, layer in enumerate(layers) for module in layer}
-workshops = {"clients", "foreign", "fuzz", "hidden", "hostile", "package", "real", "architecture", "support", "tool"}  # tests of no single module
+workshops = {"clients", "foreign", "fuzz", "hidden", "hostile", "package", "python", "real", "architecture", "support", "tool"}  # tests of no single module
 trouble = []
 
 

@@ -7,6 +7,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/flight/flight_writer.hpp>
+#include "flight/flight_file.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -73,13 +74,40 @@ TEST_F(Icartt, WhatIsWrongIsToldWithItsLine) {
     write(text);
     return test::message_of<Error>([this] { Flight flight(path_); });
   };
-  EXPECT_THAT(refusal(head + values + "47079, 850"), HasSubstr("flight.ict:28: 4 numbers"));
+  EXPECT_THAT(refusal(head + values + "47079, 850\n"), HasSubstr("flight.ict:28: 4 numbers"));
   EXPECT_THAT(refusal(head + "47076, 850, x, 0.3\n"), HasSubstr("flight.ict:25: 4 numbers"));
   EXPECT_THAT(refusal("25, 2110\n"), HasSubstr("flight.ict:1: the file format index is 2110"));
   EXPECT_THAT(refusal("25, 1001\nDoe\n"), HasSubstr("the header ends too early"));
   EXPECT_THAT(refusal("23" + head.substr(2) + values), HasSubstr("but 23 according to its first line"));
   EXPECT_THAT(refusal(head), HasSubstr("has no records"));
   EXPECT_THAT(refusal("70 people"), HasSubstr("is not a netCDF file, nor one of ICARTT"));
+}
+
+TEST_F(Icartt, RecordWithoutLineEndIsLeftOut) {
+  // 0.35 may be 0.359, and a record of two numbers has lost two.
+  for (const char* const cut : {"47079, 850, 300, 0.35", "47079, 850"}) {
+    const Flight flight(write(head + values + cut));
+    EXPECT_EQ(flight.records(), 3U);
+    EXPECT_THAT(flight.file().notes(), ElementsAre(HasSubstr("line 28 of flight.ict")));
+  }
+  EXPECT_TRUE(Flight(write(head + values)).file().notes().empty());
+}
+
+TEST_F(Icartt, RecordWithoutLineEndIsKeptWhereComplete) {
+  // All last fields have two decimals, or are flags; a cut would leave fewer.
+  const std::string fixed = "47076, 850, 300, 0.30\n47077, 850, 300, -9999\n47078, 851, 300, 0.31\n";
+  const Flight whole(write(head + fixed + "47079, 850, 300, 0.35"));
+  EXPECT_EQ(whole.records(), 4U);
+  EXPECT_EQ(values_of(whole, "mach").back(), 0.35);
+  EXPECT_TRUE(whole.file().notes().empty());
+  for (const char* const cut : {"47079, 850, 300, 0.3", "47079, 850, 300, 0.", "47079, 850, 300,",
+                                "47079, 850, 0.35", "47079, 850, 0.35,"}) {
+    const Flight flight(write(head + fixed + cut));
+    EXPECT_EQ(flight.records(), 3U) << cut;
+    EXPECT_EQ(flight.file().notes().size(), 1U) << cut;
+  }
+  // Whole numbers have two or three digits, so 31 may be 310 without its end.
+  EXPECT_EQ(Flight(write(head + "47076, 1, 1, 31\n47077, 1, 1, 310\n47078, 1, 1, 31")).records(), 2U);
 }
 
 TEST_F(Icartt, ACompressedFileIsToUnpack) {

@@ -83,6 +83,11 @@ Model everything(pcor::LamsApproach approach) {
   thrust.parameter_names = {"k"};
   thrust.parameters = {0.01};
   model.effects.push_back(thrust);
+  pcor::ModelEffect surface;
+  surface.id = "static-surface";
+  surface.surface = pcor::Surface{{{{Quantity::attack_ratio, -0.3, -0.1, 5}, {Quantity::mach, 0.2, 0.4, 4}}}};
+  surface.parameters.assign(surface.surface->parameter_count(), 0.001);
+  model.effects.push_back(surface);
   model.recovery = {{0.9959, 0.0283, 0.0374, 0.0762}};
   model.lams.approach = approach;
   model.attack_radome = {4.9, 13.4, 6.1};

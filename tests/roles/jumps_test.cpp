@@ -32,6 +32,17 @@ TEST(Jumps, AreFoundWhereAHeightLeavesItsPathAndComesBack) {
   EXPECT_TRUE(std::isfinite(height[303]));
 }
 
+TEST(Jumps, VelocityHasItsOwnLeastRate) {
+  std::vector<double> east(600, 80.0);
+  east[300] += 15.0;
+  const std::vector<double> time = test::sequence(1.4e9, east.size());
+  EXPECT_TRUE(find_jumps(east, time).empty());
+  const std::vector<Jump> jumps = find_jumps(east, time, min_velocity_rate);
+  ASSERT_EQ(jumps.size(), 1U);
+  EXPECT_EQ(jumps[0].first, 300U);
+  EXPECT_EQ(jumps[0].count, 1U);
+}
+
 TEST(Jumps, AFlightWithoutHasNone) {
   EXPECT_TRUE(find_jumps(climb(), test::sequence(1.4e9, 600)).empty());
   EXPECT_TRUE(find_jumps({}, {}).empty());

@@ -191,6 +191,61 @@ class Simulated(Case):
         self.assertIn("GGALT jumps by up to", self.run_tool("compare", flight, "-m", "m.toml", "--reference",
                                                            "height").stdout)
 
+    PLAIN = {"static_pressure": "PSFD", "dynamic_pressure": "QCF", "ambient_temperature": "TRUE_AT", "latitude": "GGLAT",
+             "longitude": "GGLON", "true_heading": "THDG", "ground_speed": "GGSPD", "track": "GGTRK",
+             "pitch": "PITCH", "roll": "ROLL", "angle_of_attack": "ATTACK"}
+
+    def test_a_pressure_altitude_called_altitude(self):
+        flight = self.write({**self.PLAIN, "altitude": "GGALT"})
+        self.assertEqual(self.inspect(flight)["roles"]["altitude"]["variable"], "altitude")
+        with netCDF4.Dataset(flight, "a") as file:
+            # ICAO's formula; the constants of the troposphere.
+            file["altitude"][:] = 44330.77 * (1.0 - (file["static_pressure"][:] / 1013.25) ** 0.190263)
+        inspected = self.inspect(flight)
+        self.assertNotIn("altitude", inspected["roles"])
+        self.assertEqual(inspected["roles"]["other_altitude"]["variable"], "altitude")
+        self.assertTrue(any(each["kind"].startswith("pressure altitude") for each in inspected["problems"]))
+        self.follow(flight)
+        (self.path / "m.toml").write_text(
+            BARE.format("[variables]\n" + "".join(f'{role} = "{name}"\n' for role, name in (
+                ("static_pressure", "static_pressure"), ("dynamic_pressure", "dynamic_pressure"),
+                ("ambient_temperature", "ambient_temperature"), ("latitude", "latitude"), ("altitude", "altitude")))))
+        self.assertIn("circular", self.run_tool("compare", flight, "-m", "m.toml", "--reference", "height", status=1).stderr)
+
+    def test_faults_of_velocity_and_position(self):
+        flight = self.write({**self.PLAIN, "altitude": "GGALT"})
+        with netCDF4.Dataset(flight, "a") as file:
+            file["ground_speed"][500:503] = file["ground_speed"][500:503] + 40.0
+            file["latitude"][900:902] = file["latitude"][900:902] + 0.01
+            ramp = numpy.concatenate([numpy.linspace(0, 30, 40), numpy.full(40, 30.0), numpy.linspace(30, 0, 40)])
+            file["ground_speed"][1000:1120] = file["ground_speed"][1000:1120] + ramp
+        found = {(each["variable"], each["kind"]): each["number"] for each in self.inspect(flight)["problems"]}
+        self.assertAlmostEqual(found["ground_speed", "jump"], 40, delta=5)
+        self.assertAlmostEqual(found["latitude", "jump"], 1112, delta=50)
+        self.assertAlmostEqual(found["ground_speed", "velocity against position"], 30, delta=5)
+        self.inspect(flight, "--write-model", "m.toml")
+        self.assertIn("ground_speed jumps by up to", self.run_tool("compare", flight, "-m", "m.toml", "--reference",
+                                                                   "wind").stdout)
+
+    def test_a_model_that_changes_nothing_says_so(self):
+        flight = self.write(self.CORRECTED, {"institution": "NCAR"})
+        (self.path / "m.toml").write_text(BARE.format(""))
+        self.assertIn("changes no pressure", self.run_tool("process", flight, "-m", "m.toml", "--suffix", "_NEW", "-o",
+                                                           "o.nc").stdout)
+        with netCDF4.Dataset(self.path / "o.nc") as output:
+            self.assertIn("none", output.pcor_correction)
+            self.assertIn("as the archive corrected them", output.pcor_notes)
+
+    def test_no_dynamic_pressure(self):
+        names = {name: there for name, there in self.PLAIN.items() if name != "dynamic_pressure"}
+        self.assertNotIn("QC =", self.inspect(self.write(names))["why_no_model"])
+        for variable, there, expected in (("mach_number", "MACH_A", "mach_number^2"),
+                                          ("indicated_airspeed", "TASX", "indicated_airspeed / 340.294"),
+                                          ("true_airspeed", "TASX", "true_airspeed^2")):
+            inspected = self.inspect(self.write({**names, variable: there}))
+            self.assertEqual(inspected["next"], [])
+            self.assertIn(expected, inspected["why_no_model"])
+
     def test_names_that_nobody_knows(self):
         """An unknown file gets a model that runs."""
         names = {"static_pressure": "PSFD", "impact_pressure": "QCF", "total_air_temperature": "TTRR",

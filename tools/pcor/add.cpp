@@ -50,10 +50,16 @@ ModelEffect own_effect(const Options& options, const std::vector<std::string>& v
   return effect;
 }
 
-std::vector<ModelEffect> wanted_effects(const Options& options, const std::vector<std::string>& variables) {
-  if (!options.formula.empty()) return {own_effect(options, variables)};
+std::vector<ModelEffect> wanted_effects(const Options& options, const FlightSet& flights,
+                                        const ModelDefinition& model) {
+  const Flight* const flight = flights.empty() ? nullptr : &flights[0];
+  if (!options.formula.empty())
+    return {own_effect(options, flight == nullptr ? std::vector<std::string>() : flight->variables())};
   std::vector<ModelEffect> effects;
-  for (const std::string& id : options.effects) effects.push_back(shaped_effect(id));
+  for (const std::string& id : options.effects) {
+    const std::optional<ModelEffect> surface = surface_argument(id, flight, model);
+    effects.push_back(surface ? *surface : shaped_effect(id));
+  }
   return effects;
 }
 
@@ -73,6 +79,15 @@ void print(const ModelDefinition& model, const ModelDefinition& extended, const 
     const EffectInfo* info = effect.is_formula() ? nullptr : &effect_info[effect_named(effect.id)];
     const std::vector<std::string> names = parameter_names(effect);
     std::vector<std::string> start;
+    if (effect.is_surface()) {
+      for (const SurfaceAxis& axis : effect.surface->axes)
+        start.push_back(
+            fmt::format("{} from {:.4g} to {:.4g}", info_of(axis.quantity).name, axis.lower, axis.upper));
+      say("{:<20} {:<15} {:<48} zero, {} x {} splines, {}\n", effect.id, info_of(effect.location).name,
+          effect.formula, effect.surface->axes[0].count, effect.surface->axes[1].count,
+          fmt::join(start, ", "));
+      continue;
+    }
     for (std::size_t k = 0; k < names.size(); ++k) {
       start.push_back(fmt::format("{} = {}{}", names[k], effect.parameters[k],
                                   extended.fit(i, k).fixed ? " (fixed)" : ""));
@@ -113,7 +128,7 @@ void run(const Options& options) {
   }
   std::vector<std::string> variables;
   if (!flights.empty()) variables = flights[0].variables();
-  const ModelDefinition extended = add_effects(model, wanted_effects(options, variables), variables);
+  const ModelDefinition extended = add_effects(model, wanted_effects(options, flights, model), variables);
   OutputTransaction together;
   deliver(extended, options.output, inputs);
   json.write(as_json(model, extended, options));
@@ -136,7 +151,8 @@ std::function<void()> add_add(CLI::App& program) {
   command
       ->add_option("effects", options->effects,
                    "effects of the catalogue, with their shape if it differs from the default, such as "
-                   "static-transonic:onset=0.8; or with --formula the name of a user-defined effect")
+                   "static-transonic:onset=0.8; or static-surface, static-surface-beta; or with --formula "
+                   "the name of a user-defined effect")
       ->required()
       ->type_name("EFFECT...");
   command->add_option("-m,--model", options->model, "the model to extend")
@@ -161,12 +177,15 @@ std::function<void()> add_add(CLI::App& program) {
       ->needs(formula)
       ->type_name("TEXT");
   command
-      ->add_option("--flight", options->flight,
-                   "choose the variables that the effects need among those of this flight")
+      ->add_option(
+          "--flight", options->flight,
+          "choose the variables that the effects need among those of this flight, and span the knots of "
+          "a surface over what it flew")
       ->type_name("IN.nc");
   add_common_options(*command, options->common, false);
   add_examples(*command,
                {"add static-lag -m fitted.toml --flight first.nc -o extended.toml",
+                "add static-surface -m fitted.toml --flight first.nc -o extended.toml",
                 "add my-thrust --formula 'k * (ENGTRQ - 50) / 100' -m fitted.toml -o my-model.toml"});
   return [options] { run(*options); };
 }

@@ -8,6 +8,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/effects/static_surface.hpp>
 #include <pcor/effects/without_trace.hpp>
 #include "command.hpp"
 
@@ -28,7 +29,9 @@ const EffectWithoutTrace* find_without_trace(const std::string& id) {
 const EffectInfo& find(const std::string& id) {
   const std::size_t place = effect_named(id);
   if (place < catalogue_size) return effect_info[place];
+  if (const EffectInfo* const surface = surface_named(id)) return *surface;
   std::vector<std::string> ids;
+  for (const EffectInfo& info : surface_info) ids.emplace_back(info.id);
   for (const EffectInfo& info : effect_info) ids.emplace_back(info.id);
   for (const EffectWithoutTrace& effect : effects_without_trace) ids.emplace_back(effect.id);
   const std::string hint = did_you_mean(id, ids);
@@ -86,6 +89,15 @@ std::string_view text_of(GasConstants constants) {
   return constants == GasConstants::dry ? "models with dry constants" : "models with moist constants";
 }
 
+void print_surface(const EffectInfo& info) {
+  say("\nCp is a tensor product of uniform cubic B-splines, by default 6 x 6. A refit penalises its second "
+      "differences; how much is found by marginal likelihood. Outside the envelope of the knots Cp keeps the "
+      "value "
+      "of the edge, the sample has the quality bit outside_domain, and the stated error of delta-p grows.\n\n"
+      "To add it: {} add {} -m MODEL.toml --flight IN.nc -o NEW.toml\n",
+      program(), info.id);
+}
+
 void print_one(const EffectInfo& info) {
   const EffectLocationInfo& location = info_of(info.location);
   say("{}: {}\n\n", info.id, info.title);
@@ -108,6 +120,7 @@ void print_one(const EffectInfo& info) {
   say("  look-alikes  {}\n", info.look_alikes);
   say("  separated by {}\n", info.manoeuvre);
   say("  source       {}\n", info.source);
+  if (info.parameter_count() == 0) return print_surface(info);
   say("  example      ");
   for (const auto& input : info.example.inputs) {
     if (input.quantity == Quantity::count) break;
@@ -127,6 +140,10 @@ void print_one(const EffectInfo& info) {
 void print_all() {
   say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what", "formula");
   for (const EffectInfo& info : effect_info) {
+    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, place_of(info),
+        info_of(info.location).name, info.title, info.formula);
+  }
+  for (const EffectInfo& info : surface_info) {
     say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, place_of(info),
         info_of(info.location).name, info.title, info.formula);
   }
@@ -158,7 +175,9 @@ void run(const Options& options) {
   for (const EffectInfo& info : effect_info) all.push_back(as_json(info));
   nlohmann::ordered_json without_trace = nlohmann::ordered_json::array();
   for (const EffectWithoutTrace& effect : effects_without_trace) without_trace.push_back(as_json(effect));
-  json.write({{"effects", all}, {"without_trace", without_trace}});
+  nlohmann::ordered_json surfaces = nlohmann::ordered_json::array();
+  for (const EffectInfo& info : surface_info) surfaces.push_back(as_json(info));
+  json.write({{"effects", all}, {"surfaces", surfaces}, {"without_trace", without_trace}});
   if (!wants_text(options.common)) return;
   print_all();
   say_written({options.common.json});

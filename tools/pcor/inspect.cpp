@@ -67,7 +67,9 @@ std::vector<std::string> next_commands(const Options& options, const Inspection&
     const std::string roles = options.roles.empty() ? "" : " --roles " + shell_quote(options.roles);
     commands.push_back(command("inspect", flight, roles + stamp + " --write-model model.toml"));
   }
-  if (flight.is_corrected || reference.empty()) {
+  // A fit corrects a corrected pair further only if the flight determines the level.
+  const bool determines_level = flight.by_gps && flight.by_gps->level < 1.0;
+  if (reference.empty() || (flight.is_corrected && !determines_level)) {
     commands.push_back(command("process", flight, model + corrected));
     commands.push_back(reference.empty()
                            ? command("check", flight, model + stamp + " --report check.html")
@@ -157,6 +159,7 @@ nlohmann::ordered_json as_json(const Options& options, const Inspection& flight)
                                   {"unit", problem.unit},
                                   {"action", problem.action}});
   }
+  result["why_no_model"] = flight.why_no_model;
   result["next"] = next_commands(options, flight);
   result["notes"] = flight.notes;
   return result;
@@ -299,8 +302,7 @@ void print(const Inspection& flight) {
 void print_next(const Options& options, const Inspection& flight) {
   const std::vector<std::string> commands = next_commands(options, flight);
   if (commands.empty()) {
-    say("To continue: name the variables of the pressures in the [variables] of a model "
-        "(data/models/FORMAT.md)\n");
+    say("This file allows no correction: {}.\n", flight.why_no_model);
     return;
   }
   say("{}\n", commands.size() == 1 ? "Next:" : "Next, in this order:");
@@ -387,7 +389,7 @@ void run(const Options& options) {
       throw Error(
           fmt::format("{}: no model can be written, because the first flight cannot be read", options.model));
     if (!first.model)
-      throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
+      throw Error(fmt::format("{}: no model can be written: {}", first.path, first.why_no_model));
     deliver_with_candidates(first, options.model);
   }
   if (wants_report(options.common)) {

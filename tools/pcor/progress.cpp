@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "events.hpp"
+
 namespace pcor::tool {
 namespace {
 
@@ -16,8 +18,8 @@ constexpr auto min_wait = std::chrono::milliseconds(500);
 
 Progress::Progress(std::string task, bool wanted)
     : task_(std::move(task)),
-      wanted_(wanted && isatty(fileno(stderr)) == 1),
-      last_(std::chrono::steady_clock::now()) {}
+      wanted_(wanted && (wants_events() || isatty(fileno(stderr)) == 1)),
+      last_(wants_events() ? std::chrono::steady_clock::time_point() : std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() { erase(); }
 
@@ -26,6 +28,10 @@ void Progress::show(std::size_t done, std::size_t total) {
   const auto now = std::chrono::steady_clock::now();
   if (now - last_ < min_wait) return;
   last_ = now;
+  if (wants_events()) {
+    send_event({{"task", task_}, {"done", done}, {"total", total}});
+    return;
+  }
   shown_ = true;
   const std::size_t filled = done * bar_width / total;
   fmt::print(stderr, "\r{} [{:=<{}}{:<{}}] {:3} %", task_, "", filled, "", bar_width - filled,

@@ -149,6 +149,12 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
   json["samples_per_independent"] = result.autocorrelation_time;
   json["condition_number"] = result.condition_number;
   json["reference"] = result.reference_text;
+  json["surfaces"] = nlohmann::ordered_json::array();
+  for (const SurfaceFit& surface : result.surfaces) {
+    json["surfaces"].push_back({{"effect", surface.effect},
+                                {"roughness", surface.roughness},
+                                {"degrees_of_freedom", surface.degrees_of_freedom}});
+  }
   json["covariance"] = {{"parameters", result.covariance_names}, {"matrix", result.covariance}};
   json["omissions"] = nlohmann::ordered_json::array();
   for (const Omission& omission : result.omissions)
@@ -196,7 +202,14 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
   say("\n");
   say("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error",
       "by jackknife", "unit");
+  const auto is_of_surface = [&result](const std::string& name) {
+    const std::vector<ModelEffect>& effects = result.model.model.effects;
+    return std::any_of(effects.begin(), effects.end(), [&name](const ModelEffect& effect) {
+      return effect.is_surface() && name.rfind(effect.id + ".", 0) == 0;
+    });
+  };
   for (const FittedParameter& p : result.parameters) {
+    if (is_of_surface(p.name)) continue;
     const std::string error = !p.fitted                      ? "held"
                               : p.at_bound                   ? "at bound"
                               : std::isnan(p.standard_error) ? "unknown"
@@ -204,6 +217,10 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
     const std::string jackknife =
         std::isnan(p.jackknife_error) ? "" : fmt::format("{:.3g}", p.jackknife_error);
     say("{:<36} {:>13.6g} {:>13.6g} {:>13} {:>13}  {}\n", p.name, p.start, p.value, error, jackknife, p.unit);
+  }
+  for (const SurfaceFit& surface : result.surfaces) {
+    say("{}: second differences of {:.2g}, {:.1f} degrees of freedom\n", surface.effect, surface.roughness,
+        surface.degrees_of_freedom);
   }
   if (result.defect_error > 0.0)
     say("\nstandard error of delta-p over the flights: {:.2f} hPa\n", result.defect_error);
@@ -226,7 +243,9 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
   for (std::size_t a = 0; a < result.covariance_names.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const double r = result.covariance[a][b] / std::sqrt(result.covariance[a][a] * result.covariance[b][b]);
-      if (!(std::abs(r) > 0.9)) continue;
+      if (!(std::abs(r) > 0.9) || is_of_surface(result.covariance_names[a]) ||
+          is_of_surface(result.covariance_names[b]))
+        continue;
       if (!any) say("\ncorrelations above 0.9\n");
       any = true;
       say("  {} and {}: {:+.3f}\n", result.covariance_names[b], result.covariance_names[a], r);

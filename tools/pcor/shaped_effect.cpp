@@ -10,7 +10,9 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/effects/static_surface.hpp>
 #include <pcor/model_io/model_definition.hpp>
+#include <pcor/roles/add_effects.hpp>
 
 namespace pcor::tool {
 namespace {
@@ -78,6 +80,24 @@ std::string argument_of(const ModelEffect& effect) {
   if (effect.scaling.dynamic_pressure != 0)
     shapes.push_back(fmt::format("dynamic_pressure={}", effect.scaling.dynamic_pressure));
   return effect.id + (shapes.empty() ? "" : ":") + fmt::format("{}", fmt::join(shapes, ","));
+}
+
+std::optional<ModelEffect> surface_argument(const std::string& argument, const Flight* flight,
+                                            const ModelDefinition& model) {
+  const std::size_t colon = argument.find(':');
+  const std::string id = argument.substr(0, colon);
+  if (surface_named(id) == nullptr) return std::nullopt;
+  if (flight == nullptr)
+    throw Error(fmt::format("{}: the knots of a surface span what was flown; give --flight IN.nc", id));
+  const auto the_flight = [flight](std::size_t) -> const Flight& { return *flight; };
+  if (colon == std::string::npos) return surface_over(1, the_flight, model, id);
+  constexpr std::string_view wanted = "splines=";
+  const std::string shape = argument.substr(colon + 1);
+  const double splines = shape.rfind(wanted, 0) == 0 ? number_in(shape.substr(wanted.size()), argument) : 0.0;
+  if (!(splines >= SurfaceAxis::min_count && splines <= SurfaceAxis::max_count))
+    throw Error(fmt::format("{}: '{}' shapes no surface; give splines= and a number from {} to {}", argument,
+                            shape, SurfaceAxis::min_count, SurfaceAxis::max_count));
+  return surface_over(1, the_flight, model, id, static_cast<std::size_t>(splines));
 }
 
 ModelEffect shaped_effect(const std::string& argument) {

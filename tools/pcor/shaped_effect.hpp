@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
-#include <pcor/model/model.hpp>
+#include <pcor/flight/flight.hpp>
+#include <pcor/model_io/model_definition.hpp>
 
 namespace pcor::tool {
 
@@ -13,5 +15,11 @@ std::string argument_of(const ModelEffect& effect);
 
 /// Effect named by such an argument, neutral except for its shape. @throws Error if there is no such effect.
 ModelEffect shaped_effect(const std::string& argument);
+
+/// The surface that such an argument names, as "static-surface:splines=8", over what a flight flew; nothing
+/// where it names none. @param flight may be null @throws Error if the flight is missing or does not tell the
+/// axes.
+std::optional<ModelEffect> surface_argument(const std::string& argument, const Flight* flight,
+                                            const ModelDefinition& model);
 
 }  // namespace pcor::tool

@@ -78,6 +78,13 @@ struct Omission {
   double r_squared = 0.0;
 };
 
+/// Result of the fit for one surface, in addition to its coefficients.
+struct SurfaceFit {
+  std::string effect;
+  double roughness = 0.0;  ///< standard deviation of a second difference of Cp, by marginal likelihood
+  double degrees_of_freedom = 0.0;  ///< number of coefficients that the flights determine
+};
+
 /// Flight statistics before and after the fit.
 struct FlightFit {
   std::string flight;
@@ -132,6 +139,7 @@ struct RefitResult {
   std::array<std::size_t, mask_count> masks{};
   std::size_t jackknife_parts = 0;  ///< number of flights, or parts of flights, left out in the jackknife
   std::vector<Omission> omissions{};
+  std::vector<SurfaceFit> surfaces{};
   std::vector<FlightFit> flights{};
   std::vector<FlightFit> further{};  ///< fit statistics with each further reference, by flight
   Statistics flaps_out;  ///< residuals, with the fitted coefficients, of samples excluded because of flaps

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <pcor/model/effect.hpp>
 #include <pcor/model/quantity.hpp>
+#include <pcor/model/surface.hpp>
 #include <pcor/physics/flow_angles.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 
@@ -15,21 +17,24 @@ namespace pcor {
 /// Effect of a model with its coefficients.
 ///
 /// An effect of the catalogue has an `id`; a user-defined effect also has a `formula`, a location and names
-/// of its parameters.
+/// of its parameters. A surface has knots instead, and its formula is a text for people.
 struct ModelEffect {
   std::string id{};
   std::vector<double> parameters{};  ///< values, in the order of the effect's parameters
 
   std::vector<std::string>
-      parameter_names{};  ///< names for a formula effect; empty for an effect of the catalogue
-  std::string formula{};  ///< empty for an effect of the catalogue
+      parameter_names{};             ///< names for a formula effect; empty for an effect of the catalogue
+  std::string formula{};             ///< empty for an effect of the catalogue
+  std::optional<Surface> surface{};  ///< knots of a surface, which acts at the static ports
   EffectLocation location = EffectLocation::static_defect;  ///< location of a formula effect
   std::string unit{};                                       ///< unit of a formula effect
   std::string source{};                                     ///< source of a formula effect
 
   Scaling scaling{};  ///< scaling of an effect of the catalogue
 
+  /// True for effects outside the catalogue: a formula or a surface.
   bool is_formula() const { return !formula.empty(); }
+  bool is_surface() const { return surface.has_value(); }
 };
 
 /// Treatment of the temperature in delta-p from LAMS: the three approaches of the memo.

@@ -122,6 +122,9 @@ std::vector<std::string> parameter_names(const ModelEffect& effect);
 /// unknown.
 ModelEffect neutral_effect(std::string_view id);
 
+/// Surface effect with all coefficients zero, to be fitted. @param axes each must be valid
+ModelEffect surface_effect(const std::string& id, const std::array<SurfaceAxis, 2>& axes);
+
 /// Reads a model file. @throws Error "file:line:column: what is wrong; what to do" for every invalid or
 /// unknown key.
 ModelDefinition read_model(const std::filesystem::path& path);

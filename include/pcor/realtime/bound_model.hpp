@@ -52,6 +52,10 @@ class BoundModel {
       } else if (term.effect == Term::is_formula) {
         const std::vector<Quantity>& variables = formulas_[term.formula].variables;
         read.insert(read.end(), variables.begin(), variables.end());
+      } else if (term.effect == Term::is_surface) {
+        const Surface& surface = surfaces_[term.formula];
+        read.insert(read.end(),
+                    {surface.axes[0].quantity, surface.axes[1].quantity, Quantity::dynamic_pressure});
       }
     }
     if (location == EffectLocation::static_defect) {
@@ -101,7 +105,14 @@ class BoundModel {
   /// True if the effect is linear in this coefficient, and zero if all such coefficients are zero.
   bool is_linear(std::size_t effect, std::size_t parameter) const {
     const std::size_t place = effects_[effect].effect;
+    if (place == Term::is_surface) return true;
     return place < catalogue_size && !effect_info[place].parameters[parameter].shape;
+  }
+
+  /// Surface of effect number `effect` of the model; null for other effects.
+  const Surface* surface_of(std::size_t effect) const {
+    const Term& term = effects_[effect];
+    return term.effect == Term::is_surface ? &surfaces_[term.formula] : nullptr;
   }
 
   /// Value of effect number `effect` of the model for a state after `Chain::measure`, in the unit of its
@@ -137,11 +148,12 @@ class BoundModel {
  private:
   friend class ModelBinder;
 
-  // Term at a location: an effect of the catalogue, a formula with an index, or an amount that is a
-  // parameter.
+  // Term at a location: an effect of the catalogue, a formula or a surface with an index, or an amount that
+  // is a parameter.
   struct Term {
     static constexpr std::size_t is_formula = catalogue_size;
     static constexpr std::size_t is_addition = catalogue_size + 1;
+    static constexpr std::size_t is_surface = catalogue_size + 2;
 
     std::size_t effect = is_formula;
     std::size_t formula = 0;
@@ -185,6 +197,11 @@ class BoundModel {
       return term.scaling.is_none() ? value : scaled(value, term.scaling, state);
     }
     if (term.effect == Term::is_addition) return Promoted<S, P>(*own);
+    if (term.effect == Term::is_surface) {
+      const Surface& surface = surfaces_[term.formula];
+      return surface.value(state[surface.axes[0].quantity], state[surface.axes[1].quantity],
+                           state[Quantity::dynamic_pressure], own);
+    }
     const BoundFormula& bound = formulas_[term.formula];
     std::array<S, formula_variable_capacity> variables;
     for (std::size_t i = 0; i < bound.variables.size(); ++i) variables[i] = state[bound.variables[i]];
@@ -201,6 +218,7 @@ class BoundModel {
   std::array<std::size_t, location_count + 1> where_begin_{};
   std::bitset<location_count> acting_;  // true for each location with a term
   std::vector<BoundFormula> formulas_;
+  std::vector<Surface> surfaces_;
   std::vector<double> parameters_;
   std::vector<std::string> extra_names_;
   std::vector<Quantity> inputs_;

@@ -96,6 +96,7 @@ class ModelBinder {
   static std::string quote(std::string_view name) { return "'" + std::string(name) + "'"; }
 
   bool add(const ModelEffect& effect) {
+    if (effect.is_surface()) return add_surface(effect);
     return effect.is_formula() ? add_formula(effect) : add_catalogued(effect);
   }
 
@@ -137,6 +138,23 @@ class ModelBinder {
     if (bound_.is_within_reach(effect.location) && !bind_variables(bound, effect.location, "the " + who))
       return false;
     bound_.formulas_.push_back(std::move(bound));
+    add_effect(term, effect);
+    return true;
+  }
+
+  // Outside its envelope a surface is flat, and the sample is flagged as outside the domain.
+  bool add_surface(const ModelEffect& effect) {
+    const std::string who = "effect " + quote(effect.id);
+    if (!require_count(effect, effect.surface->parameter_count())) return false;
+    Term term;
+    term.effect = Term::is_surface;
+    term.formula = bound_.surfaces_.size();
+    for (const SurfaceAxis& axis : effect.surface->axes) {
+      if (!axis.is_valid()) return fail(Code::formula, who, "has an axis without extent");
+      if (!require(axis.quantity, who)) return false;
+      bound_.domain_.push_back({axis.quantity, axis.lower, axis.upper});
+    }
+    bound_.surfaces_.push_back(*effect.surface);
     add_effect(term, effect);
     return true;
   }

@@ -39,7 +39,8 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 /// coefficients are differences over two of their standard uncertainties (GUM 5.1.3, note 2). Those with
 /// respect to pressures, temperature and humidity use the equations of the air with the constants of dry air,
 /// accurate to 2 % of the uncertainty. They change slowly, so a sample reuses uncertainties computed less
-/// than two seconds ago at pressures within 5 %, to limit the cost at 25 Hz. docs/uncertainty.md lists the
+/// than two seconds ago at pressures within 5 %, to limit the cost at 25 Hz. Outside its envelope a surface
+/// is flat, and its error grows by the rms slope inside the envelope. docs/uncertainty.md lists the
 /// contributions.
 ///
 /// If delta-p is raised to the minimum of the model, it keeps the uncertainty of the model; if it is tapered,
@@ -185,6 +186,16 @@ class ResultUncertainty final : public Functor {
     Results by_amount{};  // sensitivity for this sample
   };
 
+  /// A surface, which is flat outside its envelope where the truth may go on as inside.
+  struct FlatOutside {
+    Surface surface;
+    double slope;  // rms difference of neighbouring coefficients
+
+    double distance(const State<double>& state) const {
+      return surface.distance(state[surface.axes[0].quantity], state[surface.axes[1].quantity]);
+    }
+  };
+
   /// A role whose value is uncertain in every sample.
   struct Noise {
     Quantity role;
@@ -202,7 +213,10 @@ class ResultUncertainty final : public Functor {
       const EffectLocation location = chain_->location_of(effect);
       if (location == EffectLocation::static_defect || is_before_ports(location)) at_ports_.push_back(effect);
     }
-    if (!uncertainty.covariance.empty()) add_coefficients(uncertainty.covariance);
+    if (!uncertainty.covariance.empty()) {
+      add_coefficients(uncertainty.covariance);
+      add_surfaces(uncertainty.covariance);
+    }
     Quantities read_at_ports;
     for (std::size_t place = 0; place < location_count; ++place) {
       const auto location = static_cast<EffectLocation>(place);
@@ -285,6 +299,30 @@ class ResultUncertainty final : public Functor {
     }
     for (const std::size_t i : order) {
       for (const std::size_t j : order) covariance_.push_back(covariance[i * count + j]);
+    }
+  }
+
+  // The squares of the differences of neighbouring coefficients, with what these may err by.
+  void add_surfaces(const std::vector<double>& covariance) {
+    const std::size_t count = chain_->parameters().size();
+    for (std::size_t effect = 0; effect < chain_->effect_count(); ++effect) {
+      const Surface* const surface = chain_->surface_of(effect);
+      if (surface == nullptr) continue;
+      const std::size_t first = chain_->first_parameter_of(effect);
+      double squares = 0.0;
+      double pairs = 0.0;
+      const auto add = [&](std::size_t a, std::size_t b) {
+        const double difference = chain_->parameters()[a] - chain_->parameters()[b];
+        squares += difference * difference + covariance[a * count + a] + covariance[b * count + b] -
+                   2.0 * covariance[a * count + b];
+        pairs += 1.0;
+      };
+      const std::size_t columns = surface->axes[1].count;
+      for (std::size_t i = 0; i < surface->parameter_count(); ++i) {
+        if (i % columns > 0) add(first + i, first + i - 1);
+        if (i >= columns) add(first + i, first + i - columns);
+      }
+      surfaces_.push_back({*surface, std::sqrt(std::max(squares, 0.0) / pairs)});
     }
   }
 
@@ -379,14 +417,20 @@ class ResultUncertainty final : public Functor {
   // Uncertainties are reused for two seconds if the pressures have not changed significantly.
   bool still_holds(const State<double>& state) const noexcept {
     const double age = state[Quantity::time] - time_;
-    if (!(is_complete_ && age >= 0.0 && age < 2.0)) return false;
+    if (!(is_complete_ && age >= 0.0 && age < 2.0) || is_outside_ || is_outside(state)) return false;
     const double p = state[Quantity::static_pressure];
     const double q = state[Quantity::dynamic_pressure];
     return std::abs(p - static_pressure_) <= 0.05 * p && std::abs(q - dynamic_pressure_) <= 0.05 * q;
   }
 
+  bool is_outside(const State<double>& state) const noexcept {
+    return std::any_of(surfaces_.begin(), surfaces_.end(),
+                       [&state](const FlatOutside& each) { return each.distance(state) > 0.0; });
+  }
+
   void find(const State<double>& state) noexcept {
     time_ = state[Quantity::time];
+    is_outside_ = is_outside(state);
     static_pressure_ = state[Quantity::static_pressure];
     dynamic_pressure_ = state[Quantity::dynamic_pressure];
     const Sensitivity sensitivity(*chain_, state);
@@ -425,6 +469,14 @@ class ResultUncertainty final : public Functor {
           if (slopes != 0.0) variance[i] += slopes * both;
         }
       }
+    }
+    for (const FlatOutside& each : surfaces_) {
+      const double distance = each.distance(state);
+      if (!(distance > 0.0)) continue;
+      const double error = each.slope * distance * state[Quantity::dynamic_pressure];
+      Changes changes;
+      changes.static_defect = fraction;
+      add_squares(sensitivity.of(changes), error * error, variance);
     }
     // A variance that cancels to zero may round to less.
     for (double& each : variance) each = each < 0.0 ? 0.0 : each;
@@ -505,9 +557,11 @@ class ResultUncertainty final : public Functor {
   std::vector<Coefficient> coefficients_;
   std::vector<Place> places_;
   std::vector<double> covariance_;  // covariance of the coefficients, in their order
+  std::vector<FlatOutside> surfaces_;
   std::vector<Noise> noises_;
   Results found_{};
   bool is_complete_ = false;  // all are finite
+  bool is_outside_ = false;   // computed outside the envelope of a surface
   double time_ = 0.0;         // time of the sample for which they were computed
   double static_pressure_ = 0.0;
   double dynamic_pressure_ = 0.0;

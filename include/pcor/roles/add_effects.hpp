@@ -1,8 +1,12 @@
 #pragma once
 
+#include <pcor/flight/flight.hpp>
 #include <pcor/model_io/model_definition.hpp>
 
+#include <cstddef>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pcor {
@@ -13,5 +17,13 @@ namespace pcor {
 /// @throws Error if an effect is already in the model or unknown, or needs a role without a usual variable.
 ModelDefinition add_effects(const ModelDefinition& model, const std::vector<ModelEffect>& effects,
                             const std::vector<std::string>& variables = {});
+
+/// One of `surface_info` with its knots over what some flights flew: from the first to the 99th percentile of
+/// both axes at Mach numbers above 0.18, which is 60 m/s. Coefficients are zero.
+/// @param flight gives each of the flights, one after another
+/// @param splines on each axis
+/// @throws Error if there is no such surface, a flight does not record an axis, or they flew no envelope.
+ModelEffect surface_over(std::size_t flights, const std::function<const Flight&(std::size_t)>& flight,
+                         const ModelDefinition& model, std::string_view id, std::size_t splines = 6);
 
 }  // namespace pcor

@@ -16,6 +16,7 @@
 #include "residuals/references/neighbours.hpp"
 #include "residuals/samples_key.hpp"
 #include "roles/jumps.hpp"
+#include "roles/pressure_height.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -116,6 +117,15 @@ class HeightReference final : public Reference {
                   flight.path().string() +
                       ": no GPS height and latitude with units (GGALT, GGLAT and the like), which the "
                       "reference height requires; name them in the table [variables] of the model");
+    }
+    const HeightEvidence evidence =
+        height_evidence(flight, height.values, static_pressures_of(flight, model_));
+    if (evidence.kind == HeightEvidence::Kind::pressure_altitude) {
+      throw Error(Error::Code::variable,
+                  fmt::format("{}: {} is a pressure altitude and no height of GPS: {}; a fit to it would be "
+                              "circular; name a height of GPS as altitude in the table [variables] of the "
+                              "model, or use another reference",
+                              flight.path().string(), height.variable, to_string(evidence)));
     }
     const std::vector<Jump> jumps = find_jumps(height.values, time);
     for (const Jump& jump : jumps)

@@ -175,8 +175,8 @@ class WindReference final : public Reference {
 
   std::string inputs() const override { return name() + inputs_of(model_, false); }
 
-  ModelSamples read(const Flight& flight, const std::vector<double>&,
-                    std::vector<std::string>&) const override {
+  ModelSamples read(const Flight& flight, const std::vector<double>& time,
+                    std::vector<std::string>& notes) const override {
     RecordedSeries heading = read_role(flight, model_, Quantity::heading);
     GroundVelocity ground = read_ground_velocity(flight, model_);
     if (heading.values.empty() || ground.speed.values.empty()) {
@@ -185,6 +185,11 @@ class WindReference final : public Reference {
                       ": no true heading and ground velocity with units (THDG, GGSPD, GGTRK and the like), "
                       "which the reference wind requires; name them in the table [variables] of the model");
     }
+    for (const Jump& jump : ground.jumps)
+      notes.push_back(told_of(ground.speed.variable, jump, time, "m/s") + ", which are left out");
+    for (const Jump& jump : ground.against_position)
+      notes.push_back(told_of(ground.speed.variable + " against the positions", jump, time, "m/s") +
+                      ", which are left out");
     ModelSamples samples;
     const auto add = [&samples](Quantity quantity, RecordedSeries& series) {
       samples.columns.emplace_back(quantity, std::move(series.values));

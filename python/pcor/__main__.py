@@ -1,0 +1,14 @@
+"""The tool itself: `python -m pcor refit ...`, and the command `pcor` of an environment."""
+
+import os
+import sys
+
+from ._tool import tool
+
+
+def main() -> None:
+    os.execv(tool, ["pcor", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,225 @@
+"""Models over arrays and sample by sample."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, Iterable, Mapping, Optional, Union
+
+import numpy as np
+import xarray as xr
+
+from . import _pcor
+from ._error import Error
+from ._flight import PathLike, values
+from ._tool import data
+
+quantities: dict[str, tuple[str, str, bool]] = _pcor.quantities
+"""Unit, description and whether it is recorded (a role) of every quantity, by name."""
+
+quality: dict[str, tuple[int, str]] = _pcor.quality
+"""Bit and meaning of every quality flag, by name."""
+
+standard_names = {
+    "corrected_static_pressure": "air_pressure",
+    "ambient_temperature": "air_temperature",
+    "lams_temperature": "air_temperature",
+    "corrected_airspeed": "platform_speed_wrt_air",
+}
+
+
+def model_folders() -> list[Path]:
+    """Where models are found by name: the folders of the environment variable PCOR_MODELS, then the package's."""
+    own = [Path(folder) for folder in os.environ.get("PCOR_MODELS", "").split(":") if folder]
+    return [*own, data / "models"]
+
+
+def _find(source: str) -> Path:
+    if os.path.exists(source) or "/" in source or source.endswith(".toml"):
+        return Path(source)
+    for folder in model_folders():
+        if (folder / f"{source}.toml").is_file():
+            return folder / f"{source}.toml"
+    known = sorted({path.stem for folder in model_folders() for path in folder.glob("*.toml")})
+    raise Error(f"there is no model file '{source}', and no model of that name; models by name: {', '.join(known)}",
+                "file")
+
+
+class Model:
+    """A law for delta-p, the correction that is added to the static and taken off the dynamic pressure.
+
+    `source` is a name ("c130-psfd-eq18"), the path of a model file, or the text of one.
+    """
+
+    _definition: _pcor.ModelDefinition
+
+    def __init__(self, source: Union[PathLike, "Model"]):
+        self.path: Optional[Path] = None
+        if isinstance(source, Model):
+            self.path, self._definition = source.path, source._definition
+        elif isinstance(source, str) and "\n" in source:
+            self._definition = _pcor.ModelDefinition.parse(source, "model")
+        else:
+            self.path = _find(os.fspath(source))
+            self._definition = _pcor.ModelDefinition.read(str(self.path))
+
+    @property
+    def name(self) -> str:
+        return self._definition.name
+
+    @property
+    def variables(self) -> dict[str, str]:
+        """The netCDF variable of each role."""
+        return self._definition.variables
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The coefficients, by names like "static-qp.a2"."""
+        return self._definition.parameters
+
+    @property
+    def text(self) -> str:
+        """The text of the model file, which restores the model to the last bit; comments of a file are not kept."""
+        return self._definition.text()
+
+    def with_parameters(self, parameters: Mapping[str, float]) -> "Model":
+        """This model with other values of some coefficients."""
+        changed = Model.__new__(Model)
+        changed.path = None
+        changed._definition = self._definition.with_parameters(dict(parameters))
+        return changed
+
+    def save(self, path: PathLike) -> None:
+        """Writes the model file, whole or not at all."""
+        self._definition.save(os.fspath(path))
+
+    def delta_p(self, flight: Optional[xr.Dataset] = None, *, roles: Optional[Mapping[str, str]] = None,
+                **recorded: Any) -> Union[np.ndarray, xr.DataArray]:
+        """Delta-p, hPa: as `correct`, of which it is the one result `static_defect`."""
+        return self.correct(flight, roles=roles, outputs=["static_defect"], **recorded)["static_defect"]
+
+    def correct(self, flight: Optional[xr.Dataset] = None, *, roles: Optional[Mapping[str, str]] = None,
+                outputs: Optional[Iterable[str]] = None, out: Optional[Mapping[str, np.ndarray]] = None,
+                correct_with: str = "model", **recorded: Any) -> Union[dict[str, np.ndarray], xr.Dataset]:
+        """The corrected pressures and what follows from them, sample by sample, over whole arrays.
+
+        Either `flight`, a dataset whose variables play the roles as the model says, or as `roles` does, {role:
+        variable}; their `units` are converted. Or the recorded quantities as arrays of one shape, by role, in hPa,
+        K, m/s, degrees, metres (`pcor.quantities`), and variables of the model's formulas by name:
+
+            model.correct(static_pressure=ps, dynamic_pressure=qc, recovery_temperature=tr)
+
+        Arrays of contiguous doubles are not copied. The results have the shape of the inputs: a dict of arrays, or
+        for a flight a dataset with units and CF names. `outputs` names them; the default is delta-p
+        ("static_defect"), the corrected pressures, Mach number, ambient temperature, airspeed, and what the laser
+        says, as far as the inputs allow. `out` has arrays to write results into, by name: contiguous doubles of that shape,
+        none of them an input; new memory costs half as much time as the computation. What cannot be computed is NaN; there are no quality flags, and models with
+        effects of rates of change need these as inputs. `pcor.process` has both.
+        """
+        if (flight is None) == (not recorded):
+            raise Error("give either a flight or the recorded quantities as arrays", "usage")
+        if flight is not None:
+            names, recorded = self._recorded(flight, roles or {})
+        batch = _pcor.ArrayModel(self._definition, list(recorded), correct_with)
+        absent = [name for name in batch.inputs if name not in recorded]
+        if flight is not None:
+            for name in absent:
+                recorded[name] = values(_variable(flight, name))
+                names.append(name)
+        for name, array in (out or {}).items():
+            if not (isinstance(array, np.ndarray) and array.dtype == np.float64 and array.flags.carray
+                    and all(array.shape == np.shape(each) and not np.may_share_memory(array, each)
+                            for each in recorded.values())):
+                raise Error(f"out['{name}'] is not a contiguous float64 array of the shape of the inputs that shares "
+                            "no memory with them; make it by numpy.empty(shape)", "usage")
+        results = batch.run(recorded, list(outputs) if outputs is not None else batch.outputs, out or {})
+        return results if flight is None else _as_dataset(results, flight, names[0], self.name)
+
+    def _recorded(self, flight: xr.Dataset, roles: Mapping[str, str]) -> tuple[list[str], dict[str, np.ndarray]]:
+        names: list[str] = []
+        recorded: dict[str, np.ndarray] = {}
+        stated = self._definition.units
+        for role, name in {**self.variables, **roles}.items():
+            if role not in quantities or not quantities[role][2]:
+                raise Error(f"there is no role '{role}'; pcor.quantities lists them", "variable")
+            variable = _variable(flight, name)
+            if names and variable.dims != flight[names[0]].dims:
+                raise Error(f"'{name}' has the dimensions {variable.dims}, not those of '{names[0]}'; "
+                            "pcor.process takes variables of several rates", "variable")
+            names.append(name)
+            if role == "date":
+                days = (variable.data - np.datetime64("2000-01-01")) / np.timedelta64(1, "D")
+                recorded[role] = values(days)
+                continue
+            scale, offset = _pcor.conversion(stated.get(role) or str(variable.attrs.get("units", "")),
+                                             quantities[role][0], name)
+            column = values(variable.data)
+            recorded[role] = column if (scale, offset) == (1.0, 0.0) else column * scale + offset
+        if not recorded:
+            raise Error(f"model '{self.name}' names no variables; give roles={{'static_pressure': 'PSFD', ...}}",
+                        "model")
+        return names, recorded
+
+    def __repr__(self) -> str:
+        return f"<pcor.Model '{self.name}'>"
+
+
+def _variable(flight: xr.Dataset, name: str) -> xr.DataArray:
+    if name not in flight:
+        raise Error(f"the flight has no variable '{name}'; give roles={{role: variable}}", "variable")
+    return flight[name]
+
+
+def _as_dataset(results: Mapping[str, np.ndarray], flight: xr.Dataset, like: str, model: str) -> xr.Dataset:
+    template = flight[like]
+    dataset = xr.Dataset(coords=template.coords, attrs={"source": f"pcor, model {model}"})
+    for name, array in results.items():
+        unit, description, _ = quantities[name]
+        attributes = {"units": unit, "long_name": description}
+        if name in standard_names:
+            attributes["standard_name"] = standard_names[name]
+        dataset[name] = xr.DataArray(array, dims=template.dims, attrs=attributes)
+    return dataset
+
+
+def model(source: Union[PathLike, Model]) -> Model:
+    """The model of that name, in that file, or with that text."""
+    return Model(source)
+
+
+class Loop:
+    """The sample loop of real time: one sample after another, with quality flags and uncertainties.
+
+        loop = pcor.Loop("c130-psfd-eq18", rate=25)
+        result = loop.run(0.04, static_pressure=700.0, dynamic_pressure=67.6, recovery_temperature=280.0)
+
+    `rate` is in samples per second; `recorded` names the roles, the default are those of the model. A model with
+    effects of rates of change gives the results of the sample `delay` runs ago.
+    """
+
+    def __init__(self, model: Union[PathLike, Model], rate: float, recorded: Optional[Iterable[str]] = None,
+                 correct_with: str = "model"):
+        definition = Model(model)._definition
+        names = definition.variables if recorded is None else recorded
+        self._loop = _pcor.NamedLoop(definition, list(names), rate, correct_with)
+
+    @property
+    def delay(self) -> int:
+        """How many runs after its own the results of a sample are there."""
+        return self._loop.delay
+
+    def run(self, time: float, **recorded: float) -> dict[str, float]:
+        """The results of the sample at `time`, s, by the names of `pcor.quantities`, and its `quality` bits.
+
+        Values are in hPa, K, m/s, degrees and metres, by role; one that is not given is missing.
+        """
+        return self._loop.run(time, recorded)
+
+    def reset(self) -> None:
+        """Forgets all earlier samples."""
+        self._loop.reset()
+
+    @staticmethod
+    def flags(bits: int) -> list[str]:
+        """The names of the quality flags that are set."""
+        return [name for name, (bit, _) in quality.items() if bits & bit]

@@ -1,0 +1,2 @@
+TOOL: str
+DATA: str

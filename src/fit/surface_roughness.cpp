@@ -1,0 +1,181 @@
+#include "fit/surface_roughness.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/fit_flights.hpp"
+#include "fit/prior.hpp"
+#include "numerics/decompositions.hpp"
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+// Parts of the dynamic pressure: a hundred-thousandth is negligible, a tenth is more than any law has.
+constexpr double min_size = 1e-5;
+constexpr double max_size = 0.1;
+constexpr double next_size = 1.7782794100389228;  // a quarter of a decade
+
+/// Products of (derivatives, residual) with each other in bins, weighted as least squares weighs them, and
+/// the covariance of the products with the noise.
+struct Products {
+  Eigen::MatrixXd squares{};
+  Eigen::MatrixXd noise{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(squares, noise);
+  }
+};
+
+Products products_of(FitFlights& flights, const Eigen::VectorXd& values) {
+  Products sum;
+  for (const Products& part : flights.of_each(
+           [&](std::size_t, FitFlight& fit) {
+             const Eigen::MatrixXd white = fit.white(fit.rows(values));
+             const Eigen::MatrixXd left = white.leftCols(white.cols() - 1);
+             const Eigen::MatrixXd weighted = fit.weighted(left, Eigen::VectorXd::Ones(left.rows()));
+             return Products{white.transpose() * white, fit.covariance_of_sums(weighted)};
+           },
+           values)) {
+    if (sum.squares.size() == 0) {
+      sum = part;
+      continue;
+    }
+    sum.squares += part.squares;
+    sum.noise += part.noise;
+  }
+  return sum;
+}
+
+/// Information of the flights on one surface, all other coefficients fitted.
+struct Determined {
+  Eigen::MatrixXd information{};
+  Eigen::MatrixXd noise{};  ///< covariance of `right`
+  Eigen::VectorXd right{};
+};
+
+Determined determined(const Products& products, const PriorRows& prior, double unit,
+                      const std::vector<Eigen::Index>& own) {
+  const Eigen::Index count = products.noise.cols();
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    if (std::find(own.begin(), own.end(), k) == own.end()) others.push_back(k);
+  }
+  const Eigen::MatrixXd& all = products.squares;
+  const Eigen::VectorXd y = all.col(count).head(count);
+  Determined found{all(own, own), products.noise(own, own), y(own)};
+  if (others.empty()) return found;
+  Eigen::MatrixXd of_others = all(others, others);
+  const Eigen::MatrixXd drawn = prior.rows(Eigen::all, others);
+  of_others += unit * drawn.transpose() * drawn;
+  const Eigen::VectorXd scale = of_others.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd across = all(others, own);
+  const Eigen::MatrixXd taken = scale.asDiagonal() *
+                                pseudo_inverse(scale.asDiagonal() * of_others * scale.asDiagonal(), 1e-11) *
+                                (scale.asDiagonal() * across);  // others by own
+  found.information -= across.transpose() * taken;
+  found.right -= taken.transpose() * y(others);
+  const Eigen::MatrixXd shared = products.noise(own, others) * taken;
+  found.noise += taken.transpose() * products.noise(others, others) * taken - shared - shared.transpose();
+  return found;
+}
+
+}  // namespace
+
+Eigen::MatrixXd SurfaceRoughness::rows(double of_differences, double of_coefficients) const {
+  Eigen::MatrixXd rows(differences.rows() + differences.cols(), differences.cols());
+  rows << differences / of_differences,
+      Eigen::MatrixXd::Identity(differences.cols(), differences.cols()) / of_coefficients;
+  return rows;
+}
+
+Eigen::MatrixXd second_differences(const Surface& surface) {
+  const auto rows = as_index(surface.axes[0].count);
+  const auto columns = as_index(surface.axes[1].count);
+  const Eigen::Index along_x = (rows - 2) * columns;
+  const Eigen::Index along_y = rows * (columns - 2);
+  Eigen::MatrixXd penalty = Eigen::MatrixXd::Zero(along_x + along_y, rows * columns);
+  Eigen::Index at = 0;
+  const auto add = [&](Eigen::Index middle, Eigen::Index step) {
+    penalty(at, middle - step) = penalty(at, middle + step) = 1.0;
+    penalty(at++, middle) = -2.0;
+  };
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j < columns; ++j) {
+      if (i > 0 && i + 1 < rows) add(i * columns + j, columns);
+      if (j > 0 && j + 1 < columns) add(i * columns + j, 1);
+    }
+  }
+  return penalty;
+}
+
+std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinition* other) {
+  std::vector<SurfaceRoughness> surfaces;
+  std::size_t first = 0;
+  const auto add = [&](const Model& of, const std::string& prefix) {
+    for (const ModelEffect& effect : of.effects) {
+      if (effect.is_surface())
+        surfaces.push_back(
+            {prefix + effect.id, first, effect.parameters.size(), second_differences(*effect.surface)});
+      first += effect.parameters.size();
+    }
+  };
+  add(model, "");
+  if (other != nullptr) add(other->model, "reference:");
+  return surfaces;
+}
+
+bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces) {
+  const std::vector<std::size_t>& wanted = flights.setup().wanted;
+  flights.measure_noise(solution.values, true);
+  const double unit = solution.deviation * solution.deviation;
+  const Products products = products_of(flights, solution.values);
+  bool changed = false;
+  for (SurfaceRoughness& surface : surfaces) {
+    std::vector<Eigen::Index> own;
+    std::vector<Eigen::Index> coefficients;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      if (!surface.has(wanted[k])) continue;
+      own.push_back(as_index(k));
+      coefficients.push_back(as_index(wanted[k] - surface.first));
+    }
+    if (own.empty() || !products.squares.allFinite()) continue;
+    Determined found = determined(products, prior_rows(flights.task(), wanted), unit, own);
+    // About zero, not about the solution.
+    found.right -= found.information * solution.values(wanted)(own);
+    const auto precision = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
+      return rows(Eigen::all, coefficients).transpose() * rows(Eigen::all, coefficients);
+    };
+    const Eigen::LLT<Eigen::MatrixXd> now(found.information +
+                                          unit * surface.inflation * precision(surface.rows()));
+    const double inflation =
+        std::max(1.0, now.solve(found.noise).trace() / (unit * now.solve(found.information).trace()));
+    changed = changed || std::abs(std::log(inflation / surface.inflation)) > 0.2;
+    // The noise is measured beside the surface of the round before: half steps make it converge.
+    surface.inflation = std::sqrt(inflation * surface.inflation);
+    const double weight = 1.0 / (surface.inflation * unit);
+    const SurfaceRoughness before = surface;
+    double best = -infinity;
+    for (double size = min_size; size < 1.1 * max_size; size *= next_size) {
+      for (double coefficient = min_size; coefficient < 1.1 * max_size; coefficient *= next_size) {
+        const Eigen::MatrixXd prior = precision(before.rows(size, coefficient));
+        const Eigen::LLT<Eigen::MatrixXd> alone(prior);
+        const Eigen::LLT<Eigen::MatrixXd> factor(weight * found.information + prior);
+        const double gain = 0.5 * weight * weight * found.right.dot(factor.solve(found.right)) +
+                            alone.matrixLLT().diagonal().array().log().sum() -
+                            factor.matrixLLT().diagonal().array().log().sum();
+        if (gain <= best) continue;
+        best = gain;
+        surface.size = size;
+        surface.coefficient = coefficient;
+        surface.degrees_of_freedom = weight * factor.solve(found.information).trace();
+      }
+    }
+    const auto differ = [](double a, double b) { return std::abs(std::log(a / b)) > 0.6; };  // by a step
+    changed = changed || differ(surface.size, before.size) || differ(surface.coefficient, before.coefficient);
+  }
+  return changed;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,107 @@
+#include "improve/surface_offer.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <pcor/base/error.hpp>
+#include <pcor/effects/static_surface.hpp>
+#include <pcor/roles/add_effects.hpp>
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr std::size_t blocks = 5;
+
+struct Pair {
+  TrialModel without;
+  TrialModel with;
+};
+
+RefitResult fitted(const FlightSet& flights, const TrialModel& model, const References& references,
+                   RefitOptions options) {
+  options.alike = model.alike;
+  return refit(flights, model.file, references, options);
+}
+
+/// Number `block` of the samples of a flight, from its begin to its end; s since 1970 UTC.
+Exclusion block_of(const TrialFlight& flight, std::size_t block) {
+  const std::vector<double>& time = flight.samples->time;
+  const std::vector<std::size_t>& used = flight.fitted;
+  const auto at = [&](std::size_t number) { return used.size() * number / blocks; };
+  const double begin = time[used[at(block)]];
+  const double end = at(block + 1) < used.size() ? time[used[at(block + 1)]] : time[used.back()] + 1.0;
+  const double half = 0.5 * flight.samples->step;
+  return {begin - half, end - half, "held out"};
+}
+
+/// The residuals without and with the surface on five blocks, each with coefficients of the other four.
+Comparison out_of_blocks(const FlightSet& flights, const Pair& models, const References& references,
+                         const RefitOptions& options) {
+  const std::vector<TrialFlight> outline =
+      try_models(flights, {models.without, models.with}, references, options);
+  std::vector<TrialModel> trials;
+  for (std::size_t block = 0; block < blocks; ++block) {
+    RefitOptions without_block = options;
+    if (!without_block.mask.intervals) without_block.mask.intervals.emplace();
+    for (const TrialFlight& flight : outline) {
+      if (flight.first_reference && flight.fitted.size() >= blocks)
+        without_block.mask.intervals->exclude.push_back(block_of(flight, block));
+    }
+    for (const TrialModel* const model : {&models.without, &models.with})
+      trials.push_back({fitted(flights, *model, references, without_block).model, model->alike});
+  }
+  std::vector<TrialFlight> tried = try_models(flights, trials, references, options);
+  const std::size_t per_reference = tried.size() / references.size();
+  for (std::size_t f = 0; f < tried.size(); ++f) {
+    TrialFlight& flight = tried[f];
+    const TrialFlight& first = tried[f % per_reference];
+    std::vector<std::vector<double>> out(2, std::vector<double>(flight.samples->time.size(), nan));
+    for (std::size_t block = 0; block < blocks && first.fitted.size() >= blocks; ++block) {
+      const Exclusion span = block_of(first, block);
+      for (const std::size_t i : flight.fitted) {
+        const double time = flight.samples->time[i];
+        if (time < span.begin || time >= span.end) continue;
+        for (std::size_t k = 0; k < out.size(); ++k) out[k][i] = flight.residuals[2 * block + k][i];
+      }
+    }
+    flight.residuals = std::move(out);
+  }
+  return comparison_of(tried, 0, 1, false);
+}
+
+}  // namespace
+
+std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialModel& model,
+                                          const References& references, const RefitOptions& options) {
+  const std::string id(surface_info.front().id);
+  const bool is_in_memory = flights.path(0).empty();
+  const bool names_a_flight = options.mask.intervals && !options.mask.intervals->flight.empty();
+  if (is_in_memory || flights.comm().size() > 1 || has(model.file, id) ||
+      (names_a_flight && flights.size() > 1))
+    return std::nullopt;
+  Pair models{model, model};
+  try {
+    const ModelEffect surface = surface_over(
+        flights.size(), [&flights](std::size_t number) -> const Flight& { return flights[number]; },
+        model.file, id);
+    models.with.file = add_effects(model.file, {surface}, flights[0].variables());
+  } catch (const Error& error) {
+    if (error.code() == Error::Code::file) throw;
+    return std::nullopt;
+  }
+  SurfaceOffer offer;
+  offer.fit = fitted(flights, models.with, references, options);
+  if (!options.holdout.empty() || options.training_share < 1.0) {
+    offer.held_out = "on what was held out";
+    models.with.file = offer.fit.model;
+    offer.out_of_fit =
+        comparison_of(try_models(flights, {models.without, models.with}, references, options), 0, 1, true);
+  } else {
+    offer.held_out = "on five blocks, each with coefficients of the other four";
+    offer.out_of_fit = out_of_blocks(flights, models, references, options);
+  }
+  return offer;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,99 @@
+#include "roles/pressure_height.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <pcor/base/error.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
+#include "numerics/median.hpp"
+#include "roles/recorded_series.hpp"
+#include "roles/resolution.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using Kind = HeightEvidence::Kind;
+
+constexpr std::size_t min_values = 60;
+constexpr double min_range = 30.0;     // hPa, about 250 m: a height of GPS departs by 1 to 5 % of its change
+constexpr double same_scatter = 0.15;  // hPa, about 1.2 m: two readings of one pressure
+constexpr double same_bias = 1.0;      // hPa; by the weather it is 5 to 12 in four real flights
+constexpr double near_bias = 3.0;      // hPa: a pressure that is corrected departs so from the raw one
+constexpr double near_scatter = 2.0;   // hPa
+
+}  // namespace
+
+HeightEvidence compare_height(const std::vector<double>& height, const std::vector<double>& pressure) {
+  HeightEvidence evidence;
+  std::vector<double> differences;
+  std::vector<double> pressures;
+  for (std::size_t i = 0; i < std::min(height.size(), pressure.size()); ++i) {
+    const double difference = standard_pressure(height[i]) - pressure[i];
+    if (!std::isfinite(difference)) continue;
+    differences.push_back(difference);
+    pressures.push_back(pressure[i]);
+  }
+  if (differences.size() < min_values) return evidence;
+  evidence.bias = median(differences);
+  for (double& each : differences) each = std::abs(each - evidence.bias);
+  evidence.scatter = deviation_of_median * median(std::move(differences));
+  const auto [least, most] = std::minmax_element(pressures.begin(), pressures.end());
+  // Both are recorded in steps; the gradient converts a step of height to one of pressure.
+  const double middle = pressure_altitude(median(pressures));
+  const double gradient = standard_pressure(middle) - standard_pressure(middle + 1.0);
+  const double rounding =
+      std::hypot(rounding_of(resolution_of(pressure)), gradient * rounding_of(resolution_of(height)));
+  const double allowed = std::max(same_scatter, 1.5 * rounding);
+  const bool tells = *most - *least >= min_range || evidence.scatter < 0.1 * same_scatter;
+  if (tells && std::abs(evidence.bias) < same_bias && evidence.scatter < allowed) {
+    evidence.kind = Kind::pressure_altitude;
+  } else if (std::abs(evidence.bias) < near_bias && evidence.scatter < near_scatter) {
+    evidence.kind = Kind::undecided;
+  }
+  return evidence;
+}
+
+HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& height,
+                               const std::vector<std::string>& pressures) {
+  HeightEvidence closest;
+  for (const std::string& variable : pressures) {
+    try {
+      const QuantityInfo& info = info_of(Quantity::static_pressure);
+      const UnitConversion conversion = flight.conversion(variable, std::string(info.unit));
+      HeightEvidence evidence =
+          compare_height(height, read_values(flight, variable, believed(conversion, info)).values);
+      evidence.pressure = variable;
+      const bool is_closer = evidence.kind > closest.kind ||
+                             (evidence.kind == closest.kind && evidence.scatter < closest.scatter);
+      if (closest.pressure.empty() || is_closer) closest = std::move(evidence);
+    } catch (const Error& error) {
+      if (error.code() == Error::Code::file) throw;
+    }
+  }
+  return closest;
+}
+
+std::vector<std::string> static_pressures_of(const Flight& flight, const ModelDefinition& model) {
+  std::vector<std::string> variables;
+  const auto add = [&](const std::string& variable) {
+    const bool is_new = std::find(variables.begin(), variables.end(), variable) == variables.end();
+    if (is_new && has_values(flight, variable, "hPa")) variables.push_back(variable);
+  };
+  const auto named = model.variables.find(Quantity::static_pressure);
+  if (named != model.variables.end()) add(named->second);
+  const VariableNaming& family = family_of(model, flight);
+  for (const auto* pairs : {&family.measured, &family.processed}) {
+    for (const PressurePair& pair : *pairs) add(pair.static_pressure);
+  }
+  return variables;
+}
+
+std::string to_string(const HeightEvidence& evidence) {
+  return fmt::format(
+      "its pressure in the standard atmosphere is that of {} within {:.2f} hPa, mean {:+.2f} hPa",
+      evidence.pressure, evidence.scatter, evidence.bias);
+}
+
+}  // namespace pcor::internal

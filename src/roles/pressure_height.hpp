@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/model_io/model_definition.hpp>
+
+namespace pcor::internal {
+
+/// The result of comparing a height with the pressures of its flight.
+struct HeightEvidence {
+  enum class Kind {
+    gps,                ///< it departs from the heights of all static pressures as a geometric height does
+    undecided,          ///< it is close to one of them, and the flight cannot decide
+    pressure_altitude,  ///< it is the height of one of them in the standard atmosphere
+  };
+  Kind kind = Kind::gps;
+  std::string pressure{};  ///< the static pressure that it is closest to; empty without any
+  double bias = 0.0;       ///< hPa, the median of the pressure of the height less that pressure
+  double scatter = 0.0;    ///< hPa, about the median, robust
+};
+
+/// Compares a height with one static pressure by the standard atmosphere. A pressure altitude agrees to the
+/// resolution of both, within 1 hPa in the mean; a height of GPS departs by the weather, about 5 to 12 hPa.
+/// @param height m  @param pressure hPa
+HeightEvidence compare_height(const std::vector<double>& height, const std::vector<double>& pressure);
+
+/// Compares a height with several static pressures; returns the comparison that is closest.
+HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& height,
+                               const std::vector<std::string>& pressures);
+
+/// The static pressures of a flight: the model's, and those of the pairs that its aircraft's names have.
+std::vector<std::string> static_pressures_of(const Flight& flight, const ModelDefinition& model);
+
+/// "the pressure of the height is that of PSXC within 0.01 hPa (mean +0.00 hPa)".
+std::string to_string(const HeightEvidence& evidence);
+
+}  // namespace pcor::internal

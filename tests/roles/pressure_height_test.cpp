@@ -1,0 +1,59 @@
+#include "roles/pressure_height.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <vector>
+
+#include <pcor/physics/standard_atmosphere.hpp>
+
+namespace pcor::internal {
+namespace {
+
+using Kind = HeightEvidence::Kind;
+
+/// A climb from 900 to 800 hPa, in hPa.
+std::vector<double> pressures() {
+  std::vector<double> all;
+  for (int i = 0; i < 500; ++i) all.push_back(900.0 - 0.2 * i);
+  return all;
+}
+
+TEST(PressureHeight, HeightOfThePressureIsFound) {
+  std::vector<double> height;
+  for (const double pressure : pressures()) height.push_back(pressure_altitude(pressure));
+  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::pressure_altitude);
+  // In steps of 10 ft, whose rounding is 0.1 hPa rms.
+  for (double& each : height) each = 3.048 * std::round(each / 3.048);
+  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::pressure_altitude);
+}
+
+TEST(PressureHeight, HeightInOtherWeatherIsOfGps) {
+  std::vector<double> height;
+  // A high of 5 hPa adds 45 m, and air 3 % warmer than the standard adds 30 to 60 m: 7 to 10 hPa together.
+  for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure - 5.0));
+  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::gps);
+}
+
+TEST(PressureHeight, CancellingPressureAndTemperatureAreUndecided) {
+  std::vector<double> height;
+  // A low of 5 hPa subtracts 45 m, warm air adds 30 to 60 m: 0.6 hPa remain, with a scatter of 1.0 hPa.
+  for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure + 5.0));
+  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::undecided);
+}
+
+TEST(PressureHeight, HeightOfOtherPressureIsUndecided) {
+  std::vector<double> height;
+  // A correction of 1.5 hPa, which changes by 1 hPa.
+  for (const double pressure : pressures())
+    height.push_back(pressure_altitude(pressure + 1.0 + 0.01 * (900.0 - pressure)));
+  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::undecided);
+}
+
+TEST(PressureHeight, TooFewValuesSayNothing) {
+  EXPECT_EQ(compare_height({100.0}, {1000.0}).kind, Kind::gps);
+  EXPECT_EQ(compare_height({}, {}).kind, Kind::gps);
+}
+
+}  // namespace
+}  // namespace pcor::internal

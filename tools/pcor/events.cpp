@@ -1,0 +1,32 @@
+#include "events.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "communicator.hpp"
+
+namespace pcor::tool {
+namespace {
+
+/// The file descriptor for events; 0 without PCOR_EVENTS.
+int descriptor() {
+  static const int number = [] {
+    const char* const given = std::getenv("PCOR_EVENTS");
+    return given == nullptr ? 0 : static_cast<int>(std::strtol(given, nullptr, 10));
+  }();
+  return number;
+}
+
+}  // namespace
+
+bool wants_events() { return descriptor() > STDERR_FILENO && is_speaker(); }
+
+void send_event(const nlohmann::ordered_json& event) {
+  if (!wants_events()) return;
+  const std::string line = event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  [[maybe_unused]] const auto written = write(descriptor(), line.data(), line.size());
+}
+
+}  // namespace pcor::tool
