@@ -8,8 +8,8 @@
 
 namespace pcor::internal {
 
-/// Puts into every finding with aliases which of the regimes that were flown, flown again, would separate it
-/// from them, and how surely.
+/// Adds to every finding with aliases the repeated regime that would separate it from them, and the
+/// probability of that.
 void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
             std::vector<Finding>& findings);
 

@@ -18,7 +18,8 @@ namespace pcor::internal {
 namespace {
 
 constexpr int max_rounds = 4;
-/// For the first noise: whatever might be an effect is taken off, a claim it is not.
+/// Candidates removed from the residual before the first noise estimate; this is no claim that they are
+/// effects.
 constexpr double generous_threshold = 9.0;
 constexpr std::size_t generous_effects = 6;
 constexpr double stretch_time = 300.0;  // s
@@ -29,7 +30,7 @@ std::vector<Value> part(const std::vector<Value>& all, std::size_t first, std::s
   return {all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(last)};
 }
 
-/// The entries of a share that are of flights against the first reference: the first of them.
+/// Entries of a share that belong to flights against the first reference.
 std::vector<std::size_t> first_entries(const std::vector<FlightColumns>& flights) {
   std::vector<std::size_t> first;
   for (std::size_t f = 0; f < flights.size() && flights[f].reference == 0; ++f) first.push_back(f);
@@ -67,8 +68,9 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
     part.rightCols(1) = base.transpose() * binned_.residuals[f];
     return part;
   });
-  // Slow effects and slow drift contend for the same part of the residuals, so noise is found from both ends:
-  // with whatever might be an effect taken off first, and with none. The likelier end counts.
+  // Slow effects and slow drift compete for the same part of the residuals, so the noise is estimated from
+  // two starts: with all candidate effects removed, and with no effect removed. The more likely result is
+  // used.
   const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1), min_eigenvalue);
   const double by_effects = search_from(start, true);
   const bool drifts =
@@ -175,7 +177,7 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
     const std::vector<double> predicted = added(f, groups, estimate);
     flight.residual =
         without_outliers(flight.given, predicted, flight.samples->time, flight.samples->step, count);
-    // A record that is in no bin has no prediction; it does not count anyway.
+    // A record outside all bins has no prediction and is not counted.
     binned_.residuals[f] = binned_.bins[f].means(flight.residual);
   }
   first_residuals_ = part(binned_.residuals, 0, flights_.size());
@@ -208,7 +210,7 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
     if (is_first) drift_gain_ = found.drift_gain;
     is_first = false;
     likelihood_ += found.likelihood;
-    return with_slower_noise(found.model);  // the likelihood is that of what the flights tell
+    return with_slower_noise(found.model);  // this likelihood includes only what the flights show
   });
   keep_coefficients(groups, estimate);
 }
@@ -297,7 +299,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const Eigen::Index width = as_index(places.size()) + 1;
   const auto part_of = [this](std::size_t f, double time) { return held_out_part(*flight(f).samples, time); };
   std::vector<Eigen::MatrixXd> white(binned_.bins.size());
-  // The sums of the parts side by side, of whitened rows and then of rows as they are.
+  // Sums of the parts in adjacent columns: whitened rows first, then unwhitened rows.
   const auto information = share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
     Eigen::MatrixXd all(binned_.columns[f].rows(), width);
     all << binned_.columns[f](Eigen::all, places), binned_.residuals[f];
@@ -315,7 +317,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     }
     return sums;
   });
-  // What the other parts hardly see of an effect stays near its usual size: a prior as in the search.
+  // Coefficients that the other parts hardly constrain stay near their usual size: a prior as in the search.
   Eigen::VectorXd precision = Eigen::VectorXd::Zero(width - 1);
   Eigen::Index place = base_;
   for (const std::size_t group : groups) {
@@ -325,7 +327,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     }
     place += groups_[group].count;
   }
-  // Of each part, fitted to the others.
+  // Prediction of each part from a fit to the others.
   const auto rows = static_cast<double>(scores_->row_count);
   const auto estimates_from = [&](std::size_t first) {
     std::vector<Eigen::MatrixXd> parts;
@@ -338,7 +340,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     for (const Eigen::MatrixXd& part : parts) {
       const Eigen::MatrixXd rest = whole - part;
       Eigen::MatrixXd normal = rest.topLeftCorner(width - 1, width - 1);
-      // In units of the variance of the rows.
+      // Unit: variance of the rows.
       normal.diagonal() += rest(width - 1, width - 1) / rows * precision;
       estimates.push_back(pseudo_solution(normal, rest.col(width - 1).head(width - 1), min_eigenvalue));
     }

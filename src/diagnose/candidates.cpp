@@ -26,21 +26,21 @@ bool has_effect(const ModelDefinition& model, std::string_view id) {
   return std::any_of(effects.begin(), effects.end(), [id](const ModelEffect& e) { return e.id == id; });
 }
 
-/// The aircraft family whose names a model uses on some flights.
+/// Aircraft family whose variable names a model uses on some flights.
 const VariableNaming& family_of(const ModelDefinition& file, const FlightSet& flights) {
   if (!file.roles_from.empty()) return family_named(file.roles_from);
   return flights.size() == 0 ? aircraft_families().front() : family_named(flights.outlines().front().family);
 }
 
-/// Names the usual variables of the roles that the model leaves open, where every flight records them in a
-/// unit that fits. The flow angles stay as they are where the model computes them from the radome.
+/// Fills roles that the model leaves open with the usual variables, if every flight records them in a
+/// suitable unit. Flow angles stay unchanged if the model computes them from the radome.
 void name_usual_variables(ModelDefinition& file, const FlightSet& flights) {
   const VariableNaming& family = family_of(file, flights);
   struct Usual {
     Quantity role;
     std::string variable;
   };
-  std::vector<Usual> usual;  // of a role the most usual first
+  std::vector<Usual> usual;  // most usual variable of each role first
   for (std::size_t i = 0; i < role_count; ++i) {
     const auto role = static_cast<Quantity>(i);
     if (file.variables.count(role) != 0) continue;
@@ -84,14 +84,14 @@ Candidate candidate_of(const EffectInfo& info) {
 
 bool reads_date(const EffectInfo& info) { return info.needs[0] == Quantity::date; }
 
-/// What a shape parameter is tried at: what its facts say, or dates.
+/// Values at which a shape parameter is tried: from its `ParameterInfo`, or dates.
 std::vector<double> tried_values(const EffectInfo& info, const ParameterInfo& shape,
                                  const std::vector<double>& dates) {
   if (reads_date(info)) return dates;
   return {shape.tried.begin(), std::find(shape.tried.begin(), shape.tried.end(), 0.0)};
 }
 
-/// The candidate in other shapes.
+/// Other shapes of the candidate.
 std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector<double>& dates) {
   std::vector<Candidate> variants;
   if (candidate.effect.is_formula()) return variants;
@@ -126,13 +126,13 @@ Candidate candidate_of(const ModelEffect& formula) {
   return candidate;
 }
 
-/// Why a flight has no values of a variable; empty where it has.
+/// Reason why a flight has no values of a variable; empty if it has some.
 std::string trouble_with(const Flight& flight, const std::string& variable) {
   if (!flight.has(variable)) return fmt::format("{} has no variable {}", flight.path().string(), variable);
   return value_problem(flight, variable);
 }
 
-/// Of a formula: the variable that some flight lacks; empty where there is none.
+/// First variable of a formula that a flight lacks; empty if all are present.
 std::string missing_variable(const ModelEffect& effect, const FlightSet& flights) {
   const auto formula = Formula::parse(effect.formula, effect.parameter_names, nullptr);
   if (!formula) return "";
@@ -158,14 +158,14 @@ bool has_a_twin(EffectLocation location) {
          location == EffectLocation::static_defect || location == EffectLocation::pitot;
 }
 
-/// Whether what is wrong there is often wrong on both systems, since tubes and lines are built alike.
+/// Whether an error at this location often occurs on both systems, because tubes and lines are built alike.
 bool is_built_alike(EffectLocation location) {
   return location == EffectLocation::static_line || location == EffectLocation::total_line ||
          location == EffectLocation::pitot;
 }
 
-/// Puts behind each candidate those that no chain has beside it: in tubes and lines the same on both systems,
-/// and with its need as found over other times.
+/// Inserts after each candidate its variants: the same effect on both systems for tubes and
+/// lines, and other times for the need.
 void add_derived_ones(CandidateSet& set, bool two_systems) {
   std::vector<Candidate> all;
   for (const Candidate& candidate : set.candidates) {
@@ -201,12 +201,13 @@ bool is_same(const ModelDefinition& a, const ModelDefinition& b) {
          free_parameters(a) == free_parameters(b);
 }
 
-/// The system that a model corrects, by its pressures: "PSFRD+QCFR". Two laws of one pair are of one system.
+/// System that a model corrects, named by its pressures: "PSFRD+QCFR". Two laws of one pair belong to one
+/// system.
 std::string system_of(const ModelDefinition& model) {
   return model.variables.at(Quantity::static_pressure) + "+" + model.variables.at(Quantity::dynamic_pressure);
 }
 
-/// How ids name the system of a reference: not at all where there is only one other system.
+/// Part of an id that names the system of a reference; empty if there is only one other system.
 std::string name_of_system(const ModelDefinition& model, const References& references) {
   const bool several = std::any_of(references.begin(), references.end(), [&model](const auto& each) {
     return each->model() != nullptr && system_of(*each->model()) != system_of(model);
@@ -238,8 +239,8 @@ void fix_all(ModelDefinition& model) {
   }
 }
 
-/// Everything that the own system may have, a system that it is held against may have too. One residual of
-/// both knows their difference alone.
+/// Every effect of this system may also occur in the reference system. One residual of both determines only
+/// the difference.
 void add_those_of_the_references(CandidateSet& set, const References& references, const FlightSet& flights,
                                  const std::vector<double>& dates, bool trusted) {
   for (std::size_t r = 0; r < references.size(); ++r) {

@@ -12,13 +12,13 @@
 
 namespace pcor::internal {
 
-/// What can be tested on some flights, and what cannot.
+/// Testable and untestable candidates for some flights.
 struct CandidateSet : CandidateModels {
   std::vector<NotTestable> not_testable{};
 };
 
-/// The effects of the catalogue that are not in the model, and the formulas. An effect whose inputs some
-/// flight lacks is not testable, and told so. @throws Error if the model cannot be used.
+/// Effects of the catalogue that are not in the model, and the formulas. An effect whose inputs are missing
+/// in some flight is listed as not testable. @throws Error if the model cannot be used.
 /// @param dates on which a step is tried, as the role date has them
 CandidateSet find_candidates(const ModelDefinition& model, const std::vector<ModelEffect>& formulas,
                              const FlightSet& flights, const References& references,

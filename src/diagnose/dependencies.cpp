@@ -8,7 +8,7 @@
 namespace pcor::internal {
 namespace {
 
-using Inputs = std::map<std::string, std::vector<std::string>>;  // of each variable that is computed
+using Inputs = std::map<std::string, std::vector<std::string>>;  // keyed by computed variable
 
 std::vector<std::string> inputs_of(const VariableInfo& variable) {
   std::vector<std::string> inputs;
@@ -16,13 +16,13 @@ std::vector<std::string> inputs_of(const VariableInfo& variable) {
     if (name != "Dependencies") continue;
     std::istringstream words(text);
     std::string word;
-    words >> word;  // how many
+    words >> word;  // number of inputs
     while (words >> word) inputs.push_back(word);
   }
   return inputs;
 }
 
-/// Adds all that the names are computed from. Files exist in which variables depend on each other in a ring.
+/// Adds all inputs of the names recursively. Some files contain circular dependencies.
 void add_inputs(const Inputs& inputs, std::set<std::string>& names) {
   std::vector<std::string> open(names.begin(), names.end());
   while (!open.empty()) {

@@ -7,10 +7,9 @@
 
 namespace pcor::internal {
 
-/// The variables of a flight that are computed from any of `sensors`, or from what these are computed from
-/// themselves, in however many steps: as the attributes `Dependencies` of NCAR's files say ("3 PSXC QCXC
-/// ATX": how many, and which). The sensors and what they are computed from are not among them. Nothing where
-/// the file does not say.
+/// Variables of a flight that are computed, directly or indirectly, from any of `sensors` or from the inputs
+/// of these, according to the attribute `Dependencies` of NCAR files ("3 PSXC QCXC ATX": number and names).
+/// The sensors and their inputs are excluded. Empty if the file has no such attribute.
 std::set<std::string> computed_from(const Flight& flight, const std::set<std::string>& sensors);
 
 }  // namespace pcor::internal

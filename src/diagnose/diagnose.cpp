@@ -39,7 +39,7 @@ std::string description_of(const References& references) {
   return text;
 }
 
-/// What the effects of findings read, on either system; an angle is also read as its differential pressure.
+/// Inputs of the effects of findings on either system; an angle is also read as its differential pressure.
 EffectInputs inputs_of(const std::vector<Finding>& findings, const ModelDefinition& model) {
   EffectInputs inputs;
   const auto read = [&](Quantity quantity) {
@@ -63,7 +63,7 @@ EffectInputs inputs_of(const std::vector<Finding>& findings, const ModelDefiniti
   return inputs;
 }
 
-/// The own flights; of the others nothing.
+/// Local flights; entries of the others are empty.
 std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const Search& search = analysis.search();
@@ -101,7 +101,7 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
   return flights;
 }
 
-/// Keeps the records of the flights that pictures show, which then all members have.
+/// Keeps the records of the flights in pictures and shares them with all members.
 void keep_series(const Analysis& analysis, const std::optional<std::vector<std::size_t>>& wanted,
                  std::vector<FlightDiagnosis>& flights) {
   for (std::size_t f = 0; f < flights.size(); ++f) {
@@ -133,7 +133,7 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
   for (std::size_t k = 0; k < kept.size(); ++k) flights[kept[k]] = std::move(series[k]);
 }
 
-/// The model's own coefficients, fitted again.
+/// Model coefficients after a new fit.
 std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoefficient>& base) {
   Eigen::VectorXd change;
   Eigen::MatrixXd covariance;
@@ -156,7 +156,7 @@ double noise_with_findings(const FlightPartition& share, const std::vector<Fligh
   return sums.statistics().noise_rms;
 }
 
-/// What the model as it is given leaves of a flight.
+/// Residual of the given model on a flight.
 struct GivenStatistics {
   ResidualSums used{};
   std::optional<ResidualSums> with_flaps{};
@@ -189,8 +189,7 @@ GivenStatistics statistics_of(const FlightColumns& flight, double share) {
   return found;
 }
 
-/// What the model as it is given leaves: of the samples that are used, of the later parts of the flights, and
-/// of those with flaps out.
+/// Residuals of the given model: used samples, later parts of the flights, and samples with flaps out.
 void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnosis) {
   ResidualSums used;
   ResidualSums with_flaps;
@@ -218,7 +217,7 @@ void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnos
     diagnosis.held_out[i].expected = means.expected_bias(held_out_blocks[i]);
 }
 
-/// The samples of all flights by what they are left out for.
+/// Samples of all flights by reason of exclusion.
 std::array<std::size_t, mask_count> count_masks(const TeamColumns& columns) {
   using Counts = std::array<std::size_t, mask_count>;
   Counts all{};
@@ -234,7 +233,7 @@ std::array<std::size_t, mask_count> count_masks(const TeamColumns& columns) {
 }
 
 Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
-  constexpr double notable = 0.03;  // of what was explained
+  constexpr double notable = 0.03;  // fraction of the explained part
   if (diagnosis.findings.empty())
     return diagnosis.unexplained.significant ? Verdict::unexplained : Verdict::silent;
   if (diagnosis.unexplained.significant && left > notable * explained) return Verdict::partial;
@@ -243,7 +242,7 @@ Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
   return alone ? Verdict::identified : Verdict::ambiguous;
 }
 
-/// Takes back the findings where one variable of the files explains more than they do.
+/// Withdraws the findings if one variable of the files explains more than they do.
 void overrule(Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) {
     diagnosis.notes.push_back(fmt::format(
@@ -261,7 +260,7 @@ void overrule(Diagnosis& diagnosis) {
   }
 }
 
-/// Coefficients of the base of each effect of the flow that was added, as the model has them.
+/// Base coefficients of each added effect of the flow, from the model.
 std::vector<Eigen::VectorXd> added_of(const ModelDefinition& model, const std::vector<BaseCoefficient>& base,
                                       const std::vector<std::string>& added) {
   std::vector<Eigen::VectorXd> effects;
@@ -276,7 +275,7 @@ std::vector<Eigen::VectorXd> added_of(const ModelDefinition& model, const std::v
   return effects;
 }
 
-/// A diagnosis, and what its search found, also where a variable of the files overrules that.
+/// Diagnosis, and the search result even if a variable of the files overrules it.
 struct SearchedDiagnosis {
   Diagnosis diagnosis{};
   std::vector<Finding> found{};

@@ -20,10 +20,10 @@ namespace {
 const std::string mach = "mach";
 const std::string pressure = "static_pressure";
 
-/// The column of a variable of the files that is no quantity of the model.
+/// Column of a file variable that is not a quantity of the model.
 std::string variable_column(const std::string& variable) { return "variable " + variable; }
 
-/// The column that shows a quantity, its own or that of one that goes with it.
+/// Column that shows a quantity, or a related quantity.
 std::string column_of(Quantity quantity) {
   constexpr std::pair<Quantity, Quantity> stand_ins[]{
       {Quantity::attack_ratio, Quantity::attack},
@@ -49,9 +49,9 @@ std::string column_of(Quantity quantity) {
 
 ReportTable variables_table(const Unexplained& unexplained) {
   ReportTable table;
-  table.title = "Variables that the unexplained structure goes with";
+  table.title = "Variables that the unexplained structure varies with";
   table.caption =
-      "Share of the residual's variance that goes with the variable in any way and along a straight line, "
+      "Share of the residual's variance that varies with the variable in any way and along a straight line, "
       "with "
       "as much drift beside it as is likeliest then; p is the probability that the best of all variables "
       "does "
@@ -249,7 +249,7 @@ void DiagnosisPanels::add_responses(const std::vector<std::string>& residuals, b
   }
   if (coherence.curves.empty()) return;
   for (CurvePanel* const panel : {&coherence, &delay, &step}) {
-    // Where nothing is coherent no delay can be told.
+    // A delay cannot be estimated without coherence.
     const bool shows = std::any_of(panel->curves.begin(), panel->curves.end(), [](const ReportCurve& curve) {
       return std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return std::isfinite(y); });
     });

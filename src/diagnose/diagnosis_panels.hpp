@@ -14,7 +14,7 @@
 #include <pcor/report/report.hpp>
 #include "report/columns.hpp"
 
-/// What reports of a diagnosis and of an improvement share: their columns, panels and tables.
+/// Columns, panels and tables shared by the reports of diagnose and improve.
 namespace pcor::internal::report {
 
 using Flights = std::vector<FlightDiagnosis>;
@@ -27,23 +27,23 @@ inline constexpr const char* effect_caption =
     "Without the effect the residual has a slope or a bend that is more than the error bars; with it none "
     "should be left.";
 
-/// The name of one of several columns, "residual1".
+/// Name of one of several columns, "residual1".
 std::string numbered(const char* name, std::size_t number);
 
-/// One of several series of a flight; none where it does not have that many.
+/// One of several series of a flight; empty if the index is too large.
 Series one_of(const std::vector<Series>& all, std::size_t number);
 
-/// What an effect depends on, by the names of columns, the pressure last: most effects grow with it.
+/// Names of the columns that an effect depends on; the pressure comes last because most effects grow with it.
 std::vector<std::string> inputs_of(const ModelEffect& effect);
 
 /// Whether the reference of the flights is a laser.
 bool reads_laser(const Diagnosis& diagnosis);
 
-/// Empty for what is no number.
+/// Text of a number; empty for NaN.
 std::string cell(double value, int decimals);
 
-/// The columns and panels of a report about diagnoses of the same flights. Its samples are those in which the
-/// first diagnosis has a residual.
+/// Columns and panels of a report about diagnoses of the same flights. Its samples are those with a residual
+/// in the first diagnosis.
 class DiagnosisPanels {
  public:
   explicit DiagnosisPanels(const Flights& flights);
@@ -55,7 +55,7 @@ class DiagnosisPanels {
     report_.items.emplace_back(std::move(panel));
   }
 
-  /// Adds the column and returns true, if it has any value. @param series of a `FlightDiagnosis`
+  /// Adds the column if it has any value, and returns whether it did. @param series of a `FlightDiagnosis`
   template <class Of>
   bool add_column(const std::string& name, const std::string& title, const std::string& unit,
                   const Flights& flights, const Of& series) {
@@ -73,7 +73,7 @@ class DiagnosisPanels {
     return true;
   }
 
-  /// As `add_column`, for a variable that residuals are drawn against.
+  /// Adds the column as `add_column` does, for a variable on the axis of residual plots.
   template <class Of>
   void add_variable(const std::string& name, const std::string& title, const std::string& unit,
                     const Flights& flights, const Of& series) {
@@ -86,26 +86,26 @@ class DiagnosisPanels {
 
   void add_time(std::string title, std::string caption, std::vector<std::string> columns, std::string axis);
 
-  /// Residuals against the variables, those of `first` that there are before the others.
+  /// Residuals against the variables; those of `first` that exist come before the others.
   void add_binned(std::string title, std::string caption, std::vector<std::string> y,
                   const std::vector<std::string>& first);
 
-  /// How the model's pressure follows the reference's: coherence, delay and step response, of each residual
-  /// column. `by_dynamic_pressure` where the reference is a laser; else by static pressure.
+  /// Response of the model's pressure to the reference's: coherence, delay and step response of each residual
+  /// column. `by_dynamic_pressure` for a laser reference; otherwise static pressure.
   void add_responses(const std::vector<std::string>& residuals, bool by_dynamic_pressure);
 
-  /// Effects to add under the reader's hand; nothing where there are none.
-  /// @param residual the column that it starts from
-  /// @param first variables that there are before the others
+  /// Interactive effects; empty if there is no effect.
+  /// @param residual initial column
+  /// @param first existing variables that come before the others
   void add_what_if(const WhatIf& what_if, const std::string& residual, const std::vector<std::string>& first,
                    double noise);
 
   void add_plane(std::string title, std::string caption, const std::string& colour);
 
-  /// Unless it has no rows.
+  /// Adds the table unless it has no rows.
   void add_table(ReportTable table);
 
-  /// Takes the memory of the noise, for error bars, from a residual without structure.
+  /// Estimates the correlation of the noise, for error bars, from a residual without structure.
   template <class Of>
   void measure_memory(const Flights& flights, const Of& series) {
     double samples = 0.0;
@@ -127,11 +127,10 @@ class DiagnosisPanels {
 
   void add_flight_info();
 
-  /// Of all flights.
   std::vector<ReportBarb> wind() const;
 
  private:
-  /// A flight and the samples of it that the report shows.
+  /// Flight and its samples shown in the report.
   struct Used {
     std::size_t number;
     const FlightSamples* samples;
@@ -139,7 +138,7 @@ class DiagnosisPanels {
   };
 
   void add_variables(const Flights& flights);
-  /// Of the variables those that some sample has together with one of the columns, `first` first.
+  /// Variables that have values in samples of one of the columns, `first` first.
   std::vector<std::string> choices(const std::vector<std::string>& y,
                                    const std::vector<std::string>& first) const;
 
@@ -149,23 +148,23 @@ class DiagnosisPanels {
   double memory_ = 1.0;
 };
 
-/// @param numbers what else is said after the model and the reference
+/// @param numbers further text after the model and the reference
 void add_info(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelDefinition& model,
               const Info& numbers);
 
-/// Upper limits, and what could not be seen or tested.
+/// Upper limits, and effects that could not be seen or tested.
 void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis);
 
-/// What no effect explains, and the variable that it goes with.
-/// @param left the column of the residual that is left
+/// Unexplained structure, and the variable that it varies with.
+/// @param left column of the remaining residual
 void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const std::string& left);
 
-/// The variable that most of the unexplained structure goes with, where there is one.
+/// Variable with the most unexplained structure, if any.
 void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis);
 
 void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
 
-/// At which periods and places the residuals are, and how they are distributed.
+/// Periods, locations and distribution of the residuals.
 void add_distribution_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
 
 }  // namespace pcor::internal::report

@@ -93,7 +93,7 @@ BarPanel ranking_bars(const Diagnosis& diagnosis) {
   return bars;
 }
 
-/// Empty where the usual size is not known.
+/// Ratio to the usual size; empty if that is not known.
 std::string ratio_cell(double ratio) { return ratio == 0.0 ? "" : ratio_text(ratio); }
 
 ReportTable ranking_table(const Diagnosis& diagnosis) {
@@ -133,7 +133,7 @@ ReportTable evidence_table(const std::vector<Finding>& findings) {
   return table;
 }
 
-/// The pictures of what a diagnosis found, and a page for each finding.
+/// Pictures of the findings of a diagnosis, and one page per finding.
 void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
                   const std::vector<std::string>& residuals) {
   using F = FlightDiagnosis;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t max_in_a_sentence = 3;
 
-/// What the page says of an effect without any flight.
+/// Text of the page about an effect that needs no flight.
 struct Law {
   std::string formula, unit, added_to, size, look_alikes, manoeuvre, source;
 };
@@ -112,7 +112,7 @@ std::string rivals(const Finding& finding, const Law& law) {
   if (!finding.advice.sentence.empty()) {
     text += " " + sentence(finding.advice.sentence);
   } else if (!law.look_alikes.empty()) {
-    text += fmt::format(" In general it is easily taken for {}", law.look_alikes);
+    text += fmt::format(" In general it is easily mistaken for {}", law.look_alikes);
     text += law.manoeuvre.empty() ? "." : fmt::format("; what tells them apart: {}.", law.manoeuvre);
   }
   return text;
@@ -204,10 +204,10 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
   }
   std::vector<std::string> all{what};
   if (unexplained.variables.empty()) {
-    all.emplace_back("It goes with no variable of the files that was looked at.");
+    all.emplace_back("It varies with none of the tested variables of the files.");
   } else {
     const EmpiricalPredictor& first = unexplained.variables.front();
-    std::string with = fmt::format("It goes with {}, which takes {} of its variance",
+    std::string with = fmt::format("It varies with {}, which explains {} of its variance",
                                    name_with_id(first.description, first.name), percent(first.r2));
     if (first.slope_error > 0.0) {
       with +=

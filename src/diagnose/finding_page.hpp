@@ -9,14 +9,14 @@
 
 namespace pcor::internal::report {
 
-/// Words that reports of a diagnosis share. Numbers that are not known are left out or called unknown.
+/// Text shared by reports of a diagnosis. Unknown numbers are omitted or written as unknown.
 
 std::string with_unit(const std::string& number, const std::string& unit);
 
 /// A value with its error, both to two digits of the error.
 std::string with_error(double value, double error);
 
-/// Three decimals; "unknown" for what is no number.
+/// Number with three decimals; "unknown" for NaN.
 std::string hpa(double value);
 
 /// "0.003", or "less than one in a million".
@@ -25,10 +25,11 @@ std::string probability(double p);
 /// "12 %".
 std::string percent(double share);
 
-/// How large the first coefficient with a known usual size is, in units of it; 0 without.
+/// Size of the first coefficient with a known usual size, in units of that size; 0 if there is no such
+/// coefficient.
 double size_to_usual(const std::vector<Estimate>& estimates);
 
-/// "0.03", "0.71", "2.1", "31": the size of a ratio; empty for what is no number.
+/// Size of a ratio, "0.03", "0.71", "2.1", "31"; empty for NaN.
 std::string ratio_text(double ratio);
 
 /// "pneumatic lag of the static line (static-lag)".
@@ -40,13 +41,13 @@ std::string stretch_text(const Evidence& evidence);
 /// A finding in one paragraph for the summary of a report.
 std::string finding_summary(const Finding& finding);
 
-/// What a diagnosis left without an explanation, in sentences.
+/// Sentences about the unexplained part of a diagnosis.
 std::vector<std::string> unexplained_text(const Unexplained& unexplained);
 
-/// Which variables of the files were not tested, and why; a sentence each.
+/// Sentences about file variables that were not tested, with the reason.
 std::vector<std::string> untested_text(const Unexplained& unexplained);
 
-/// A finding in words that an instrument scientist can put into the report of a project.
+/// Text about a finding, ready for a project report.
 /// @param threshold chi2 that an effect had to exceed
 ReportText finding_page(const Finding& finding, double threshold, const std::string& heading);
 

@@ -20,10 +20,10 @@ namespace pcor::internal {
 namespace {
 
 constexpr double two_sided_95 = 1.959963984540054;  // standard deviations of a normal distribution
-constexpr double alias_margin = 9.0;                // chance of losing the truth to one rival 0.13 %
+constexpr double alias_margin = 9.0;  // probability of 0.13 % that one rival beats the true effect
 constexpr std::size_t most_evidence = 6;
 
-/// The parameters that these flights tell; the others are imitated by the model's own coefficients.
+/// Parameters that these flights determine; the model's coefficients imitate the others.
 std::vector<Estimate> estimates_of(const Candidate& candidate, const std::vector<Eigen::Index>& told,
                                    const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
   std::vector<Estimate> estimates;
@@ -43,7 +43,7 @@ ModelEffect with_estimate(const Candidate& candidate, const Eigen::VectorXd& est
   return effect;
 }
 
-/// The parameters that these flights do not tell.
+/// Parameters that these flights do not determine.
 std::vector<std::string> held_of(const Candidate& candidate, const std::vector<Eigen::Index>& told) {
   std::vector<std::string> held;
   for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
@@ -53,13 +53,13 @@ std::vector<std::string> held_of(const Candidate& candidate, const std::vector<E
   return held;
 }
 
-/// A stretch of minutes in a row that speak for an effect.
+/// Consecutive minutes with evidence for an effect.
 struct Event {
   std::size_t flight = 0;
   double begin = 0.0;
   double end = 0.0;
   double evidence = 0.0;
-  std::string regimes{};  // that were flown
+  std::string regimes{};  // regimes during the event
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -67,8 +67,8 @@ struct Event {
   }
 };
 
-/// The evidence of every minute for a group: of the rows that only it could explain, the product with what is
-/// left. Its sum is the chi2.
+/// Evidence of every minute for a group: product of the rows that only this group could explain with the
+/// remaining residual. Its sum is chi2.
 Eigen::VectorXd evidence_of(const Analysis& analysis, std::size_t group,
                             const std::vector<std::size_t>& chosen) {
   const WhitenedSystem& scores = analysis.scores();
@@ -83,7 +83,7 @@ Eigen::VectorXd evidence_of(const Analysis& analysis, std::size_t group,
 std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& evidence) {
   constexpr double minute = 60.0;  // s
   const WhitenedSystem& scores = analysis.scores();
-  // A minute counts as part of an event where it has more than its share.
+  // A minute is part of an event if its evidence is above average.
   const double share = evidence.cwiseMax(0.0).sum() / static_cast<double>(evidence.size());
   std::vector<Event> events;
   for (const std::vector<Event>& more :
@@ -112,7 +112,7 @@ std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& ev
   return events;
 }
 
-/// How many events of equal weight these come to.
+/// Equivalent number of events of equal weight.
 double count_of(const std::vector<Event>& events) {
   double sum = 0.0;
   double squares = 0.0;
@@ -129,14 +129,14 @@ bool is_one_of(const std::string& effect, const std::vector<std::size_t>& chosen
                      [&](std::size_t group) { return candidates[group].id == effect; });
 }
 
-/// What a set of effects, with one of them in place of another, is less likely than the set that was chosen.
+/// Loss of likelihood if one effect of the chosen set is replaced by another.
 struct Rival {
   std::size_t group;
-  double less;  ///< in the logarithm of the marginal likelihood
+  double less;  ///< decrease of the logarithm of the marginal likelihood
 };
 
-/// The groups that may stand in the place of one that was chosen. The shape of an effect in nature is that of
-/// the catalogue to a tenth or so, so that of a strong effect a rival may be better by chance.
+/// Groups that may replace a chosen one. The catalogue describes the shape of an effect only to about 10 %,
+/// so a rival of a strong effect may fit better by chance.
 std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                              std::size_t winner, const std::vector<std::size_t>& chosen) {
   constexpr double doubt_of_shape = 0.1;
@@ -190,7 +190,7 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
   }
   std::sort(aliases.begin(), aliases.end(),
             [](const Alias& a, const Alias& b) { return a.log_likelihood_less < b.log_likelihood_less; });
-  // Of an effect in several shapes the best one stands for all.
+  // The best shape represents an effect with several shapes.
   std::set<std::string> seen;
   aliases.erase(std::remove_if(aliases.begin(), aliases.end(),
                                [&seen](const Alias& alias) { return !seen.insert(alias.effect).second; }),
@@ -198,7 +198,7 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
   return aliases;
 }
 
-/// Whether an effect there is part of the corrected static pressure.
+/// Whether an effect at this location is part of the corrected static pressure.
 bool corrects_static_pressure(const Candidate& candidate) {
   if (candidate.is_of_reference()) return false;
   const EffectLocation location = location_of(candidate.effect);
@@ -206,7 +206,7 @@ bool corrects_static_pressure(const Candidate& candidate) {
          location == EffectLocation::static_transducer;
 }
 
-/// What base and groups change of the corrected static pressure, beyond the base alone: an estimate of the
+/// Change of the corrected static pressure by base and groups, relative to the base alone, estimated from the
 /// columns of both.
 Eigen::VectorXd static_estimate(const Analysis& analysis, const std::vector<Candidate>& candidates,
                                 const std::vector<std::size_t>& groups) {
@@ -225,7 +225,7 @@ Eigen::VectorXd static_estimate(const Analysis& analysis, const std::vector<Cand
   return with;
 }
 
-/// The rms of that over every record used.
+/// rms of the pressure change over every used record.
 double static_change(const Analysis& analysis, const std::vector<Candidate>& candidates,
                      const std::vector<std::size_t>& groups) {
   const Eigen::VectorXd estimate = static_estimate(analysis, candidates, groups);
@@ -256,10 +256,10 @@ double static_risk(const Analysis& analysis, const std::vector<Candidate>& candi
   return risk;
 }
 
-/// What an effect adds on a flight.
+/// Contribution of an effect on a flight.
 struct Added {
   SquareSum sum{};
-  double worst = 0.0;  // with sign, hPa
+  double worst = 0.0;  // signed, hPa
   double worst_time = 0.0;
 
   template <class Archive>
@@ -268,8 +268,8 @@ struct Added {
   }
 };
 
-/// Its rms and its extreme over all records used: against the first reference, or, of an effect on another
-/// system, against those that have it.
+/// Rms and extreme over all used records: against the first reference or, for an effect on another system,
+/// against the references that see it.
 void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
              const Eigen::VectorXd& estimate, const Candidate& candidate, Finding& finding) {
   const auto of_flights = analysis.whole_share().of_each_flight<Added>([&](std::size_t f) {
@@ -295,12 +295,12 @@ void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, s
   finding.rms = sum.rms();
 }
 
-/// What no model file can hold of the shape that a candidate is tried in; empty where it can hold all.
+/// Part of the tried shape that a model file cannot represent; empty if it can represent all.
 std::string shape_beyond_model(const Candidate& candidate) {
   return candidate.is_shared ? "alike on the other system" : "";
 }
 
-/// What shape a candidate is tried in, in words; empty in that of the catalogue.
+/// Description of the tried shape; empty for the shape of the catalogue.
 std::string shape_of(const Candidate& candidate) {
   if (!candidate.is_variant) return "";
   if (std::string beyond = shape_beyond_model(candidate); !beyond.empty()) return beyond;
@@ -327,7 +327,7 @@ std::string place_of(const Candidate& candidate) {
                                             : info_of(candidate.effect.location).place);
 }
 
-/// Family, places, shapes, size and probability of a finding.
+/// Family, locations, shapes, size and probability of a finding.
 void describe(const std::vector<Candidate>& candidates, std::size_t winner, const std::vector<Rival>& rivals,
               Finding& finding) {
   const Candidate& own = candidates[winner];
@@ -356,7 +356,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   }
 }
 
-/// The largest that the columns of an effect at its limits add to each sample of a flight.
+/// Largest contribution of an effect at its limits to each sample of a flight.
 SquareSum at_limit(const Analysis& analysis, const Candidate& candidate, std::size_t group,
                    const UpperLimit& limit, std::size_t number) {
   const FlightColumns& flight = analysis.flight(number);
@@ -462,7 +462,7 @@ std::vector<double> evidence_along(const Analysis& analysis, std::size_t flight,
 
 std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                                         const std::vector<BaseCoefficient>& base) {
-  constexpr double notable = 0.1;  // of the effect's rms
+  constexpr double notable = 0.1;  // fraction of the effect's rms
   std::vector<AbsorbedEffect> absorbed;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (!analysis.search().is_absorbed(g) || candidates[g].is_variant) continue;
@@ -470,7 +470,7 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
     effect.effect = candidates[g].id;
     effect.title = candidates[g].title;
     effect.remaining = analysis.search().remaining(g);
-    // The coefficients whose columns, in the fit to the effect's, are large.
+    // Coefficients with large columns in the fit to the effect's columns.
     const Eigen::MatrixXd& information = analysis.scores().information;
     const Eigen::Index own = analysis.base() + analysis.groups()[g].first;
     const Eigen::MatrixXd normal = information.topLeftCorner(analysis.base(), analysis.base());
@@ -491,7 +491,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const Search& search = analysis.search();
   std::vector<UpperLimit> limits;
-  std::vector<std::size_t> groups;  // of each
+  std::vector<std::size_t> groups;  // group of each finding
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (search.is_absorbed(g) || candidates[g].is_variant) continue;
     if (is_one_of(candidates[g].id, chosen, candidates)) continue;
@@ -506,7 +506,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     limit.effect = candidates[g].id;
     limit.title = candidates[g].title;
     limit.estimates = estimates_of(candidates[g], search.told(g), score.estimate, score.covariance);
-    bool seen = false;  // any coefficient better than by its bounds
+    bool seen = false;  // any coefficient determined better than by its bounds
     for (std::size_t k = 0; k < limit.estimates.size(); ++k) {
       const Estimate& estimate = limit.estimates[k];
       const Bounds& bounds = candidates[g].tested[static_cast<std::size_t>(search.told(g)[k])].bounds;
@@ -522,7 +522,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     limits.push_back(std::move(limit));
     groups.push_back(g);
   }
-  // hPa that remain after base and chosen: rms of each leftover column at its limit.
+  // Unit hPa: rms of each remaining column at its limit after base and chosen effects.
   const auto of_flights = analysis.whole_share().of_each_flight<std::vector<SquareSum>>([&](std::size_t f) {
     std::vector<SquareSum> sums;
     for (std::size_t i = 0; i < limits.size(); ++i)

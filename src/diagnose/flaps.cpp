@@ -25,7 +25,7 @@ bool looks_like_flaps(const ModelEffect& effect) {
          flaps.look_alikes.find(effect.id) != std::string_view::npos;
 }
 
-/// The residual of all samples, those with flaps out too.
+/// Residual of all samples, including those with flaps out.
 std::vector<double> all_given(const FlightColumns& flight) {
   std::vector<double> given = flight.given;
   for (std::size_t i = 0; i < given.size(); ++i) {
@@ -42,7 +42,7 @@ struct Wanted {
   Eigen::Index count;
 };
 
-/// The flights as the test sees them: what was found is part of the model.
+/// Flights as input of the test; the findings are part of the model.
 TeamColumns flights_of(const Analysis& analysis, const FlapsCandidates& flaps) {
   std::vector<FlightColumns> flights;
   for (std::size_t f = 0; f < analysis.flights().size(); ++f) {

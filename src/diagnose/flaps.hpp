@@ -10,21 +10,21 @@
 
 namespace pcor::internal {
 
-/// The effects of flaps and gear, and those that look like them, on all samples: those with flaps out too,
-/// which are in no fit of a model without such an effect.
+/// Effects of flaps and gear, and effects that resemble them, on all samples. Samples with flaps out are
+/// included although fits of a model without such an effect exclude them.
 struct FlapsCandidates {
   std::vector<Candidate> candidates{};
-  std::vector<bool> reads_flaps{};         ///< of each; the others are there as rivals
-  std::vector<Eigen::MatrixXf> columns{};  ///< of each flight; of those of others, without a record
+  std::vector<bool> reads_flaps{};         ///< one per candidate; the others are rivals
+  std::vector<Eigen::MatrixXf> columns{};  ///< one per flight; no rows for remote flights
 
   bool empty() const { return candidates.empty(); }
 };
 
-/// Nothing where too few samples have their flaps out.
+/// Empty if too few samples have flaps out.
 FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns& columns);
 
-/// Tests them beside the model and what `analysis` found, and adds what is found, or its upper limit, to the
-/// diagnosis. @param groups of the columns of `flaps`
+/// Tests them together with the model and the findings of `analysis`, and adds the result or its upper limit
+/// to the diagnosis. @param groups of the columns of `flaps`
 void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std::vector<ColumnGroup> groups,
                     std::uint64_t seed, Diagnosis& diagnosis);
 

@@ -21,8 +21,8 @@
 namespace pcor::internal {
 namespace {
 
-/// Why a candidate cannot be tested on these columns; empty where it can.
-/// @param found of each flight what it says of each candidate
+/// Reason why a candidate cannot be tested on these columns; empty if it can.
+/// @param found result of each flight for each candidate
 std::string trouble_of(const std::vector<FlightColumns>& flights,
                        const std::vector<std::vector<Testability>>& found, std::size_t candidate) {
   bool varies = false;
@@ -55,7 +55,7 @@ Testability testability_of(const FlightColumns& flight, const std::vector<double
   return found;
 }
 
-/// Single precision of the columns leaves a millionth of their length, squared here.
+/// Single precision of the columns leaves 1e-6 of their length, squared here.
 constexpr double imitation_rank = 1e-12;
 
 References usable_references(const References& references, std::vector<std::string>& notes) {
@@ -73,7 +73,7 @@ References usable_references(const References& references, std::vector<std::stri
           reference->name()));
     }
   }
-  // The samples are read once, for the first, and the laser reads the most.
+  // The samples are read once for the first reference; the laser reads the most.
   std::stable_partition(result.begin(), result.end(), [](const auto& each) { return each->reads_laser(); });
   result.insert(result.end(), of_windows.begin(), of_windows.end());
   if (result.empty())
@@ -181,7 +181,7 @@ void drop_untestable(CandidateSet& set, TeamColumns& columns) {
 void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamColumns* further) {
   constexpr double notable = 0.03;  // hPa, rms
   const Eigen::Index count = as_index(set.base.size());
-  // Of all columns with each other; last the number of rows.
+  // Products of all columns with each other; the last entry is the number of rows.
   const auto sums = columns.share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
     const std::vector<std::size_t> used = used_samples(columns.flights[f].mask);
     const Eigen::MatrixXd base = columns.flights[f].base(used, Eigen::all).cast<double>();
@@ -210,7 +210,7 @@ void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamCol
 }
 
 std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Candidate>& candidates) {
-  // A difference of two systems is the same with an effect on either, so only one of them can be told.
+  // A difference of two systems is the same for an effect on either, so only one of them is identifiable.
   const bool differences_alone =
       std::all_of(set.references.begin(), set.references.end(),
                   [](const auto& reference) { return reference->model() != nullptr; });

@@ -12,13 +12,13 @@
 
 namespace pcor::internal {
 
-/// Fewer samples tell nothing.
+/// Minimum number of samples.
 inline constexpr std::size_t min_samples = 300;
 
-/// What a flight says of whether a candidate can be tested.
+/// Testability of a candidate on one flight.
 struct Testability {
-  std::size_t samples = 0;  ///< that are used
-  std::size_t missing = 0;  ///< of these, those without a value of some column
+  std::size_t samples = 0;  ///< used samples
+  std::size_t missing = 0;  ///< used samples without a value of some column
   bool varies = false;
 
   template <class Archive>
@@ -27,16 +27,16 @@ struct Testability {
   }
 };
 
-/// @param given has a value where a sample is used @param first of the columns of the candidate
+/// @param given has a value if a sample is used @param first column of the candidate
 Testability testability_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
                            Eigen::Index count);
 
-/// The references that a diagnosis can use, those that tell of each sample first; a note on each of the
-/// others. @throws Error if there is none.
+/// References that a diagnosis can use, sample-by-sample references first; notes about the others. @throws
+/// Error if no reference can be used.
 References usable_references(const References& references, std::vector<std::string>& notes);
 
-/// Flights of a team, each against each of its references, those against the first one first. A member has
-/// the columns of its own, and of the others what all know (`outline_of`).
+/// Flights of a team against each of their references, the first reference first. A member has the columns of
+/// its local flights, and the shared outlines of the others (`outline_of`).
 struct TeamColumns {
   FlightPartition share;
   std::vector<FlightColumns> flights{};
@@ -44,32 +44,32 @@ struct TeamColumns {
 
 using SamplesOfFlight = std::shared_ptr<const FlightSamples>;
 
-/// The columns of entries of a share, in threads.
-/// @param read gives the samples of an own entry @param make gives its columns
+/// Columns of entries of a share, computed in threads.
+/// @param read gives the samples of a local entry @param make gives its columns
 TeamColumns columns_of_entries(const FlightPartition& share,
                                const std::function<SamplesOfFlight(std::size_t entry)>& read,
                                const std::function<FlightColumns(std::size_t entry, SamplesOfFlight)>& make);
 
-/// The columns of the first `count` flights against each of the set's references.
-/// @param notes get what a user should know of the flights
+/// Columns of the first `count` flights against each reference of the set.
+/// @param notes receives notes about the flights for the user
 TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelDefinition& model,
                                const CandidateSet& set, const DiagnoseOptions& options,
                                std::vector<std::string>& notes);
 
-/// Takes out the flights that have no residual, or hardly any against a further reference.
+/// Removes flights without a residual, or with too few samples against a further reference.
 void leave_out_empty(TeamColumns& columns);
 
-/// Takes out the candidates that cannot be tested, and their columns.
+/// Removes candidates that cannot be tested, and their columns.
 void drop_untestable(CandidateSet& set, TeamColumns& columns);
 
-/// Holds the coefficients of the references' laws that the model's own coefficients imitate: those of which,
-/// at their usual size, less than 0.03 hPa (rms) is left. Against a second system alone, that is all
-/// coefficients of the same kind: the difference of two nearly equal columns, at an impossible size, would
-/// imitate anything.
-/// @param further flights, of which the same columns are kept
+/// Fixes coefficients of the references' laws that the model's coefficients imitate: at their usual size,
+/// less than 0.03 hPa (rms) remains. If a second system is the only reference, all coefficients of the same
+/// kind are fixed, because the difference of two nearly equal columns at an impossible size would imitate any
+/// effect.
+/// @param further flights that keep the same columns
 void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamColumns* further = nullptr);
 
-/// The columns of each candidate, one group after another.
+/// Groups of the columns of all candidates in order.
 /// @param set with the references @param candidates of the set
 std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Candidate>& candidates);
 

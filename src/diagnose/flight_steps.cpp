@@ -12,7 +12,7 @@ namespace {
 
 constexpr double min_eigenvalue = 1e-9;
 
-/// What a flight has of the sums over all.
+/// Contribution of a flight to the sums over all flights.
 struct FlightSums {
   std::size_t rows = 0;
   Eigen::MatrixXd sums{};  // products of whitened columns, a constant and the residual
@@ -23,18 +23,18 @@ struct FlightSums {
   }
 };
 
-/// Means of the flights beside a model, and what their covariances say. Of what the model explains, be it
-/// common to all or a step between them, the means have nothing.
+/// Flight means after elimination of a model, and their covariances. The means contain no part that the model
+/// explains, whether common to all flights or a step between them.
 struct Means {
   Eigen::VectorXd value{};
-  Eigen::VectorXd variance{};     // of each
-  Eigen::VectorXd covariances{};  // of each with the sum of all
+  Eigen::VectorXd variance{};     // one per flight
+  Eigen::VectorXd covariances{};  // covariance of each mean with the sum of all means
 };
 
 /// The constants of the flights and the model are the unknowns of one set of normal equations. With the model
 /// eliminated, and in units of each flight's own information, the matrix of the constants is one less a
 /// product B'B of as many rows as the model has columns: its inverse needs the eigenvalues of BB' alone,
-/// however many flights there are.
+/// for any number of flights.
 /// @param sums of each flight: products of its whitened columns, a constant, and its residual
 Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
   const Eigen::Index model = sums.front().cols() - 2;
@@ -56,7 +56,7 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
   }
   const Eigen::VectorXd scale = of_model.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const SymmetricEigen own = symmetric_eigen(scale.asDiagonal() * of_model * scale.asDiagonal());
-  Eigen::VectorXd root = Eigen::VectorXd::Zero(model);  // of the inverse
+  Eigen::VectorXd root = Eigen::VectorXd::Zero(model);  // square root of the inverse
   for (Eigen::Index k = 0; k < model; ++k) {
     if (own.eigenvalues()[k] > min_eigenvalue) root[k] = 1.0 / std::sqrt(own.eigenvalues()[k]);
   }
@@ -64,7 +64,7 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
   const Eigen::VectorXd by_model = half * right_of_model;
   const SymmetricEigen shared = symmetric_eigen((half * together) * (half * together).transpose());
   const Eigen::MatrixXd rows_of_model = shared.eigenvectors().transpose() * (half * together);
-  // What the inverse has beyond one: where a constant is none of the model's, and where it is.
+  // Difference between the inverse and the identity, for constants outside and inside the model.
   const Eigen::VectorXd beyond = shared.eigenvalues().unaryExpr(
       [](double part) { return 1.0 - part > min_eigenvalue ? 1.0 / (1.0 - part) : -1.0 / part; });
   const Eigen::VectorXd left = right - (half * together).transpose() * by_model;
@@ -79,7 +79,7 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
           variance * unit.cwiseProduct(with_sum)};
 }
 
-/// The square of a normal variable that is exceeded as rarely as one of Student with so many degrees of
+/// Square of a normal variable with the same tail probability as a Student variable with these degrees of
 /// freedom (Wallace 1959, Annals of Mathematical Statistics 30, 1121).
 double normal_square(double student_square, double freedom) {
   const double scale = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
@@ -89,14 +89,14 @@ double normal_square(double student_square, double freedom) {
 /// The step of one flight against the others.
 MeanOffset step_of(Eigen::Index one, const Means& all) {
   const Eigen::VectorXd& value = all.value;
-  const auto count = static_cast<double>(value.size() - 1);  // of the others
-  const double mean = (value.sum() - value[one]) / count;    // of them
+  const auto count = static_cast<double>(value.size() - 1);  // number of other flights
+  const double mean = (value.sum() - value[one]) / count;    // mean of the others
   const double with_others = all.covariances[one] - all.variance[one];
   const double variance = (all.covariances.sum() - all.covariances[one] - with_others) / (count * count);
-  const double shared = with_others / count;  // with that mean
+  const double shared = with_others / count;  // covariance with that mean
   const double known = all.variance[one] - 2.0 * shared + variance;
   if (!(known > 0.0)) return {};
-  double scatter = 0.0;  // of the others' means, beyond what drift makes of it
+  double scatter = 0.0;  // scatter of the other means beyond the effect of drift
   if (count > 1.0) {
     const double squares = (value.array() - mean).square().sum() - std::pow(value[one] - mean, 2);
     const double by_drift = all.variance.sum() - all.variance[one] - count * variance;

@@ -9,22 +9,22 @@
 
 namespace pcor::internal {
 
-/// By how much the mean of one flight's residual differs from that of the others.
+/// Difference between the mean residual of one flight and that of the others.
 struct MeanOffset {
-  double size = 0.0;    ///< hPa; positive where it lies above the others
-  double error = 0.0;   ///< hPa; with drift, and with the scatter of the others
-  double chance = 1.0;  ///< that the largest step of all flights is as large by drift and scatter alone
+  double size = 0.0;    ///< hPa; positive if the flight is above the others
+  double error = 0.0;   ///< hPa; includes drift and the scatter of the others
+  double chance = 1.0;  ///< p value of the largest step of all flights under drift and scatter alone
 };
 
-/// Compares the mean of each flight, beside what a model explains and what drifts, with those of the others.
-/// The scatter of the others' means counts as far as it is larger than drift makes it, with as few degrees of
-/// freedom as there are flights (Satterthwaite 1946, Biometrics Bulletin 2, 110). A step that the model
-/// explains is none. The flights are those against one reference.
+/// Compares the mean of each flight, after model and drift, with those of the others. The scatter of the
+/// other means counts if it exceeds the effect of drift, with degrees of freedom from the number of flights
+/// (Satterthwaite 1946, Biometrics Bulletin 2, 110). A step that the model explains is not reported. All
+/// flights are against one reference.
 ///
 /// @param columns of the model, in bins, of each own flight; @param residuals likewise, hPa; @param noise
 /// likewise
-/// @return one for each flight; of chance 1 where there is nothing to compare it with. Of two flights the
-/// second alone has one, since both differ by the same.
+/// @return one step per flight; chance 1 if there is no other flight. If there are two flights, only the
+/// second has a step, because both differ by the same amount.
 std::vector<MeanOffset> find_mean_offsets(const FlightPartition& share, const std::vector<Binning>& bins,
                                           const std::vector<Eigen::MatrixXd>& columns,
                                           const std::vector<Eigen::VectorXd>& residuals,

@@ -38,7 +38,7 @@ struct RegimeSum {
   }
 };
 
-/// The sums of each regime, in the order of `Regime`.
+/// Sums of each regime in the order of `Regime`.
 struct RegimeSums {
   std::array<RegimeSum, regime_count> of{};
 
@@ -53,7 +53,7 @@ struct RegimeSums {
   }
 };
 
-/// Whether the same again is what a pilot can fly. What happens on a level leg besides flying level is not.
+/// Whether a pilot can repeat the regime. Events on a level leg other than level flight cannot be repeated.
 bool can_be_repeated(Regime regime) { return regime >= Regime::climb && regime != Regime::level; }
 
 RegimeSums sums_of(const Eigen::MatrixXd& rows, const FlightInBins& flight) {

@@ -19,13 +19,13 @@ struct FlownRegime {
   std::string flight{};           ///< name of the flight that flew most of the regime
 };
 
-/// An own flight against one of its references.
+/// Local flight against one of its references.
 struct FlightInBins {
   const FlightColumns& columns;
   const Binning& bins;
 };
 
-/// The regimes of all flights that can be flown once more: all but ground, take-off and level. Bins of a
+/// Repeatable regimes of all flights: all except ground, take-off and level. Bins of a
 /// climb or a descent over which another regime lies, such as a turn, count for that regime alone.
 ///
 /// @param flight gives the flight of an entry of the scores

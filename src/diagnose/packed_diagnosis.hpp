@@ -3,7 +3,7 @@
 #include <pcor/diagnose/diagnose.hpp>
 #include "residuals/packed_residuals.hpp"
 
-/// How the other members of a team get the pictures of a flight.
+/// Serialization of a flight's pictures for the other members of a team.
 namespace cereal {
 
 template <class Archive>

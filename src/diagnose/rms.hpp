@@ -6,7 +6,7 @@
 
 namespace pcor::internal {
 
-/// The squares of some values; those of flights add up.
+/// Sum of squares of some values; the sums of flights can be added.
 struct SquareSum {
   double squares = 0.0;
   double count = 0.0;
@@ -22,7 +22,7 @@ struct SquareSum {
     return *this;
   }
 
-  /// The root of their mean; 0 where there is none.
+  /// Root mean square; 0 if there is no value.
   double rms() const { return count > 0.0 ? std::sqrt(squares / count) : 0.0; }
 
   template <class Archive>
@@ -31,8 +31,8 @@ struct SquareSum {
   }
 };
 
-/// The root mean square over all flights of one of their series, in which NaN is missing; 0 where there is
-/// nothing. @param series_of gives the values of an own flight
+/// Root mean square of one series over all flights, ignoring NaN; 0 if there is no value. @param series_of
+/// gives the values of a local flight
 template <class Series>
 double rms_of(const FlightPartition& share, const Series& series_of) {
   return share

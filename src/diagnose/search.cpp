@@ -24,15 +24,15 @@ constexpr double errors_beyond_bounds = 2.0;
 constexpr double enough_blocks = 12.0;
 constexpr double few_blocks_penalty = 6.0;
 
-// A part of all effects is larger than by `spread_of_sizes`, and a part much smaller, as what is left of an
-// effect that a law has but not quite.
+// The mixture adds components with sizes larger and much smaller by `spread_of_sizes`; the small one
+// describes the remainder of an effect that a law includes imperfectly.
 struct Tail {
   double times;
   double share;
 };
 constexpr std::array<Tail, 4> tails{{{1.0, 0.65}, {0.1, 0.1}, {3.0, 0.2}, {10.0, 0.05}}};
 
-/// `chi2_one_dof` from a table: draws ask for it thousands of times.
+/// `chi2_one_dof` from a table, because draws call it thousands of times.
 class EquivalentTable {
  public:
   explicit EquivalentTable(Eigen::Index freedom) : freedom_(static_cast<double>(freedom)) {
@@ -54,8 +54,8 @@ class EquivalentTable {
   std::vector<double> values_;
 };
 
-/// The greatest equivalent score among groups, for each column of `scores` (a draw), whose rows are the
-/// groups' directions one after another.
+/// Greatest equivalent score among groups for each column of `scores` (a draw); the rows are the directions
+/// of all groups in order.
 std::vector<double> greatest(const Eigen::MatrixXd& scores, const std::vector<Eigen::Index>& freedom) {
   std::vector<EquivalentTable> tables;
   const Eigen::Index most = freedom.empty() ? 0 : *std::max_element(freedom.begin(), freedom.end());
@@ -68,7 +68,7 @@ std::vector<double> greatest(const Eigen::MatrixXd& scores, const std::vector<Ei
       if (count == 0) continue;
       const double chi2 = scores.col(draw).segment(row, count).squaredNorm();
       row += count;
-      if (chi2 <= greatest) continue;  // the equivalent is never above
+      if (chi2 <= greatest) continue;  // the equivalent never exceeds chi2
       greatest = std::max(greatest, count == 1 ? chi2 : tables[static_cast<std::size_t>(count)](chi2));
     }
   }
@@ -102,8 +102,7 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
   left_score_ = right.tail(tested) - solution.transpose() * right.head(base);
   squares_ = information(columns, columns) - right.head(base).dot(inverse * right.head(base));
 
-  // What the base imitates has nothing to do with drift: a drift that is likely hides slow columns, but they
-  // are there.
+  // Imitation by the base does not depend on drift: likely drift hides slow columns but does not remove them.
   Eigen::VectorXd length = scores.plain.diagonal().head(columns);
   for (double& value : length) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
   const Eigen::MatrixXd plain =
@@ -118,7 +117,7 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
     const Eigen::MatrixXd own = left_.block(group.first, group.first, group.count, group.count);
     std::vector<Eigen::Index>& told = told_.emplace_back();
     remaining_.push_back(0.0);
-    // After the base and the columns that are told already.
+    // Information after the base and the columns already found identifiable.
     Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
     while (told.size() < static_cast<std::size_t>(group.count)) {
       Eigen::Index next = 0;
@@ -273,7 +272,7 @@ double Search::threshold_of(const Conditional& conditional, const std::vector<st
 std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
                                                    const std::vector<std::size_t>& others) const {
   const Eigen::Index columns = scores_->columns();
-  Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);  // of the columns as they are
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);  // for the unscaled columns
   const ColumnGroup& own = groups_[group];
   GroupScore found = score(group, others);
   if (found.estimate.isZero()) {
@@ -312,7 +311,7 @@ double Search::effective_blocks(std::size_t group, const std::vector<std::size_t
 double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen, double threshold) const {
   const double blocks = effective_blocks(winner, chosen);
   if (blocks < enough_blocks) return threshold * (1.0 + few_blocks_penalty / std::max(blocks, 1.0));
-  // By how much more the noise in its score varies from minute to minute than the noise model has it.
+  // Ratio of the observed variation of the group's score noise between minutes to the noise model.
   std::vector<std::size_t> with = chosen;
   with.push_back(winner);
   return threshold * std::max(1.0, own_noise(winner, chosen).squaredNorm() / variance(with));
@@ -363,7 +362,7 @@ bool Search::all_possible(const std::vector<std::size_t>& chosen) const {
 
 Eigen::VectorXd Search::precision_of(std::size_t group, double times) const {
   const ColumnGroup& columns = groups_[group];
-  // A size that nobody knows: as much as all the rest of the residual.
+  // Unknown sizes are limited by the rest of the residual.
   Eigen::VectorXd precision =
       Eigen::VectorXd::Constant(columns.count, 1.0 / static_cast<double>(scores_->row_count));
   for (std::size_t k = 0; k < columns.usual.size(); ++k) {
@@ -480,7 +479,7 @@ SearchResult Search::run(const SearchOptions& options) const {
     result.threshold = std::numeric_limits<double>::infinity();
     return result;
   }
-  // One of so many effects: each of a set has to be paid for by the flights.
+  // Penalty for the number of effects: each effect of a set needs evidence.
   const double price = std::log(static_cast<double>(open.size()));
   std::vector<std::vector<std::size_t>> seen;
   while (true) {
@@ -527,7 +526,7 @@ SearchResult Search::run(const SearchOptions& options) const {
   const std::vector<std::size_t> set = chosen;
   std::sort(chosen.begin(), chosen.end(),
             [&](std::size_t a, std::size_t b) { return score(a, set).chi2 > score(b, set).chi2; });
-  // As many independent groups as make the threshold that of their best.
+  // Number of independent groups whose best score has this threshold.
   const double effective = (1.0 - options.confidence) / chi_squared_tail(result.threshold, 1.0);
   for (const std::size_t group : chosen) {
     result.p_values.push_back(
@@ -553,9 +552,9 @@ double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::
 
 void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estimate,
                  Eigen::MatrixXd& covariance) const {
-  std::vector<Eigen::Index> places(static_cast<std::size_t>(base_));  // among the scores' columns
+  std::vector<Eigen::Index> places(static_cast<std::size_t>(base_));  // positions among the scores' columns
   std::iota(places.begin(), places.end(), Eigen::Index{0});
-  std::vector<Eigen::Index> out = places;  // among the estimates
+  std::vector<Eigen::Index> out = places;  // positions among the estimates
   Eigen::Index size = base_;
   for (const std::size_t group : chosen) {
     for (const Eigen::Index column : told_[group]) {

@@ -10,24 +10,24 @@
 
 namespace pcor::internal {
 
-/// Three times the usual size of an effect is a standard deviation of its size in nature.
+/// Standard deviation of an effect in nature: three times its usual size.
 inline constexpr double spread_of_sizes = 3.0;
 
 /// Columns that belong together: the tested parameters of one effect.
 struct ColumnGroup {
-  Eigen::Index first = 0;  ///< among the candidates' columns
+  Eigen::Index first = 0;  ///< index among the candidates' columns
   Eigen::Index count = 0;
   std::size_t effect = 0;        ///< groups of one effect, in several shapes, exclude each other
-  std::vector<Bounds> bounds{};  ///< of each column's coefficient; an effect beyond them is impossible
-  /// As large as each coefficient is met in practice; 0, or nothing, where nobody knows.
+  std::vector<Bounds> bounds{};  ///< coefficient of each column; an effect beyond them is impossible
+  /// Usual size of each coefficient; 0 or empty if unknown.
   std::vector<double> usual{};
-  /// Columns of the uncertain shape, whose coefficients have a normal prior of variance 1; none before the
+  /// Columns of the uncertain shape, whose coefficients have a normal prior of variance 1; empty before the
   /// effect was chosen.
   Eigen::Index shape_first = 0;
   Eigen::Index shape_count = 0;
   bool has_uncertain_shape = false;  ///< an effect of the flow; those of instruments have exact shapes
 
-  /// Standard deviation of the size of a coefficient in nature; 0 where nobody knows.
+  /// Standard deviation of the size of a coefficient in nature; 0 if unknown.
   double deviation(std::size_t column) const {
     return column < usual.size() ? spread_of_sizes * usual[column] : 0.0;
   }
@@ -35,74 +35,73 @@ struct ColumnGroup {
 
 struct SearchOptions {
   std::size_t draws = 4000;
-  double confidence = 0.997;          ///< with which no effect is found where there is none
-  std::optional<double> threshold{};  ///< instead of the one by draws, and then without the gates
+  double confidence = 0.997;          ///< probability of no finding if there is no effect
+  std::optional<double> threshold{};  ///< replaces the threshold from draws and disables the gates
   std::size_t max_effects = 4;
   std::uint64_t seed = 1;
 };
 
-/// What a group would come to beside a set of others.
+/// Score of a group in addition to a set of others.
 struct GroupScore {
   double chi2 = 0.0;
-  double freedom = 0.0;     ///< directions that the base and the others leave
-  double equivalent = 0.0;  ///< chi2 as if of one degree
+  double freedom = 0.0;     ///< directions not explained by base and others
+  double equivalent = 0.0;  ///< equivalent chi2 of one degree of freedom
   Eigen::VectorXd estimate{};
   Eigen::MatrixXd covariance{};
-  bool possible = true;  ///< within the bounds, as far as the errors tell
+  bool possible = true;  ///< within the bounds, given the errors
 };
 
 struct SearchResult {
-  std::vector<std::size_t> chosen{};  ///< groups, the strongest first
+  std::vector<std::size_t> chosen{};  ///< groups sorted by decreasing evidence
   double threshold = 0.0;
-  std::vector<double> p_values{};  ///< of each chosen one
+  std::vector<double> p_values{};  ///< one per chosen group
 };
 
-/// Which groups of columns explain residuals that the base cannot.
+/// Search for groups of columns that explain residuals beyond the base.
 class Search {
  public:
-  /// @param scores are kept by address; @param base how many of the scores' columns are the model's own; the
-  /// rest are those of the groups
+  /// @param scores are kept by address; @param base number of the scores' columns that belong to the model;
+  /// the rest are those of the groups
   Search(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups);
 
-  /// The part of a group's variance that the base leaves, of its best direction. 0 to 1.
+  /// Fraction of the variance of a group's best direction that the base leaves, 0 to 1.
   double remaining(std::size_t group) const { return remaining_[group]; }
-  /// A group of which the base leaves nothing that could be seen is absorbed: it is not searched for.
+  /// Absorbed groups, with no visible remainder after the base, are not searched for.
   bool is_absorbed(std::size_t group) const { return turned_[group].cols() == 0; }
 
-  /// The columns of a group that base and the group's other columns do not imitate, counted within it. The
-  /// coefficients of the rest stay at zero.
+  /// Columns of a group that the base and the group's other columns do not imitate, counted within the group.
+  /// The other coefficients stay zero.
   const std::vector<Eigen::Index>& told(std::size_t group) const { return told_[group]; }
 
   SearchResult run(const SearchOptions& options) const;
 
-  /// The score of a group beside the others of a set (itself left out of it).
+  /// Score of a group in addition to the others of a set (the group itself excluded).
   GroupScore score(std::size_t group, const std::vector<std::size_t>& others) const;
 
-  /// By how much the flights make a set of effects more likely than none: the logarithm of the ratio of the
-  /// marginal likelihoods, in which the size of the noise and the coefficients are averaged over, the model's
-  /// own with all sizes alike, those of the effects with sizes about the usual ones. An effect of ten times
-  /// its usual size is not impossible, but needs more of the flights than a usual one (the tails are those of
-  /// a mixture of normal distributions).
+  /// Log ratio of the marginal likelihood of a set of effects to that of the empty set. The noise level and
+  /// the coefficients are integrated out: flat prior for model coefficients, usual sizes for effects. An
+  /// effect of ten times its usual size is possible but needs more evidence (the tails are those of a mixture
+  /// of normal distributions).
   ///
   /// @param with_shapes the shapes of effects of the flow are uncertain
   double evidence(const std::vector<std::size_t>& set, bool with_shapes = true) const;
 
-  /// Of what base and `others` leave of two groups, the largest correlation, with sign where both have one
-  /// column.
+  /// Largest correlation between two groups after base and `others`; signed if both have one column.
   double correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const;
 
-  /// Estimates and covariance of base and chosen columns together, in the order base, then the columns of
-  /// the groups as given. What the flights hardly see of an effect has its usual size for an error.
+  /// Estimates and covariance of base and chosen columns together, in the order base, then the columns of the
+  /// groups as given. Coefficients that the flights hardly constrain have their usual size as error.
   void fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estimate,
            Eigen::MatrixXd& covariance) const;
 
-  /// The variance of the whitened residuals after a fit of base and `chosen`; 1 where the noise model holds.
+  /// Variance of the whitened residuals after a fit of base and `chosen`; 1 if the noise model holds.
   double variance(const std::vector<std::size_t>& chosen) const;
 
-  /// What is left of the whitened residuals of each own flight after a fit of base and `chosen`.
+  /// Whitened residuals of each local flight after a fit of base and `chosen`.
   std::vector<Eigen::VectorXd> left(const std::vector<std::size_t>& chosen) const;
 
-  /// The rows of a group's best direction after base and others, of each own flight: where its evidence lies.
+  /// Rows of a group's best direction after base and others, for each local flight: the location of its
+  /// evidence.
   std::vector<Eigen::VectorXd> leftover_rows(std::size_t group, const std::vector<std::size_t>& others) const;
 
  private:
@@ -119,21 +118,21 @@ class Search {
   std::vector<Eigen::Index> shapes_of(const std::vector<std::size_t>& set) const;
   Conditional given(const std::vector<std::size_t>& groups) const;
   GroupScore score_in(const Conditional& conditional, std::size_t group) const;
-  /// Turns each group's columns to unit length and right angles in the conditional information; columns
-  /// without anything left become zero.
+  /// Makes each group's columns orthonormal in the conditional information; columns without a remainder
+  /// become zero.
   Eigen::MatrixXd normal_turn(const Conditional& conditional, const std::vector<std::size_t>& groups,
                               std::vector<Eigen::Index>& freedom) const;
   double threshold_of(const Conditional& conditional, const std::vector<std::size_t>& groups,
                       const SearchOptions& options) const;
-  /// What the score of a winner has to exceed: the threshold, more where it rests on a few minutes, or where
-  /// the noise there is larger than elsewhere.
+  /// Score that a winner must exceed: the threshold, raised if the evidence is in a few minutes or if the
+  /// noise there is larger than elsewhere.
   double level(std::size_t winner, const std::vector<std::size_t>& chosen, double threshold) const;
-  /// By minutes, the noise in the score of a group: what is left of it when its effect is taken off.
+  /// Noise in the score of a group by minutes: the remainder after its effect is subtracted.
   Eigen::VectorXd own_noise(std::size_t group, const std::vector<std::size_t>& others) const;
   double effective_blocks(std::size_t group, const std::vector<std::size_t>& others) const;
-  /// Gives each effect its first shape, that of the catalogue, where the flights do not tell another.
+  /// Gives each effect its first shape, that of the catalogue, unless the flights support another.
   void prefer_usual_shapes(std::vector<std::size_t>& chosen) const;
-  /// Exchanges, joins and drops effects for as long as that makes the set more likely.
+  /// Exchanges, joins and drops effects while the set becomes more likely.
   void improve(std::vector<std::size_t>& chosen, double price) const;
   double log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& precision) const;
   Eigen::VectorXd precision_of(std::size_t group, double times) const;
@@ -143,15 +142,15 @@ class Search {
   const WhitenedSystem* scores_;
   Eigen::Index base_;
   std::vector<ColumnGroup> groups_;
-  Eigen::VectorXd scale_;  // of every column, to unit length
+  Eigen::VectorXd scale_;  // scale of every column to unit length
   std::vector<double> remaining_;
   std::vector<std::vector<Eigen::Index>> told_;
   std::vector<Eigen::MatrixXd> turned_;  // scaled columns of a group to its directions
-  std::vector<Eigen::Index> begin_;      // of each group among the turned columns
+  std::vector<Eigen::Index> begin_;      // first turned column of each group
   Eigen::MatrixXd left_;                 // information of scaled candidates after the base
   Eigen::VectorXd left_score_;
-  Eigen::Index candidates_ = 0;  // columns of all groups; those of shapes follow
-  Eigen::MatrixXd information_;  // the same of turned columns
+  Eigen::Index candidates_ = 0;  // columns of all groups; columns of shapes follow
+  Eigen::MatrixXd information_;  // information of turned columns after the base
   Eigen::VectorXd score_;
   double squares_ = 0.0;
 };

@@ -14,12 +14,12 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double margin = 9.0;  // of chi2, as for aliases
+constexpr double margin = 9.0;  // chi2, as for aliases
 constexpr double enough_power = 0.95;
 constexpr int max_repeats = 4;
 constexpr double seconds_per_minute = 60.0;
 
-/// What of an effect, at its estimated size, base and a rival cannot imitate, in units of the noise.
+/// Part of an effect at its estimated size that base and a rival cannot imitate, in units of the noise.
 double distinct(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& rest,
                 const std::vector<Eigen::Index>& own, const Eigen::VectorXd& size) {
   const Eigen::MatrixXd normal = information(rest, rest);
@@ -34,7 +34,7 @@ double distinct(const Eigen::MatrixXd& information, const std::vector<Eigen::Ind
   return std::max(0.0, size.dot(information(own, own) * size) - imitated);
 }
 
-/// The same of the rival that imitates most.
+/// Minimum of that part over all rivals.
 double min_distinct(const SeparationProblem& rivalry, const Eigen::MatrixXd& information) {
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<Eigen::Index>& rest : rivalry.rests)
@@ -52,7 +52,7 @@ bool is_better(const Plan& one, const Plan& other) {
   return one.power > other.power;
 }
 
-/// For people, e.g. "2 more yaw manoeuvres".
+/// Text for users, e.g. "2 more yaw manoeuvres".
 std::string intervals_text(Regime regime, int count) {
   const bool is_leg = regime == Regime::reverse_heading || regime == Regime::cloud;
   return fmt::format("{} more {}{}{}", count, info_of(regime).name, is_leg ? " leg" : "",

@@ -10,8 +10,8 @@
 namespace pcor::internal {
 namespace {
 
-/// The coefficients of all columns in a fit of base and groups; those of the base and of what is before the
-/// last group are zero with `alone`.
+/// Coefficients of all columns in a fit of base and groups; with `alone`, those of the base and of earlier
+/// groups are zero.
 Eigen::VectorXd coefficients_of(const Analysis& analysis, const std::vector<std::size_t>& groups,
                                 bool alone = false) {
   Eigen::VectorXd estimate;
@@ -42,12 +42,12 @@ double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::s
   const Eigen::VectorXd added = coefficients_of(analysis, with(others, effect), true);
   const Eigen::VectorXd difference =
       coefficients_of(analysis, with(others, effect)) - coefficients_of(analysis, with(others, rival));
-  using Squares = std::array<double, 2>;  // of what is added, and of the difference
+  using Squares = std::array<double, 2>;  // squares of the contribution and of the difference
   const auto of_flights = analysis.whole_share().of_each_flight<Squares>([&](std::size_t f) {
     const auto columns = analysis.scores().rows[f].leftCols(analysis.scores().columns());
     return Squares{(columns * added).squaredNorm(), (columns * difference).squaredNorm()};
   });
-  std::map<std::size_t, Squares> against;  // each reference
+  std::map<std::size_t, Squares> against;  // keyed by reference
   double differences = 0.0;
   for (std::size_t f = 0; f < of_flights.size(); ++f) {
     Squares& sums = against[analysis.flight(f).reference];

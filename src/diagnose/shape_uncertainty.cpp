@@ -10,10 +10,11 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double power_sd = 0.3;    // of an exponent
-constexpr double delay_sd = 0.15;   // s
-constexpr double min_ratio = 0.01;  // of an effect to its rms: smaller values have the logarithm of this one
-constexpr Eigen::Index powers = 3;  // of dynamic pressure, static pressure and the effect itself
+constexpr double power_sd = 0.3;   // exponent
+constexpr double delay_sd = 0.15;  // s
+constexpr double min_ratio =
+    0.01;  // ratio of an effect to its rms: smaller values use the logarithm of this one
+constexpr Eigen::Index powers = 3;  // powers of dynamic pressure, static pressure and the effect itself
 
 /// Logarithms of dynamic pressure, static pressure and the effect, one row for each bin.
 Eigen::MatrixXd logarithms_of(const FlightColumns& flight, const Binning& bins, const Eigen::VectorXd& effect,

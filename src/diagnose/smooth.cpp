@@ -23,7 +23,7 @@ bool Smooth::describe(const VariableValues& values) {
   if (values.count() < 3) return false;
   centre_ = values.mean();
   deviation_ = values.deviation();
-  // What varies in the last digits only does not vary.
+  // Variation in the last digits only is ignored.
   return deviation_ > 1e-9 * std::max(std::abs(values.least()), std::abs(values.most()));
 }
 
@@ -36,12 +36,13 @@ Smooth Smooth::with_knots_at_values(const VariableValues& values, std::size_t co
   }
   const std::vector<double> distinct = values.distinct(columns);
   if (distinct.size() <= columns) {
-    // One value has no column, as the constant is not theirs; another is told by the straight line.
+    // A single value needs no column because the constant is excluded; the straight line replaces another
+    // column.
     smooth.levels_.assign(distinct.begin() + 1, distinct.end() - 1);
     smooth.columns_ = 1 + smooth.levels_.size();
     return smooth;
   }
-  // Quadratic splines with so many columns, without the constant and the straight line, have that many spans.
+  // Quadratic splines without the constant and the straight line have one span per column.
   const std::size_t spans = columns > degree ? columns - degree + 1 : 1;
   for (const double knot : values.quantiles(spans + 1)) {
     if (smooth.knots_.empty() || knot > smooth.knots_.back()) smooth.knots_.push_back(knot);
@@ -53,8 +54,8 @@ Smooth Smooth::with_knots_at_values(const VariableValues& values, std::size_t co
 Smooth Smooth::with_even_knots(const VariableValues& values, std::size_t columns) {
   Smooth smooth;
   if (columns < degree || !smooth.describe(values)) return smooth;
-  // Of the splines the first and the last are left out: one is told by the straight line, and all together
-  // would be a constant.
+  // First and last spline are omitted: the straight line replaces one, and the sum of all would be a
+  // constant.
   const std::size_t spans = columns - 1;
   smooth.columns_ = columns;
   smooth.distance_ = (values.most() - values.least()) / static_cast<double>(spans);

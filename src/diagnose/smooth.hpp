@@ -7,23 +7,22 @@
 
 namespace pcor::internal {
 
-/// Functions of one variable that together describe any smooth dependence on it. A constant is not among
-/// them.
+/// Functions of one variable that together describe any smooth dependence on it, without a constant.
 class Smooth {
  public:
-  /// Quadratic splines with knots where the values are, or one function for each value where there are only a
-  /// few. The first is the straight line.
-  /// @param columns how many there may be, at least 1
+  /// Quadratic splines with knots at the values, or one function per value if there are only a few. The first
+  /// is the straight line.
+  /// @param columns maximum number, at least 1
   static Smooth with_knots_at_values(const VariableValues& values, std::size_t columns);
 
-  /// Quadratic splines with knots at even distances, for a curve that bends many times over the range of the
-  /// values, wherever most of them are. The first function is the straight line.
+  /// Quadratic splines with equidistant knots, for a curve that bends many times over the range of the
+  /// values, independent of their density. The first function is the straight line.
   static Smooth with_even_knots(const VariableValues& values, std::size_t columns);
 
-  /// Cosine and sine of an angle and of twice the angle. @param turn of the unit that the angle has
+  /// Cosine and sine of an angle and of twice the angle. @param turn full turn in the unit of the angle
   static Smooth periodic(const VariableValues& values, double turn);
 
-  /// 0 where the variable does not vary.
+  /// Number of functions; 0 if the variable does not vary.
   std::size_t columns() const { return columns_; }
   /// Whether the first function is the straight line, centred and of unit deviation.
   bool has_line() const { return turn_ == 0.0; }
@@ -40,11 +39,11 @@ class Smooth {
   std::size_t columns_ = 0;
   double centre_ = 0.0;
   double deviation_ = 0.0;
-  double turn_ = 0.0;             // of an angle; 0 for what is none
-  std::vector<double> levels_{};  // of a variable with few values
-  std::vector<double> knots_{};   // where the values are
-  double first_ = 0.0;            // of even knots
-  double distance_ = 0.0;         // between them
+  double turn_ = 0.0;             // full turn of an angle; 0 for other variables
+  std::vector<double> levels_{};  // levels of a variable with few values
+  std::vector<double> knots_{};   // density follows the values
+  double first_ = 0.0;            // first equidistant knot
+  double distance_ = 0.0;         // distance between equidistant knots
 };
 
 }  // namespace pcor::internal

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::ptrdiff_t most = 32;
 
-/// Dates at even distances in a range of them.
+/// Equidistant dates in a range.
 void add_some(std::vector<double>& tried, std::vector<double>::const_iterator first,
               std::vector<double>::const_iterator last) {
   const std::ptrdiff_t count = last - first;
@@ -41,7 +41,7 @@ StepDates::StepDates(std::vector<double> begins) : begins_(std::move(begins)) {
   put_in_order(begins_);
   if (!begins_.empty()) begins_.erase(begins_.begin());
   add_some(tried_, begins_.begin(), begins_.end());
-  // Of a step that few flights lie before, or behind, a date that is far from it would leave little.
+  // Few flights before or after a step: a date far from the step would leave little.
   const std::size_t half_a_distance = begins_.size() / (2 * most);
   for (std::size_t few = 1; few < half_a_distance; few *= 2) {
     tried_.push_back(begins_[few - 1]);
@@ -55,7 +55,8 @@ StepDates::StepDates(const FlightSet& flights) : StepDates(begins_of(flights)) {
 bool StepDates::refine(const std::vector<Finding>& findings) {
   std::vector<ModelEffect> effects;
   for (const Finding& finding : findings) {
-    if (!finding.of_reference) effects.push_back(finding.effect);  // there a step is tried on one date
+    if (!finding.of_reference)
+      effects.push_back(finding.effect);  // a step on a reference is tried on one date
   }
   std::vector<double> tried = tried_;
   for (const double date : dates_of(effects)) {

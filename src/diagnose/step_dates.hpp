@@ -7,19 +7,19 @@
 
 namespace pcor::internal {
 
-/// The dates on which a step of an effect is tried: the begins of flights after the first, as the role date
-/// has them. Each is a candidate of its own, so that of many flights some are tried that are spread over
-/// them, closer to each other at both ends, and where a step is found, those around it.
+/// Dates on which a step of an effect is tried: starts of flights after the first, in the unit of the role
+/// date. Each date is a separate candidate. If there are many flights, a subset is tried that is denser at
+/// both ends, and around any step that is found.
 class StepDates {
  public:
   explicit StepDates(const FlightSet& flights);
   explicit StepDates(std::vector<double> begins);
 
-  /// Those to be tried now, ascending.
+  /// Dates to try now, ascending.
   const std::vector<double>& tried() const { return tried_; }
 
-  /// Adds dates that lie nearer to the steps that were found than any that was tried.
-  /// @return whether there are any
+  /// Adds untried dates closer to the steps that were found.
+  /// @return whether any were added
   bool refine(const std::vector<Finding>& findings);
 
  private:
@@ -27,7 +27,7 @@ class StepDates {
   std::vector<double> tried_{};
 };
 
-/// The dates of steps that effects have, each once, ascending.
+/// Unique dates of steps in effects, ascending.
 std::vector<double> dates_of(const std::vector<ModelEffect>& effects);
 
 }  // namespace pcor::internal

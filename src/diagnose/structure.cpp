@@ -19,13 +19,12 @@ constexpr std::size_t max_columns = 6;
 constexpr std::size_t fine_columns = 24;
 constexpr std::size_t bins_per_column = 40;
 constexpr double max_missing = 0.1;
-constexpr double min_left = 1e-3;  // of a direction, by the model
-constexpr Eigen::Index draws =
-    99;  // of each of the two ways in which residuals lose what goes with variables
-/// Parts of the rms of the drift that may be left when a variable takes its share.
+constexpr double min_left = 1e-3;   // part of a direction remaining after the model
+constexpr Eigen::Index draws = 99;  // draws for each of the two ways of removing the dependence on variables
+/// Fractions of the drift rms that may remain after a variable explains part of it.
 constexpr std::array<double, 3> parts_of_drift{1.0, 0.4, 0.0};
 
-/// A series that begins at a later value and goes on at its begin.
+/// Series shifted cyclically to a later start.
 Eigen::VectorXd rotated(const Eigen::VectorXd& series, double part) {
   const auto first = static_cast<Eigen::Index>(part * static_cast<double>(series.size()));
   Eigen::VectorXd result(series.size());
@@ -33,9 +32,9 @@ Eigen::VectorXd rotated(const Eigen::VectorXd& series, double part) {
   return result;
 }
 
-/// Residuals of a flight that go with nothing, by columns: first shifted in time, then with signs that each
-/// minute has at random.
-/// @param shift_seed of the shifts; @param sign_seed of the signs, which also go by the minute
+/// Residuals of a flight without dependence on any variable, by columns: first shifted in time, then with
+/// random signs for each minute.
+/// @param shift_seed seed of the shifts; @param sign_seed seed of the signs, combined with the minute
 Eigen::MatrixXd drawn(const Eigen::VectorXd& left, const Binning& bins, std::uint64_t shift_seed,
                       std::uint64_t sign_seed) {
   constexpr double minute = 60.0;  // s
@@ -57,7 +56,7 @@ Eigen::MatrixXd drawn(const Eigen::VectorXd& left, const Binning& bins, std::uin
   return result;
 }
 
-/// The probability that a value is reached, by others drawn without a reason for it.
+/// Probability that a value is reached by chance, from random draws.
 double chance_among(double value, const Eigen::VectorXd& others) {
   constexpr double euler = 0.57721566490153286;
   const auto count = static_cast<double>(others.size());
@@ -65,7 +64,7 @@ double chance_among(double value, const Eigen::VectorXd& others) {
   const double deviation = std::sqrt((others.array() - mean).square().sum() / (count - 1.0));
   const double width = deviation * std::sqrt(6.0) / std::acos(-1.0);
   if (!(width > 0.0)) return 1.0;
-  // Beyond all others the law of the largest has the say, among them their number.
+  // Beyond all draws the extreme-value law determines the probability, limited by the number of draws.
   const double by_law = -std::expm1(-std::exp(-(value - mean) / width - euler));
   const double by_number = static_cast<double>((others.array() >= value).count()) / count;
   return std::max(by_law, by_number);
@@ -285,7 +284,7 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
   const double unit = std::max(1.0, mean / structure.freedom);
   structure.equivalent = chi2_one_dof(structure.gain / unit, structure.freedom);
   for (Eigen::Index k = 0; k < 2 * draws; ++k) {
-    // The equivalent of one degree is never above the value itself.
+    // The one-degree equivalent never exceeds the value itself.
     if (by_chance[k] / unit <= largest_[k]) continue;
     largest_[k] = std::max(largest_[k], chi2_one_dof(by_chance[k] / unit, structure.freedom));
   }

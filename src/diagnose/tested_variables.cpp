@@ -17,7 +17,7 @@ constexpr double full_turn = 360.0;  // deg
 
 using Values = std::shared_ptr<const std::vector<double>>;
 
-/// The series of each flight as those of its own, without a copy of what the flights hold.
+/// Series of each local flight, without a copy of the flight data.
 template <class Member>
 std::vector<Values> held_by(const std::vector<FlightColumns>& flights, const Member& member) {
   std::vector<Values> result;
@@ -36,7 +36,7 @@ TestedVariable product(std::string name, const std::vector<FlightColumns>& fligh
   return variable;
 }
 
-/// Whether a simulated flight holds the variable as the truth beside what was recorded.
+/// Whether the variable is a simulation's true value in addition to the records.
 bool is_truth(const VariableInfo& variable) {
   return std::any_of(variable.attributes.begin(), variable.attributes.end(), [](const auto& attribute) {
     return attribute.first == "Category" && attribute.second == truth_category;
@@ -49,7 +49,7 @@ double turn_of(const VariableInfo& info) {
                                                                                                : 0.0;
 }
 
-/// Records from one value to the next where a variable has one every so many records only; 1 elsewhere.
+/// Number of records between values if a variable has a lower rate; otherwise 1.
 std::size_t spacing_of(const std::vector<double>& values) {
   std::size_t first = values.size();
   std::size_t last = 0;
@@ -64,7 +64,7 @@ std::size_t spacing_of(const std::vector<double>& values) {
   }
   if (count < 2) return 1;
   const double mean = static_cast<double>(last - first) / static_cast<double>(count - 1);
-  // Evenly spaced, with one value missing here and there; else these are gaps.
+  // Equidistant values with a few missing ones; otherwise these are gaps.
   return mean > 1.5 && static_cast<double>(widest) <= 3.0 * mean ? static_cast<std::size_t>(std::lround(mean))
                                                                  : 1;
 }
@@ -87,7 +87,7 @@ struct Described {
   std::string unit{};
   std::string description{};
   int rate = 0;
-  double turn = 0.0;  // of an angle; 0 for what is none
+  double turn = 0.0;  // full turn of an angle; 0 for other variables
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -95,7 +95,7 @@ struct Described {
   }
 };
 
-/// What a file has of a variable beside its values.
+/// Description of a variable in a file, without its values.
 struct Seen {
   double least = std::numeric_limits<double>::infinity();
   double most = -std::numeric_limits<double>::infinity();
@@ -150,14 +150,14 @@ TestedVariable tested(const Described& described, const std::vector<Seen>& seen)
       variable.sampling = fmt::format("one value in {} records, {} in between", each.spacing,
                                       described.turn > 0.0 ? "held" : "interpolated");
   }
-  // An angle that takes less than half of all directions is as good as any other number.
+  // An angle within less than half of all directions is treated as an ordinary number.
   if (described.turn > 0.0 && most - least > 0.5 * described.turn && most - least <= described.turn)
     variable.turn = described.turn;
   return variable;
 }
 
-/// The climb that the aircraft flies or could fly for its acceleration, m/s: vertical speed + V/g dV/dt. It
-/// is thrust less drag over weight, times V, and so goes with what the engines do.
+/// Climb rate equivalent to climb plus acceleration, m/s: vertical speed + V/g dV/dt. It is thrust less drag
+/// over weight, times V, and therefore varies with engine power.
 TestedVariable specific_excess_power(const std::vector<FlightColumns>& flights) {
   TestedVariable variable;
   variable.name = "specific excess power";

@@ -6,11 +6,11 @@
 
 namespace pcor::internal {
 
-/// What an effect that describes a traced variable is called.
+/// Name of an effect that describes a traced variable.
 std::string id_of_trace(const std::string& variable);
 
-/// The formula of a traced variable as an effect with the slope that was found.
-/// @param flights in which it was traced, in words
+/// Formula of a traced variable as an effect with the estimated slope.
+/// @param flights description of the flights in which it was traced
 ModelEffect effect_of(const EmpiricalPredictor& variable, const std::string& flights);
 
 }  // namespace pcor::internal

@@ -19,13 +19,13 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double chance = 0.01;   // that the best of all variables goes with noise alone
-constexpr double min_gain = 1.1;  // of a line in a variable over effects with a name
+constexpr double chance = 0.01;   // probability that the best of all variables matches noise alone
+constexpr double min_gain = 1.1;  // ratio of a line in a variable to effects with a name
 constexpr std::size_t max_variables = 10;
 /// Twice the gain in log-likelihood by drift. Noise of short memory gains 17 at most in a dozen flights
 /// without drift, since no autoregression describes it wholly.
 constexpr double min_drift_gain = 30.0;
-/// Transducers drift by this, hPa rms; what drifts less, or less than the noise, is noise, too.
+/// Drift of transducers, hPa rms; smaller drift, or drift below the noise, is counted as noise.
 constexpr double usual_drift = 0.06;
 
 std::set<std::string> left_out(const FlightSet& files, const ModelDefinition& model,
@@ -45,7 +45,7 @@ std::set<std::string> left_out(const FlightSet& files, const ModelDefinition& mo
   return names;
 }
 
-/// The variables that the residual is measured with.
+/// Variables used in the measurement of the residual.
 std::set<std::string> sensors_of(const ModelDefinition& model, const Reference& reference) {
   std::set<std::string> sensors;
   const auto add = [&](Quantity role) {
@@ -71,7 +71,7 @@ EmpiricalPredictor traced_of(const Structure& structure, const TestedVariable& t
   variable.slope = structure.slope;
   variable.slope_error = structure.slope_error;
   variable.centre = structure.centre;
-  // Only what a straight line describes is worth a formula.
+  // Only a straight line gets a formula.
   const bool straight = std::abs(structure.slope) > 3.0 * structure.slope_error && structure.slope != 0.0 &&
                         variable.linear_r2 > 0.5 * variable.r2;
   if (tested.in_file && straight)
@@ -80,11 +80,11 @@ EmpiricalPredictor traced_of(const Structure& structure, const TestedVariable& t
   return variable;
 }
 
-/// Where, of all that is flown, the residual is largest beyond the noise.
+/// Regime with the largest residual beyond the noise.
 std::string worst_regime(const Analysis& analysis, const std::vector<std::vector<double>>& after,
                          double noise) {
   constexpr double fewest = 120.0;
-  // Squares and their number, of each regime.
+  // Squares and their number for each regime.
   using Sums = Eigen::Matrix<double, static_cast<int>(regime_count), 2>;
   const auto sums = analysis.share().sum_of_each_flight<Sums>([&](std::size_t f) {
     Sums own = Sums::Zero();
@@ -128,7 +128,7 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
   return after;
 }
 
-/// The variables that the first file says are computed from any of `sensors`.
+/// Variables computed from any of `sensors` according to the first file.
 std::vector<std::string> computed_variables(const FlightSet& files, const std::set<std::string>& sensors) {
   return files.share()
       .of_each_flight<std::vector<std::string>>([&](std::size_t number) {
@@ -139,7 +139,7 @@ std::vector<std::string> computed_variables(const FlightSet& files, const std::s
       .front();
 }
 
-/// The variables that structure may go with; those that are no causes are named in `found`.
+/// Variables that may explain structure; those that cannot be causes are listed in `found`.
 std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const FlightSet& files,
                                               const ModelDefinition& model, const Reference& reference,
                                               const DiagnoseOptions& options,
@@ -163,7 +163,7 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
   return variables;
 }
 
-/// Structures beside some effects, and the variable of each.
+/// Structures in addition to some effects, and the variable of each.
 struct Tested {
   StructureTest test;
   std::vector<const TestedVariable*> variables{};
@@ -175,7 +175,7 @@ struct Tested {
     add(all);
     const std::vector<Eigen::MatrixXd> strong = test.strong_structure();
     if (strong.empty() || explains_most_beyond_chance()) return;
-    // Chance may do as well only because it is told by residuals that hold that structure.
+    // The chance level may be too high only because its residuals contain that structure.
     test = StructureTest(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
                          analysis.noise(), seed, strong);
     variables.clear();
@@ -189,7 +189,7 @@ struct Tested {
     }
   }
 
-  /// Whether that of greatest gain, for its freedom, is beyond chance.
+  /// Whether the structure with the greatest gain, for its degrees of freedom, is significant.
   bool explains_most_beyond_chance() const {
     const std::vector<Structure>& all = test.structures();
     const auto most = std::max_element(all.begin(), all.end(), [](const Structure& a, const Structure& b) {
@@ -204,7 +204,7 @@ struct Tested {
   }
 };
 
-/// A variable less its middle at every record; what is missing has the value before it.
+/// Variable minus its middle at every record; missing values repeat the previous one.
 Eigen::VectorXd line_in(const std::vector<double>& values, double middle) {
   Eigen::VectorXd line = Eigen::VectorXd::Zero(as_index(values.size()));
   double last = 0.0;
@@ -215,8 +215,8 @@ Eigen::VectorXd line_in(const std::vector<double>& values, double middle) {
   return line;
 }
 
-/// The lines in variables, in bins, of each own flight against each reference: of each variable one column
-/// for each reference. @param variables their numbers
+/// Lines in variables, in bins, for each local flight against each reference: one column per variable and
+/// reference. @param variables their indices
 std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& tested,
                                       const std::vector<std::size_t>& variables, Eigen::Index references) {
   const std::vector<FlightColumns>& flights = analysis.flights();
@@ -239,7 +239,7 @@ std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& te
   return lines;
 }
 
-/// How many references an analysis has.
+/// Number of references of an analysis.
 std::size_t reference_count(const Analysis& analysis) {
   std::size_t count = 0;
   for (std::size_t f = 0; f < analysis.flight_count(); ++f)
@@ -247,15 +247,15 @@ std::size_t reference_count(const Analysis& analysis) {
   return count;
 }
 
-/// Where what goes with variables may act: a cause at the static ports, the laser or the thermometer
-/// leaves the total pressures alone, one at the pitot or at the transducers does not. @param numbers of the
+/// Possible locations of a cause: at the static ports, the laser or the thermometer it leaves the total
+/// pressures unchanged; at the pitot or at the transducers it changes them. @param numbers indices of the
 /// variables
 void find_places(const Analysis& analysis, const Tested& tested, const std::vector<std::size_t>& numbers,
                  const References& references, std::vector<EmpiricalPredictor>& variables) {
   constexpr double seen = 3.0;           // standard errors
-  constexpr double would_be_seen = 6.0;  // of the same slope as against the first reference
+  constexpr double would_be_seen = 6.0;  // the same slope as against the first reference
   const std::size_t count = reference_count(analysis);
-  std::size_t blind = 0;  // the first reference that does not see static defects
+  std::size_t blind = 0;  // first reference that is insensitive to static defects
   while (blind < count && references[blind]->sees_static_defect()) ++blind;
   if (blind == 0 || blind >= count || numbers.empty()) return;
   std::vector<ColumnGroup> groups(count * numbers.size());
@@ -278,7 +278,7 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
     } else if (std::abs(variable.slope) > would_be_seen * error) {
       variable.places = {"port", references.front()->reads_laser() ? "laser" : "other-system"};
       if (references.front()->reads_laser()) variable.places.emplace_back("thermometer");
-      variable.places.emplace_back("pitot");  // of both systems alike
+      variable.places.emplace_back("pitot");  // both systems alike
     }
   }
 }
@@ -303,8 +303,8 @@ bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity
   return covariance * covariance > image * image * variances;
 }
 
-/// The line in a variable that explains most beside the base, of those that may be a cause and are no input
-/// of an effect. It has a slope of its own against each reference, since where the cause acts is not known.
+/// Line in a variable that explains most in addition to the base, among possible causes that are not inputs
+/// of an effect. It has a separate slope against each reference because the location of the cause is unknown.
 GroupScore best_line(const Analysis& analysis, const Tested& tested, const EffectInputs& inputs) {
   const auto is_input = [&](const TestedVariable& variable) {
     return inputs.variables.count(variable.name) != 0 ||
@@ -334,10 +334,10 @@ GroupScore best_line(const Analysis& analysis, const Tested& tested, const Effec
   return best;
 }
 
-/// Whether a line in one variable is likelier than all chosen effects: one that explains a tenth more than an
-/// effect does, or, since causes rarely come together, one that does the work of several. A line that any of
-/// many variables may win with has to be that much better. What an effect reads is no rival of it. Both are
-/// measured by all references.
+/// Whether a line in one variable is more likely than all chosen effects: it explains a tenth more than an
+/// effect does, or it replaces several effects, because simultaneous causes are rare. The threshold is raised
+/// for the number of tested variables. Inputs of an effect are not rivals of it. All references are used for
+/// both.
 bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested,
                     const EffectInputs& inputs) {
   if (tested.variables.empty()) return false;
@@ -356,20 +356,20 @@ bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& ch
     if (likelihood - choices > search.evidence(chosen) - price * static_cast<double>(chosen.size()))
       return true;
   }
-  // Both in units of the noise that all effects leave.
+  // Both in units of the noise remaining after all effects.
   line *= search.variance({}) / search.variance(chosen);
   const double margin = 9.0 + 2.0 * choices;
   return line - best.freedom > min_gain * (together - by_effects) + margin;
 }
 
-/// The variables whose structure is beyond chance, each once; their numbers.
+/// Indices of variables with significant structure, without duplicates.
 std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& result) {
   const std::vector<Structure>& structures = tested.test.structures();
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < structures.size(); ++i) {
     if (tested.test.chance_of(structures[i].equivalent) < chance) order.push_back(i);
   }
-  // A straight line that explains as much as a bent one comes first.
+  // A straight line that explains as much as a curve is preferred.
   const auto merit = [&](std::size_t i) {
     return std::max(structures[i].gain - 2.0 * structures[i].freedom, structures[i].line_gain - 2.0);
   };
@@ -440,9 +440,9 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
           ? rms_of(analysis.share(), [&left](std::size_t f) -> const std::vector<double>& { return left[f]; })
           : residual_rms;
   const std::vector<std::size_t> traced = add_traced(shown, result);
-  // Effects that stay describe a part of every reference, of which the lines know nothing.
+  // Retained effects describe a part of every reference that the lines do not include.
   if (chosen.empty() || result.overrules) find_places(analysis, shown, traced, references, found.variables);
-  // What is beyond the noise; at least what drifts, and what the best variable explains.
+  // Part beyond the noise; at least the drift and the part that the best variable explains.
   found.rms = std::max(found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)));
   if (!found.variables.empty()) found.rms = std::max(found.rms, std::sqrt(found.variables.front().r2) * rms);
   found.regime = worst_regime(analysis, left, noise_rms);

@@ -10,24 +10,23 @@
 
 namespace pcor::internal {
 
-/// What chosen effects read. A variable that one of them reads is no rival of it.
+/// Inputs of chosen effects. A variable that an effect reads is not a rival of it.
 struct EffectInputs {
   std::set<Quantity> quantities{};
   std::set<std::string> variables{};
 };
 
-/// Structure that base and chosen effects leave.
+/// Structure remaining after base and chosen effects.
 struct UnexplainedStructure {
   Unexplained found;
-  double left = 0.0;  ///< chi2 of the best variable beside base and chosen effects
-  /// True where a straight line in one variable of the files explains more than all chosen effects: then
-  /// these are not what is missing, and `found` is what the base alone leaves.
+  double left = 0.0;  ///< chi2 of the best variable in addition to base and chosen effects
+  /// True if a straight line in one variable of the files explains more than all chosen effects: these are
+  /// then rejected, and `found` describes the residual of the base alone.
   bool overrules = false;
-  std::vector<std::vector<double>>
-      traced{};  ///< the best variable, of each own flight, one value for each record
+  std::vector<std::vector<double>> traced{};  ///< best variable of each local flight, one value per record
 };
 
-/// Tests whether something is left, in any variable of the files.
+/// Tests whether structure remains in any variable of the files.
 ///
 /// @param references in the order of the analysis
 /// @param residual_rms and @param noise_rms after the chosen effects, hPa

@@ -68,7 +68,7 @@ VariableValues::VariableValues(const FlightPartition& share,
 }
 
 std::vector<double> VariableValues::distinct(std::size_t most) const {
-  std::vector<double> all;  // in their order
+  std::vector<double> all;  // sorted
   const auto add = [&all](double value) {
     const auto place = std::lower_bound(all.begin(), all.end(), value);
     if (place == all.end() || *place != value) all.insert(place, value);

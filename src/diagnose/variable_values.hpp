@@ -8,30 +8,30 @@
 
 namespace pcor::internal {
 
-/// The values of a variable on all flights of a team, of which each member has those of its own: the same of
-/// all, whoever has which.
+/// Values of a variable on all flights of a team; each member has those of its local flights. Results do not
+/// depend on the distribution of flights.
 class VariableValues {
  public:
-  /// @param values_of an own flight, NaN where missing
+  /// @param values_of values of a local flight, NaN if missing
   VariableValues(const FlightPartition& share,
                  const std::function<std::vector<double>(std::size_t flight)>& values_of);
 
-  std::size_t count() const { return count_; }      ///< of finite values
+  std::size_t count() const { return count_; }      ///< finite values
   std::size_t missing() const { return missing_; }  ///< all others
   double least() const { return least_; }
   double most() const { return most_; }
   double mean() const { return mean_; }
   double deviation() const { return deviation_; }  ///< from the mean, root mean square
 
-  /// Those that occur, in their order; if they are more than `most`, more than `most` of them.
+  /// Distinct values, ascending; if there are more than `most`, an incomplete list of more than `most`.
   std::vector<double> distinct(std::size_t most) const;
 
-  /// The values at so many places at even distances of their order, the least and the greatest among them.
+  /// Quantiles at equidistant ranks, including minimum and maximum.
   std::vector<double> quantiles(std::size_t places) const;
 
  private:
   FlightPartition share_;
-  std::vector<std::vector<double>> values_;  // finite ones of own flights
+  std::vector<std::vector<double>> values_;  // finite values of local flights
   std::size_t count_ = 0;
   std::size_t missing_ = 0;
   double least_ = 0.0;

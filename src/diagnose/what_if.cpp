@@ -45,14 +45,14 @@ bool is_meant(const Candidate& candidate, const WhatIfCandidate& wanted) {
   return true;
 }
 
-/// How far the time over which a candidate's need is found is from the one that the wanted effect has.
+/// Distance between the candidate's time for the need and that of the wanted effect.
 double distance(const Candidate& candidate, const WhatIfCandidate& wanted) {
   const Memory memory = memory_of(candidate.effect);
   if (memory.of == Quantity::count || !wanted.effect) return 0.0;
   return std::abs(candidate.memory - std::abs(wanted.effect->parameters[memory.parameter]));
 }
 
-/// The place of the candidate that is meant; the number of all where there is none.
+/// Index of the matching candidate; the number of candidates if there is no match.
 std::size_t place_of(const std::vector<Candidate>& candidates, const WhatIfCandidate& wanted) {
   std::size_t best = candidates.size();
   for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -63,7 +63,7 @@ std::size_t place_of(const std::vector<Candidate>& candidates, const WhatIfCandi
   return best;
 }
 
-/// The dates of steps that are wanted; without one any date.
+/// Dates of wanted steps; empty for any date.
 std::vector<double> dates_for(const std::vector<WhatIfCandidate>& wanted, const FlightSet& files) {
   std::vector<ModelEffect> effects;
   for (const WhatIfCandidate& each : wanted) {
@@ -73,7 +73,7 @@ std::vector<double> dates_for(const std::vector<WhatIfCandidate>& wanted, const 
   return dates.empty() ? StepDates(files).tried() : dates;
 }
 
-/// Leaves the candidates that are wanted, and those that others are made of.
+/// Keeps the wanted candidates and those that they depend on.
 void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& wanted) {
   std::vector<bool> kept(set.candidates.size() + 1, false);
   for (const WhatIfCandidate& each : wanted) {
@@ -89,8 +89,7 @@ void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& wanted) {
   set.candidates = std::move(candidates);
 }
 
-/// Brings candidates and columns into the order in which they are wanted; gives what is wanted of those that
-/// could be tested.
+/// Sorts candidates and columns into the wanted order; returns the wanted effects that could be tested.
 std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flights,
                                           const std::vector<WhatIfCandidate>& wanted) {
   std::vector<WhatIfCandidate> found;
@@ -110,15 +109,14 @@ std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flight
   return found;
 }
 
-/// The samples of a flight that took no part, with their columns: of a flight that is held out all of them,
-/// else those behind the part that was used.
+/// Unused samples of a flight with their columns: all samples of a held-out flight, otherwise those after the
+/// used part.
 FlightColumns held_out(FlightColumns all, double used_share) {
   for (const std::size_t i : used_samples(all.mask, used_share)) all.given[i] = nan;
   return all;
 }
 
-/// The columns of samples that took no part: of the files behind the first, which are fitted, and of the
-/// later parts of fitted flights.
+/// Columns of unused samples: files after the fitted ones, and later parts of fitted flights.
 TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const TeamColumns& columns,
                              const ModelDefinition& model, const CandidateSet& set,
                              const WhatIfOptions& options) {
@@ -146,7 +144,7 @@ TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const T
       });
 }
 
-/// The residual of a flight with effects at coefficients that are not small: as a refit with them has it.
+/// Residual of a flight with effects at large coefficients, as a refit with them computes it.
 ResidualAt residual_with(const ModelDefinition& model, const CandidateSet& set, const FlightColumns& flight,
                          const std::vector<std::size_t>& groups) {
   const Reference& reference = *set.references[flight.reference];
@@ -154,7 +152,7 @@ ResidualAt residual_with(const ModelDefinition& model, const CandidateSet& set, 
   ModelDefinition with = model;
   with.variables = set.extended.variables;
   with.units = set.extended.units;
-  // Which parameter of the residual each of the free coefficients is, and its number among all of the panel.
+  // Residual parameter of each free coefficient, and its index in the panel.
   std::vector<std::size_t> free = free_parameters(model);
   std::vector<std::size_t> number(free.size());
   std::iota(number.begin(), number.end(), 0);
@@ -186,7 +184,7 @@ ResidualAt residual_with(const ModelDefinition& model, const CandidateSet& set, 
   };
 }
 
-/// Row by row.
+/// Values row by row.
 std::vector<double> lower_triangle(const Eigen::MatrixXd& matrix) {
   std::vector<double> values;
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
@@ -217,7 +215,7 @@ std::vector<std::vector<double>> by_records(const FlightColumns& flight) {
   return columns;
 }
 
-/// The flights of a team of which the panel has the columns, whole on every member.
+/// Flights of a team with columns in the panel, complete on every member.
 std::vector<FlightColumns> shown(const TeamColumns& columns,
                                  const std::function<bool(std::size_t)>& is_shown) {
   std::vector<std::size_t> entries;
@@ -228,7 +226,7 @@ std::vector<FlightColumns> shown(const TeamColumns& columns,
       [&](std::size_t k) { return columns.flights[entries[k]]; });
 }
 
-/// Puts what took no part behind, or beside, what did.
+/// Appends the unused samples to the used ones.
 void add_held_out(std::vector<WhatIfFlight>& flights, const FlightColumns& held_out) {
   std::vector<std::vector<double>> columns = by_records(held_out);
   const auto same = std::find_if(flights.begin(), flights.end(), [&](const WhatIfFlight& flight) {
@@ -247,23 +245,21 @@ void add_held_out(std::vector<WhatIfFlight>& flights, const FlightColumns& held_
 
 std::string note_of(const Candidate& candidate, const std::string& flaps_variable) {
   if (candidate.is_of_reference())
-    return "It is of the system that the model is held against: the model is not to be changed for it.";
+    return "It is an error of the reference system: do not change the model for it.";
   if (candidate.is_shared)
-    return "It is alike on the system that the model is held against, which no model file can hold: the "
-           "command adds it without that.";
+    return "It is the same on the reference system, which a model file cannot represent: the "
+           "command adds it to the model only.";
   if (reads_flaps(candidate.effect, flaps_variable))
-    return "Here it is held against the samples with flaps in alone; a refit with it uses those with flaps "
-           "out "
-           "too.";
+    return "Here only samples with flaps in are used; a refit with it also uses samples with flaps out.";
   return "";
 }
 
-/// Which regime would separate each effect from each other, at the sizes that each has alone.
+/// Regime that would separate each pair of effects, each at its size alone.
 std::vector<WhatIfSeparation> separations_of(const WhatIfFit& fit, const std::vector<Candidate>& candidates) {
   std::vector<WhatIfSeparation> separations;
   const auto columns_of = [&fit](std::size_t effect) { return places_of(fit.groups()[effect], fit.base()); };
   for (std::size_t effect = 0; effect < candidates.size(); ++effect) {
-    if (candidates[effect].is_shared) continue;  // its columns are those of another
+    if (candidates[effect].is_shared) continue;  // its columns repeat those of another
     const Eigen::VectorXd alone = fit.fitted({effect}).values;
     const std::vector<Eigen::Index> own = columns_of(effect);
     SeparationProblem rivalry{fit.information(), fit.variance({effect}), own, alone(own), {}};
@@ -306,15 +302,15 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   for (const ModelEffect& formula : formulas) add({formula.id, "your formula"});
   std::vector<std::string> flights;
   for (const FlightDiagnosis& flight : diagnosis.flights) flights.push_back(flight.name);
-  // A variable that no effect explains is as good as found.
+  // A variable with structure that no effect explains counts as found.
   std::size_t traced = 0;
   for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty() || traced == max_traced) continue;
     const ModelEffect effect = effect_of(variable, fmt::format("{}", fmt::join(flights, ", ")));
     const bool counts = traced++ == 0 && diagnosis.findings.empty();
-    add({effect.id, "goes with " + variable.name, effect, false, counts ? effect.id : ""});
+    add({effect.id, "varies with " + variable.name, effect, false, counts ? effect.id : ""});
   }
-  // What comes nearest: by its estimate in units of the error.
+  // Nearest candidates by estimate in units of the error.
   constexpr std::size_t nearest = 4;
   std::vector<std::pair<double, const UpperLimit*>> others;
   for (const UpperLimit& limit : diagnosis.limits) {
@@ -333,7 +329,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
 WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const References& all_references,
                const std::vector<WhatIfCandidate>& wanted, const WhatIfOptions& options) {
   const FlightSet files = flights.with(options.holdout);
-  std::vector<std::string> notes;  // the diagnosis tells them
+  std::vector<std::string> notes;  // reported by the diagnosis
   std::vector<ModelEffect> formulas = options.diagnose.formulas;
   for (const WhatIfCandidate& each : wanted) {
     const auto same = [&each](const ModelEffect& formula) { return formula.id == each.id; };

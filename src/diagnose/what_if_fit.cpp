@@ -23,21 +23,21 @@
 namespace pcor::internal {
 namespace {
 
-// Of noise and coefficients in turn, as in a refit: the noise without slow parts and a loss of which the
-// minimum is unique come first.
+// Alternating fit of noise and coefficients as in refit: noise without slow parts and a loss with a unique
+// minimum come first.
 constexpr int rounds = 2;
 constexpr double min_eigenvalue = 1e-11;
 
 using Places = std::vector<Eigen::Index>;
 
-/// What changes of the coefficients of base and candidates take off the residual of a record.
+/// Change of the residual of a record by changed coefficients of base and candidates.
 double taken_off(const FlightColumns& flight, std::size_t record, const Eigen::VectorXd& values) {
   const Eigen::Index row = as_index(record);
   return flight.base.row(row).cast<double>().dot(values.head(flight.base.cols())) +
          flight.candidates.row(row).cast<double>().dot(values.tail(flight.candidates.cols()));
 }
 
-/// A residual of a flight without its outliers: samples that depart from those around them.
+/// Residual of a flight without outliers, i.e. samples that depart from their neighbours.
 std::vector<double> calm(const FlightColumns& flight, const std::vector<double>& residual,
                          const Eigen::VectorXd& values) {
   std::vector<double> left(residual.size(), nan);
@@ -55,7 +55,7 @@ std::vector<double> calm(const FlightColumns& flight, const std::vector<double>&
   return result;
 }
 
-/// The coefficients of some columns that leave least, the others as they are.
+/// Least-squares coefficients of some columns, with the others fixed.
 Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Places& free, Eigen::VectorXd values) {
   values(free).setZero();
   const Eigen::Index width = values.size();
@@ -64,7 +64,7 @@ Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Places& free, Eigen::Ve
   return values;
 }
 
-/// What is left of the whitened residuals of own flights, in units of the robust deviation of those of all.
+/// Whitened residuals of local flights, in units of the robust deviation over all flights.
 std::vector<Eigen::VectorXd> in_deviations(const FlightPartition& share,
                                            const std::vector<Eigen::MatrixXd>& rows,
                                            const Eigen::VectorXd& values) {
@@ -82,10 +82,10 @@ std::vector<Eigen::VectorXd> in_deviations(const FlightPartition& share,
   return left;
 }
 
-/// Gives the rows the weights of Huber's loss at its minimum, which `values` become.
+/// Gives the rows the weights of Huber's loss at its minimum, and sets `values` to the minimum.
 void weigh(WhitenedSystem& scores, const Places& free, Eigen::VectorXd& values) {
   constexpr int max_steps = 50;
-  constexpr double enough = 1e-3;  // of what the flights leave open
+  constexpr double enough = 1e-3;  // fraction of the uncertainty from the flights
   const std::vector<Eigen::MatrixXd> rows = scores.rows;
   for (int step = 0; step < max_steps; ++step) {
     const std::vector<Eigen::VectorXd> ratios = in_deviations(scores.share, rows, values);
@@ -99,8 +99,8 @@ void weigh(WhitenedSystem& scores, const Places& free, Eigen::VectorXd& values) 
   }
 }
 
-/// Which of some groups a reader may have switched on: all subsets of a few; of many what comes first, as
-/// they were found one after another. The empty one first, all of them last.
+/// Subsets of groups that a reader may select: all subsets of a few groups; for many, the first ones in the
+/// order of discovery. The empty subset comes first, the full one last.
 std::vector<std::vector<std::size_t>> subsets_of(const std::vector<std::size_t>& groups) {
   constexpr std::size_t few = 3;
   std::vector<std::vector<std::size_t>> subsets;
@@ -123,7 +123,7 @@ void add(SumOfProducts& sum, const Eigen::VectorXd& row) {
   sum.count += 1.0;
 }
 
-/// Sums of several kinds of samples; those of flights add up.
+/// Sums of several kinds of samples; sums of flights can be added.
 struct SumsOfProducts {
   std::vector<SumOfProducts> kinds{};
 
@@ -200,7 +200,7 @@ std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>
   return free;
 }
 
-/// The residual at the start, such that a step by the derivatives leads to what it really is at `values`.
+/// Residual at the start, chosen so that a step by the derivatives gives the exact residual at `values`.
 std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight, const Eigen::VectorXd& values,
                                             const ResidualAt& residual_at) const {
   const std::vector<double> there = residual_at ? residual_at(start_ + values) : std::vector<double>();
@@ -273,11 +273,11 @@ void WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust,
   with_noise_.count = static_cast<double>(with_noise.row_count);
 }
 
-/// The covariance of the scores of a flight, weighted columns' residual. @param rows weighted
+/// Covariance of the scores of a flight, i.e. weighted columns' residual. @param rows weighted
 Eigen::MatrixXd WhatIfFit::score_covariance(std::size_t flight, const Eigen::MatrixXd& rows,
                                             const NoiseModel& noise) const {
   const Eigen::MatrixXd& columns = binned_.columns[flight];
-  // Of references of many samples the rows have no memory, and a variance of one.
+  // References of many samples have uncorrelated rows of unit variance.
   if (flights_.flights[flight].window > 0.0) {
     const Eigen::MatrixXd own = rows.leftCols(columns.cols());
     return own.transpose() * own;

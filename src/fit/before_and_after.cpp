@@ -36,7 +36,7 @@ struct Compared {
   std::vector<FlightFit> parts{};  ///< the part that was fitted, and the part that was held out
   std::vector<double> fitted_blocks{};
   std::size_t held_out_blocks = 0;
-  Eigen::VectorXd held_out_derivatives{};  ///< mean over what was held out, by the fitted parameters
+  Eigen::VectorXd held_out_derivatives{};  ///< mean over held-out samples, by the fitted parameters
   ResidualSums flaps_out{};
   std::vector<FlightNote> notes{};
   RegimeSet flown{};
@@ -84,14 +84,14 @@ std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& value
   const FlightSet& flights = task.options.holdout;
   return flights.share().of_each_flight<Compared>([&](std::size_t number) {
     const auto samples = flights.samples(number, task.model, task.reference, task.options.mask);
-    constexpr double fitted = 0.0;  // part of the samples
+    constexpr double fitted = 0.0;  // fraction of the samples
     const LinearRows rows(residuals_at(samples, task, values), task.model, task.reference,
                           {Inputs::none, {}, fitted});
     return compared(rows, task, values, wanted);
   });
 }
 
-/// The flights that take part, as well as `more` of them tells, and those that are held out.
+/// Flights in the fit with the corrections of `more`, and held-out flights.
 template <class More>
 std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values, const More& more) {
   const FitTask& task = flights.task();

@@ -27,7 +27,7 @@ std::optional<DotPanel> coefficient_picture(const std::vector<FittedParameter>& 
     if (!p.fitted || !std::isfinite(p.value)) continue;
     const double percent = 100.0 / std::abs(p.start);
     const bool is_told = std::isfinite(p.standard_error);
-    // With a value that was there, and that is more than the error: a change from next to nothing is no part.
+    // Compares previous values larger than the error; a relative change from nearly zero is meaningless.
     const bool compares = std::isfinite(percent) && !(is_told && std::abs(p.start) < p.standard_error);
     const std::string error = is_told ? fmt::format(" ± {:.2g}", p.standard_error) : "";
     const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;

@@ -9,8 +9,8 @@
 
 namespace pcor::internal {
 
-/// The fitted coefficients with their errors beside what they were, each on a scale of its own; none where
-/// nothing was fitted.
+/// Fitted coefficients with their errors and previous values, each on a separate scale; empty if nothing was
+/// fitted.
 std::optional<DotPanel> coefficient_picture(const std::vector<FittedParameter>& parameters,
                                             const std::string& before_is, const std::string& after_is);
 

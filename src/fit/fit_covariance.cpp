@@ -14,12 +14,12 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t min_flights = 8;  // from which on whole flights are left out
-constexpr double parts = 20.0;          // else so many parts of all flights together
+constexpr std::size_t min_flights = 8;  // minimum number for omitting whole flights
+constexpr double parts = 20.0;          // otherwise number of parts of all flights together
 constexpr double min_part = 120.0;      // s
 
-/// From so many bins on, the influence itself tells its variance and its memory; of fewer it is what normal
-/// innovations have.
+/// Minimum number of bins for variance and correlation of the influence from the data; with fewer bins,
+/// normal innovations are assumed.
 constexpr Eigen::Index enough_bins = 200;
 
 /// Means of the loss over normal innovations: of rho' + 2 s rho'' and of the square of the influence.
@@ -43,8 +43,8 @@ struct NormalLoss {
   }
 };
 
-/// Which flights, or parts of flights, are left out one after another: the blocks of a flight are numbered on
-/// their own, and follow those of the flights before it.
+/// Flights, or parts of flights, omitted one at a time: blocks are numbered per flight, after those of the
+/// flights before it.
 class Blocks {
  public:
   explicit Blocks(FitFlights& flights) : begin_(flights.count(), 0.0), count_(flights.count(), 1) {
@@ -61,7 +61,7 @@ class Blocks {
     }
   }
 
-  /// Of all flights, and of one.
+  /// Number of blocks of all flights, and of one flight.
   std::size_t count() const { return std::accumulate(count_.begin(), count_.end(), std::size_t{0}); }
   std::size_t count(std::size_t flight) const { return count_[flight]; }
 
@@ -90,11 +90,12 @@ struct BlockSums {
 /// Sums over the bins of one set of equations, of a flight or of all.
 struct Sums {
   std::vector<BlockSums> blocks;
-  Eigen::MatrixXd covariance;  ///< of the scores of all equations by the noise; zero but for the last ones
+  Eigen::MatrixXd covariance;  ///< scores of all equations by the noise; nonzero for the last ones only
   Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
-  Eigen::MatrixXd doubt;       ///< the same by the doubts of the reference, each by one standard uncertainty
+  Eigen::MatrixXd
+      doubt;  ///< derivatives by the uncertainties of the reference, each by one standard uncertainty
 
-  /// Adds what is of no block.
+  /// Adds sums without blocks.
   void add(const Sums& other) {
     covariance += other.covariance;
     misfit += other.misfit;
@@ -107,7 +108,7 @@ struct Sums {
   }
 };
 
-/// The doubts of all references of a fit, by name: an error of the thermometer is one in all of them.
+/// Uncertainties of all references of a fit, by name: a thermometer error is common to all of them.
 std::vector<std::string> doubts_of(FitFlights& flights) {
   std::vector<std::string> names;
   for (const FitFlights* const each : flights.joint()) {
@@ -118,21 +119,21 @@ std::vector<std::string> doubts_of(FitFlights& flights) {
   return names;
 }
 
-/// What the scores of a stage are sums with, in the bins of a flight.
+/// Weights of a stage's scores in the bins of a flight.
 struct StageScores {
-  Eigen::Index first;  // of its parameters among all
+  Eigen::Index first;  // first of its parameters among all
   std::vector<double> time;
   Eigen::MatrixXd columns;
 };
 
-/// The columns of all equations in the bins of the last ones, where the bins of a stage are some of them.
+/// Columns of all equations in the bins of the last ones, which include the bins of each stage.
 Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector<double>& time,
                        const Eigen::MatrixXd& last, Eigen::Index fitted) {
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(last.rows(), fitted);
   all.rightCols(last.cols()) = last;
   for (const StageScores& stage : stages) {
     for (std::size_t i = 0; i < stage.time.size(); ++i) {
-      // The middle of a bin moves by less than half its width where other samples of it count.
+      // Middles of bins differ by less than half the width if other samples are used.
       auto bin = std::lower_bound(time.begin(), time.end(), stage.time[i] - 0.5 * Binning::usual_width);
       if (bin == time.end() || *bin > stage.time[i] + Binning::usual_width) continue;
       all.block(bin - time.begin(), stage.first, 1, stage.columns.cols()) += stage.columns.row(as_index(i));
@@ -141,19 +142,19 @@ Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector
   return all;
 }
 
-/// What the sums of all references and equations are of.
+/// Common input of the sums over all references and equations.
 struct WhitenedSystem {
   const std::vector<std::size_t>& all;  // the parameters of all equations and those that are held
-  Eigen::Index fitted;                  // how many of them are of equations
+  Eigen::Index fitted;                  // number of parameters in equations
   const Blocks& blocks;
   const Misfit& misfit;
   const MisfitBasis& misfit_columns;
   const FitEquations* last;
   std::vector<std::string> doubts;
-  std::vector<std::vector<StageScores>> stages;  // of each flight with the first reference
+  std::vector<std::vector<StageScores>> stages;  // each flight with the first reference
 };
 
-/// Of one reference. @param first of the parameters of the equations among all
+/// Sums of one reference. @param first parameter of the equations among all
 Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index first, WhitenedSystem& scores) {
   const std::vector<std::size_t>& all = scores.all;
   const bool is_first_reference = &flights == equations.flights;
@@ -163,7 +164,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index fi
   const Eigen::Index size = as_index(all.size());
   const Eigen::Index own = as_index(equations.parameters.size());
   const bool is_last = &equations == scores.last;
-  std::vector<Eigen::Index> doubt_places;  // of the doubts of this reference among all
+  std::vector<Eigen::Index> doubt_places;  // positions of this reference's uncertainties among all
   for (const std::string& name : flights.doubt().names())
     doubt_places.push_back(std::find(scores.doubts.begin(), scores.doubts.end(), name) -
                            scores.doubts.begin());
@@ -179,7 +180,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index fi
     const Eigen::Index count = innovations.size();
     std::vector<double> influence(static_cast<std::size_t>(count));
     Eigen::VectorXd weight(count);
-    double slope = 0.0;  // of the loss, mean over the bins
+    double slope = 0.0;  // derivative of the loss, mean over the bins
     for (Eigen::Index i = 0; i < count; ++i) {
       const double innovation = innovations[i];
       const std::array<double, 3> rho = loss(innovation);
@@ -234,7 +235,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index fi
   return whole;
 }
 
-/// Of all references together: the innovations of one tell nothing of those of another.
+/// Sums over all references; innovations of different references are independent.
 Sums sums_of(const FitEquations& equations, Eigen::Index first, WhitenedSystem& scores) {
   Sums whole;
   for (FitFlights* const flights : equations.flights->joint()) {
@@ -259,7 +260,7 @@ double information_of(FitFlights& flights) {
   return sum;
 }
 
-/// The inverse of a regular matrix whose unknowns may differ by powers of ten.
+/// Inverse of a regular matrix with unknowns of different orders of magnitude.
 Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd scale = matrix.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   return scale.asDiagonal() * pseudo_inverse(scale.asDiagonal() * matrix * scale.asDiagonal()) *
@@ -317,7 +318,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
   found.jackknife = Eigen::VectorXd::Constant(fitted, nan);
   const Eigen::MatrixXd doubt = task.doubt(held, held);
   found.matrix.bottomRightCorner(size - fitted, size - fitted) = doubt;
-  // What is at a bound does not vary.
+  // Parameters at a bound have no variance.
   std::vector<Eigen::Index> varying;
   for (Eigen::Index k = 0; k < fitted; ++k) {
     if (!last.solution.at_bound[all[static_cast<std::size_t>(k)]]) varying.push_back(k);
@@ -347,7 +348,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
       found.matrix(varying[a], b) = found.matrix(b, varying[a]) = across(as_index(a), b - fitted);
   }
 
-  // One step of Newton from the fit of all to that without a block.
+  // One Newton step from the fit of all blocks to the fit without one block.
   Eigen::MatrixXd moved(as_index(varying.size()), as_index(left_out.size()));
   for (std::size_t b = 0; b < left_out.size(); ++b) {
     const Eigen::MatrixXd rest = derivatives(varying, varying) - left_out[b].derivatives(varying, varying);

@@ -10,8 +10,7 @@
 
 namespace pcor::internal {
 
-/// The equations that a fit solves: some parameters from the samples of some flights, with what their stage
-/// found.
+/// Equations of a fit: some parameters from the samples of some flights, at the result of their stage.
 struct FitEquations {
   FitFlights* flights;
   std::vector<std::size_t> parameters;
@@ -19,37 +18,37 @@ struct FitEquations {
 };
 
 struct FitCovariance {
-  /// Of the parameters of all equations, in their order, and after them of those that were held at a value of
-  /// which the files state the error. Zero for those at a bound.
+  /// Covariance of the parameters of all equations, in their order, followed by fixed parameters with an
+  /// error stated in the files. Zero for parameters at a bound.
   Eigen::MatrixXd matrix{};
-  /// Of the parameters of the equations by the noise and what held coefficients may err by, without the
-  /// misfit of the law.
+  /// Covariance of the equations' parameters from noise and errors of fixed coefficients, without the misfit
+  /// of the law.
   Eigen::MatrixXd by_noise{};
-  /// The same with the misfit of the law: all but the doubt of the reference.
+  /// Covariance that includes the misfit of the law, without the uncertainty of the reference.
   Eigen::MatrixXd by_flights{};
-  /// Names of the doubts of the references, and by how much one standard uncertainty of each changes the
-  /// parameters of the equations.
+  /// Names of the reference uncertainties, and the change of the equations' parameters by one standard
+  /// uncertainty of each.
   std::vector<std::string> doubts{};
   Eigen::MatrixXd by_doubt{};
-  /// The standard errors of the parameters of the equations by leaving out one flight, or one part of a
-  /// flight, after another: they need no model of the noise.
+  /// Jackknife standard errors of the equations' parameters, omitting one flight or one part of a flight at a
+  /// time; independent of the noise model.
   Eigen::VectorXd jackknife{};
-  std::size_t blocks = 0;    ///< flights, or parts of flights, that were left out
-  double information = 0.0;  ///< that all bins have of a common mean, 1/hPa^2
+  std::size_t blocks = 0;    ///< omitted flights, or parts of flights
+  double information = 0.0;  ///< information of all bins about a common mean, 1/hPa^2
 };
 
-/// The covariance of what a fit, of one or several stages, makes of the noise.
+/// Covariance of the fitted parameters of one or several stages.
 ///
-/// The equations of all stages stand in one system: each says that the derivatives by its parameters are at
-/// right angles to what is left. Their derivatives by all parameters are A, the covariance of their scores is
-/// B, and that of the parameters A^-1 B A^-T (Newey and McFadden 1994, Handbook of Econometrics 4, section
-/// 6). A score is the sum of weighted derivative times influence (rho' r). Its covariance is that
-/// of the noise (`noise_covariance`) and of the misfit of the law; for references of many samples that of an
-/// autoregression of the influence. What parameters that are held may err by goes on to the others.
+/// The equations of all stages form one system: the derivatives by the parameters are orthogonal to the
+/// residual. The derivatives of all equations by all parameters are A, the covariance of their scores is B,
+/// and the covariance of the parameters is A^-1 B A^-T (Newey and McFadden 1994, Handbook of Econometrics 4,
+/// section 6). A score is the sum of weighted derivative times influence (rho' r). Its covariance comes from
+/// the noise (`noise_covariance`) and the misfit of the law; for references of many samples it comes from an
+/// autoregression of the influence. Errors of fixed parameters propagate to the others.
 ///
-/// @param misfit of the law, with its columns
-/// @param equations the last of them of all samples @param held parameters that were not fitted and of which
-///        the files state an error
+/// @param misfit misfit of the law, with its columns
+/// @param equations the last ones include all samples @param held fixed parameters with an error stated in
+/// the files
 FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const std::vector<std::size_t>& held,
                              const Misfit& misfit, const MisfitBasis& misfit_columns);
 

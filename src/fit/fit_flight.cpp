@@ -15,9 +15,9 @@ namespace pcor::internal {
 
 namespace {
 
-/// A coefficient of an effect that the model and the reference's model have alike, and its neutral value.
+/// Coefficient of an effect shared by the model and the reference's model, and its neutral value.
 struct Alike {
-  std::size_t place;  ///< among the parameters of residuals
+  std::size_t place;  ///< index among the parameters of residuals
   double neutral;
 };
 
@@ -41,7 +41,7 @@ std::vector<Alike> alike_in(const FitTask& task) {
 /// The wanted parameters on which the residuals of a flight depend.
 struct Known {
   std::vector<std::size_t> parameters{};
-  std::vector<std::size_t> columns{};  ///< their places among the wanted ones, and that of the residual
+  std::vector<std::size_t> columns{};  ///< indices among the wanted ones, and that of the residual
 };
 
 Known known_of(const std::vector<std::size_t>& wanted, const Residuals& residuals, const FitTask& task) {
@@ -58,7 +58,7 @@ Known known_of(const std::vector<std::size_t>& wanted, const Residuals& residual
   return known;
 }
 
-/// Nothing depends on what a reference does not know. @param rows of the known parameters
+/// Derivatives by parameters unknown to a reference are zero. @param rows of the known parameters
 Eigen::MatrixXd with_all_columns(const Eigen::MatrixXd& rows, const Known& known) {
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows.rows(), as_index(known.columns.back()) + 1);
   all(Eigen::all, known.columns) = rows;
@@ -118,7 +118,7 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters) {
   const FlightSamples& flight = rows_.samples();
   const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);
   if (moving_) {
-    // As recorded at a higher rate the airspeed stays that of the model as it was read.
+    // The high-rate airspeed remains that of the input model.
     FastSeries& speed = moving_->model.along_beam;
     if (speed.in_record == 1 && !speed.values.empty())
       speed.values = airspeed_along_beam(task_->model, moving_->model, own.data());
@@ -143,7 +143,7 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters) {
   whiten_what_stays();
 }
 
-/// Rows of what is linear, and derivatives by the offsets, each of the pressure in its interval.
+/// Linear rows, and derivatives by the offsets, each of the pressure in its interval.
 void FitFlight::whiten_what_stays() {
   kept_white_rows_ = white(kept_rows_);
   Eigen::MatrixXd offsets = Eigen::MatrixXd::Zero(as_index(bins_.size()), as_index(this->offsets()));
@@ -191,7 +191,7 @@ Eigen::MatrixXd FitFlight::means(const Eigen::VectorXd& parameters,
   return with_all_columns(rows_.means(bins_, own.data(), known.parameters), known);
 }
 
-/// Linear rows at the parameters that were prepared, with the residual at others.
+/// Linear rows at the prepared parameters, with the residual at other parameters.
 Eigen::MatrixXd FitFlight::moved(Eigen::MatrixXd rows, const Eigen::VectorXd& parameters) const {
   rows.rightCols(1) += rows.leftCols(rows.cols() - 1) * (parameters - prepared_parameters_)(setup_->wanted);
   return rows;

@@ -16,8 +16,8 @@
 namespace pcor::internal {
 namespace {
 
-/// Values that a flight keeps beside the samples of the set: copies of them at common pressures, or with
-/// columns that follow coefficients.
+/// Values of a flight in addition to the samples of the set: copies of them at common pressures, or with
+/// columns that depend on coefficients.
 std::size_t samples_kept_by_a_fit(const FlightSamples& samples, const Reference& reference) {
   const ModelSamples& model = samples.model;
   const std::size_t columns =
@@ -81,7 +81,7 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
   if (!setup_.regimes.empty()) return;
   for (const FitTask& with : task_.further) {
     further_.push_back(std::make_unique<FitFlights>(with, setup_));
-    // GPS is fitted after the others, by a likelihood of its own.
+    // GPS is fitted after the others, with a separate likelihood.
     if (!gps_kind(with.reference) && further_.back()->sees_parameters())
       seeing_.push_back(further_.back().get());
   }
@@ -229,7 +229,7 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters) {
 void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool slow_parts,
                                const std::function<Eigen::VectorXd(const FitFlight&)>& misfit) {
   for (FitFlights* const other : seeing_) other->measure_noise(parameters, slow_parts);
-  if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
+  if (!shares_noise_) noise_.reset();  // the noise is estimated again, so the old one is not applied
   prepare(parameters);
   if (shares_noise_) return;
   const auto some = task_.flights.share().gather_flights<BinnedRows>(

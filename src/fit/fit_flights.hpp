@@ -24,26 +24,26 @@
 
 namespace pcor::internal {
 
-/// What a stage of a fit takes from the flights.
+/// Input of a stage of a fit from the flights.
 struct FitSetup {
-  Eigen::VectorXd values{};           ///< of all parameters, from which it goes on; masks are of these
+  Eigen::VectorXd values{};           ///< start of all parameters; masks use these values
   std::vector<std::size_t> wanted{};  ///< the parameters that are fitted
-  /// Where there are any, only samples of these take part, and every interval has its own offset of
+  /// If not empty, only samples in these intervals are used, and every interval has a separate offset of
   /// delta-p/p.
   std::vector<Regime> regimes{};
 };
 
-/// The noise of the flights of a fit: what they share, and the levels of each.
+/// Noise of the flights of a fit: the shared part, and the levels of each flight.
 struct FitNoise {
-  double deviation = 1.0;  ///< robust, of the residuals in bins, hPa: the weight of the reference
+  double deviation = 1.0;  ///< robust, residuals in bins, hPa: the weight of the reference
   NoiseModel shared{};
   std::vector<std::vector<NoiseLevel>> levels{};
 };
 
-/// How many of the first parameters of a fit the residuals have as their first.
+/// Number of first fit parameters that are also the first parameters of the residuals.
 std::size_t shared_parameters(const Residuals& residuals, const FitTask& task);
 
-/// The parameters of residuals, as a fit has them where it has them, else as their file.
+/// Residual parameters: from the fit where included, otherwise from their file.
 Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
                                const Eigen::VectorXd& parameters);
 
@@ -56,19 +56,17 @@ Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
                                  const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
                                  const std::vector<std::size_t>& wanted);
 
-/// One flight of a fit with one reference: the samples that take part, in bins of a few seconds, or as long
-/// as a residual holds together, and their residuals and derivatives in units of the noise and without its
-/// memory.
+/// One flight of a fit with one reference: its samples in bins of a few seconds, or as long as the residual's
+/// window, and their residuals and derivatives, whitened in units of the noise.
 ///
-/// What the offsets of the intervals of a stage are is the flight's own business: at given parameters and a
-/// loss they are those with the least loss, and derivatives are without what they take up, so that those of
-/// the least loss by the parameters are exact (Golub and Pereyra 1973, SIAM Journal on Numerical Analysis 10,
-/// 413).
+/// The offsets of the intervals of a stage are internal to the flight: at given parameters and loss they
+/// minimise the loss, and the part of the derivatives that they absorb is removed, so that derivatives of the
+/// minimum loss are exact (Golub and Pereyra 1973, SIAM Journal on Numerical Analysis 10, 413).
 ///
-/// Derivatives by the coefficients of two static systems are those at common pressures
-/// (`Residuals::at_common_pressures`), and stay until the flight is prepared again: the solution is where
-/// they are at right angles to the residual, which is a method of instruments, not of least squares. Those of
-/// residuals that are no static pressure stay as well: they hardly change, and take long to find.
+/// Derivatives by the coefficients of two static systems are taken at common pressures
+/// (`Residuals::at_common_pressures`) and stay fixed until the flight is prepared again: at the solution they
+/// are orthogonal to the residual, a method of instrumental variables and not of least squares. Derivatives
+/// of residuals other than static pressure stay fixed as well: they hardly change and are slow to compute.
 class FitFlight {
  public:
   FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup);
@@ -76,50 +74,50 @@ class FitFlight {
   const LinearRows& linear_rows() const { return rows_; }
   const Residuals& residuals() const { return rows_.residuals(); }
   const std::vector<std::size_t>& kept() const { return rows_.used(); }
-  /// How many intervals have an offset of their own.
+  /// Number of intervals with a separate offset.
   std::size_t offsets() const { return rows_.interval_count(); }
   const Binning& bins() const { return bins_; }
   double static_pressure(std::size_t kept) const { return (*static_pressure_)[rows_.used()[kept]]; }
 
-  /// Finds samples that depart from their neighbours at these parameters, which are left out from now on, and
-  /// prepares the bins of the others. With a loss of least squares none is left out.
+  /// Finds samples that depart from their neighbours at these parameters, excludes them permanently, and
+  /// prepares the bins of the others. A least-squares loss excludes no sample.
   void prepare(const Eigen::VectorXd& parameters);
 
-  /// Whether other samples take part at these parameters.
+  /// Whether other samples are used at these parameters.
   bool masks_change_at(const Eigen::VectorXd& parameters) const;
 
-  /// Sets the noise, number `flight` of `noise`; without one all bins count alike.
+  /// Sets the noise to entry `flight` of `noise`; without noise all bins have equal weight.
   void set_noise(const FitNoise& noise, std::size_t flight);
 
   /// Derivatives by the wanted parameters, and the residual, hPa, by columns, one row for each bin; without
   /// offsets.
   Eigen::MatrixXd rows(const Eigen::VectorXd& parameters) const;
 
-  /// The same in units of the noise and without its memory: the last column are the innovations, with the
-  /// offsets that leave the least loss, from Huber's solution on where a loss has several.
+  /// Whitened rows in units of the noise: the last column contains the innovations with the offsets of
+  /// minimum loss, from Huber's solution if a loss has several minima.
   Eigen::MatrixXd white_rows(const Eigen::VectorXd& parameters, const ScaledLoss& loss) const;
 
-  /// White columns without what offsets take up of them where the bins have these weights.
+  /// Whitened columns minus the part absorbed by offsets when the bins have these weights.
   Eigen::MatrixXd without_offsets(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weights) const;
 
-  /// Derivatives by any parameters, in units of the noise and without its memory.
+  /// Whitened derivatives by any parameters, in units of the noise.
   Eigen::MatrixXd white_columns(const Eigen::VectorXd& parameters,
                                 const std::vector<std::size_t>& wanted) const;
 
-  /// What one standard uncertainty of each doubt of the reference does to the residual, in the same units.
+  /// Effect of one standard uncertainty of each reference error on the residual, in the same units.
   Eigen::MatrixXd white_doubts(const ReferenceDoubt& doubt, const Eigen::VectorXd& parameters) const;
 
-  /// Weighted columns of one row for each bin: by the root of the samples in a bin over the deviation of the
-  /// reference, as least squares of samples weighs them. Where the reference holds many samples
-  /// together (wind, heights), in units of the noise and without its memory.
+  /// Weighted columns with one row per bin; the weight is the square root of the samples in a bin over the
+  /// deviation of the reference, as in least squares of samples. If the reference combines many samples
+  /// (wind, heights), the columns are whitened in units of the noise.
   Eigen::MatrixXd white(const Eigen::MatrixXd& columns) const;
 
-  /// Columns in units of the noise and without its memory.
+  /// Whitened columns in units of the noise.
   Eigen::MatrixXd without_noise(const Eigen::MatrixXd& columns) const {
     return Whitening(bins_, noise_, 0)(columns);
   }
 
-  /// What the scores are sums with: left' diag(weight) residual = weighted' (residual in hPa).
+  /// Weights of the scores: left' diag(weight) residual = weighted' (residual in hPa).
   Eigen::MatrixXd weighted(const Eigen::MatrixXd& left, const Eigen::VectorXd& weight) const {
     return scale_.cwiseProduct(weight).asDiagonal() * left;
   }
@@ -127,16 +125,17 @@ class FitFlight {
   /// The covariance of the sums of the noise times columns that have a row for each bin.
   Eigen::MatrixXd covariance_of_sums(const Eigen::MatrixXd& columns) const;
 
-  /// Whether `white` takes the memory of the noise out.
+  /// Whether `white` removes the correlation of the noise.
   bool is_whitened() const { return whitening_.has_value(); }
 
-  /// The number of independent residuals over their variance, hPa^-2: that of the mean over the flight.
+  /// Number of independent residuals over their variance, hPa^-2: the information about the mean over the
+  /// flight.
   double information() const;
 
-  /// The factor of rows (derivatives, residual) in hPa, all samples alike.
+  /// Triangular factor of rows (derivatives, residual) in hPa, with equal weight for all samples.
   Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters) const;
 
-  /// Samples that were left out, or are in bins whose innovation is beyond `limit`.
+  /// Excluded samples, and samples in bins with an innovation beyond `limit`.
   std::size_t outliers(const Eigen::VectorXd& parameters, double limit) const;
 
  private:
@@ -146,38 +145,39 @@ class FitFlight {
 
   const FitTask* task_;
   const FitSetup* setup_;
-  std::shared_ptr<FlightSamples> moving_;  // those of `rows_`, where columns hang on coefficients
+  std::shared_ptr<FlightSamples> moving_;  // samples of `rows_`, if columns depend on coefficients
   LinearRows rows_;
-  const std::vector<double>* static_pressure_;  // of the samples
+  const std::vector<double>* static_pressure_;  // one per sample
   std::size_t spikes_ = 0;
   Binning bins_;
   Eigen::VectorXd prepared_parameters_;
-  NoiseModel noise_;                    // of the bins
-  Eigen::VectorXd scale_;               // of each bin; empty before the noise was measured
-  std::optional<Whitening> whitening_;  // where the reference holds many samples together
-  // Where the residual counts as linear in all that is wanted: rows at `prepared_parameters_`.
+  NoiseModel noise_;                    // noise in bins
+  Eigen::VectorXd scale_;               // one per bin; empty before the noise was measured
+  std::optional<Whitening> whitening_;  // if the reference combines many samples
+  // Rows at `prepared_parameters_`, if the residual is treated as linear in all wanted parameters.
   Eigen::MatrixXd kept_rows_;
   Eigen::MatrixXd kept_white_rows_;
   Eigen::MatrixXd white_offsets_;  // derivatives by the offsets
 };
 
-/// A number that differs where some bit of the parameters does.
+/// Hash that differs if some bit of the parameters differs.
 std::uint64_t digest_of(const Eigen::VectorXd& parameters);
 
-/// What a pass over all flights gives.
+/// Result of a pass over all flights.
 struct Reduction {
-  /// Of white rows (derivatives by wanted parameters, residual), weighted, without what offsets take up.
+  /// Factor of weighted whitened rows (derivatives by wanted parameters, residual), minus the part absorbed
+  /// by offsets.
   Eigen::MatrixXd factor;
-  /// Sums of the squares that offsets take up of the same derivatives; empty where there is no offset.
+  /// Sums of the squares of the same derivatives absorbed by offsets; empty if there is no offset.
   Eigen::VectorXd absorbed;
   double cost = 0.0;  ///< half the sum of the loss over the innovations
-  /// The curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the bins: by so much the
-  /// second derivative of the cost is less than that of the weighted squares.
+  /// Curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the bins: ratio of the
+  /// second derivative of the cost to that of the weighted squares.
   double curvature = 1.0;
   std::size_t bins = 0;
   bool valid = true;  ///< false where some residual is not a number at these parameters
 
-  /// The lengths of the derivatives, with what offsets take up.
+  /// Lengths of the derivatives, including the part absorbed by offsets.
   Eigen::VectorXd lengths() const;
 
   template <class Archive>
@@ -206,23 +206,23 @@ class FitFlights {
   const FitSetup& setup() const { return setup_; }
   const ReferenceDoubt& doubt() const { return doubt_; }
 
-  /// The same flights with each further reference.
+  /// Flights with each further reference.
   const std::vector<std::unique_ptr<FitFlights>>& further() const { return further_; }
 
-  /// These and those of the further references that see some of the wanted parameters: what is fitted. What
-  /// is said of flights, samples, masks and single figures is of the first reference.
+  /// Fitted entries: these and the further references that depend on some of the wanted parameters. Numbers
+  /// of flights and samples, masks and single figures refer to the first reference.
   std::vector<FitFlights*> joint();
 
-  /// True where something stays until the flights are prepared again: derivatives, or columns that hang on a
-  /// coefficient.
+  /// True if derivatives, or columns that depend on a coefficient, stay fixed until the flights are prepared
+  /// again.
   bool uses_fixed_jacobian() const;
 
-  /// True where columns hang on a coefficient, and a first solution from far off is none yet.
+  /// True if columns depend on a coefficient, so that a first solution from a distant start is not final.
   bool has_moving_columns() const;
 
   std::size_t count() const { return task_.flights.size(); }
 
-  /// For each of the parameters whether the residual is linear in it.
+  /// Whether the residual is linear in each of the parameters.
   const std::vector<bool>& is_linear() const { return linear_; }
   std::size_t samples() const { return samples_; }
   /// The wanted parameters, and the offsets of all intervals.
@@ -231,9 +231,9 @@ class FitFlights {
   std::size_t bins() const { return bins_; }
   const std::array<std::size_t, mask_count>& masks() const { return masks_; }
 
-  /// What is made of every flight, in the order of flights, on every member of the team: one exchange.
+  /// Results for every flight, in the order of flights, on every member of the team: one exchange.
   /// @param make gets the number of a flight and the flight; it is called by several threads
-  /// @param parameters in which the members have to agree
+  /// @param parameters must agree between the members
   template <class Make>
   auto of_each(const Make& make, const Eigen::VectorXd& parameters = {}) {
     using Part = std::decay_t<decltype(make(std::size_t{}, std::declval<FitFlight&>()))>;
@@ -245,28 +245,29 @@ class FitFlights {
         digest_of(parameters));
   }
 
-  /// Whether in any flight other samples take part at these parameters.
+  /// Whether other samples of any flight are used at these parameters.
   bool masks_change_at(const Eigen::VectorXd& parameters);
 
   Reduction reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss);
 
-  /// The factor of rows (derivatives, residual) in hPa, all samples alike, of the first reference.
+  /// Triangular factor of rows (derivatives, residual) in hPa for the first reference, with equal weight for
+  /// all samples.
   Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters);
 
   /// Prepares every flight at these parameters; the noise stays.
   void prepare(const Eigen::VectorXd& parameters);
 
-  /// Prepares every flight, and finds the noise and the weight of the reference; or keeps those of
-  /// `share_noise`. What flights share of the noise is found from sixteen of them at most, as far apart as
-  /// they come. @param slow_parts finds slow parts, too, which residuals of many samples always have
-  /// @param misfit of the law in the bins of a flight, hPa, which is no noise; may be empty
+  /// Prepares every flight, and estimates the noise and the weight of the reference, or keeps those of
+  /// `share_noise`. The shared part of the noise is estimated from up to sixteen flights at equal distances.
+  /// @param slow_parts includes slow parts, which residuals of many samples always have
+  /// @param misfit misfit of the law in the bins of a flight, hPa, excluded from the noise; may be empty
   void measure_noise(const Eigen::VectorXd& parameters, bool slow_parts,
                      const std::function<Eigen::VectorXd(const FitFlight&)>& misfit = {});
 
-  /// Of the slow parts of the noise together, hPa; zero before it was measured.
+  /// Combined slow parts of the noise, hPa; zero before the noise was measured.
   double drift_rms() const;
 
-  /// The noise of other samples of the same flights.
+  /// Copies the noise of other samples of the same flights.
   void share_noise(const FitFlights& others) {
     noise_ = others.noise_;
     shares_noise_ = true;
@@ -275,7 +276,7 @@ class FitFlights {
 
   bool shares_noise() const { return shares_noise_; }
 
-  /// The robust deviation of the innovations; 1 where the noise is right.
+  /// Robust deviation of the innovations; 1 if the noise model is right.
   double deviation(const Eigen::VectorXd& parameters);
 
  private:
@@ -283,7 +284,7 @@ class FitFlights {
     visit_those([](std::size_t) { return true; }, visit);
   }
   bool sees_parameters();
-  /// Visits the flights of this member that are chosen.
+  /// Visits the chosen flights of this member.
   void visit_those(const std::function<bool(std::size_t flight)>& chosen,
                    const std::function<void(std::size_t flight, FitFlight& fit)>& visit);
   std::shared_ptr<const FlightSamples> samples_of(std::size_t number) const;
@@ -293,7 +294,7 @@ class FitFlights {
   const FitSetup setup_;  // the flights in the cache point to it
   const ReferenceDoubt doubt_;
   std::vector<std::shared_ptr<FitFlight>> cache_;
-  /// Memory of the set that is given back, also where the constructor throws.
+  /// Memory of the set, returned even if the constructor throws.
   struct Reservation {
     const FlightSet& flights;
     std::atomic<std::size_t> bytes{0};
@@ -304,12 +305,12 @@ class FitFlights {
   std::size_t offsets_ = 0;
   std::size_t bins_ = 0;
   std::array<std::size_t, mask_count> masks_{};
-  std::vector<std::size_t> for_noise_;  // the flights from which that is found which all share
+  std::vector<std::size_t> for_noise_;  // flights used to estimate the shared noise
   std::shared_ptr<const FitNoise> noise_;
   bool shares_noise_ = false;
   Eigen::VectorXd prepared_parameters_;
   std::vector<std::unique_ptr<FitFlights>> further_;
-  std::vector<FitFlights*> seeing_;  // of the further ones, those that see some parameter
+  std::vector<FitFlights*> seeing_;  // further references that depend on some parameter
 };
 
 }  // namespace pcor::internal

@@ -40,7 +40,7 @@ void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition
   }
 }
 
-/// The places of that parameter, or of all those of that effect.
+/// Indices of the named parameter, or of all parameters of the named effect.
 std::vector<std::size_t> places_of(const std::vector<FitParameter>& parameters, const std::string& name,
                                    const char* option) {
   std::vector<std::size_t> found;

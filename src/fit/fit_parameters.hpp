@@ -9,16 +9,16 @@
 
 namespace pcor::internal {
 
-/// What a fit knows of a parameter before it begins.
+/// Known properties of a parameter before the fit.
 struct FitParameter {
   std::string name{};    ///< like "static-qp.a2"; of the reference's model "reference:static-qp.a2"
-  std::string effect{};  ///< of which it is, with the prefix of the reference
+  std::string effect{};  ///< effect of the parameter, with the prefix of the reference
   std::string unit{};
   double start = 0.0;    ///< its value in the file
-  double neutral = 0.0;  ///< with which the effect does nothing
-  double typical = 0.0;  ///< size; zero where the catalogue has none
+  double neutral = 0.0;  ///< value that disables the effect
+  double typical = 0.0;  ///< size; zero if the catalogue has no typical size
   std::string_view manoeuvre{};
-  std::vector<double> tried{};  ///< of a time over which a need is found: other ones that nature may have
+  std::vector<double> tried{};  ///< other possible values of a time over which a need is estimated
   Bounds bounds{};
   bool fixed = false;
 };
@@ -28,7 +28,8 @@ struct FitParameter {
 std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Reference& reference,
                                          const RefitOptions& options);
 
-/// The places of the parameters that each stage fits, the last one what is left; that may be nothing.
+/// Indices of the parameters that each stage fits; the last stage fits the remaining ones, possibly no
+/// parameter.
 /// @throws Error if no parameter is free, or a stage names one that is not.
 std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>& parameters,
                                                  const std::vector<FitStage>& stages,

@@ -16,7 +16,7 @@ void FitSums::add(const FitSums& other) {
 
 FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double deviation) {
   const auto sums_of = [&](std::size_t, FitFlight& fit) {
-    // The reference's delta-p by its own file, so that R2 does not grow with a reference that is fitted too.
+    // Delta-p of the reference from its unchanged file, so that R2 does not grow with a fitted reference.
     const std::vector<double> wanted = fit.residuals().target_defect(flights.task().start.data());
     const std::vector<double> all = fit.residuals().values(values.data());
     std::vector<double> residual;

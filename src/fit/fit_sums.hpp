@@ -9,10 +9,10 @@ namespace pcor::internal {
 
 /// The sums behind rms and R^2 of the samples of a fit.
 struct FitSums {
-  double squares = 0.0;           ///< of the residuals, hPa^2
-  double bulk_squares = 0.0;      ///< of the robust deviation
-  double relative_squares = 0.0;  ///< of residual over static pressure
-  double wanted = 0.0;            ///< of the delta-p that the reference asks for, hPa
+  double squares = 0.0;           ///< residuals, hPa^2
+  double bulk_squares = 0.0;      ///< robust deviation, hPa^2
+  double relative_squares = 0.0;  ///< residual over static pressure
+  double wanted = 0.0;            ///< delta-p implied by the reference, hPa
   double wanted_squares = 0.0;
   std::size_t samples = 0;
   std::size_t outliers = 0;
@@ -25,14 +25,14 @@ struct FitSums {
   }
 
   double rms_of(double sum) const { return std::sqrt(sum / static_cast<double>(samples)); }
-  /// Of a model with that sum of squared residuals.
+  /// R^2 of a model with that sum of squared residuals.
   double r_squared(double of_squares) const {
     return 1.0 - of_squares / (wanted_squares - wanted * wanted / static_cast<double>(samples));
   }
 };
 
-/// @param values of all parameters @param deviation of the residuals over their noise, beyond 4.685 of which
-/// a sample is an outlier
+/// @param values of all parameters @param deviation scale of the residuals over their noise; a sample
+/// beyond 4.685 times this is an outlier
 FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double deviation);
 
 }  // namespace pcor::internal

@@ -11,20 +11,20 @@
 
 namespace pcor::internal {
 
-/// What all steps of a fit share.
+/// Input shared by all steps of a fit.
 struct FitTask {
   const ModelDefinition& model;
   const Reference& reference;
   const RefitOptions& options;
   const FlightSet& flights;
   std::vector<FitParameter> parameters;
-  Eigen::VectorXd start;  ///< their values in the files
-  Eigen::MatrixXd doubt;  ///< the covariance of these values as the files state it; zero where they do not
-  std::function<void()> tell;  ///< to be called after every pass over the flights
-  /// The same fit with each of the further references; without such of their own.
+  Eigen::VectorXd start;       ///< their values in the files
+  Eigen::MatrixXd doubt;       ///< covariance of these values stated in the files; zero if not stated
+  std::function<void()> tell;  ///< called after every pass over the flights
+  /// Fit tasks of the further references; these have no further references.
   std::vector<FitTask> further{};
-  /// Whether the parameters after those of the model are of this reference's system, too. Those of a system
-  /// that only a further reference reads stay as its file has them.
+  /// Whether the parameters after those of the model also belong to this reference's system. A system that
+  /// only a further reference reads keeps the values of its file.
   bool shares_system = true;
 
   /// The prior of each surface of the model, of which the fit finds the size.
@@ -44,11 +44,11 @@ struct FitTask {
   bool uses_prior() const { return options.use_prior || options.fit_reference; }
 };
 
-/// What a fit has found so far.
+/// Current result of a fit.
 struct Solution {
-  Eigen::VectorXd values{};      ///< of all parameters
-  std::vector<bool> at_bound{};  ///< of all parameters
-  double deviation = 1.0;        ///< robust, of the innovations
+  Eigen::VectorXd values{};      ///< one per parameter
+  std::vector<bool> at_bound{};  ///< one per parameter
+  double deviation = 1.0;        ///< robust deviation of the innovations
 };
 
 }  // namespace pcor::internal

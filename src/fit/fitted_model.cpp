@@ -50,7 +50,7 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
                              Loss loss, const std::string& flights) {
   ModelDefinition file = given;
   std::vector<std::string> held;
-  std::vector<std::size_t> inside;  // places in the covariance
+  std::vector<std::size_t> inside;  // indices in the covariance
   Covariance covariance;
   const std::vector<std::string>& known = fit.covariance_names;
   file.fits.resize(std::max(file.fits.size(), file.model.effects.size()));
@@ -88,12 +88,12 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
   const auto last = fit.parameters.begin() + static_cast<std::ptrdiff_t>(p);
   const bool any_fitted = std::any_of(fit.parameters.begin() + static_cast<std::ptrdiff_t>(first), last,
                                       [](const FittedParameter& parameter) { return parameter.fitted; });
-  if (!any_fitted) return file;  // all of it was held: it is the law that it was
+  if (!any_fitted) return file;  // all parameters were fixed: the law is unchanged
   for (const std::size_t a : inside) {
     std::vector<double>& row = covariance.matrix.emplace_back();
     for (const std::size_t b : inside) row.push_back(fit.covariance[a][b]);
   }
-  // What was known of the parameters that were held stays, and nothing ties it to those that were fitted.
+  // Fixed parameters keep their covariance and are uncorrelated with the fitted ones.
   add_independent(covariance, part_of(file.covariance, [&held](const std::string& name) {
                     return std::find(held.begin(), held.end(), name) != held.end();
                   }));
@@ -102,7 +102,7 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
   if (fit.left > 0.0) file.uncertainty.static_defect = fit.left;
   file.uncertainty.static_defect_ratio.reset();
   Provenance provenance = provenance_of(fit, loss);
-  // How the temperature was calibrated stays: the pressures do not change it.
+  // The temperature calibration is kept: the pressures do not change it.
   for (auto& entry : file.provenance) {
     if (entry.first == "temperature") provenance.push_back(std::move(entry));
   }

@@ -16,7 +16,7 @@ namespace {
 constexpr unsigned long seed = 20120106;
 constexpr int trials_per_dimension = 500;
 
-/// The least squares of a trial: searched parameters as given, the linear ones solved for.
+/// Least squares of a trial: searched parameters as given, linear ones solved for.
 class Trial {
  public:
   Trial(FitFlights& flights, const Eigen::VectorXd& values)

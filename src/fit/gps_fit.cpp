@@ -20,11 +20,11 @@ namespace pcor::internal {
 namespace {
 
 constexpr double prior_in_typical_sizes = 1.25;
-constexpr double max_error = 1.0;        // of delta-p in one direction of the coefficients, hPa
-constexpr double min_information = 3.0;  // of the prior's
+constexpr double max_error = 1.0;        // error of delta-p in one direction of the coefficients, hPa
+constexpr double min_information = 3.0;  // ratio to the prior information
 constexpr double block_time = 300.0;     // s
 
-/// The products of white rows (wanted, nuisances, residual) of some minutes.
+/// Products of whitened rows (wanted, nuisances, residual) over some minutes.
 struct Products {
   std::int64_t block = 0;
   std::vector<double> values{};
@@ -35,7 +35,7 @@ struct Products {
   }
 };
 
-/// What a flight says through one reference.
+/// Information of a flight through one reference.
 struct Part {
   std::vector<Products> blocks{};
   std::vector<double> defects{};  ///< products of the derivatives of delta-p by the wanted coefficients
@@ -55,18 +55,18 @@ Eigen::MatrixXd unpacked(const std::vector<double>& values, Eigen::Index size) {
   return Eigen::Map<const Eigen::MatrixXd>(values.data(), size, size);
 }
 
-/// The noise of a flight, and how much wider its outliers are.
+/// Noise of a flight, and the relative width of its outliers.
 struct FlightState {
   std::optional<GpsNoise> noise{};
   Eigen::VectorXd outliers{};
 };
 
-/// What the flights say of the wanted coefficients and the shared nuisances: normal equations of all blocks,
-/// without what each flight has of its own.
+/// Information of the flights about the wanted coefficients and the shared nuisances: normal equations of all
+/// blocks, with the nuisances of each flight eliminated.
 struct Equations {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right;
-  std::vector<Eigen::MatrixXd> products{};  // of each block, with what a flight has of its own eliminated
+  std::vector<Eigen::MatrixXd> products{};  // one per block, with the nuisances of each flight eliminated
 };
 
 class GpsSolver {
@@ -192,7 +192,7 @@ class GpsSolver {
         of_own(k, k) +=
             std::pow(gps_nuisances[static_cast<std::size_t>(gps_shared_nuisances + k)].deviation, -2);
       const Eigen::LDLT<Eigen::MatrixXd> solver(of_own);
-      // Rows without what is best explained by the flight's own: columns less own times these.
+      // Rows minus the part explained by the flight's nuisances: columns less own times these.
       Eigen::MatrixXd without = Eigen::MatrixXd::Zero(all() + 1, size + 1);
       without.topLeftCorner(size, size).setIdentity();
       without(all(), size) = 1.0;
@@ -213,7 +213,7 @@ class GpsSolver {
     }
   }
 
-  /// The covariance of the wanted coefficients and shared nuisances before the flights.
+  /// Prior covariance of the wanted coefficients and shared nuisances.
   Eigen::MatrixXd prior_covariance() const {
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(shared(), shared());
     if (before_.covariance.size() > 0) {
@@ -255,8 +255,8 @@ class GpsSolver {
     weak_ = directions(Eigen::all, weak);
   }
 
-  /// What the flights leave open is chosen so that delta-p changes least over the flights: its level stays
-  /// that of the start, also where coefficients that are known go with one that is not.
+  /// Undetermined directions are chosen so that delta-p changes least over the flights: its level stays that
+  /// of the start, even if known coefficients are correlated with an unknown one.
   Eigen::MatrixXd level_held() const {
     const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(count_, count_);
     if (held_.cols() == 0) return identity;
@@ -265,7 +265,7 @@ class GpsSolver {
     return identity - held_ * squares.ldlt().solve(held_.transpose() * defects_);
   }
 
-  /// A step of the coefficients to where the flights and the prior want them.
+  /// Step of the coefficients to the optimum of flights and prior.
   void step() {
     find_free();
     const Eigen::MatrixXd prior = prior_covariance();
@@ -293,7 +293,7 @@ class GpsSolver {
     covariance.leftCols(count_) = covariance.leftCols(count_).eval() * level.transpose();
     for (Eigen::Index round = 0; round < count_; ++round) {
       Eigen::Index worst = -1;
-      double beyond = 0.0;  // standard deviations of the prior
+      double beyond = 0.0;  // unit: standard deviations of the prior
       for (Eigen::Index k = 0; k < count_; ++k) {
         const double value = before_.values[k] + change_[k];
         const double off = std::abs(value - std::clamp(value, bounds_of(k).lower, bounds_of(k).upper));
@@ -324,7 +324,7 @@ class GpsSolver {
     return error_of(direction * direction.transpose());
   }
 
-  /// Of delta-p, hPa, rms over the flights.
+  /// Uncertainty of delta-p, hPa, rms over the flights.
   double error_of(const Eigen::MatrixXd& covariance) const {
     return std::sqrt(std::max(0.0, (defects_ * covariance).trace() / static_cast<double>(samples_)));
   }
@@ -375,7 +375,7 @@ class GpsSolver {
     return fit;
   }
 
-  /// Of the directions that are held: the prior's, or what the file states of them.
+  /// Covariance of the fixed directions: the prior, or the value stated in the file.
   Eigen::MatrixXd doubt_of_held() const {
     const Eigen::MatrixXd stated = task_.doubt(wanted_, wanted_);
     if (!(stated.diagonal().minCoeff() > 0.0)) return held_ * held_.transpose();
@@ -432,21 +432,21 @@ class GpsSolver {
 
   const std::vector<FitFlights*>& flights_;
   const FitTask& task_;
-  Eigen::VectorXd values_;  // of all parameters
+  Eigen::VectorXd values_;  // one per parameter
   const BeforeGps& before_;
   const std::vector<std::size_t>& wanted_;
   Eigen::Index count_;
   Eigen::VectorXd prior_deviation_{};
-  std::vector<std::vector<FlightState>> states_;  // of each reference and flight
+  std::vector<std::vector<FlightState>> states_;  // indexed by reference and flight
   Equations equations_{};
   Eigen::MatrixXd defects_{};
   std::size_t samples_ = 0;
   Eigen::MatrixXd free_{};       // directions that the flights determine, one deviation of the prior long
   Eigen::MatrixXd held_{};       // the others
-  Eigen::MatrixXd weak_{};       // those of the first that hardly leave the start
+  Eigen::MatrixXd weak_{};       // free directions that hardly leave the start
   Eigen::MatrixXd posterior_{};  // covariance of coefficients and shared nuisances
   std::vector<bool> at_bound_{};
-  Eigen::VectorXd change_{};  // of the coefficients from before; of nuisances their values
+  Eigen::VectorXd change_{};  // changes of coefficients; values of nuisances
 };
 
 }  // namespace

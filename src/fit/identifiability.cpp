@@ -42,9 +42,10 @@ double condition_number(const Reduction& reduction, const FitTask& task,
           to_string(k), to_string(k)));
     }
     if (!(length > lengths[k] / hopeless_condition)) {
-      throw Error(fmt::format(
-          "--stage: {} cannot be told from the offsets of the intervals; leave it to the last stage",
-          to_string(k)));
+      throw Error(
+          fmt::format("--stage: {} is not identifiable together with the offsets of the intervals; move it "
+                      "to the last stage",
+                      to_string(k)));
     }
     scaled.col(k) /= length;
   }
@@ -68,7 +69,7 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
                                                const Eigen::MatrixXd& covariance,
                                                const std::vector<std::size_t>& fitted, double condition,
                                                const RegimeSet& flown) {
-  const Eigen::Index size = as_index(fitted.size());  // what is held comes after them
+  const Eigen::Index size = as_index(fitted.size());  // fixed parameters follow them
   std::vector<std::string> words;
   // With priors, large standard errors are expected.
   for (Eigen::Index a = 0; a < size && !task.uses_prior(); ++a) {
@@ -83,12 +84,13 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
       partners += fmt::format("{}{} ({:+.3f})", partners.empty() ? "" : ", ",
                               task.parameters[fitted[static_cast<std::size_t>(b)]].name, correlation);
     }
-    words.push_back(fmt::format(
-        "{} is {}: {:.3g} +- {:.2g}, where its typical size is {:.2g}{}{}; hold it with --fix "
-        "{}; what would tell: {}",
-        parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
-        solution.values[as_index(place)], error, parameter.typical,
-        partners.empty() ? "" : ", and it goes with ", partners, parameter.name, parameter.manoeuvre));
+    words.push_back(
+        fmt::format("{} is {}: {:.3g} +- {:.2g}, where its typical size is {:.2g}{}{}; hold it with --fix "
+                    "{}; what would tell: {}",
+                    parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
+                    solution.values[as_index(place)], error, parameter.typical,
+                    partners.empty() ? "" : ", and it is correlated with ", partners, parameter.name,
+                    parameter.manoeuvre));
   }
   if (condition > collinear_condition) {
     words.push_back(

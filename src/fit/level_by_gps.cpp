@@ -23,7 +23,7 @@ std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelDefi
   const auto& effects = model.model.effects;
   const bool has_it = std::any_of(effects.begin(), effects.end(), is_constant);
   ModelDefinition with = has_it ? model : add_effects(model, {neutral_effect(constant)});
-  // GPS alone is asked, not what an earlier fit knows.
+  // GPS alone is used, without the result of an earlier fit.
   with.covariance = {};
   for (EffectFit& fit : with.fits) {
     for (ParameterFit& parameter : fit) parameter.standard_error.reset();

@@ -29,7 +29,7 @@ Provenance entry_of(const ModelDefinition& model) {
 
 std::string unfitted_name(const ModelDefinition& model) {
   const std::string& name = model.model.name;
-  if (entry(model.provenance, "program") == nullptr) return name;  // as its author calls it
+  if (entry(model.provenance, "program") == nullptr) return name;  // name given by its author
   return name.substr(0, std::min(name.find(", fitted to "), name.find(", improved on ")));
 }
 

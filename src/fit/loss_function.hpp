@@ -24,7 +24,7 @@ class ScaledLoss {
     return rho;
   }
 
-  /// What each residual weighs where it is: the first derivative.
+  /// Weight of each residual: the first derivative.
   Eigen::VectorXd weights(const Eigen::VectorXd& residuals) const;
 
   bool is_least_squares() const { return function_ == nullptr; }

@@ -15,7 +15,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Keeps Ceres from writing on standard error of trials that failed: what matters is in its summary.
+/// Suppresses Ceres messages about failed trials on standard error; its summary has the relevant information.
 class QuietLog {
  public:
   QuietLog() : before_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
@@ -52,8 +52,8 @@ class ReducedCost final : public ceres::CostFunction {
     if (!reduction_.valid) return false;
     Eigen::Map<Eigen::VectorXd> all(residuals, size_ + 1);
     all.head(size_) = reduction_.factor.col(size_).head(size_);
-    // With the curvature of the loss a step is nearly Newton's. Gradient and cost stay as they are; far from
-    // the minimum, where the cost leaves no room for it, the weighted squares alone have to do.
+    // Curvature of the loss makes a step nearly Newton's. Gradient and cost are unchanged; far from the
+    // minimum, where the curvature is not usable, the weighted squares are used alone.
     double segment = std::sqrt(std::clamp(reduction_.curvature, 0.1, 1.0));
     if (all.head(size_).squaredNorm() > 2.0 * reduction_.cost * segment * segment) segment = 1.0;
     all.head(size_) /= segment;
@@ -76,7 +76,7 @@ class ReducedCost final : public ceres::CostFunction {
   mutable Reduction reduction_;
 };
 
-/// Draws the unknowns to their starts.
+/// Prior residuals of the unknowns about their starts.
 class PriorCost final : public ceres::CostFunction {
  public:
   explicit PriorCost(const Prior& prior) : prior_(prior) {
@@ -113,7 +113,7 @@ void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const Scal
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
-  // The problem is linear or nearly so: the first step may be the whole one.
+  // The problem is linear or nearly so: the first step may reach the solution.
   options.initial_trust_region_radius = 1e12;
   options.max_num_iterations = 200;
   options.function_tolerance = 1e-12;

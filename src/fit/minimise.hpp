@@ -6,16 +6,17 @@
 
 namespace pcor::internal {
 
-/// What draws the unknowns to their starting values: rows (x - start) as further residuals. No rows for none.
+/// Prior on the unknowns about their starting values: rows (x - start) as further residuals. Empty without a
+/// prior.
 struct Prior {
   Eigen::VectorXd start{};
   Eigen::MatrixXd rows{};
 };
 
-/// Finds with Ceres, from `x` on, the wanted parameters of a fit with the least loss. Every step is one pass
+/// Minimises the loss over the wanted parameters of a fit with Ceres, starting at `x`. Every step is one pass
 /// over the flights.
 ///
-/// @param parameters all parameters; those that are not wanted stay as they are there
+/// @param parameters all parameters; unwanted ones are unchanged
 /// @param loss of the innovations
 /// @throws Error if residuals are not numbers
 void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ScaledLoss& loss,

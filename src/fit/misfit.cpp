@@ -13,12 +13,12 @@ namespace pcor::internal {
 namespace {
 
 constexpr Eigen::Index states = 6;
-constexpr Eigen::Index bumps = 7;  // of each state
-constexpr double width = 0.75;     // of a bump, in deviations of its state
+constexpr Eigen::Index bumps = 7;  // per state
+constexpr double width = 0.75;     // width of a bump, in deviations of its state
 constexpr double furthest = 3.0;   // deviations
 constexpr std::size_t min_bins = 100;
 
-/// A series over another, of each sample; empty where one of them is not recorded.
+/// Ratio of two series for each sample; empty if one of them is not recorded.
 std::vector<double> ratio_of(const std::vector<double>* over, const std::vector<double>* under) {
   if (over == nullptr || under == nullptr) return {};
   std::vector<double> ratio = *over;
@@ -29,13 +29,13 @@ std::vector<double> ratio_of(const std::vector<double>* over, const std::vector<
 std::vector<double> load_factor_of(const FlightSamples& samples) {
   if (const std::vector<double>* const recorded = samples.model.find(Quantity::normal_acceleration))
     return *recorded;
-  std::vector<double> factor = samples.motion.roll;  // of a level turn
+  std::vector<double> factor = samples.motion.roll;  // load factor of a level turn
   for (double& each : factor)
     each = 1.0 / std::max(std::cos(each * constants::radians_per_degree), 0.1);  // NaN stays
   return factor;
 }
 
-/// Each state, one value for each sample; empty where it is not recorded.
+/// States, one value for each sample; empty if not recorded.
 std::array<std::vector<double>, states> states_of(const FlightSamples& samples) {
   const ModelSamples& model = samples.model;
   const auto angle = [&](Quantity pressure, const std::vector<double>& recorded) {
@@ -51,7 +51,7 @@ std::array<std::vector<double>, states> states_of(const FlightSamples& samples) 
           *model.find(Quantity::static_pressure)};
 }
 
-/// The states in bins, NaN where they are not known.
+/// States in bins, NaN if unknown.
 Eigen::MatrixXd binned_states(const FitFlight& fit) {
   const Binning& bins = fit.bins();
   Eigen::MatrixXd result = Eigen::MatrixXd::Constant(as_index(bins.size()), states, nan);
@@ -74,7 +74,7 @@ Eigen::MatrixXd moments_of(const FitFlight& fit) {
   return moments;
 }
 
-/// Products of (derivatives, bumps, residual) with each other, whitened and as they are.
+/// Products of (derivatives, bumps, residual), whitened and unwhitened.
 struct Products {
   Eigen::MatrixXd white{};
   Eigen::MatrixXd plain{};
@@ -86,7 +86,7 @@ struct Products {
   }
 };
 
-/// Products with each other of what the derivatives take up of columns. @param across products of both
+/// Products of the parts of columns that the derivatives absorb. @param across products of both
 Eigen::MatrixXd absorbed(const Eigen::MatrixXd& information, const Eigen::MatrixXd& across) {
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * across;
@@ -95,12 +95,12 @@ Eigen::MatrixXd absorbed(const Eigen::MatrixXd& information, const Eigen::Matrix
          scaled;
 }
 
-/// What the flights determine of the heights of the bumps: derivatives have no prior, bumps the variance of
-/// their state.
+/// Information about the heights of the bumps: derivatives have no prior, bumps have the variance of their
+/// state.
 class Heights {
  public:
   Heights(const Products& products, Eigen::Index derivatives) {
-    // Without what the derivatives take up.
+    // Information after elimination of the derivatives.
     const Eigen::MatrixXd& all = products.white;
     const Eigen::Index rest = all.cols() - derivatives;
     const Eigen::MatrixXd across = all.topRightCorner(derivatives, rest);
@@ -130,11 +130,11 @@ class Heights {
   Eigen::MatrixXd left_;
 };
 
-constexpr double least = 1e-3;  // size of a bump over the rms of the residual: as good as none
+constexpr double least = 1e-3;  // size of a bump over the rms of the residual, practically zero
 
-/// The weight of the model with the misfit beside the one without by Akaike's criterion (Burnham and Anderson
-/// 2002, Model selection and multimodel inference, section 2.9), which counts the variances that are not at
-/// the least. Where the noise explains the residual as well there is no misfit.
+/// Akaike weight of the model with the misfit relative to the model without (Burnham and Anderson 2002, Model
+/// selection and multimodel inference, section 2.9); variances above the minimum count as parameters. There
+/// is no misfit if the noise explains the residual equally well.
 double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& variance, double rms) {
   double parameters = 0.0;
   for (Eigen::Index s = 0; s < states; ++s) {
@@ -149,7 +149,7 @@ double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& var
 /// does not.
 Eigen::VectorXd variances_of(const Heights& heights, double rms) {
   constexpr int max_rounds = 500;
-  constexpr double most = 5.0;  // of the rms of the residual
+  constexpr double most = 5.0;  // relative to the rms of the residual
   const auto square = [](double size) { return size * size; };
   Eigen::VectorXd variance = Eigen::VectorXd::Constant(states * bumps, square(0.3 * rms));
   for (int round = 0; round < max_rounds; ++round) {
@@ -169,7 +169,7 @@ Eigen::VectorXd variances_of(const Heights& heights, double rms) {
   return variance;
 }
 
-/// The mean residual of a flight without the misfit, and its variance by the noise.
+/// Mean residual of a flight without the misfit, and its variance from the noise.
 struct FlightMean {
   double value = 0.0;
   double variance = 0.0;  ///< hPa^2; 0 where the flight has no bin
@@ -180,8 +180,8 @@ struct FlightMean {
   }
 };
 
-/// The variance between the means of flights beyond what the noise makes (DerSimonian and Laird 1986,
-/// Controlled Clinical Trials 7, 177), hPa^2. Zero of a single flight.
+/// Variance between the means of flights beyond the noise (DerSimonian and Laird 1986, Controlled Clinical
+/// Trials 7, 177), hPa^2. Zero for a single flight.
 double variance_between(const std::vector<FlightMean>& flights) {
   double weights = 0.0;
   double squares = 0.0;

@@ -13,10 +13,10 @@ namespace pcor::internal {
 /// by restricted likelihood, given the noise (Patterson and Thompson 1971, Biometrika 58, 545). States that
 /// are not recorded are left out. Beside it each flight has a zero of its own.
 struct Misfit {
-  Eigen::VectorXd variance{};    ///< of the height of each bump, hPa^2; empty where none is known
-  Eigen::VectorXd height{};      ///< of each bump, the most likely one, hPa
-  double between_flights = 0.0;  ///< variance of a zero of each flight, hPa^2
-  double left = 0.0;  ///< rms of the misfit that the law does not take up, with its uncertainty, hPa
+  Eigen::VectorXd variance{};    ///< height of each bump, hPa^2; empty if unknown
+  Eigen::VectorXd height{};      ///< most likely height of each bump, hPa
+  double between_flights = 0.0;  ///< variance of the zero of each flight, hPa^2
+  double left = 0.0;             ///< rms of the misfit not absorbed by the law, with its uncertainty, hPa
 };
 
 /// The bumps at the bins of flights.
@@ -31,11 +31,11 @@ class MisfitBasis {
 
  private:
   Eigen::VectorXd mean_{};
-  Eigen::VectorXd deviation_{};  // zero where a state is not recorded, or does not vary
+  Eigen::VectorXd deviation_{};  // zero if a state is not recorded or constant
 };
 
-/// Finds misfit and noise of the flights of a fit in turn: each is what the other leaves. The flights have
-/// that noise after that.
+/// Estimates misfit and noise of the flights of a fit alternately: each from the residual after the other.
+/// The flights then have that noise.
 Misfit find_misfit(FitFlights& flights, const MisfitBasis& columns, const Solution& solution);
 
 }  // namespace pcor::internal

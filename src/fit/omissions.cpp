@@ -61,7 +61,7 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
   std::vector<Omission> result;
   for (const std::string& effect : effects) {
     std::vector<Eigen::Index> others;
-    std::vector<std::size_t> parameters;  // of the others
+    std::vector<std::size_t> parameters;  // other parameters
     Eigen::VectorXd away = Eigen::VectorXd::Zero(size);
     Eigen::VectorXd changed = solution.values;
     for (Eigen::Index k = 0; k < size; ++k) {
@@ -81,7 +81,7 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
       upper[as_index(i)] = task.parameters[parameters[i]].bounds.upper;
     }
     Eigen::VectorXd x = solution.values(parameters);
-    // From the fit one step leads to the least squares where all is linear; else a few do.
+    // A linear problem needs one step from the fit to least squares; otherwise a few.
     for (int round = 0; round < (squares.is_linear() ? 1 : max_steps) && !others.empty(); ++round) {
       const Eigen::MatrixXd rows = round == 0 ? rows_of_fit : rows_at(changed);
       const Eigen::MatrixXd columns = rows(Eigen::all, others);

@@ -4,16 +4,16 @@
 
 namespace pcor::internal {
 
-/// The sum of the squared residuals of a fit at any coefficients, hPa^2: where the residual is linear in all
-/// that is fitted, from one triangular factor.
+/// Sum of the squared residuals of a fit at any coefficients, hPa^2, from one triangular factor if the
+/// residual is linear in all fitted parameters.
 class SquaredResiduals {
  public:
   SquaredResiduals(FitFlights& flights, const Solution& solution);
 
   bool is_linear() const { return is_linear_; }
   double at(const Eigen::VectorXd& values) const;
-  /// The least that any coefficients leave; NaN where the residual is not linear, or
-  /// two systems are fitted, whose derivatives hold the noise of the residual.
+  /// Minimum over all coefficients; NaN if the residual is not linear, or if two systems are fitted, because
+  /// their derivatives contain the noise of the residual.
   double least() const;
 
  private:
@@ -23,8 +23,8 @@ class SquaredResiduals {
   Eigen::MatrixXd factor_;
 };
 
-/// What the fit becomes without each effect: its parameters go to their neutral values and the others follow,
-/// with the weights that the samples have.
+/// Fit without each effect: its parameters are set to their neutral values and the others are refitted with
+/// unchanged sample weights.
 std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, const FitSums& sums,
                                 const SquaredResiduals& squares);
 

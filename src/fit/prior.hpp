@@ -7,8 +7,8 @@
 
 namespace pcor::internal {
 
-/// The covariance of the values that the files give to all parameters: what the files state, as standard
-/// errors and covariances, in the order of `FitTask::parameters`; zero for those of which they state nothing.
+/// Covariance of all parameters from the standard errors and covariances in the files, in the order of
+/// `FitTask::parameters`; zero if not stated.
 Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference& reference);
 
 /// Rows W of what draws wanted parameters to `centre`: the cost is |W (x - centre)|^2 / 2.

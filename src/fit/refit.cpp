@@ -48,7 +48,7 @@ void require_sense(const FlightSet& flights, const References& references, const
   all.require_one_aircraft();
 }
 
-/// Whether two references are of one system, and have its law.
+/// Whether two references belong to one system and share its law.
 bool share_system(const Reference& a, const Reference& b) {
   if (a.model() == nullptr || b.model() == nullptr) return false;
   return a.model()->model.name == b.model()->model.name && a.model()->variables == b.model()->variables;
@@ -74,20 +74,20 @@ FitTask task_of(const ModelDefinition& model, const References& references, cons
   return task;
 }
 
-/// What the stages of a fit found.
+/// Result of the stages of a fit.
 struct Fitted {
   Solution solution{};
   std::vector<std::size_t> parameters{};           // in the order of the stages
-  std::vector<std::size_t> held{};                 // of which the files state an error
-  std::vector<int> stage_of{};                     // of all parameters
+  std::vector<std::size_t> held{};                 // fixed parameters with an error stated in the files
+  std::vector<int> stage_of{};                     // one per parameter
   std::unique_ptr<FitFlights> flights{};           // with all samples and all parameters that were fitted
-  std::vector<std::unique_ptr<FitFlights>> own{};  // those of each stage, where there are several
+  std::vector<std::unique_ptr<FitFlights>> own{};  // flights of each stage, if there are several
   std::vector<FitEquations> equations{};
   bool has_converged = true;
 };
 
-/// Solves stage after stage, again and again, until no coefficient moves by a hundredth of what the flights
-/// leave open. The noise is that of all samples.
+/// Iterates over the stages until no coefficient moves by a hundredth of its uncertainty. The noise is that
+/// of all samples.
 void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::vector<std::size_t>>& stages) {
   constexpr int max_rounds = 50;
   Solution& solution = fitted.solution;
@@ -129,7 +129,7 @@ void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::v
   }
 }
 
-/// What is to be fitted, with the start as the solution.
+/// Fit input, with the start as the solution.
 Fitted at_start(const FitTask& task, const std::vector<std::vector<std::size_t>>& stages) {
   Fitted fitted;
   fitted.stage_of.resize(task.parameters.size(), 0);
@@ -167,7 +167,7 @@ Fitted fit_in_stages(FitTask& task) {
   }
   if (stages.size() > 1) {
     repeat_stages(fitted, task, stages);
-    // What comes now, errors, what can be told apart, and what each effect does, is of all samples.
+    // Errors, identifiability and effects below are based on all samples.
     fitted.flights->measure_noise(solution.values, false);
     solution.deviation = fitted.flights->deviation(solution.values);
   }
@@ -211,7 +211,7 @@ Fitted prepared_for_gps(const FitTask& task) {
   return fitted;
 }
 
-/// Fits to GPS what was fitted to the others, if to any, and sets the covariance.
+/// Fits the result of the other references, if any, to GPS, and sets the covariance.
 std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance& covariance,
                               bool is_masked_again = false) {
   std::vector<FitFlights*> by_gps;
@@ -232,7 +232,7 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
   covariance.jackknife = gps.jackknife;
   covariance.blocks = gps.parts;
   if (is_alone && !is_masked_again && fitted.flights->masks_change_at(solution.values)) {
-    // The masks are those of the solution, so that the start does not decide.
+    // The masks use the solution, so that the start does not matter.
     fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
     solution.values = task.start;
     return add_gps(fitted, task, covariance, true);
@@ -296,8 +296,8 @@ void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& f
   }
 }
 
-/// Adds the calibration of the thermometer to the covariance, where the flights were fitted with a doubt of
-/// it: it is in the temperature and the airspeed of the corrected samples, too, and partly cancels there.
+/// Adds the thermometer calibration to the covariance if the fit included its uncertainty: it also affects
+/// temperature and airspeed of the corrected samples and partly cancels there.
 void add_thermometer(RefitResult& result, const Fitted& fitted, const FitCovariance& covariance) {
   const ReferenceDoubt& doubt = fitted.flights->doubt();
   for (std::size_t d = 0; d < doubt.names().size(); ++d) {
@@ -322,7 +322,7 @@ void add_thermometer(RefitResult& result, const Fitted& fitted, const FitCovaria
   }
 }
 
-/// What a user should know, the gravest first.
+/// Warnings for the user, sorted by decreasing severity.
 std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task, const Fitted& fitted,
                                   const Eigen::MatrixXd& covariance, const std::optional<GpsFit>& gps,
                                   const BeforeAndAfter& compared) {
@@ -348,7 +348,7 @@ std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task
   return notes;
 }
 
-/// "LAMS, hydrostatic height against that of GPS": what was fitted.
+/// Description of the fitted references: "LAMS, hydrostatic height against that of GPS".
 std::string reference_text(FitFlights& flights) {
   std::vector<std::string> descriptions;
   for (const FitFlights* const each : flights.joint())
@@ -359,7 +359,8 @@ std::string reference_text(FitFlights& flights) {
   return fmt::format("{}", fmt::join(descriptions, ", "));
 }
 
-/// The factor of rows (derivatives, residual) of all references, in hPa, all samples alike.
+/// Triangular factor of rows (derivatives, residual) of all references, in hPa, with equal weight for all
+/// samples.
 Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
   TriangularFactor sum(as_index(flights.setup().wanted.size()) + 1);
   for (FitFlights* const each : flights.joint()) sum.add(each->unweighted_factor(values));
@@ -398,7 +399,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
     result.condition_number = gps->condition_number;
     result.estimator = refit_estimator_of_gps;
   }
-  FitFlights& flights = *fitted.flights;  // with masks of the solution
+  FitFlights& flights = *fitted.flights;  // uses masks of the solution
   if (gps) result.defect_error = gps->stated;
   result.reference_text = reference_text(flights);
   result.masks = flights.masks();

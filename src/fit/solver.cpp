@@ -19,7 +19,7 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t min_free_bins = 15;  // a minute: the deviation of the noise to a fifth
+constexpr std::size_t min_free_bins = 15;  // one minute: noise deviation to 20 %
 
 void require_samples(const FitFlights& flights) {
   const FitSetup& setup = flights.setup();
@@ -83,7 +83,7 @@ class Solver {
     }
     flights_.prepare(solution_.values);
     const Loss loss = task_.options.loss;
-    // Where the noise is that of others, this is a stage that begins at a solution.
+    // Noise of other samples indicates a stage that starts at a solution.
     if (!flights_.shares_noise()) {
       choose_times();
       linear_step({});
@@ -123,11 +123,11 @@ class Solver {
   }
 
  private:
-  /// The unknowns to where they belong.
+  /// Writes the unknowns to their positions in the solution.
   void spread() { solution_.values(wanted_) = unknowns_; }
 
-  /// Of each time over which a need is found the start from which the others leave least: the sum of squares
-  /// has several minima in it, as a wave has that is shifted by more than its length.
+  /// Start with the least squares for each time over which a need is estimated: the sum of squares may have
+  /// several minima, like a wave shifted by more than its length.
   void choose_times() {
     for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
       std::vector<double> times = task_.parameters[wanted_[static_cast<std::size_t>(k)]].tried;
@@ -135,7 +135,7 @@ class Solver {
       times.insert(times.begin(), unknowns_[k]);
       const auto [lower, upper] = std::pair(lower_[k], upper_[k]);
       std::vector<Eigen::VectorXd> solutions;
-      double deviation = infinity;  // the least of all, so that the start has no say
+      double deviation = infinity;  // minimum of all, so that the start does not matter
       const Eigen::VectorXd start = unknowns_;
       const auto put = [&](const Eigen::VectorXd& unknowns) {
         unknowns_ = unknowns;
@@ -152,7 +152,7 @@ class Solver {
         deviation = std::min(deviation, solution_.deviation);
         solutions.push_back(unknowns_);
       }
-      // Outliers have no say either.
+      // Outliers do not matter either.
       const ScaledLoss huber(Loss::huber, deviation);
       Eigen::VectorXd best = start;
       double least = infinity;
@@ -177,8 +177,8 @@ class Solver {
     if (!flights_.shares_noise()) solution_.deviation = flights_.deviation(solution_.values);
   }
 
-  /// The linear problem, in closed form: where derivatives do not depend on the coefficients, its solution.
-  /// Gives the cost before the step.
+  /// Solution of the linear problem in closed form, if derivatives do not depend on the coefficients. Returns
+  /// the cost before the step.
   double linear_step(const ScaledLoss& loss) {
     const Reduction reduction = flights_.reduce(solution_.values, loss);
     task_.tell();
@@ -197,7 +197,7 @@ class Solver {
 
   Prior prior() const { return {prior_.centre, solution_.deviation * prior_.rows}; }
 
-  /// True where no unknown moved by a hundredth of what the flights and the prior leave open.
+  /// True if no unknown moved by a hundredth of its uncertainty from flights and prior.
   bool has_converged(const Eigen::VectorXd& before) {
     const Reduction reduction = flights_.reduce(solution_.values, {});
     const Eigen::VectorXd step = unknowns_ - before;
@@ -206,7 +206,7 @@ class Solver {
     return std::max(by_flights, by_prior) < 0.01 * std::max(solution_.deviation, 1e-300);
   }
 
-  /// Notes which parameters are at a bound. True where some are.
+  /// Records parameters at a bound. True if there are any.
   bool find_bounds() {
     bool any = false;
     for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
@@ -218,13 +218,13 @@ class Solver {
     return any;
   }
 
-  /// Minimises that loss; true where the deviation, which scales it, stays after that.
+  /// Minimises that loss; true if the deviation that scales it is then unchanged.
   bool settles_with(Loss loss) {
     const ScaledLoss scaled(loss, solution_.deviation);
     minimise(flights_, solution_.values, scaled, prior(), unknowns_);
     spread();
-    // Along a bound, where coefficients are nearly collinear, steps cut off at the bounds stall before the
-    // minimum; steps that know the bounds go on.
+    // Nearly collinear coefficients at a bound: clipped steps stall before the minimum; bounded steps
+    // continue.
     double cost = infinity;
     Eigen::VectorXd best = unknowns_;
     for (int step = 0; step < 20 && find_bounds(); ++step) {

@@ -15,11 +15,11 @@ namespace {
 
 constexpr double larger = 1.02;
 constexpr double larger_elsewhere =
-    1.05;                            // by chance a fit of half a flight is worse on the rest by some per cent
-constexpr double max_chance = 30.0;  // s of outliers in a row; spikes and gusts are shorter
-constexpr double many_outliers = 0.05;  // of all samples
+    1.05;  // a fit of half a flight may be a few per cent worse on the rest by chance
+constexpr double max_chance = 30.0;     // s of consecutive outliers; spikes and gusts are shorter
+constexpr double many_outliers = 0.05;  // fraction of all samples
 
-/// Samples in a row that are all on one side of the noise.
+/// Consecutive samples on one side of the noise.
 struct Run {
   std::string flight{};
   std::size_t samples = 0;
@@ -117,7 +117,8 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
 
 std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool has_converged,
                                      bool with_doubt) {
-  // The jackknife of n parts knows an error to 1/sqrt(2 (n - 1)); four of these either side.
+  // Jackknife errors of n parts have a relative error of 1/sqrt(2 (n - 1)); limits are four of these on
+  // either side.
   const double chance = 4.0 / std::sqrt(2.0 * (static_cast<double>(result.jackknife_parts) - 1.0));
   const double too_small = 1.0 + chance;
   const double too_large = 1.0 / too_small;
@@ -130,7 +131,7 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   std::string apart;
   for (const FittedParameter& parameter : result.parameters) {
     const double ratio = parameter.jackknife_error / parameter.noise_error;
-    // The doubt of a prior, or of what is held, is no noise, which a jackknife could see.
+    // Uncertainty of a prior or of fixed parameters is not noise, so a jackknife cannot see it.
     if (!(ratio > too_small || (ratio < too_large && !with_doubt))) continue;
     apart += fmt::format("{}{} ({:.2g} against {:.2g})", apart.empty() ? "" : ", ", parameter.name,
                          parameter.jackknife_error, parameter.noise_error);

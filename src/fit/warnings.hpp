@@ -14,14 +14,14 @@ namespace pcor::internal {
 /// @param bulk_rms_before robust deviation with the coefficients of the file, hPa
 std::string why_worse(const RefitResult& result, double bulk_rms_before);
 
-/// Why a fit should not be trusted, a sentence each: its residuals vary more than delta-p itself; samples
-/// that count as outliers come in a row, which outliers do not; outliers are so many that the loss hides what
-/// the model lacks; or what was taken for slow drift may be what the model lacks.
+/// Reasons not to trust a fit, one sentence each: residuals vary more than delta-p itself; outliers are
+/// consecutive, which indicates a missing effect; outliers are so many that the loss hides a missing effect;
+/// or assumed slow drift may be a missing effect.
 std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& result,
                                       const Eigen::VectorXd& values);
 
-/// In words: where the jackknife does not bear out the stated errors, and stages that do not come to rest.
-/// @param with_doubt errors hold that of a prior, or of coefficients that were held
+/// Warnings if the jackknife contradicts the stated errors, or if stages do not converge.
+/// @param with_doubt errors include the uncertainty of a prior or of fixed coefficients
 std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool has_converged,
                                      bool with_doubt);
 

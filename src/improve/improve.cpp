@@ -28,35 +28,35 @@ using namespace internal;
 
 namespace {
 
-// An effect that is not the cause, or not known to be, must take so much off the held-out rms.
+// Minimum decrease of the held-out rms by an effect that is not known to be the cause.
 constexpr double unnamed_limit = 0.99;
-// Of the fit, which weighs samples by their noise and outliers not at all, the rms may grow so much.
+// Tolerated growth of the fit's rms, because the fit weighs samples by their noise and ignores outliers.
 constexpr double fit_limit = 1.005;
 constexpr double surely = 2.0;  // standard deviations
-// Less likely rivals have no say in the correction.
+// Minimum probability of rivals considered in the correction.
 constexpr double min_probability = 0.01;
-// Of the noise: differences of the static pressure below this do not matter.
+// Tolerance relative to the noise: smaller differences of the static pressure do not matter.
 constexpr double negligible = 0.05;
 
-/// An effect that may be the cause of what is left.
+/// Effect that may cause the remaining residual.
 struct Choice {
   AddedEffect added;
   double probability = 1.0;
 };
 
-/// An effect that the loop may add, and what has to come of it.
+/// Effect that the loop may add, and the required result.
 struct Candidate {
-  std::vector<Choice> choices{};  ///< itself, and the rivals that the flights cannot tell from it
+  std::vector<Choice> choices{};  ///< the effect, and rivals that the flights cannot separate from it
   std::string title;
   std::vector<std::string> aliases;
-  bool is_named = true;  ///< it counts as the cause, or one of the rivals does
-  bool is_sure = false;  ///< on stretches of the fitted flights that took no part in its estimate
-  std::string caution;   ///< ends the sentence on what was learnt
+  bool is_named = true;  ///< the effect or one of its rivals counts as the cause
+  bool is_sure = false;  ///< significant on blocks of the fitted flights that were excluded from its estimate
+  std::string caution;   ///< end of the sentence in the summary
 
   const ModelEffect& effect() const { return choices.front().added.effect; }
 };
 
-/// What may be added after a diagnosis: all of it, or the first that helps.
+/// Candidates after a diagnosis: all of them, or the first that helps.
 struct Candidates {
   std::vector<Candidate> effects;
   bool all = false;
@@ -74,8 +74,7 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
   }
   if (verdict == Verdict::partial) {
     candidate.is_named = false;
-    candidate.caution =
-        "; structure is left that it does not explain, so its name is not to be taken for the cause";
+    candidate.caution = "; significant structure remains, so this effect may not be the cause";
   } else if (!candidate.aliases.empty()) {
     candidate.caution =
         fmt::format("; these flights cannot tell it from {}{}{}", fmt::join(candidate.aliases, ", "),
@@ -87,10 +86,10 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
 Candidate candidate_of(const EmpiricalPredictor& variable, const std::string& flights) {
   Candidate candidate;
   candidate.choices = {{{effect_of(variable, flights)}, 1.0}};
-  candidate.title = fmt::format("what goes with {}{}", variable.name,
+  candidate.title = fmt::format("structure that varies with {}{}", variable.name,
                                 variable.description.empty() ? "" : ", " + variable.description);
   candidate.is_named = false;
-  candidate.is_sure = true;  // only what chance does not explain is traced
+  candidate.is_sure = true;  // only significant variables are traced
   candidate.caution = "; no effect of the catalogue explains it, so the cause is still to be found";
   return candidate;
 }
@@ -106,7 +105,7 @@ double rms_of(const std::vector<double>& values) {
   return count > 0.0 ? std::sqrt(squares / count) : nan;
 }
 
-/// Of the samples that are held out, hPa; NaN where there are none.
+/// rms of the held-out samples, hPa; NaN if there are no such samples
 double held_out_rms(const RefitResult& fit) {
   double squares = 0.0;
   double samples = 0.0;
@@ -121,7 +120,7 @@ double held_out_rms(const RefitResult& fit) {
 
 std::string shown(double rms) { return fmt::format("{:.4f} hPa", rms); }
 
-/// "tau = 0.21 +- 0.02 s": the fitted coefficients of an effect.
+/// Fitted coefficients of an effect: "tau = 0.21 +- 0.02 s".
 std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
   std::vector<std::string> words;
   for (const FittedParameter& parameter : fit.parameters) {
@@ -139,7 +138,7 @@ std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
 
 bool names_other_system(const Alias& alias) { return alias.effect.rfind("reference:", 0) == 0; }
 
-/// A finding of which an effect of the other system is the cause, and none of the own one.
+/// Whether only effects of the other system can cause the finding.
 bool is_of_reference(const Finding& finding) {
   return finding.of_reference &&
          std::none_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
@@ -147,7 +146,7 @@ bool is_of_reference(const Finding& finding) {
          });
 }
 
-/// A finding of which an effect of the other system may be the cause: then nothing of the model is.
+/// Whether an effect of the other system may cause the finding; the model is then left unchanged.
 bool may_be_of_reference(const Finding& finding) {
   return finding.of_reference ||
          std::any_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
@@ -155,7 +154,7 @@ bool may_be_of_reference(const Finding& finding) {
          });
 }
 
-/// The climb: the ladder so far, and how it goes on.
+/// Search state: the ladder so far, and its continuation.
 class Climb {
  public:
   Climb(const ImproveLoop& loop, const ModelDefinition& model) : loop_(loop), given_{model} {
@@ -187,7 +186,8 @@ class Climb {
   const Diagnosis& diagnosis() const { return result_.steps.back().diagnosis; }
   TrialModel top() const { return {result_.fit.model, alike_}; }
 
-  using RungChoice = std::optional<std::size_t>;  // among the rivals of a rung; nothing: none of them
+  using RungChoice =
+      std::optional<std::size_t>;  // index among the rivals of a rung; empty if no rival is applied
 
   /// The model with one choice of each rung, fitted.
   TrialModel model_with(const std::vector<RungChoice>& choices) const {
@@ -199,8 +199,8 @@ class Climb {
     return model;
   }
 
-  /// Where it matters for the static pressure which of a rung's rivals is there, the model gets the
-  /// one that `choose_rival` chooses, or none; the doubt is part of its stated error.
+  /// If the rivals of a rung differ in static pressure, the model gets the one from `choose_rival`, or no
+  /// effect; the uncertainty is part of its stated error.
   void choose_among_rivals() {
     std::vector<RungChoice> choices(rungs_.size(), 0);
     ProvenanceList rivals;
@@ -221,7 +221,7 @@ class Climb {
     if (!is_top) {
       try {
         delivered_ = model_with(choices);
-      } catch (const Error& error) {  // chosen one by one, they cannot be fitted together
+      } catch (const Error& error) {  // single choices may not be fittable together
         for (ImproveStep& step : result_.steps) step.delivered = step.added;
         result_.fit.notes.push_back(fmt::format(
             "the rivals that were chosen cannot be fitted together, so the model has the effects that "
@@ -238,8 +238,8 @@ class Climb {
     if (!rivals.empty()) result_.model.provenance.emplace_back("rivals", ProvenanceValue{std::move(rivals)});
   }
 
-  /// Measures what the rivals of a rung do to the static pressure, all else as at the top of the ladder.
-  /// Where that is alike, the first one stays.
+  /// Measures the change of static pressure by the rivals of a rung, with the rest as at the top of the
+  /// ladder. The first rival stays if all are alike.
   RungChoice choice_of(std::size_t rung, ImproveStep& step) const {
     std::vector<RungChoice> choices(rungs_.size(), 0);
     std::vector<TrialModel> models;
@@ -255,7 +255,7 @@ class Climb {
       try {
         models.push_back(k == 0 ? top() : model_with(choices));
       } catch (const Error&) {
-        continue;  // what cannot be fitted here is no rival
+        continue;  // an effect that cannot be fitted here is not a rival
       }
       tested.push_back(k);
     }
@@ -327,8 +327,8 @@ class Climb {
     result_.rms_train = train.rms_after;
     result_.given_rms_holdout = holdout.rms_before;
     result_.rms_holdout = holdout.rms_after;
-    // Where no rival is applied, less is explained than by the best one, which tells whether the
-    // loop did harm.
+    // Without an applied rival the model explains less than with the best one, which shows whether the loop
+    // did harm.
     result_.worse = why_worse(comparison_of(tried, 0, 3, loop_.has_holdout));
     for (TrialFlight& flight : tried) {
       if (!flight.first_reference) continue;
@@ -340,7 +340,7 @@ class Climb {
     }
   }
 
-  /// Whether the ladder as a whole made the residual worse: much, or surely.
+  /// Whether the whole ladder increased the residual, by a large or significant amount.
   std::string why_worse(const Comparison& whole) const {
     constexpr double much = 1.02;
     const double growth = whole.rms_after / whole.rms_before;
@@ -411,7 +411,7 @@ class Climb {
     for (const Finding& finding : now.findings) {
       if (may_be_of_reference(finding)) {
         return fmt::format(
-            "{} {} of the system that the model is held against, so the model stays as it is (with "
+            "{} {} of the reference system, so the model was left unchanged (with "
             "--trust-reference that system counts as right){}{}",
             finding.id(), is_of_reference(finding) ? "is" : "may be an error",
             finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence);
@@ -422,14 +422,14 @@ class Climb {
     const std::string what =
         fmt::format("{} of structure are left that no effect of the catalogue explains{}{}", shown(left.rms),
                     left.regime.empty() ? "" : ", most of it in ", left.regime);
-    if (left.variables.empty()) return what + ", and that no variable of the files goes with";
-    return fmt::format("{}; it goes with {}, {}", what, left.variables.front().name,
+    if (left.variables.empty()) return what + "; it varies with no variable of the files";
+    return fmt::format("{}; it varies with {}, {}", what, left.variables.front().name,
                        loop_.trace_variables
                            ? "of which no further formula can be added"
                            : "of which --trace-variables would add a formula, wherever its cause lies");
   }
 
-  /// Adds the candidate and keeps it where that helps; else says why not.
+  /// Adds the candidate and keeps it if it helps; otherwise records the reason.
   std::string refusal_of(const Candidate& candidate) {
     const std::string& id = candidate.effect().id;
     ImproveStep step;
@@ -453,8 +453,8 @@ class Climb {
                          shown(fitted.rms_after), shown(fitted.rms_before));
     }
     measure(step, fit, model.alike);
-    // Without held-out flights the parts in turn of the diagnosis count. Where the model describes
-    // more samples than before, those with flaps out, both are compared on these.
+    // Without held-out flights, the cross-validation parts of the diagnosis are used. If the model describes
+    // more samples than before (flaps out), both models are compared on these samples.
     const bool same_samples = fit.samples == result_.fit.samples;
     const bool in_turn = !loop_.has_holdout && same_samples;
     const Comparison& judged = loop_.has_holdout ? held_out : fitted;
@@ -485,7 +485,7 @@ class Climb {
     return "";
   }
 
-  /// The figures of a rung. Without samples that are held out those of a diagnosis stand for them.
+  /// Figures of a rung. The diagnosis replaces missing held-out samples.
   void measure(ImproveStep& step, const RefitResult& fit, const std::vector<std::string>& alike) const {
     step.rms_train = fit.rms;
     step.noise_rms = fit.noise_rms;
@@ -524,10 +524,10 @@ class Climb {
   ModelDefinition refitted_;
   std::vector<std::string> alike_{};  // effects of the model at the top of the ladder
   TrialModel delivered_{};
-  std::vector<std::vector<Choice>> rungs_{};  // what may be each effect that was added, itself first
+  std::vector<std::vector<Choice>> rungs_{};  // alternatives for each added effect, the effect itself first
 };
 
-/// The variables that all the flights have.
+/// Variables present in all flights.
 std::vector<std::string> common_variables(const FlightSet& flights) {
   const std::vector<std::vector<std::string>> of_each = flights.variables();
   std::vector<std::string> common;
@@ -541,7 +541,7 @@ std::vector<std::string> common_variables(const FlightSet& flights) {
   return common;
 }
 
-/// Holds parameters of the last effect, which its flights cannot tell from others.
+/// Fixes parameters of the last effect that its flights cannot separate from others.
 void hold(ModelDefinition& file, const std::vector<std::string>& parameters) {
   const std::vector<std::string> names = parameter_names(file.model.effects.back());
   file.fits.resize(file.model.effects.size());
@@ -585,7 +585,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     return file.model.effects.size() == model.model.effects.size() ? std::string("the model as it is")
                                                                    : file.model.effects.back().id;
   };
-  // Those that tell of each sample come first, as in the diagnosis: figures are of the first.
+  // References of single samples come first, as in the diagnosis: figures refer to the first.
   References ordered = references;
   std::stable_partition(ordered.begin(), ordered.end(),
                         [](const auto& reference) { return reference->is_of_one_sample(); });

@@ -8,14 +8,14 @@
 
 namespace pcor::internal {
 
-/// An effect that is to be added to a model.
+/// Effect to add to a model.
 struct AddedEffect {
-  ModelEffect effect;               ///< with the coefficients to start from
-  std::vector<std::string> held{};  ///< parameters that the flights do not tell
-  bool is_alike = false;            ///< the systems that the model is held against have it too
+  ModelEffect effect;               ///< with the starting coefficients
+  std::vector<std::string> held{};  ///< parameters that the flights do not determine
+  bool is_alike = false;            ///< the reference systems have the same effect
 };
 
-/// What the loop of `improve` is made of, so that it can be tried without flights.
+/// Dependencies of the `improve` loop, replaceable for tests without flights.
 struct ImproveLoop {
   std::function<RefitResult(const TrialModel& model)> refit;
   std::function<Diagnosis(const TrialModel& model)> diagnose;
@@ -25,11 +25,11 @@ struct ImproveLoop {
   std::function<std::optional<SurfaceOffer>(const TrialModel& model)> offer_surface;
   bool has_holdout = false;     ///< the refit tells of samples that are held out
   bool trace_variables = true;  ///< as in `ImproveOptions`
-  std::size_t max_steps = 8;    ///< effects that are added at most
-  std::string flights{};        ///< in words, for the source of a traced formula
+  std::size_t max_steps = 8;    ///< maximum number of added effects
+  std::string flights{};        ///< description for the source of a traced formula
 
-  /// Climbs the ladder of errors from `model`. @throws Error as `refit` and `diagnose` for the model as it
-  /// is.
+  /// Climbs the ladder of errors from `model`. @throws Error as `refit` and `diagnose` do for the initial
+  /// model.
   Improvement run(const ModelDefinition& model) const;
 };
 

@@ -16,7 +16,7 @@
 namespace pcor::internal::report {
 namespace {
 
-/// For how many independent samples the residuals of what is held out, or of the rest, stand.
+/// Effective sample size of the residuals, held out or fitted.
 double independent_samples(const Improvement& improvement, bool held_out) {
   double independent = 0.0;
   for (const ImprovedFlight& flight : improvement.flights) {
@@ -35,7 +35,7 @@ std::string held_out_series(const Improvement& improvement) {
   return "held out: " + join_list(held_out_names(improvement));
 }
 
-/// The coefficient that is called so, like "static-qp.a2"; NaN where the model does not have it.
+/// Coefficient by name, like "static-qp.a2"; NaN if the model does not have it.
 double value_in(const ModelDefinition& model, const std::string& name) {
   for (const ModelEffect& effect : model.model.effects) {
     const std::vector<std::string> names = parameter_names(effect);

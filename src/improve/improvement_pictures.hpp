@@ -9,22 +9,22 @@
 
 namespace pcor::internal::report {
 
-/// What took no part in the fit: "rf03.nc", "the last part of rf01.nc".
+/// Description of the held-out samples: "rf03.nc", "the last part of rf01.nc".
 std::vector<std::string> held_out_names(const Improvement& improvement);
 
-/// What a rung is called: "refitted", "+ static-lag".
+/// Label of a rung: "refitted", "+ static-lag".
 std::string rung_name(const ImproveStep& step);
 
-/// Whether the written model has another effect than a step of the ladder added, or none in its place.
+/// Whether the written model replaces or lacks an effect that a step of the ladder added.
 bool delivers_rivals(const Improvement& improvement);
 
-/// The rms residual of every rung, in the fit and on what was held out, with the noise as a line.
+/// Rms residual of every rung, fitted and held out, with the noise as a line.
 DotPanel ladder_picture(const Improvement& improvement);
 
-/// The coefficients of the best model beside those of the one to begin with; none where nothing was fitted.
+/// Coefficients of the best and the initial model; empty if nothing was fitted.
 std::optional<DotPanel> coefficients_picture(const Improvement& improvement, const ModelDefinition& start);
 
-/// Says at the name of each flight that is held out as a whole that it is.
+/// Marks each completely held-out flight in its name.
 void name_held_out(Report& report, const Improvement& improvement);
 
 }  // namespace pcor::internal::report

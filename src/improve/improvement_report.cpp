@@ -26,7 +26,7 @@ namespace {
 
 using namespace internal::report;
 
-/// The flights with one of their residuals, as the panels take it.
+/// Flights with one of their residuals, in the format of the panels.
 Flights with_residual(const Improvement& improvement, std::vector<double> ImprovedFlight::*residual) {
   Flights flights;
   for (const ImprovedFlight& flight : improvement.flights) {
@@ -37,7 +37,7 @@ Flights with_residual(const Improvement& improvement, std::vector<double> Improv
   return flights;
 }
 
-/// The flights of the diagnoses, and behind them those that are held out as a whole.
+/// Flights of the diagnoses, followed by completely held-out flights.
 Flights shown_flights(const Improvement& improvement) {
   Flights flights = improvement.steps.front().diagnosis.flights;
   const Flights all = with_residual(improvement, &ImprovedFlight::best);
@@ -45,7 +45,7 @@ Flights shown_flights(const Improvement& improvement) {
   return flights;
 }
 
-/// Residuals of the model as it came, refitted, and as it is delivered, over time.
+/// Residuals of the initial, refitted and final model over time.
 void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement) {
   const auto before = [](const FlightDiagnosis& flight) { return flight.before; };
   std::vector<std::string> columns;
@@ -71,8 +71,8 @@ ReportTable ladder_table(const Improvement& improvement) {
                    "rms in the fit, hPa",
                    improvement.holdout_is_flights ? "rms held out, hPa" : "rms not in the fit, hPa",
                    "noise, hPa",
-                   "not told from",
-                   "what it taught"};
+                   "not separable from",
+                   "conclusion"};
   for (const ImproveStep& step : improvement.steps) {
     table.rows.push_back({rung_name(step), std::to_string(step.terms), cell(step.rms_train, 3),
                           cell(step.rms_holdout, 3), cell(step.noise_rms, 3), join_list(step.aliases),
@@ -110,7 +110,7 @@ void summarise(Report& report, const Improvement& improvement) {
     report.summary.push_back(std::move(text));
 }
 
-/// The coefficients of an effect after the fit.
+/// Fitted coefficients of an effect.
 std::vector<Estimate> fitted_of(const RefitResult& fit, const std::string& effect) {
   std::vector<Estimate> estimates;
   for (const FittedParameter& p : fit.parameters) {
@@ -120,7 +120,7 @@ std::vector<Estimate> fitted_of(const RefitResult& fit, const std::string& effec
   return estimates;
 }
 
-/// The page of the effect that a rung added, and its pictures.
+/// Page of the effect that a rung added, and its pictures.
 void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size_t rung) {
   using F = FlightDiagnosis;
   const ImproveStep& step = improvement.steps[rung];

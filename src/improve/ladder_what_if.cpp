@@ -9,7 +9,7 @@
 namespace pcor {
 namespace {
 
-/// The effect of the best model that a rung added; nothing where that model lacks it.
+/// Effect of the best model that a rung added; empty if that model lacks it.
 std::optional<ModelEffect> effect_of(const Improvement& improvement, const ImproveStep& step) {
   for (const ModelEffect& effect : improvement.fit.model.model.effects) {
     if (effect.id == step.added) return effect;
@@ -17,7 +17,7 @@ std::optional<ModelEffect> effect_of(const Improvement& improvement, const Impro
   return std::nullopt;
 }
 
-/// The finding that a rung follows; null where it follows none.
+/// Finding before a rung; null if there is no finding.
 const Finding* finding_of(const Improvement& improvement, std::size_t rung) {
   const std::vector<Finding>& findings = improvement.steps[rung - 1].diagnosis.findings;
   const auto found = std::find_if(findings.begin(), findings.end(), [&](const Finding& finding) {
@@ -51,7 +51,7 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
       rivals.push_back(
           {alias.effect, "instead of " + step.added, alias.correction, alias.is_alike, step.added});
   }
-  // What the top of the ladder says is missing, or nearly so, is not part of it.
+  // Missing effects at the top of the ladder are not part of it.
   for (WhatIfCandidate& left : what_if_candidates(improvement.steps.back().diagnosis, options.formulas)) {
     left.stands_for.clear();
     rivals.push_back(std::move(left));

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double surely = 2.0;  // standard deviations
 
-/// Where an effect stands in a model; the number of its effects where it has none of that name.
+/// Index of an effect in a model; the number of effects if there is no effect with that name.
 std::size_t place_of(const ModelDefinition& model, const std::string& effect) {
   const std::vector<ModelEffect>& effects = model.model.effects;
   const auto found = std::find_if(effects.begin(), effects.end(),
@@ -24,7 +24,7 @@ std::size_t place_of(const ModelDefinition& model, const std::string& effect) {
   return static_cast<std::size_t>(found - effects.begin());
 }
 
-/// The coefficients with which an effect does nothing, in its shape.
+/// Coefficients that disable an effect, in its shape.
 std::vector<double> neutral_of(const ModelEffect& effect) {
   std::vector<double> parameters(effect.parameters.size(), 0.0);
   if (effect.is_formula()) return parameters;
@@ -36,7 +36,7 @@ std::vector<double> neutral_of(const ModelEffect& effect) {
   return parameters;
 }
 
-/// Another system's model with the effects that are alike, with the coefficients that the model has.
+/// Model of another system with the shared effects at the coefficients of this model.
 ModelDefinition with_what_is_alike(ModelDefinition other, const TrialModel& model,
                                    const std::vector<std::string>& variables) {
   for (const std::string& effect : model.alike) {
@@ -51,7 +51,7 @@ ModelDefinition with_what_is_alike(ModelDefinition other, const TrialModel& mode
   return other;
 }
 
-/// A model without the effects that are alike: they cancel where two systems are held against each other.
+/// Model without the shared effects: they cancel in comparisons of two systems.
 ModelDefinition without_what_is_alike(ModelDefinition file, const TrialModel& model) {
   std::vector<ModelEffect>& effects = file.model.effects;
   for (const std::string& alike : model.alike) {
@@ -61,7 +61,7 @@ ModelDefinition without_what_is_alike(ModelDefinition file, const TrialModel& mo
   return file;
 }
 
-/// A reference, and of each trial all coefficients that the residual has.
+/// Reference, and all residual coefficients of each trial.
 struct TrialReference {
   const Reference& reference;
   std::vector<std::vector<double>> coefficients;

@@ -5,7 +5,7 @@
 namespace pcor::internal {
 namespace {
 
-/// Rms of a - b over the samples in which both have a value; 0 without any.
+/// Rms of a - b over the samples in which both have a value; 0 if there are no such samples.
 double distance(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   double count = 0.0;

@@ -277,7 +277,7 @@ TEST_F(Improve, LeavesAloneWhatMayBeOfTheOtherSystem) {
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_THAT(improvement.why_stopped,
-              HasSubstr("psfd-bias may be an error of the system that the model is held against"));
+              testing::AllOf(HasSubstr("psfd-bias"), HasSubstr("--trust-reference")));
   EXPECT_THAT(improvement.why_stopped, HasSubstr("fly a yaw manoeuvre"));
 }
 
@@ -314,7 +314,7 @@ TEST_F(Improve, DoesNotTakeTheNameOfAPartialFindingForTheCause) {
   rms_ = {1.0, 0.9};
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag"));
-  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("not to be taken for the cause"));
+  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("not be the cause"));
 }
 
 TEST_F(Improve, TracesWhereAPartialFindingDoesNotPay) {
@@ -351,7 +351,7 @@ TEST_F(Improve, NeverAddsAnEffectTwice) {
   rms_ = {1.0, 0.9, 0.8, 0.7};
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre("", "traced-engtrq"));
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("goes with ENGTRQ"));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("ENGTRQ"));
   diagnoses_ = {diagnosis(Verdict::identified, {"static-qp"})};
   EXPECT_THAT(run().why_stopped, HasSubstr("in the model already"));
 }
@@ -361,14 +361,14 @@ TEST_F(Improve, DoesNotTraceWhereThatIsNotWanted) {
   loop_.trace_variables = false;
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre(""));
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("most of it in climb; it goes with ENGTRQ"));
+  EXPECT_THAT(improvement.why_stopped, testing::AllOf(HasSubstr("climb"), HasSubstr("ENGTRQ")));
 }
 
 TEST_F(Improve, SaysThatNothingGoesWithWhatIsLeft) {
   Diagnosis unexplained = with_trace(diagnosis(Verdict::unexplained), "ENGTRQ");
   unexplained.unexplained.variables.clear();
   diagnoses_ = {unexplained};
-  EXPECT_THAT(run().why_stopped, HasSubstr("no variable of the files goes with"));
+  EXPECT_THAT(run().why_stopped, HasSubstr("no variable of the files"));
 }
 
 TEST_F(Improve, StopsAfterAsManyStepsAsAreAllowed) {
