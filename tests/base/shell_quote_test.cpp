@@ -16,7 +16,7 @@ std::string output_of(const std::string& command) {
   return text;
 }
 
-TEST(ShellWord, IsWhatAShellTakesItFor) {
+TEST(ShellWord, ShellRestoresTheOriginalText) {
   for (const std::string word :
        {"rf01.nc", "", " ", "it's mine.toml", "$(date) `date` $HOME", "a\\b\"c", "*?[a]~", "'", "''",
         "two\nlines", "-m", "a;b|c&d>e", "k * (ENGTRQ - 50)", "#", "!x"})

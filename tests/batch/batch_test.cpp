@@ -319,7 +319,7 @@ TEST(Batch, IsTheLoopInEveryKernelThatThisProcessorRuns) {
     expect_equal(in_kernel(kernel, batch, recorded, count), expected);
 }
 
-TEST(Batch, EveryFunctionOfAFormulaIsThatOfTheLoopInEveryKernel) {
+TEST(Batch, EachFormulaFunctionMatchesLoopInEveryKernel) {
   const std::vector<double> values{0.3, -0.7,  0.0, 2.5, nan,  1.0,   -2.0,   17.0,  1e-3,
                                    0.5, -0.31, 4.0, 1e5, -7e4, 700.0, -745.0, 1e-300};
   const std::vector<Quantity> roles{Quantity::static_pressure, Quantity::dynamic_pressure};
@@ -352,7 +352,7 @@ TEST(Batch, EveryFunctionOfAFormulaIsThatOfTheLoopInEveryKernel) {
   }
 }
 
-TEST(Batch, SaysWhichValuesAreMissing) {
+TEST(Batch, MissingValuesAreReported) {
   const Batch batch(gv(), gv_roles);
   Arrays recorded = random_samples(10, gv_roles);
   recorded.erase(Quantity::attack);
@@ -390,7 +390,7 @@ TEST(Batch, FindsEveryQuantityForItselfOrRefusesIt) {
   }
 }
 
-TEST(Batch, RefusesWhatIsNotRecordedOrNeedsEarlierSamples) {
+TEST(Batch, UnrecordedAndHistoryInputsAreRefused) {
   const Batch batch(gv(), {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::attack});
   for (const Quantity quantity :
        {Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::height_step,

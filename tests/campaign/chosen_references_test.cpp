@@ -38,7 +38,7 @@ TEST(ChosenReferences, WithoutANameAreAllThatModelAndFlightAllow) {
   EXPECT_THAT(names(chosen), ElementsAre("lams", "total:PSFRD+QCFR", "height", "wind"));
 }
 
-TEST(ChosenReferences, SayWhyOneIsNotAmongThem) {
+TEST(ChosenReferences, ExcludedReferenceHasAReason) {
   ModelDefinition model = laser_model();
   model.variables.erase(Quantity::recovery_temperature);
   model.variables.erase(Quantity::ambient_temperature);

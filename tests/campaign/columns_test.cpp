@@ -212,7 +212,7 @@ std::set<std::string> expect_differences(const Made& made,
 
 }  // namespace
 
-TEST(Columns, OfEveryCandidateAreDifferencesThroughTheWholeChain) {
+TEST(Columns, EqualDifferencesThroughTheWholeChain) {
   const Made made;
   ASSERT_EQ(std::count(made.columns.mask.begin(), made.columns.mask.end(), pcor::Mask::none),
             static_cast<std::ptrdiff_t>(made.samples->time.size()));
@@ -231,7 +231,7 @@ TEST(Columns, AgainstHeightsAreDifferencesOfSumsOverAMinute) {
     EXPECT_EQ(without_trace.count(seen), 0U) << seen;
 }
 
-TEST(Columns, AgainstHeightsUseNoMinuteThatHoldsWhatIsNotUsed) {
+TEST(Columns, HeightColumnsSkipMinutesWithUnusedSamples) {
   Made made(0.3, pcor::height_reference(laser_model()));
   auto samples = std::make_shared<FlightSamples>(*made.samples);
   samples->flaps.assign(samples->time.size(), 0.0);

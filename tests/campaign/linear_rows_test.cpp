@@ -95,7 +95,7 @@ TEST(LinearRows, DerivativesAreDifferencesOfResiduals) {
 }
 
 // Of what two systems have in common their difference knows nothing, not even by noise.
-TEST(LinearRows, OfTwoSystemsAreExactlyOppositeAtCommonPressures) {
+TEST(LinearRows, TwoSystemRowsAreOppositeAtCommonPressures) {
   const ModelDefinition model = laser_model();
   const auto reference = second_system(model);
   const LinearRows rows =
@@ -138,7 +138,7 @@ TEST(LinearRows, MeansAreThoseOfTheSamplesInEachBin) {
   EXPECT_EQ(bins.counts().sum(), static_cast<double>(bins.records().size()));
 }
 
-TEST(LinearRows, OfEachSampleSayWhetherItIsUsedOrWhyNot) {
+TEST(LinearRows, EverySampleHasUseOrReason) {
   const ModelDefinition model = laser_model();
   const auto reference = pcor::lams_reference();
   const auto samples = samples_of(model, *reference);

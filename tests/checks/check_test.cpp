@@ -238,7 +238,7 @@ TEST_F(CheckTest, CirclesFindAnErrorOfTheAirspeedAndTheWind) {
   EXPECT_GE(within, 16);  // as for the reverse headings
 }
 
-TEST_F(CheckTest, AThermometerThatIsWrongIsNotBelieved) {
+TEST_F(CheckTest, WrongThermometerIsRejected) {
   // +0.55 K and 1 % of the temperature in degC, 0.3 K matter.
   const fs::path scenarios = PCOR_SOURCE_DIR "/data/scenarios";
   Scenario scenario = read_scenario(scenarios / "c130-climbs.toml");
@@ -315,7 +315,7 @@ TEST_F(CheckTest, PitchAndYawSeeATermThatIsWrong) {
   EXPECT_LT(std::abs(number(against_second, "slope_hpa_deg")), 0.15 * std::abs(number(yaw, "slope_hpa_deg")));
 }
 
-TEST_F(CheckTest, SpeedRunSeesATermThatGoesWithTheSpeed) {
+TEST_F(CheckTest, SpeedRunDetectsSpeedDependentTerm) {
   ModelDefinition model = first_model();
   for (ModelEffect& effect : model.model.effects) {
     if (effect.id == "static-qp") effect.parameters[0] = 0.0;
@@ -333,7 +333,7 @@ TEST_F(CheckTest, SpeedRunSeesATermThatGoesWithTheSpeed) {
 
 // Flights that cannot be checked
 
-TEST_F(CheckTest, SaysWhatIsMissing) {
+TEST_F(CheckTest, MissingInputsAreReported) {
   const Checks checks = check({fly(head + aloft, 1)}, first_model());
   for (const CheckResult& result : checks.results) {
     if (result.ran) continue;
@@ -344,7 +344,7 @@ TEST_F(CheckTest, SaysWhatIsMissing) {
   EXPECT_THAT(named(checks, "reverse-heading").reason, HasSubstr("no reverse heading was found"));
 }
 
-TEST_F(CheckTest, TellsANoteOfSeveralFlightsOnce) {
+TEST_F(CheckTest, NoteOfSeveralFlightsIsPrintedOnce) {
   const Checks checks = check({fly(head + aloft, 1), fly(head + aloft, 2)}, std::nullopt);
   EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("recovery factor")).Times(1));
   EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("flight1.nc, flight2.nc: without a model")));

@@ -200,7 +200,7 @@ TEST(Layers, GiveTheMeanTemperatureOfTheStandardAtmosphere) {
   }
 }
 
-TEST(Layers, AreCutInPartsOfEqualThicknessThatShareTheirEnds) {
+TEST(Layers, PartsHaveEqualThicknessAndShareEnds) {
   LayerOptions options;
   options.thickness = 700.0;
   const FlightLayers found = find_layers(made(climb(1000.0, 4500.0, 5.0)), options);
@@ -488,7 +488,7 @@ TEST(LayerFit, FindsALineWithIndependentErrorsAtTheCentre) {
   EXPECT_GT(fit.correction_error_at(0.0), 10.0 * fit.c0_error);
 }
 
-TEST(LayerFit, KnowsThatLayersOfAClimbShareTheirEnds) {
+TEST(LayerFit, SharedEndsOfLayersAreCorrelated) {
   // Three layers of a climb: the height between them drops out of the mean of the whole.
   const FlightAir air = made(climb(1000.0, 4000.0, 5.0));
   LayerOptions options;
@@ -538,7 +538,7 @@ TEST(LayerFit, GrowsItsErrorsWhereLayersDisagree) {
   EXPECT_TRUE(std::isnan(fit.c1));                            // one temperature makes no line
 }
 
-TEST(LayerFit, OfNothingIsUnknown) {
+TEST(LayerFit, EmptyFitIsUnknown) {
   const LayerFit fit = fit_layers({});
   EXPECT_EQ(fit.layers, 0U);
   EXPECT_TRUE(std::isnan(fit.offset));

@@ -53,7 +53,7 @@ std::map<std::string, double> numbers_of(const CheckResult& result) {
   return {result.numbers.begin(), result.numbers.end()};
 }
 
-TEST(LayersCheck, BelievesAThermometerThatIsRight) {
+TEST(LayersCheck, CorrectThermometerPasses) {
   const CheckResult result = check_layers({made(0.0)});
   EXPECT_EQ(result.name, "layers");
   ASSERT_TRUE(result.ran) << result.reason;
@@ -72,7 +72,7 @@ TEST(LayersCheck, FindsAnOffsetBeyondItsError) {
   EXPECT_THAT(result.finding, HasSubstr("-2.00"));
 }
 
-TEST(LayersCheck, TellsWhyItCannotRun) {
+TEST(LayersCheck, ReasonForNoResultIsReported) {
   EXPECT_FALSE(check_layers({}).ran);
   CheckedFlight feet = made(0.0);
   for (double& height : feet.air.geopotential_height) height /= 0.3048;

@@ -84,7 +84,7 @@ TEST(Compare, ShowsAShiftAsABias) {
   EXPECT_LT(result.models[1].r_squared, result.models[0].r_squared);
 }
 
-TEST(Compare, StatesHowMuchTheCalibrationOfTheLaserMayShiftTheBias) {
+TEST(Compare, ReportsBiasFromLaserCalibration) {
   ComparedModel given = laser_contender();
   given.model.uncertainty.sensors = {{"lams-elevation.dtheta1", 0.0},
                                      {"lams-azimuth.dtheta2", 0.0},
@@ -222,7 +222,7 @@ TEST(Compare, OfTwoSystemsGivesTheFiguresOfTheMemo) {
   EXPECT_LT(result.models[0].static_pressure.rms, 0.05);
 }
 
-TEST(Compare, KeepsTheRecordsOfSomeFlightsAndTheNumbersOfAll) {
+TEST(Compare, KeepsRecordsOfChosenFlightsOnly) {
   const pcor::test::TemporaryDirectory directory;
   pcor::Scenario scenario = pcor::read_scenario(data / "scenarios" / "c130-short.toml");
   std::vector<fs::path> flights;
@@ -322,7 +322,7 @@ class RealFlight : public testing::Test {
 
 // The corrections of 2011 on a flight of 2004: 0.51 +- 0.46 hPa between the systems while flying, flaps in or
 // out; total pressures with slope 0.99989, offset -0.05 and rms 0.088 hPa.
-TEST_F(RealFlight, SaysWhereEquation18Fails) {
+TEST_F(RealFlight, Equation18FailuresAreLocated) {
   CompareOptions options;
   options.mask.max_flaps = 100.0;
   const Comparison result = pcor::compare({path_}, {pair_contender()}, options);
@@ -338,7 +338,7 @@ TEST_F(RealFlight, SaysWhereEquation18Fails) {
   EXPECT_NEAR(result.total_pressure->rms, 0.088, 0.005);
 }
 
-TEST_F(RealFlight, FailsMostWhereTheLiftSaysThatFlapsAreOut) {
+TEST_F(RealFlight, LargestErrorsOccurWithFlapsExtended) {
   const Comparison result = pcor::compare({path_}, {pair_contender()});
   const pcor::Statistics& out = result.models.front().flaps_out;
   const pcor::Statistics& in = result.models.front().all;
@@ -348,7 +348,7 @@ TEST_F(RealFlight, FailsMostWhereTheLiftSaysThatFlapsAreOut) {
   EXPECT_LT(in.scatter(), 0.3);
 }
 
-TEST_F(RealFlight, IsMendedByARefitOfBothSystems) {
+TEST_F(RealFlight, RefitOfBothSystemsRemovesTheError) {
   const ComparedModel pair = pair_contender();
   pcor::RefitOptions options;
   options.fit_reference = true;

@@ -211,7 +211,7 @@ ModelEffect formula(const std::string& text) {
 
 const std::string beta_odd = "id = \"static-beta-odd\"\nb1 = -0.02\n";
 
-TEST(DiagnosisOfATeam, NamesTheSameEffectAndWhatWouldTellItFromOthers) {
+TEST(DiagnosisOfATeam, FindsSameEffectAndSeparationAdvice) {
   DiagnoseOptions options;
   options.formulas = {formula("k * sideslip")};
   const Diagnosis diagnosis = expect_that_of_one(flights(beta_odd, 10), {lams_reference()}, options);

@@ -204,7 +204,7 @@ TEST(Diagnose, FindsTwoEffectsAtOnce) {
 }
 
 // Level legs alone: an effect of the manoeuvres is not seen, or not claimed alone.
-TEST(Diagnose, WithoutManoeuvresIsSilentOrDoesNotClaimWhatItCannotTell) {
+TEST(Diagnose, NoManoeuvresGiveNoUnsupportedClaim) {
   for (const auto& [effect, name] : std::vector<std::pair<std::string, std::string>>{
            {"id = \"static-beta-odd\"\nb1 = -0.002\n", "static-beta-odd"},
            {"id = \"load-factor\"\nper_g = 0.5\n", "load-factor"},
@@ -216,7 +216,7 @@ TEST(Diagnose, WithoutManoeuvresIsSilentOrDoesNotClaimWhatItCannotTell) {
   }
 }
 
-TEST(Diagnose, TracesWhatNoEffectExplainsToItsVariable) {
+TEST(Diagnose, UnexplainedStructureIsTracedToItsVariable) {
   const Diagnosis diagnosis = diagnose({flight("c130-eq18", 341, engine_torque)});
   EXPECT_THAT(diagnosis.verdict, AnyOf(Verdict::unexplained, Verdict::partial));
   ASSERT_TRUE(diagnosis.unexplained.significant);
@@ -232,7 +232,7 @@ TEST(Diagnose, TracesWhatNoEffectExplainsToItsVariable) {
   EXPECT_EQ(diagnosis.flights[0].traced.size(), diagnosis.flights[0].samples->time.size());
 }
 
-TEST(Diagnose, DoesNotLookWhereItIsToldNotTo) {
+TEST(Diagnose, ExcludedSamplesAreNotUsed) {
   DiagnoseOptions options;
   options.not_variables = {"ENGTRQ"};
   for (const pcor::EmpiricalPredictor& variable :
@@ -262,7 +262,7 @@ TEST(Diagnose, FindsAFormulaThatIsRight) {
   expect_coefficient(diagnosis.findings[0], 3.0);
 }
 
-TEST(Diagnose, SaysWhyAFormulaWithoutValuesIsNotTested) {
+TEST(Diagnose, FormulaWithoutValuesStatesReason) {
   const Diagnosis diagnosis = diagnose({flight("c130-short", 311)}, with_formula("k * log(sideslip - 100)"));
   EXPECT_EQ(diagnosis.verdict, Verdict::silent);
   bool told = false;
@@ -302,7 +302,7 @@ TEST(Diagnose, LooksAtTheFirstPartAlone) {
   EXPECT_FALSE(std::isnan(whole.flights.at(0).before[last]));
 }
 
-TEST(Diagnose, TwoFlightsTellMoreThanOne) {
+TEST(Diagnose, TwoFlightsConstrainMoreThanOne) {
   const std::filesystem::path first = flight("c130-eq18", 321, static_lag);
   const std::filesystem::path second = flight("c130-eq18", 324, static_lag);
   std::size_t done = 0;
@@ -364,7 +364,7 @@ TEST(Diagnose, AModelWithoutFreeCoefficientsIsDiagnosedToo) {
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
 }
 
-TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
+TEST(Diagnose, StaticSystemReferenceFindsUnsharedEffects) {
   const auto reference = pcor::static_system_reference(
       pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml"));
   const Diagnosis diagnosis =
@@ -395,7 +395,7 @@ TEST(Diagnose, ADifferenceOfTwoSystemsNamesAnEffectOnEither) {
 }
 
 // Level legs alone: four effects together describe the engines nearly, and not at all in the total pressure.
-TEST(Diagnose, HoldsALineAgainstEffectsByAllReferences) {
+TEST(Diagnose, LineIsComparedWithEffectsByAllReferences) {
   std::string torque = engine_torque;
   torque.replace(torque.find("3.0"), 3, "6.0");
   const Diagnosis diagnosis =
@@ -406,7 +406,7 @@ TEST(Diagnose, HoldsALineAgainstEffectsByAllReferences) {
 
 // What goes with the engines acts at the static ports, or in the total line, of which the total pressures
 // know.
-TEST(Diagnose, TellsByTotalPressuresWhereWhatItTracesActs) {
+TEST(Diagnose, TotalPressuresLocateTracedVariable) {
   for (const bool total : {false, true}) {
     std::string torque = engine_torque;
     if (total) torque.replace(torque.find("static"), 6, "total");
@@ -427,7 +427,7 @@ TEST(Diagnose, TellsByTotalPressuresWhereWhatItTracesActs) {
 }
 
 // The simulated avionics low-pass their pressures; the second pair does not.
-TEST(Diagnose, TellsWhichOfTwoOtherSystemsAnEffectIsOf) {
+TEST(Diagnose, EffectIsAssignedToOneOfTwoSystems) {
   const Diagnosis diagnosis =
       pcor::diagnose({flight("c130-eq18", 363)}, model(),
                      {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model()),
@@ -441,7 +441,7 @@ TEST(Diagnose, TellsWhichOfTwoOtherSystemsAnEffectIsOf) {
 }
 
 // The second pair stands still for five minutes of a climb.
-TEST(Diagnose, DoesNotBelieveAFrozenSensorOfAFurtherReference) {
+TEST(Diagnose, FrozenSensorOfFurtherReferenceIsRejected) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path path = directory / "frozen.nc";
   std::filesystem::copy_file(flight("c130-eq18", 362), path);
@@ -459,7 +459,7 @@ TEST(Diagnose, DoesNotBelieveAFrozenSensorOfAFurtherReference) {
 }
 
 // To the laser an offset of the thermometer is a change of the law; to the heights of its climbs it is not.
-TEST(Diagnose, AgainstHeightsTooFindsAThermometerThatIsOff) {
+TEST(Diagnose, HeightsShowThermometerBias) {
   const Paths flights{climbs(391, 1.0)};
   EXPECT_THAT(diagnose(flights).findings, IsEmpty());
   const pcor::References references{pcor::lams_reference(), pcor::height_reference(model())};
@@ -474,7 +474,7 @@ TEST(Diagnose, AgainstHeightsTooFindsAThermometerThatIsOff) {
 }
 
 // The total pressures of two systems show that one is off, the heights which.
-TEST(Diagnose, AgainstHeightsTooTellsWhichSystemIsOff) {
+TEST(Diagnose, HeightsIdentifyTheWrongSystem) {
   const Paths flights{climbs(397, 0.0, 0.5)};
   const auto total = pcor::total_pressure_reference(
       pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml"));
@@ -491,7 +491,7 @@ TEST(Diagnose, AgainstHeightsTooTellsWhichSystemIsOff) {
   EXPECT_LT(with.size(), without.size());
 }
 
-TEST(Diagnose, AgainstHeightsTooIsSilentWhereNothingIsMissing) {
+TEST(Diagnose, CompleteModelAgainstHeightsIsSilent) {
   const pcor::References references{pcor::height_reference(model()), pcor::lams_reference()};
   for (unsigned seed = 394; seed <= 396; ++seed) {
     const Diagnosis diagnosis = pcor::diagnose({climbs(seed, 0.0)}, model(), references);
@@ -500,7 +500,7 @@ TEST(Diagnose, AgainstHeightsTooIsSilentWhereNothingIsMissing) {
   }
 }
 
-TEST(Diagnose, NeedsAReferenceThatTellsOfEachSample) {
+TEST(Diagnose, ReferenceMustResolveSingleSamples) {
   const Paths flights{climbs(394, 0.0)};
   EXPECT_THROW(pcor::diagnose(flights, model(), {pcor::wind_reference(model())}), pcor::Error);
   EXPECT_NO_THROW(pcor::diagnose(flights, model(), {pcor::height_reference(model())}));

@@ -261,7 +261,7 @@ std::string split_words(const Report& report) {
   return body;
 }
 
-TEST(DiagnosisReport, SaysWhatIsMissingHowLargeAndHowSure) {
+TEST(DiagnosisReport, StatesFindingSizeAndSignificance) {
   const Report report = diagnosis_report(partial(), model());
   EXPECT_EQ(report.title,
             "Effects are missing: static-beta-odd and static-lag; structure is left that no effect explains");
@@ -300,7 +300,7 @@ TEST(DiagnosisReport, HasAPageInWordsForEachFinding) {
   EXPECT_THAT(all_of(second->paragraphs), HasSubstr("No other effect that was tested"));
 }
 
-TEST(DiagnosisReport, NamesWhatCannotBeToldApart) {
+TEST(DiagnosisReport, NamesIndistinguishableEffects) {
   Diagnosis diagnosis = partial();
   diagnosis.verdict = Verdict::ambiguous;
   EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
@@ -360,7 +360,7 @@ TEST(DiagnosisReport, ShowsOnlySamplesThatWereUsed) {
   EXPECT_EQ(report.intervals.size(), 8U);
 }
 
-TEST(DiagnosisReport, TellsOfStructureWithoutAnExplanation) {
+TEST(DiagnosisReport, ReportsStructureWithoutExplanation) {
   const Report report = diagnosis_report(unexplained(), model());
   EXPECT_EQ(report.title, "Structure is left that no effect explains");
   EXPECT_THAT(report.summary,
@@ -386,7 +386,7 @@ TEST(DiagnosisReport, SilenceComesWithItsLimits) {
   split_words(report);
 }
 
-TEST(DiagnosisReport, NeedsNothingButAVerdict) {
+TEST(DiagnosisReport, VerdictAloneIsSufficient) {
   Diagnosis diagnosis;
   split_words(diagnosis_report(diagnosis, {}));
   diagnosis.findings.resize(1);
@@ -398,7 +398,7 @@ TEST(DiagnosisReport, NeedsNothingButAVerdict) {
   split_words(diagnosis_report(diagnosis, {}));
 }
 
-TEST(DiagnosisReport, LeavesOutWhatIsNoNumber) {
+TEST(DiagnosisReport, NonFiniteValuesAreOmitted) {
   Diagnosis diagnosis = partial();
   Finding& finding = diagnosis.findings.front();
   finding.estimates = {{"b1", "1", nan, nan, 0.0}, {"b2", "hPa", 1.0, nan, nan}};
@@ -450,7 +450,7 @@ TEST(ImprovementReport, ShowsTheLadder) {
   split_words(report);
 }
 
-TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
+TEST(ImprovementReport, StartsWithInputModelAndShowsHeldOutFlights) {
   Improvement made = improvement();
   made.given_rms_holdout = 0.5;
   made.rms_holdout = 0.13;
@@ -483,7 +483,7 @@ TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
   split_words(report);
 }
 
-TEST(ImprovementReport, TellsAPartThatWasHeldOutFromAFlight) {
+TEST(ImprovementReport, HeldOutPartDiffersFromHeldOutFlight) {
   Improvement made = improvement();
   made.holdout_is_flights = true;
   for (const FlightDiagnosis& one : made.steps[0].diagnosis.flights) {

@@ -132,7 +132,7 @@ TEST(Search, FindsTheOneColumnThatIsThere) {
 }
 
 // A model whose own coefficients are off leaves much that they explain: it must not hide what is missing.
-TEST(Search, WhatTheBaseExplainsHidesNothing) {
+TEST(Search, BaseEffectsHideNoColumn) {
   for (const double offset : {0.0, 0.2, 1.0, 5.0}) {
     Problem problem(600, 20, 1, 0.7, offset);
     problem.residual += 0.3 * problem.candidate(7);
@@ -167,7 +167,7 @@ TEST(Search, TheStrongestIsFirst) {
 }
 
 // One part in 40 is its own, 1/1600 of the variance: the base imitates it nearly, and yet it is seen.
-TEST(Search, WhatTheBaseNearlyImitatesIsFoundByTheRest) {
+TEST(Search, NearImitationIsFoundByItsRemainder) {
   Problem problem(600, 5, 4);
   problem.candidate(3) = 40.0 * problem.columns.col(1) + 0.577 * problem.candidate(3);
   problem.residual += 2.0 * problem.candidate(3);
@@ -177,7 +177,7 @@ TEST(Search, WhatTheBaseNearlyImitatesIsFoundByTheRest) {
   EXPECT_THAT(search.run({}).chosen, ElementsAre(3U));
 }
 
-TEST(Search, WhatTheBaseImitatesIsAbsorbedHoweverStrong) {
+TEST(Search, ColumnsInTheBaseAreAbsorbed) {
   Problem problem(600, 5, 4);
   // One part in 1e4 is its own: less than single precision holds of a column.
   problem.candidate(3) = 1e4 * problem.columns.col(1) + 0.577 * problem.candidate(3);
@@ -193,7 +193,7 @@ TEST(Search, WhatTheBaseImitatesIsAbsorbedHoweverStrong) {
   }
 }
 
-TEST(Search, WhatIsOutOfBoundsIsNotFound) {
+TEST(Search, EstimatesOutsideBoundsAreRejected) {
   Problem problem(600, 8, 5);
   problem.residual -= 0.5 * problem.candidate(3);
   problem.one_by_one();
@@ -218,7 +218,7 @@ TEST(Search, AnEstimateWithinTwoErrorsOfItsBoundIsPossible) {
 }
 
 // An effect of a usual size is likelier than one of a hundred times its own that does nearly the same.
-TEST(Search, SizesThatAreMetAreLikelier) {
+TEST(Search, TypicalSizesAreMoreLikely) {
   Problem problem(600, 6, 21);
   problem.candidate(2) = 0.99 * problem.candidate(1) + 0.14 * problem.candidate(2);
   problem.residual += 0.3 * problem.candidate(1);
@@ -416,7 +416,7 @@ TEST(Search, AGivenThresholdAndAGreatestNumberHold) {
   EXPECT_THAT(run(problem, options).chosen, IsEmpty());
 }
 
-TEST(Search, NothingToSearchForIsNothing) {
+TEST(Search, EmptySearchFindsNoColumn) {
   Problem problem(300, 0, 13);
   const Search search = problem.search();
   EXPECT_THAT(search.run({}).chosen, IsEmpty());

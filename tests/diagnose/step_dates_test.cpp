@@ -37,7 +37,7 @@ TEST(StepDates, OfFewFlightsAreAllButTheFirst) {
   EXPECT_FALSE(dates.refine({step_on(102.0)}));
 }
 
-TEST(StepDates, OfOneFlightAreNone) {
+TEST(StepDates, OneFlightGivesNoDates) {
   EXPECT_THAT(StepDates(begins(1)).tried(), testing::IsEmpty());
   EXPECT_THAT(StepDates(std::vector<double>{}).tried(), testing::IsEmpty());
 }
@@ -62,7 +62,7 @@ TEST(StepDates, OfManyFlightsLieCloseAtBothEnds) {
   }
 }
 
-TEST(StepDates, AreNotRefinedByWhatIsFoundOfTheOtherSystem) {
+TEST(StepDates, OtherSystemFindingsDoNotRefineDates) {
   StepDates dates(begins(2000));
   Finding other = step_on(dates.tried().front());
   other.of_reference = true;

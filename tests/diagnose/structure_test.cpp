@@ -138,7 +138,7 @@ TEST(Smooth, FollowsABentCurve) {
 }
 
 // Of a switch with three positions every function is one: as good as a mean for each, less the constant.
-TEST(Smooth, OfFewLevelsIsAnyFunctionOfThem) {
+TEST(Smooth, FewLevelsAllowAnyFunctionOfThem) {
   std::vector<double> values(90);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i % 3) * 10.0;
   const Smooth smooth = Smooth::with_knots_at_values(known(values), 6);
@@ -174,7 +174,7 @@ TEST(Smooth, LeavesOutMissingValues) {
   EXPECT_NEAR(with.deviation(), without.deviation(), 1e-14);
 }
 
-TEST(Smooth, OfAConstantIsNothing) {
+TEST(Smooth, ConstantVariableHasNoBasisFunctions) {
   for (const std::vector<double>& values :
        {std::vector<double>(100, 7.0), std::vector<double>(), std::vector<double>(100, missing)}) {
     EXPECT_EQ(Smooth::with_knots_at_values(known(values), 6).columns(), 0U);
@@ -203,7 +203,7 @@ TEST(Smooth, WithEvenKnotsFollowsAWaveWhereFewValuesAre) {
   EXPECT_GT(left(Smooth::with_knots_at_values(known(values), 6)), 0.5);
 }
 
-TEST(Smooth, OfAnAngleDoesNotKnowWhereItBegins) {
+TEST(Smooth, AngleResultIsIndependentOfOrigin) {
   const std::vector<double> headings{0.0, 90.0, 359.0, 180.0, 45.0};
   const Smooth smooth = Smooth::periodic(known(headings), 360.0);
   ASSERT_EQ(smooth.columns(), 4U);
@@ -346,7 +346,7 @@ TEST(StructureTest, FindsAnAngle) {
   EXPECT_EQ(test.structures()[0].slope, 0.0);
 }
 
-TEST(StructureTest, WhatTheModelHasIsNotStructure) {
+TEST(StructureTest, ModelledEffectsAreNotStructure) {
   Flight flight(600, 3, 5);
   flight.columns[0].conservativeResize(Eigen::NoChange, 2);
   flight.columns[0].col(1) = as_vector(flight.variables[1]);
@@ -356,7 +356,7 @@ TEST(StructureTest, WhatTheModelHasIsNotStructure) {
   EXPECT_EQ(test.structures()[1].line_gain, 0.0);
 }
 
-TEST(StructureTest, LeavesOutWhatDoesNotVaryOrIsMissing) {
+TEST(StructureTest, ConstantOrMissingVariablesAreSkipped) {
   Flight flight(300, 3, 6);
   StructureTest test(pcor::internal::FlightPartition(1), flight.bins, flight.columns, flight.residuals,
                      flight.noise, 1);
@@ -371,7 +371,7 @@ TEST(StructureTest, LeavesOutWhatDoesNotVaryOrIsMissing) {
   EXPECT_TRUE(std::isfinite(test.structures()[0].gain));
 }
 
-TEST(SharesNoise, IsWhatWasComputedFromTheSameMeasurement) {
+TEST(SharesNoise, VariablesOfOneMeasurementShareNoise) {
   const std::vector<double> residual = draws(3600, 7);
   std::vector<double> derived = draws(3600, 8);
   for (std::size_t i = 0; i < derived.size(); ++i) derived[i] = 3.0 * derived[i] - residual[i];
@@ -381,7 +381,7 @@ TEST(SharesNoise, IsWhatWasComputedFromTheSameMeasurement) {
 }
 
 // An effect makes residual and variable go together in its manoeuvres alone.
-TEST(SharesNoise, IsNotWhatGoesWithItInManoeuvresAlone) {
+TEST(SharesNoise, CommonManoeuvresDoNotShareNoise) {
   std::vector<double> residual = draws(3600, 10);
   std::vector<double> variable(3600, 0.0);
   const std::vector<double> sensor = draws(3600, 11);
@@ -394,7 +394,7 @@ TEST(SharesNoise, IsNotWhatGoesWithItInManoeuvresAlone) {
       pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {variable.data()}));
 }
 
-TEST(SharesNoise, OfNothingIsFalse) {
+TEST(SharesNoise, EmptyInputSharesNoNoise) {
   const std::vector<double> nothing(600, missing);
   const std::vector<double> values = draws(600, 12);
   EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {nothing}, {values.data()}));

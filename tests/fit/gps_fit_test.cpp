@@ -99,7 +99,7 @@ TEST(GpsFit, HoldsWhatOneHeadingLeavesOpen) {
   EXPECT_THAT(result.warnings, Contains(HasSubstr("circles")));
 }
 
-TEST(GpsFit, HeightSaysNothingOfTheLevel) {
+TEST(GpsFit, HeightDoesNotConstrainTheLevel) {
   const RefitResult result = fit(flight("c130-eq18", warm_thermometer), law(), {"height"});
   EXPECT_LT(std::abs(error_of(result)), 0.1) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);

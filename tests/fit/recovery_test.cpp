@@ -107,7 +107,7 @@ TEST(Recovery, OfEquation20WithAnIndependentMachNumber) {
   EXPECT_GT(result.r_squared, 0.75);
 }
 
-TEST(Recovery, OfEquation20WithTheRawMachNumberIsSaidToBeCollinear) {
+TEST(Recovery, Equation20WithRawMachIsReportedCollinear) {
   const pcor::test::TemporaryDirectory directory;
   pcor::simulate_flight(pcor::read_scenario(scenarios / "gv-eq20.toml"), directory / "flight.nc");
   const auto fit_of = [&](const char* name) {
@@ -128,7 +128,7 @@ TEST(Recovery, OfEquation20WithTheRawMachNumberIsSaidToBeCollinear) {
 
 // The noise of the laser must not pass for an effect before it: least squares of delta-p itself would find a
 // recovery factor of 0.2 less in every flight, at 12 standard errors.
-TEST(Recovery, OfEffectsBeforeTheLaserFindsNoneThatIsNotThere) {
+TEST(Recovery, EffectsBeforeTheLaserGiveNoFalseFinding) {
   const pcor::test::TemporaryDirectory directory;
   pcor::Scenario scenario = pcor::read_scenario(scenarios / "c130-eq18.toml");
   pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");

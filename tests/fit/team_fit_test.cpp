@@ -68,7 +68,7 @@ RefitResult fit_of(const std::vector<std::shared_ptr<const FlightSamples>>& of, 
                made::pressure_reference(), options);
 }
 
-TEST(TeamFit, IsThatOfOneProcessForAnyNumberOfMembersAndThreads) {
+TEST(TeamFit, ResultIsIndependentOfMembersAndThreads) {
   const auto all = flights(5);
   const std::string alone_result = text_of(fit_of(all, serial_communicator()));
   EXPECT_EQ(text_of(fit_of(all, serial_communicator(), 2)), alone_result);
@@ -80,7 +80,7 @@ TEST(TeamFit, IsThatOfOneProcessForAnyNumberOfMembersAndThreads) {
   }
 }
 
-TEST(TeamFit, IsSoWithMoreFlightsThanTheNoiseIsFoundFromOfWhichSomeTellNothing) {
+TEST(TeamFit, ManyFlightsWithUninformativeOnesAgree) {
   std::vector<std::shared_ptr<const FlightSamples>> all = flights(19);
   for (const std::size_t blind : {0U, 2U, 4U, 18U}) {
     auto without = std::make_shared<FlightSamples>(*all[blind]);

@@ -122,7 +122,7 @@ TEST(TwoSystems, AtTheTruthStayThere) {
 
 // Of the same effect in both laws the flights tell the difference, and the mean keeps the typical size of
 // both over the root of two: that of a mean of two independent ones.
-TEST(TwoSystems, StateThePriorAsTheErrorOfWhatTheyHaveInCommon) {
+TEST(TwoSystems, CommonPartKeepsPriorError) {
   const pcor::test::TemporaryDirectory directory;
   const Pair pair = c130();
   pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");
@@ -137,7 +137,7 @@ TEST(TwoSystems, StateThePriorAsTheErrorOfWhatTheyHaveInCommon) {
   EXPECT_TRUE(fit.warnings.empty());
 }
 
-TEST(TwoSystems, WithAWrongDifferenceMendTheDifferenceAlone) {
+TEST(TwoSystems, WrongDifferenceCorrectsDifferenceOnly) {
   const pcor::test::TemporaryDirectory directory;
   Pair pair = c130();
   pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");
@@ -153,7 +153,7 @@ TEST(TwoSystems, WithAWrongDifferenceMendTheDifferenceAlone) {
   EXPECT_NEAR(own + other, 0.0, 0.1 * off);
 }
 
-TEST(TwoSystems, TakeTheCovarianceOfAFileForWhatIsKnown) {
+TEST(TwoSystems, FileCovarianceIsUsedAsPrior) {
   const pcor::test::TemporaryDirectory directory;
   Pair pair = c130();
   pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");

@@ -52,7 +52,7 @@ class FailingLibrary : public testing::Test {
 };
 
 // As if they were not there, numbers would come without their scale, or a variable would be left out.
-TEST_F(FailingLibrary, IsNotTakenForAnAttributeThatIsNotThere) {
+TEST_F(FailingLibrary, FailureIsNotReportedAsAbsentAttribute) {
   for (const char* const name : {"scale_factor", "add_offset", "_FillValue", "valid_range", "units"}) {
     fail(name, NC_EHDFERR);
     EXPECT_THROW(Flight(flight_).variable("PSFD"), Error) << name;
@@ -63,7 +63,7 @@ TEST_F(FailingLibrary, IsNotTakenForAnAttributeThatIsNotThere) {
   }
 }
 
-TEST_F(FailingLibrary, SaysWhatCanBeDoneWithAnAttributeThatItCannotRead) {
+TEST_F(FailingLibrary, UnreadableAttributeErrorStatesRemedy) {
   fail("units", NC_EATTMETA);
   try {
     Flight(flight_).variable("PSFD");
@@ -73,7 +73,7 @@ TEST_F(FailingLibrary, SaysWhatCanBeDoneWithAnAttributeThatItCannotRead) {
   }
 }
 
-TEST_F(FailingLibrary, IsNotTakenForAVariableThatIsNotThere) {
+TEST_F(FailingLibrary, FailureIsNotReportedAsAbsentVariable) {
   const NetcdfFile file(flight_);
   EXPECT_TRUE(file.find_variable("PSFD"));
   fail("PSFD", NC_EHDFERR);

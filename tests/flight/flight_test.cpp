@@ -123,7 +123,7 @@ TEST_F(FlightTest, AFileWithoutANameIsRefused) {
 }
 
 // The netCDF library believes a header, and takes the memory it asks for.
-TEST_F(FlightTest, ADamagedHeaderIsRefusedOrReadSoonAndInLittleMemory) {
+TEST_F(FlightTest, DamagedHeaderUsesLittleTimeAndMemory) {
   constexpr int mutations = 250;
   constexpr std::size_t max_mutated = 2048;
   const auto begin = std::chrono::steady_clock::now();
@@ -283,7 +283,7 @@ TEST_F(FlightTest, WithoutBaseTimeTheFlightDateServes) {
   }
 }
 
-TEST_F(FlightTest, MonthsAndYearsAreNoUnitsOfAFlightsTime) {
+TEST_F(FlightTest, MonthsAndYearsAreInvalidTimeUnits) {
   for (const char* units : {"months since 2004-01-01", "years since 2004-01-01"}) {
     { NetcdfMaker(path()).time({1, 2}, units); }
     EXPECT_THAT(refusal(), AllOf(HasSubstr(units), HasSubstr("ncatted -a units,Time")));
@@ -292,7 +292,7 @@ TEST_F(FlightTest, MonthsAndYearsAreNoUnitsOfAFlightsTime) {
   EXPECT_EQ(Flight(path()).time().step, 86400) << "slow, and not wrong";
 }
 
-TEST_F(FlightTest, ATimeThatCannotBeToldSaysHowToStateIt) {
+TEST_F(FlightTest, AmbiguousTimeStatesHowToDefineIt) {
   { NetcdfMaker(path()).time({51720, 51721}, "seconds since 1141-01-00 00:00:00 +0000"); }
   EXPECT_THAT(refusal(), AllOf(HasSubstr("does not tell the time"), HasSubstr("1141-01-00"),
                                HasSubstr("ncatted -a units,Time")));
@@ -383,7 +383,7 @@ TEST_F(FlightTest, TwoVariablesOfOneNameAreRefused) {
   EXPECT_THAT(refusal(), HasSubstr("has two variables PSFD"));
 }
 
-TEST_F(FlightTest, MoreThanAThousandSamplesASecondAreRefusedWhenTheyAreRead) {
+TEST_F(FlightTest, RatesAbove1000HzAreRefusedOnRead) {
   const auto make = [this](std::size_t rate, double step) {
     NetcdfMaker maker(path());
     maker.time({100, 100 + step}, "seconds since 2004-02-18 00:00:00 +0000", NC_DOUBLE);
@@ -411,7 +411,7 @@ TEST_F(FlightTest, MoreRecordsThanAFlightCanHaveAreRefusedAtOnce) {
   EXPECT_THAT(refusal(), HasSubstr("and a flight has at most 100000000"));
 }
 
-TEST_F(FlightTest, TimeThatRunsBackwardsNamesTheRecordAndCountsThem) {
+TEST_F(FlightTest, BackwardTimeReportsRecordAndCount) {
   make_with_times({100, 101, 102, 101, 102, 90, 91});
   EXPECT_THAT(refusal(),
               AllOf(HasSubstr("runs backwards at record 3 (2004-02-18 00:01:41 after 2004-02-18 00:01:42)"),
@@ -487,7 +487,7 @@ TEST_F(FlightTest, AMissingVariableSuggestsThoseThatLookLikeIt) {
   EXPECT_FALSE(flight.has("QCF"));
 }
 
-TEST_F(FlightTest, AMissingVariableOfTheModelNamesItsRoleAndWhatFits) {
+TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
   {
     NetcdfMaker maker(path());
     maker.time({100});
@@ -535,7 +535,7 @@ TEST_F(FlightTest, NoMoreThanSixVariablesThatFitAreNamed) {
       HasSubstr("it has ABCD1, ABCD2, ABCD3, ABCD4, ABCD5, ABCD6 in degC and 3 more (units that fit)"));
 }
 
-TEST_F(FlightTest, AUnitOfTheModelTakesThePlaceOfTheFiles) {
+TEST_F(FlightTest, ModelUnitOverridesFileUnit) {
   {
     NetcdfMaker maker(path());
     maker.time({100});
@@ -632,7 +632,7 @@ TEST_F(FlightTest, TheDefaultFillOfEveryPackedTypeIsMissing) {
     EXPECT_THAT(read(name), ElementsAre(5, IsNan())) << name;
 }
 
-TEST_F(FlightTest, SignedIntegersThatAreCalledUnsignedAreReadAsSuch) {
+TEST_F(FlightTest, UnsignedAttributeAppliesToSignedIntegers) {
   {
     NetcdfMaker maker(path(), 0);
     maker.time({100, 101, 102, 103});
@@ -676,7 +676,7 @@ TEST_F(FlightTest, WhatIsNotValidIsMissing) {
   EXPECT_THAT(read("PACKED"), ElementsAre(5, 10, IsNan())) << "the range is that of the packed numbers";
 }
 
-TEST_F(FlightTest, ARangeInWordsIsReadWhereItIsTwoNumbersAndElseIgnored) {
+TEST_F(FlightTest, TextRangeIsUsedOnlyIfTwoNumbers) {
   {
     NetcdfMaker maker(path(), 0);
     maker.time({100, 101, 102});
@@ -699,7 +699,7 @@ TEST_F(FlightTest, ARangeInWordsIsReadWhereItIsTwoNumbersAndElseIgnored) {
   EXPECT_EQ(Flight(path()).variable("ONE").ignored_range, "valid_range = '90'");
 }
 
-TEST_F(FlightTest, TheAircraftIsFoundInEverySpellingOfItsAttribute) {
+TEST_F(FlightTest, AircraftAttributeIsReadInEverySpelling) {
   for (const char* const name :
        {"platform", "Platform", "PLATFORM", "Aircraft", "aircraft", "tail_number", "platform_name"}) {
     {
@@ -725,7 +725,7 @@ TEST_F(FlightTest, CapitalsAndACommaInTheUnitOfTimeAreRead) {
   EXPECT_EQ(Flight(path()).time().first, 804988800);
 }
 
-TEST_F(FlightTest, ATimeOfAnotherNameIsKnownByItsDimensionOrItsStandardName) {
+TEST_F(FlightTest, TimeIsFoundByDimensionOrStandardName) {
   for (const bool by_standard_name : {false, true}) {
     {
       NetcdfMaker maker(path());
@@ -771,7 +771,7 @@ TEST_F(FlightTest, WhatIsTooMuchToBeMeasuredIsMissing) {
   EXPECT_THAT(read("PACKED"), ElementsAre(0, IsNan(), IsNan(), 1e300));
 }
 
-TEST_F(FlightTest, NumbersThatCannotBeToldAreRefusedWhenTheyAreRead) {
+TEST_F(FlightTest, AmbiguousNumbersAreRefusedOnRead) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101});
@@ -807,7 +807,7 @@ TEST_F(FlightTest, NumbersThatCannotBeToldAreRefusedWhenTheyAreRead) {
   EXPECT_THAT(read("DIGITS"), ElementsAre(5, 5.5));
 }
 
-TEST_F(FlightTest, WhatAConversionCallsImpossibleIsCountedAndTakesNoPartInAMean) {
+TEST_F(FlightTest, ImpossibleValuesAreCountedAndExcluded) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101});
@@ -823,7 +823,7 @@ TEST_F(FlightTest, WhatAConversionCallsImpossibleIsCountedAndTakesNoPartInAMean)
               ElementsAre(DoubleEq(80.1), DoubleEq(80.6), testing::_, testing::_, testing::_, testing::_));
 }
 
-TEST_F(FlightTest, WhatFlagsOfTheFileCallUnusableIsMissing) {
+TEST_F(FlightTest, FlaggedUnusableValuesAreMissing) {
   {
     NetcdfMaker file(path());
     file.time({0, 1, 2, 3});
@@ -860,7 +860,7 @@ TEST_F(FlightTest, WhatFlagsOfTheFileCallUnusableIsMissing) {
   EXPECT_THAT(flight.variable("HARMLESS").flags, testing::IsEmpty());
 }
 
-TEST_F(FlightTest, FlagsOfAnyTypeAreReadAsTheyAreMeant) {
+TEST_F(FlightTest, FlagsOfAnyTypeAreInterpreted) {
   {
     NetcdfMaker file(path());
     file.time({0, 1, 2, 3});
@@ -893,7 +893,7 @@ TEST_F(FlightTest, FlagsOfAnyTypeAreReadAsTheyAreMeant) {
   EXPECT_THAT(read("FAST"), ElementsAre(1, 2, IsNan(), IsNan(), 5, 6, IsNan(), IsNan()));
 }
 
-TEST_F(FlightTest, AVariableThatIsMissingThroughoutIsAnErrorWhenRequired) {
+TEST_F(FlightTest, RequiredVariableWithoutValuesIsAnError) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101});
@@ -940,7 +940,7 @@ TEST_F(FlightTest, PackedIntegersAreUnpacked) {
   EXPECT_THAT(read("PACKED"), ElementsAre(105, IsNan()));
 }
 
-TEST_F(FlightTest, WhatIsNotATimeSeriesIsListedAndRefused) {
+TEST_F(FlightTest, OtherVariablesAreListedAndRefused) {
   {
     NetcdfMaker maker(path());
     maker.time({100});
@@ -1052,7 +1052,7 @@ TEST_F(FlightTest, BlocksOfAnySizeGiveTheSame) {
   }
 }
 
-TEST_F(FlightTest, BlocksHoldEveryRecordOnceAndWhatLiesTogetherIsReadTogether) {
+TEST_F(FlightTest, BlocksHoldEachRecordOnceAndReadContiguously) {
   constexpr std::size_t records = 5000;
   const auto max_block = [&](int mode, int rate) {
     {

@@ -38,7 +38,7 @@ TEST(ArchivedModel, IsTheSameForTheSamePressures) {
   EXPECT_EQ(archived_difference(archived(model), archived(published())), "");
 }
 
-TEST(ArchivedModel, DiffersWithWhatMakesPressuresAndTemperature) {
+TEST(ArchivedModel, DiffersIfPressureOrTemperatureModelDiffers) {
   const std::string here = archived(published());
   ModelDefinition model = published();
   model.model.effects[0].parameters[0] = 0.005;
@@ -60,7 +60,7 @@ TEST(ArchivedModel, DiffersWithWhatMakesPressuresAndTemperature) {
   EXPECT_NE(archived(read_model(models / "c130-psfd-eq19.toml")), here);
 }
 
-TEST(ArchivedModel, KnowsTheLaserOnlyWhereItCorrects) {
+TEST(ArchivedModel, IncludesLaserOnlyIfItCorrects) {
   ModelDefinition model = published();
   model.variables[Quantity::lams_airspeed] = "VLAMS";
   model.variables[Quantity::attack] = "ATTACK";

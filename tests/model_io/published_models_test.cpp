@@ -308,7 +308,7 @@ TEST(PublishedModels, ReproduceTheTableOfTheC130) {
 
 // The files say by how much the fits of 2011 differ from the laws that came after them. The table is of level
 // flight.
-TEST(PublishedModels, FitsOfTheMemoTellHowFarTheLawOf2016IsFromThem) {
+TEST(PublishedModels, MemoFitsStateDistanceFromLawOf2016) {
   const auto column = [](const std::string& name) {
     const auto found = std::find(c130_columns().begin(), c130_columns().end(), name);
     return static_cast<std::size_t>(found - c130_columns().begin());
@@ -392,7 +392,7 @@ TEST(PublishedModels, AvionicsFormulaOfTheGvIsNoLawAsPrinted) {
 
 // The slope there is 11.4405 hPa for a unit of the ratio, and the minimum is printed to 0.001 hPa, so
 // 4.66 - 11.4405 * 0.31 = 1.1134 is the minimum within its rounding.
-TEST(PublishedModels, TrailingConeOfPsfdIsContinuousWhereItsMinimumBegins) {
+TEST(PublishedModels, TrailingConePsfdIsContinuousAtItsMinimum) {
   for (const char* name : {"c130-psfd-qcf-2003", "c130-psfd-qcr-2003"}) {
     const Law law(name);
     Sample above, below;
@@ -407,7 +407,7 @@ TEST(PublishedModels, TrailingConeOfPsfdIsContinuousWhereItsMinimumBegins) {
   }
 }
 
-TEST(PublishedModels, TrailingConeOfPsfrdIsContinuousWhereItsMinimumBegins) {
+TEST(PublishedModels, TrailingConePsfrdIsContinuousAtItsMinimum) {
   const Law law("c130-psfrd-2003");
   Sample sample;
   sample.q = 55.0;
@@ -421,7 +421,7 @@ TEST(PublishedModels, TrailingConeOfPsfrdIsContinuousWhereItsMinimumBegins) {
 }
 
 // nimbus takes 3 deg and says nothing.
-TEST(PublishedModels, AMissingAngleOfAttackIsToldNotReplaced) {
+TEST(PublishedModels, MissingAttackAngleIsReported) {
   Sample sample;
   sample.attack = missing<double>();
   for (const char* name : {"c130-psfd-2014", "c130-psfd-2016", "c130-psfrd-2014", "c130-psfrd-2016",

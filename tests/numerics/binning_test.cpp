@@ -82,7 +82,7 @@ TEST(Binning, EveryRecordOfABinCountsOnceSoSumsStay) {
   EXPECT_LE(counts.maxCoeff(), 4.0);
 }
 
-TEST(Binning, CellsThatAreLessThanHalfFullAreLeftOutAndEndAStretch) {
+TEST(Binning, CellsBelowHalfFullEndAStretch) {
   std::vector<double> residual(20, 1.0);
   residual[4] = residual[5] = missing;                   // half of the second cell is there
   residual[12] = residual[13] = residual[15] = missing;  // a quarter of the fourth

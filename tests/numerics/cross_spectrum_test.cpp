@@ -84,7 +84,7 @@ TEST(CrossSpectrum, ShowsALagByLessDelayAtShortPeriods) {
   }
 }
 
-TEST(CrossSpectrum, KnowsWhatHasNothingToDoWithEachOther) {
+TEST(CrossSpectrum, UnrelatedSeriesHaveNoCoherence) {
   const CrossSpectrum found = cross_spectrum(white(8000, 4), white(8000, 5), times(8000, 1.0), 1.0);
   std::size_t delays = 0;
   for (std::size_t k = 0; k < found.period.size(); ++k) {

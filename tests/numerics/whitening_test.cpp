@@ -91,7 +91,7 @@ TEST(Whitening, TurnsTheCovarianceOfSlowPartsIntoUnity) {
   }
 }
 
-TEST(Whitening, OfAnAutoregressionAloneIsThatOfVanishingSlowParts) {
+TEST(Whitening, PureAutoregressionIsLimitOfVanishingDrift) {
   std::vector<double> residual(60, 1.0);
   residual[2] = residual[5] = missing;  // a stretch that is shorter than the autoregression
   for (std::size_t i = 20; i < 30; ++i) residual[i] = missing;

@@ -40,7 +40,7 @@ std::string joined(const std::vector<std::string>& parts) {
 
 std::string number(std::size_t value) { return std::to_string(value); }
 
-TEST(Communicator, GathersWhatAllHaveInTheOrderOfRanks) {
+TEST(Communicator, GathersValuesInRankOrder) {
   const auto gather = [](Communicator& comm) {
     const std::string first = joined(comm.gather(std::string(comm.rank(), 'x')));
     return first + joined(comm.gather(std::string("\0\n", 2) + number(comm.rank()), 7));
@@ -50,7 +50,7 @@ TEST(Communicator, GathersWhatAllHaveInTheOrderOfRanks) {
   EXPECT_EQ(gather(serial_communicator()), "<><" + zero + "0>");
 }
 
-TEST(Communicator, FailsOnAllMembersWithTheErrorThatOneAloneWouldMeetFirst) {
+TEST(Communicator, AllMembersFailWithTheEarliestError) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 1) comm.fail(Error(Error::Code::unit, "flight 5"), 6);
     if (comm.rank() == 2) comm.fail(Error(Error::Code::file, "flight 3"), 4);
@@ -72,7 +72,7 @@ TEST(Communicator, MayGoOnAfterAnErrorThatAllKnowOf) {
   EXPECT_THAT(each_of(3, work), Each("<no unit><no unit><no unit>"));
 }
 
-TEST(Communicator, ToldByTheLastWordsOfAMemberWhyNothingComesOfItAnyMore) {
+TEST(Communicator, LastMessageExplainsMemberFailure) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 1) return "left: " + std::string(comm.leave(Error("no memory"))->what());
     std::string said;
@@ -88,7 +88,7 @@ TEST(Communicator, ToldByTheLastWordsOfAMemberWhyNothingComesOfItAnyMore) {
   EXPECT_THAT(each_of(3, work), Each("left: no memory"));
 }
 
-TEST(Communicator, LeavesWithoutAWordWhereAllAreDone) {
+TEST(Communicator, FinishedMembersExitSilently) {
   const auto work = [](Communicator& comm) {
     comm.gather("");
     return comm.leave() ? "error" : "done";
@@ -97,7 +97,7 @@ TEST(Communicator, LeavesWithoutAWordWhereAllAreDone) {
   EXPECT_THAT(each_of(1, work), ElementsAre("done"));
 }
 
-TEST(Communicator, FailsWhereMembersComeToDifferentNumbersOrPlaces) {
+TEST(Communicator, DifferentResultsOrPlacesAreAnError) {
   EXPECT_THAT(each_of(3, [](Communicator& comm) { return joined(comm.gather("", comm.rank() / 2)); }),
               Each(HasSubstr("different results")));
   const auto stops_early = [](Communicator& comm) {

@@ -41,7 +41,7 @@ std::vector<std::uint64_t> loads(std::size_t members, const std::vector<std::uin
   return load;
 }
 
-TEST(FlightPartition, GivesEveryFlightToOneMemberAndAboutAsMuchToEach) {
+TEST(FlightPartition, FlightsAreAssignedOnceWithBalancedLoad) {
   std::mt19937 chance(1);
   std::vector<std::uint64_t> sizes;
   for (int flight = 0; flight < 60; ++flight) sizes.push_back(1'000'000 + chance() % 9'000'000);
@@ -94,7 +94,7 @@ Part part_of(std::size_t flight) {
   return part;
 }
 
-TEST(FlightPartition, GathersThePartsOfAllFlightsBitByBitInTheirOrder) {
+TEST(FlightPartition, GatheredPartsKeepBitsAndFlightOrder) {
   constexpr std::size_t flights = 7;
   std::vector<Part> alone_parts(flights);
   for (std::size_t flight = 0; flight < flights; ++flight) alone_parts[flight] = part_of(flight);

@@ -49,7 +49,7 @@ TEST(InACopy, ACrashTakesOneResultAlong) {
                                    std::nullopt));
 }
 
-TEST(InACopy, WhatSpoilsTheCopyIsNotTheFaultOfTheNext) {
+TEST(InACopy, CrashAffectsOnlyItsOwnCopy) {
   static bool is_spoilt = false;
   const auto results = in_a_copy(3, max_seconds, [](std::size_t i) -> std::string {
     if (is_spoilt) std::abort();

@@ -123,7 +123,7 @@ TEST(AirData, EnergyAndEntropyAreConserved) {
   }
 }
 
-TEST(AirData, HeatingIsWhatMachNumberTemperatureAndAirspeedShare) {
+TEST(AirData, HeatingRelatesMachTemperatureAndAirspeed) {
   // To a few units of the last place of each factor.
   for (const double e_over_p : {0.0, 0.01, 0.05}) {
     const MoistAir<double> air = moist_air(e_over_p);

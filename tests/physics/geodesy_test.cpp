@@ -101,7 +101,7 @@ TEST(Geodesy, GeopotentialHeightAgreesWithTheGuideOfTheWmo) {
   }
 }
 
-TEST(Geodesy, GeopotentialHeightIsThatOfTheStandardAtmosphere) {
+TEST(Geodesy, GeopotentialHeightMatchesStandardAtmosphere) {
   // US Standard Atmosphere 1976, table I: heights in whole metres, at the latitude of standard gravity, of an
   // earth whose gravity falls with the radius 6356.766 km (Lambert).
   constexpr double latitude = 45.5425;

@@ -83,7 +83,7 @@ double exact_cosine(double elevation, double azimuth, double attack, double side
   return b[0] * s[0] + b[1] * s[1] + b[2] * s[2];
 }
 
-TEST(BeamCosine, IsTheProductOfTheUnitVectorsWhereOneAngleIsNotZero) {
+TEST(BeamCosine, MatchesUnitVectorsWithOneNonzeroAngle) {
   for (double angle = -8; angle <= 8; angle += 0.5) {
     EXPECT_NEAR(beam_cosine(angle, 0.0, 0.0, 0.0), exact_cosine(angle, 0, 0, 0), 1e-15) << angle;
     EXPECT_NEAR(beam_cosine(0.0, angle, 0.0, 0.0), exact_cosine(0, angle, 0, 0), 1e-15) << angle;
@@ -255,7 +255,7 @@ TEST(Approach4, IsRefusedWithItsReasonAndWhatToUseInstead) {
   EXPECT_EQ(refusal.find('\n'), std::string::npos);
 }
 
-TEST(TwinIdentity, CorrectedPressuresReturnTheLasersAirspeedWhateverTheTemperature) {
+TEST(TwinIdentity, CorrectedPressuresGiveLaserAirspeed) {
   // With delta-p of the same sample, the airspeed of the thermometer is the laser's own: a test of reverse
   // headings then tests the laser alone.
   over_the_envelopes([](const Flight& f, const RecoveryFactor&) {

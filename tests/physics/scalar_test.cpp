@@ -57,7 +57,7 @@ TEST(Scalar, ArchetypeConvertsToNothing) {
   static_assert(!std::is_convertible_v<archetype::Truth, bool>);
 }
 
-TEST(Scalar, AllOfThePhysicsCompilesForAScalarThatIsNoDouble) {
+TEST(Scalar, PhysicsCompilesForNonDoubleScalar) {
   // Powers are exp(y log x) there instead of pow: 1e-15 relative, which chi turns into 1e-12 hPa of 1000.
   for (const auto& [p, q, v, T, e, mach] :
        {std::array{700.0, 68.0, 120.0, 275.0, 4.0, 0.36}, {250.0, 121.0, 230.0, 245.0, 0.05, 0.77}}) {

@@ -151,7 +151,7 @@ std::vector<std::size_t> samples_of(const SimulationSummary& summary) {
   return samples;
 }
 
-TEST(Coverage, IsTwoThirdsWithinOneAndNineteenOfTwentyWithinTwo) {
+TEST(Coverage, SharesWithinOneAndTwoSigmaAreNormal) {
   const test::TemporaryDirectory directory;
   const ModelDefinition file = model();
   std::array<Shares, compared.size()> shares{};

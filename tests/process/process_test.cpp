@@ -814,7 +814,7 @@ TEST_F(NoisyLag, IsUndoneWhereThereIsMoreSignalThanNoise) {
   EXPECT_LT(scatter(corrected, 100, 1000), 2.0 * noise);
 }
 
-TEST_F(NoisyLag, IsLeftWhereItWouldAddMoreNoiseThanItTakesErrorAway) {
+TEST_F(NoisyLag, LagIsSkippedIfNoiseExceedsErrorReduction) {
   constexpr double noise = 0.1;
   const ProcessSummary summary = run(0.0, noise);
   EXPECT_THAT(summary.notes,

@@ -211,7 +211,7 @@ TEST(Chain, AddsEffectsWhateverTheirOrderInTheModel) {
               1e-12);
 }
 
-TEST(Chain, ScalesAnEffectAtEveryPlaceByTheMeasuredPressures) {
+TEST(Chain, EffectsScaleWithMeasuredPressures) {
   // A scaled effect is the formula with the pressures written out. To rounding of some products.
   const Recorded recorded = truth.recorded();
   const auto corrected = [&](const ModelEffect& effect) {
@@ -240,7 +240,7 @@ TEST(Chain, WithoutEffectsCorrectsNothing) {
   EXPECT_EQ(s[Quantity::corrected_static_pressure], 700.0);
 }
 
-TEST(Policy, TaperIsContinuousAtItsEndAndZeroWithoutAirflow) {
+TEST(Policy, TaperIsContinuousAndZeroWithoutAirflow) {
   Model model = truth.model();
   model.policy.taper_below = 40;
   const auto defect = [&model](double q) {
@@ -364,7 +364,7 @@ TEST(Air, TakesAnAmbientTemperatureAsItIs) {
   EXPECT_NEAR(s[Quantity::lams_static_defect], truth.defect(), 1e-9);
 }
 
-TEST(Air, KeepsARecordedAmbientTemperatureBesideAThermometer) {
+TEST(Air, RecordedAmbientIsKeptWithThermometer) {
   // A radiometer's, 1 K warmer than the thermometer says: approach 3 stands on it, whenever it is asked.
   Recorded recorded = with(truth.recorded(), Quantity::ambient_temperature, truth.T + 1);
   Model model = truth.model();
@@ -540,7 +540,7 @@ TEST(Lams, ApproachesAgree) {
   EXPECT_NEAR(fly(model, truth.recorded())[Quantity::lams_static_defect], one, 1e-6);
 }
 
-TEST(Lams, WithItsOwnCorrectionReturnsItsAirspeedAndTheThermometersTemperature) {
+TEST(Lams, CorrectionReturnsAirspeedAndTemperature) {
   Recorded warm = truth.recorded();
   warm[Quantity::recovery_temperature] += 0.5;
   const Chain chain = build(truth.model(), warm);
@@ -613,7 +613,7 @@ Model radome_model() {
   return model;
 }
 
-TEST(Upstream, TheRadomeRatioMovesItsEffectsAndTheAngleOfAttack) {
+TEST(Upstream, RadomeRatioMovesEffectsAndAttackAngle) {
   // Sensitivity 5 % high, zero 0.01 high, and 0.005 higher each hour: at two hours 0.95 (-0.3) - 0.02.
   const Model drifting = with(radome_model(), catalogued("adif-drift", {0.05, 0.01, 0.005}));
   const Recorded recorded = with(radome_record(), Quantity::time, 7200);
@@ -653,7 +653,7 @@ TEST(Upstream, ARecordedAngleIsNotOfTheRadomeRatio) {
   EXPECT_NEAR(fly(drifting, recorded)[Quantity::attack_ratio], -0.2, 1e-12);
 }
 
-TEST(Upstream, VapourThatIsNeglectedAndCountedAgainGivesMoistAir) {
+TEST(Upstream, NeglectedVapourAddedBackGivesMoistAir) {
   // To the rounding of the chain, whatever the humidity is recorded as; with supersaturated air at its limit.
   const Recorded dry = without(truth.recorded(), Quantity::vapor_pressure);
   for (const auto& [humidity, value] : {std::pair{Quantity::vapor_pressure, 3.0},
@@ -923,7 +923,7 @@ TEST(QualityBits, ADefectBelowTheNegativeDynamicPressureIsNone) {
     EXPECT_TRUE(std::isnan(s[gone])) << pcor::info_of(gone).name;
 }
 
-TEST(QualityBits, ALaserThatAsksForADefectBeyondTheDynamicPressureIsNotBelieved) {
+TEST(QualityBits, LaserDefectAboveDynamicPressureIsRejected) {
   // Half the airspeed asks for three quarters of the dynamic pressure; 1.6 times it for more than all of it.
   const double beam = truth.recorded()[Quantity::lams_airspeed];
   EXPECT_FALSE(std::isnan(fly(truth.model(), with(truth.recorded(), Quantity::lams_airspeed,
@@ -1167,7 +1167,7 @@ TEST(Additions, DoWhatAnEffectThereDoes) {
   }
 }
 
-TEST(Additions, AskForNothingAndChangeNothingWhereAPlaceIsOfNoUse) {
+TEST(Additions, UnusedPlacesNeedAndChangeNoData) {
   // A model whose angle of attack is recorded reads no radome; one without a laser has no beam.
   const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);
   Model model = with({}, catalogued("static-attack", {0.001}));

@@ -492,7 +492,7 @@ std::size_t expect_right_or_told(const Lagged& lagged) {
   return count;
 }
 
-TEST(LoopInterval, ThatChangesOrIsAnotherGivesTheRightResultOrABit) {
+TEST(LoopInterval, ChangedIntervalGivesCorrectResultOrBit) {
   EXPECT_GT(expect_right_or_told(run_lagged(1.0, steps({{100, 1.0}, {90, 0.25}, {100, 1.0}}))), 150U);
   EXPECT_GT(expect_right_or_told(run_lagged(1.0, steps({{100, 1.0}, {90, 1.4}}))), 80U);
   expect_right_or_told(run_lagged(25.0, steps({{2000, 0.01}})));
@@ -755,7 +755,7 @@ TEST(LoopLams, IsRefusedWithoutItsAirspeed) {
 }
 
 // Approach 3 takes the radiometer's temperature, not the thermometer's that the loop might derive.
-TEST(LoopLams, UsesARecordedAmbientTemperatureBesideARecoveryTemperature) {
+TEST(LoopLams, RecordedAmbientIsUsedWithRecovery) {
   Model model = c130();
   model.lams.approach = pcor::LamsApproach::with_temperature;
   Sample radiometer = with(level, {{Quantity::ambient_temperature, 274.0}});
@@ -969,7 +969,7 @@ Sample random_flight(bool jet, const pcor::RecoveryFactor& recovery, std::mt1993
 // With the pressures corrected by LAMS sample by sample, the airspeed is that of the laser and the
 // temperature that of the thermometer, whatever they are, and whatever calibrates the temperature: memo eq.
 // 11 and 12.
-TEST(LoopIdentity, LamsReturnsItsAirspeedAndTheThermometersTemperature) {
+TEST(LoopIdentity, LamsReturnsAirspeedAndTemperature) {
   std::mt19937 random(20120106);
   for (const bool jet : {false, true}) {
     for (const bool calibrated : {false, true}) {

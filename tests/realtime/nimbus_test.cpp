@@ -310,7 +310,7 @@ std::vector<double> seconds(double from, double to) {
   return result;
 }
 
-TEST(NimbusSystem, ComputesWhatPlainLoopsDoForTwoSystemsAtBothRates) {
+TEST(NimbusSystem, TwoSystemsMatchPlainLoopsAtBothRates) {
   expect_plain_loops(seconds(36000.0, 36040.0), raw_value);
 }
 
@@ -444,7 +444,7 @@ TEST(NimbusSystem, GivesAResultToSeveralEntries) {
   }
 }
 
-TEST(NimbusSystem, AResultOfAnEarlierSampleIsGivenToNoneOfItsEntries) {
+TEST(NimbusSystem, EarlierSampleResultReachesNoOtherEntry) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, {{"PCOR", fuselage_inputs, Fuselage::compute},
                           {"PSXC", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>},
@@ -511,7 +511,7 @@ TEST(NimbusSystem, AsksForTheTimeOnceInASample) {
   EXPECT_EQ(Clock::asked(), 26);
 }
 
-TEST(NimbusSystem, StartsAnewWhenReset) {
+TEST(NimbusSystem, ResetRestartsTheState) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());
   for (const double second : seconds(0.0, 8.0)) table.compute(second, raw_value);
@@ -634,7 +634,7 @@ TEST(NimbusDefaults, NameEveryCoefficientOnce) {
                                                              "PCOR.my-thrust.k0", "PCOR.my-thrust.k1"));
 }
 
-TEST(NimbusDefaults, TellOfOverridesThatNothingReads) {
+TEST(NimbusDefaults, UnusedOverridesAreReported) {
   const Defaults defaults(
       "RECFB 1 0.95\n"
       "PCOR.static-constant.a0 1 0.005\n"

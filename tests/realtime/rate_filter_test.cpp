@@ -213,7 +213,7 @@ TEST(RateFilter, MakesUpNothingBeyondAGapThatADelayReachesOver) {
   EXPECT_TRUE(std::isnan(rate_of(filter, holed)));
 }
 
-TEST(RateFilter, CutsOffWhereItIsTold) {
+TEST(RateFilter, CutOffMatchesTheRequest) {
   RateFilter filter(1.0, 0.0, 10.0);
   EXPECT_NEAR(std::abs(response(filter, 1.0, 10.0)) / std::abs(ideal(0.0, 10.0)), 0.5, 0.02);
   EXPECT_NEAR(std::abs(response(filter, 1.0, 20.0)) / std::abs(ideal(0.0, 20.0)), 1.0, 0.01);

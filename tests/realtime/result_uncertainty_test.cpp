@@ -213,7 +213,7 @@ TEST(ResultUncertainty, OfADewPointAndOfARecordedTemperature) {
   }
 }
 
-TEST(ResultUncertainty, FollowsTheTaperAndKeepsThatOfTheLawAtItsMinimum) {
+TEST(ResultUncertainty, TaperAndMinimumKeepLawUncertainty) {
   Model model = law();
   model.policy.taper_below = 100.0;
   const Recorded recorded = everything_recorded();
@@ -258,7 +258,7 @@ TEST(ResultUncertainty, CountsCorrelations) {
   }
 }
 
-TEST(ResultUncertainty, ScalesWithTheRootOfTheCovarianceAndIsZeroWithoutOne) {
+TEST(ResultUncertainty, CovarianceRootScalesUncertainty) {
   const Model model = law();
   ModelUncertainty once = of_parameter(model, 1, 0.001);
   once.random[index(Quantity::dynamic_pressure)] = 0.05;
@@ -337,7 +337,7 @@ TEST_F(InALoop, IsMissingWhereItsResultIsAndBackWithIt) {
   }
 }
 
-TEST_F(InALoop, IsFoundAnewWhereThePressuresMove) {
+TEST_F(InALoop, UncertaintyIsUpdatedWithPressures) {
   build(CorrectWith::model);
   EXPECT_NEAR(run()[Quantity::static_defect_uncertainty], 0.07, 1e-12);
   EXPECT_NEAR(run(Quantity::static_pressure, 690.0)[Quantity::static_defect_uncertainty], 0.07, 1e-12)
@@ -372,7 +372,7 @@ TEST(ResultUncertainty, RefusesACovarianceThatIsNotOfTheModel) {
   EXPECT_EQ(error_of({1e-8, 1e-8, 1e-8, 1e-8}), "no error");
 }
 
-TEST(Covariance, IsToldFromWhatIsNone) {
+TEST(Covariance, InvalidMatrixIsRefused) {
   EXPECT_TRUE(is_covariance({}, 0));
   EXPECT_TRUE(is_covariance({0.0}, 1));
   EXPECT_FALSE(is_covariance({-1.0}, 1));

@@ -154,7 +154,7 @@ TEST(Stages, KnowTheSourcesOfWhatIsDerived) {
   }
 }
 
-TEST(Stages, WithoutLaserAndTemperatureReadAndWriteWhatTheySay) {
+TEST(Stages, StatedAccessHoldsWithoutLaserAndTemperature) {
   Model model;
   model.effects = {{"static-qp", {0.03}}, {"static-mach2", {0.01}}};
   expect_true_words(model, {Quantity::static_pressure, Quantity::dynamic_pressure}, CorrectWith::model);

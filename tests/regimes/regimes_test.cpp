@@ -335,7 +335,7 @@ TEST(Regimes, AreFoundAsTheirWordsSay) {
 }
 
 // Every number that the search goes by is in the words for some regime: another number, other words.
-TEST(Regimes, AreToldWithAllTheirNumbers) {
+TEST(Regimes, CriteriaTextHasAllNumbers) {
   static_assert(std::is_trivially_copyable_v<RegimeCriteria>);
   for (std::size_t number = 0; number < sizeof(RegimeCriteria) / sizeof(double); ++number) {
     RegimeCriteria criteria;
@@ -437,7 +437,7 @@ TEST(Regimes, CanDoWithoutRoll) {
   EXPECT_THAT(of(Regime::reverse_heading, found), SizeIs(2));
 }
 
-TEST(Regimes, ThatCannotBeToldAreAbsent) {
+TEST(Regimes, UndeterminedRegimesAreAbsent) {
   Story story = tell();
   FlightMotion motion = story.motion;
   motion.sideslip.clear();
@@ -539,7 +539,7 @@ TEST(Regimes, OfAClimbAreNoManoeuvres) {
   EXPECT_THAT(found, SizeIs(3));
 }
 
-TEST(Regimes, AHalfTurnBetweenDifferentHeightsIsNoReverseHeading) {
+TEST(Regimes, HalfTurnWithClimbIsNotReverseHeading) {
   Pilot pilot;
   pilot.level(300);
   pilot.turn(180.0, 20.0);
@@ -548,7 +548,7 @@ TEST(Regimes, AHalfTurnBetweenDifferentHeightsIsNoReverseHeading) {
   EXPECT_THAT(of(Regime::reverse_heading, find_regimes(pilot.motion())), IsEmpty());
 }
 
-TEST(Regimes, AQuarterTurnIsNoReverseHeading) {
+TEST(Regimes, QuarterTurnIsNotReverseHeading) {
   Pilot pilot;
   pilot.level(300);
   pilot.turn(90.0, 20.0);
@@ -597,7 +597,7 @@ TEST(Regimes, OfTheGvAskForMoreAcceleration) {
   EXPECT_THAT(of(Regime::speed_run, find_regimes(pilot.motion(), RegimeCriteria::gv())), IsEmpty());
 }
 
-TEST(Regimes, RefuseWhatIsNoMotion) {
+TEST(Regimes, InputWithoutMotionIsRefused) {
   FlightMotion motion;
   motion.time = {1.0, 2.0, 2.0};
   EXPECT_THROW(find_regimes(motion), Error);
@@ -606,7 +606,7 @@ TEST(Regimes, RefuseWhatIsNoMotion) {
   EXPECT_THROW(find_regimes(motion), Error);
 }
 
-TEST(Regimes, OfSamplesBeginWithTheirIntervalAndEndBeforeItsEnd) {
+TEST(Regimes, SampleRegimesUseHalfOpenIntervals) {
   const std::vector<Interval> intervals{{Regime::level, 1.0, 3.0}, {Regime::turn, 2.0, 10.0}};
   const std::vector<RegimeSet> regimes = regimes_of_samples({0.0, 1.0, 2.0, 3.0}, intervals);
   const auto has = [&](std::size_t sample, Regime regime) {

@@ -317,7 +317,7 @@ TEST(Report, MayHaveNoSamples) {
   EXPECT_THAT(report_html(report), HasSubstr("<h1>Bars only</h1>"));
 }
 
-TEST(Report, IsWrittenWholeOrNotAtAll) {
+TEST(Report, FileIsWrittenAtomically) {
   const test::TemporaryDirectory directory;
   const auto path = directory / "report.html";
   Report report = report_of(3, 1);

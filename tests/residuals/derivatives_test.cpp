@@ -214,7 +214,7 @@ std::vector<Jet> dual(const std::vector<double>& parameters) {
 
 }  // namespace
 
-TEST(Chain, StaticDefectKeepsAStateOfNumbersApartFromParametersThatVary) {
+TEST(Chain, StaticDefectSeparatesStateFromParameters) {
   // The Jacobian of eq. 18 is its basis: p, ADIFR/QCR p and q.
   const Chain chain = build(memo_model(false));
   State<double> state = recorded_state<double>();
@@ -272,7 +272,7 @@ TEST(Chain, EveryStageHasItsDerivative) {
   }
 }
 
-TEST(Chain, TheLagOfTheLineMovesLamsByTheRateOfThePressure) {
+TEST(Chain, LineLagMovesLamsByPressureRate) {
   // An error of the line leaves pt, so delta-p from LAMS loses the whole of it: d/dtau = -dp/dt.
   const Chain chain = build(memo_model(true));
   const State<Jet> state = run(chain, dual(chain.parameters()));

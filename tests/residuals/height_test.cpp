@@ -51,7 +51,7 @@ TEST(Height, SeesAThermometerThatIsOffInEveryClimb) {
   }
 }
 
-TEST(Height, DoesNotSeeADefectThatIsAConstantPartOfThePressure) {
+TEST(Height, ProportionalPressureDefectIsInvisible) {
   for (const double value : residuals(climb(), made::air_model({{"static-constant", 0.01}}))) {
     if (std::isnan(value)) continue;
     ASSERT_NEAR(value, 0.0, 1e-9);

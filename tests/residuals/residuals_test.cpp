@@ -87,7 +87,7 @@ TEST(Residuals, AgainstTheTruePressureAreThoseOfTheSensors) {
   EXPECT_LT(rms_of(tested, tested.values(tested.parameters().data())), 0.03);
 }
 
-TEST(Residuals, AgainstLamsAreTheDefectOfTheLaserLessThatOfTheModel) {
+TEST(Residuals, LamsResidualIsLaserMinusModelDefect) {
   const Residuals tested = residuals(laser_model(), *pcor::lams_reference());
   const double* const at = tested.parameters().data();
   const std::vector<double> values = tested.values(at);

@@ -572,7 +572,7 @@ TEST(Simulate, AirInTheLineHasWeight) {
   }
 }
 
-TEST(Simulate, ForwardAccelerationIsThatOfTheSpeedAndOfGravity) {
+TEST(Simulate, ForwardAccelerationMatchesSpeedAndGravity) {
   const Simulated flight(head + noiseless + calm + systems + aloft +
                          leg("speed-run", "low = 100\nhigh = 130\nrate = 0.5"));
   const auto speed = flight("TASX", "m/s"), forward = flight("BLONA", "m/s2"),

@@ -180,7 +180,7 @@ TEST(HeightRecord, KeepsOnlyWhatClimbsFastEnough) {
   for (const HeightBlock& block : climbs.blocks) EXPECT_GE(std::abs(block.climb), 2.0);
 }
 
-TEST(HeightRecord, ArchivedStepsTakeThePlaceOfPressureAndHumidity) {
+TEST(HeightRecord, ArchivedStepsReplacePressureAndHumidity) {
   const pcor::internal::FlightAir air = made::air({});
   std::vector<double> steps(air.size(), nan);
   for (std::size_t i = 1; i < air.size(); ++i)

@@ -60,14 +60,14 @@ TEST(IsobarSlope, LevelLegsFindIt) {
   EXPECT_NEAR(slope.north, -5e-5, 1e-5);
 }
 
-TEST(IsobarSlope, WhatIsTakenOffLeavesNothing) {
+TEST(IsobarSlope, SubtractedSlopeLeavesNoResidual) {
   HeightRecord record = record_of(sloping());
   const double before = range_of_excess(record);
   take_off_isobar_slope(record, IsobarSlope::whole_flight);
   EXPECT_LT(range_of_excess(record), 0.15 * before);
 }
 
-TEST(IsobarSlope, NothingIsTakenOffForNoneAndFitted) {
+TEST(IsobarSlope, ModesNoneAndFittedSubtractNoSlope) {
   for (const IsobarSlope option : {IsobarSlope::none, IsobarSlope::fitted}) {
     HeightRecord record = record_of(sloping());
     const double before = range_of_excess(record);
@@ -113,7 +113,7 @@ TEST(IsobarSlope, EstimatesLeaveAPartForTheLikelihood) {
   EXPECT_EQ(record.slope_left, 1.0);
 }
 
-TEST(IsobarSlope, WhatTheFlightDoesNotTellIsLeftToTheLikelihood) {
+TEST(IsobarSlope, UndeterminedSlopeIsPassedToTheLikelihood) {
   pcor::internal::FlightAir air = made::air(sloping());
   air.east_speed.clear();
   air.north_speed.clear();
@@ -134,7 +134,7 @@ TEST(IsobarSlope, WhatTheFlightDoesNotTellIsLeftToTheLikelihood) {
   EXPECT_THAT(no_directions.notes, ElementsAre(HasSubstr("heading"), HasSubstr("--slope fitted")));
 }
 
-TEST(IsobarSlope, AFlightAlongALineTakesTheOtherDirectionForLevel) {
+TEST(IsobarSlope, StraightFlightAssumesLevelCrossTrack) {
   made::AirPlan plan = sloping();
   plan.turning = 1e9;  // to the north only
   const pcor::internal::IsobarSlopeEstimate slope =

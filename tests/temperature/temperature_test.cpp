@@ -281,7 +281,7 @@ TEST_F(TemperatureRecovery, WithAllThatIsUsuallyWrong) {
 
 // Humidity
 
-TEST_F(Temperature, AThermometerIsNotBlamedForTheHumidity) {
+TEST_F(Temperature, HumidityErrorIsNotAssignedToThermometer) {
   // A vapour pressure 20 % low is twice its usual error, and like 0.35 K where the likelihood takes it for
   // true.
   for (std::uint64_t seed = 51; seed < 56; ++seed) {
@@ -314,7 +314,7 @@ TEST_F(Temperature, DryAirIsRefusedUnlessItIsWanted) {
 
 // The law
 
-TEST_F(Temperature, AnErrorOfTheLawIsNoContradictionOfLeastSquares) {
+TEST_F(Temperature, LawErrorDoesNotContradictLeastSquares) {
   // Between climbs and descents the error with the attack looks like a slope of isobars to an estimate that
   // takes the law for right; least squares then contradicted the likelihood in 13 of 20 flights.
   Scenario scenario = one_climb();
@@ -346,7 +346,7 @@ TEST_F(Temperature, ProfileAndCurvatureAgree) {
   }
 }
 
-TEST_F(Temperature, TheModelFileHasWhatTheResultSays) {
+TEST_F(Temperature, ModelFileMatchesTheResult) {
   const TemperatureResult result = fit_temperature({fly(one_climb(), 1)}, model(), of_degree(1));
   const ModelDefinition read = parse_model(write_model(result.model), "made");
   const ModelEffect& effect = read.model.effects.back();
@@ -520,7 +520,7 @@ TEST_F(Temperature, ASmallGainIsNoReasonForACoefficient) {
 
 // Slopes of isobars
 
-TEST_F(Temperature, StatedErrorsKnowWhatAnEstimateOfTheSlopeLeaves) {
+TEST_F(Temperature, StatedErrorsIncludeSlopeEstimateRemainder) {
   // The wind of the scenario is not the one in balance with its isobars. 8 normal scores have an rms of more
   // than 1.7 once in 300 times; without a slope in the errors it was 6.
   double squares = 0.0;
@@ -541,7 +541,7 @@ TEST_F(Temperature, StatedErrorsKnowWhatAnEstimateOfTheSlopeLeaves) {
 
 // In turn with the pressure
 
-TEST_F(Temperature, InTurnComesToRest) {
+TEST_F(Temperature, AlternatingFitConverges) {
   const std::vector<fs::path> flights = fly_several(one_climb(), 1, 2);
   ModelDefinition start = model();
   start.model.effects[0].parameters = {0.006};  // by 0.0019 of the pressure too much
@@ -573,7 +573,7 @@ TEST_F(Temperature, InTurnComesToRest) {
   EXPECT_LT(again.rounds[0].temperature_change, 1e-3);  // K
 }
 
-TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
+TEST_F(Temperature, AlternatingFitReportsDegreeSelection) {
   const std::vector<fs::path> flights{fly(one_climb(), 1)};
   const IterativeCalibration found =
       calibrate_iteratively(flights, model(), {pcor::lams_reference()}, {}, {});
@@ -585,7 +585,7 @@ TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
     EXPECT_THAT(round.coefficients, SizeIs(found.rounds.front().coefficients.size()));
 }
 
-TEST_F(Temperature, InTurnSaysHowFarThePressureMoved) {
+TEST_F(Temperature, AlternatingFitReportsPressureChange) {
   const std::vector<fs::path> flights{fly(one_climb(), 1)};
   const IterativeCalibration found =
       calibrate_iteratively(flights, model(), {pcor::lams_reference()}, {}, of_degree(1));
@@ -668,7 +668,7 @@ TEST_F(Temperature, MakesAReport) {
 
 // What cannot be done
 
-TEST_F(Temperature, RefusesWhatTellsNothing) {
+TEST_F(Temperature, UninformativeFlightsAreRefused) {
   EXPECT_THAT([] { fit_temperature({}, model()); }, ThrowsMessage<Error>(HasSubstr("at least one flight")));
   EXPECT_THROW(calibrate_iteratively({}, model(), {pcor::lams_reference()}, {}, {}), Error);
   TemperatureOptions archived;

@@ -40,7 +40,7 @@ namespace pcor {
 namespace {
 
 /// A unit that cannot be read for want of memory is no unit that is wrong: what it is of would be left out.
-TEST(FailingUnits, AreNotTakenForWrongOnes) {
+TEST(FailingUnits, LibraryFailureIsNotReportedAsInvalidUnit) {
   EXPECT_TRUE(is_convertible("mbar", "hPa"));
   for (const char* const function : {"ut_parse", "ut_are_convertible"}) {
     failing = function;
