@@ -7,7 +7,7 @@
 namespace pcor {
 namespace {
 
-/// What a shell makes of a command's text.
+/// Arguments that a shell reads from the text of a command.
 std::string output_of(const std::string& command) {
   std::FILE* const pipe = popen(command.c_str(), "r");
   std::string text;

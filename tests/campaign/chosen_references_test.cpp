@@ -49,7 +49,7 @@ TEST(ChosenReferences, ExcludedReferenceHasAReason) {
 }
 
 TEST(ChosenReferences, WithoutALaserAreLeftToTheUser) {
-  // The others see changes of the static pressure, or nothing of it.
+  // The other references are sensitive to static-pressure changes, or insensitive.
   ModelDefinition model = laser_model();
   model.variables.erase(Quantity::lams_airspeed);
   EXPECT_THROW(pcor::read_references({}, model, {short_flight()}), pcor::Error);

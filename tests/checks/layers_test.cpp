@@ -1,4 +1,4 @@
-// The check of layers: what it says, and why it does not run where it cannot.
+// The check of layers: its result, and the reasons for no result.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ TEST(LayersCheck, CorrectThermometerPasses) {
   const CheckResult result = check_layers({made(0.0)});
   EXPECT_EQ(result.name, "layers");
   ASSERT_TRUE(result.ran) << result.reason;
-  // One flight, with the usual errors of delta-p, does not tell 0.3 K from none by two errors.
+  // One flight, with the usual errors of delta-p, does not detect 0.3 K at two standard errors.
   EXPECT_EQ(result.verdict, CheckVerdict::inconclusive);
   EXPECT_EQ(numbers_of(result).at("layers"), 8.0);
   EXPECT_NEAR(numbers_of(result).at("offset_k"), 0.0, 0.01);

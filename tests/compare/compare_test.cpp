@@ -98,7 +98,7 @@ TEST(Compare, ReportsBiasFromLaserCalibration) {
   const double shift = comparison.models[1].all.bias - comparison.models[0].all.bias;
   // The residual is not linear in the speed: 1 % for a step of 0.2 %.
   EXPECT_NEAR(comparison.models[0].reference_error / std::abs(shift), 1.0, 0.01);
-  EXPECT_EQ(comparison.models[1].reference_error, 0.0);  // the model says what its laser is off by
+  EXPECT_EQ(comparison.models[1].reference_error, 0.0);  // the model states the error of its laser
 }
 
 TEST(Compare, FindsWhatTheScenarioFlew) {
@@ -217,7 +217,7 @@ TEST(Compare, OfTwoSystemsGivesTheFiguresOfTheMemo) {
   EXPECT_NEAR(result.total_pressure->slope, 1.0, 1e-4);
   EXPECT_NEAR(result.total_pressure->rms, 0.04, 0.01);
   EXPECT_LT(std::abs(result.total_pressure->mean_difference), 0.01);
-  // Figure 2: slope 0.99985, rms 0.15 hPa; here the law is true, so only the sensors' noise is left.
+  // Figure 2: slope 0.99985, rms 0.15 hPa; here the law is true, so only the sensors' noise remains.
   EXPECT_NEAR(result.models[0].static_pressure.slope, 1.0, 1e-4);
   EXPECT_LT(result.models[0].static_pressure.rms, 0.05);
 }
@@ -267,7 +267,7 @@ TEST(Compare, KeepsRecordsOfChosenFlightsOnly) {
     EXPECT_THAT(pcor::comparison_report(some).summary, testing::Contains(HasSubstr("2 of the 5 flights")));
   };
   expect_the_same(pcor::compare(flights, contenders, options));
-  testing::internal::CaptureStderr();  // in further threads HDF5 tells what netCDF asks it for in vain
+  testing::internal::CaptureStderr();  // in further threads HDF5 prints errors of failed netCDF queries
   pcor::test::run_with_communicator(
       3,
       [&](pcor::Communicator& comm) {

@@ -29,7 +29,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double start = 1321560000.0;  // 2011-11-17 20:00:00 UTC
 
 /// An hour: a climb, a level leg with a yaw manoeuvre, a descent. Two effects are missing, one with sideslip
-/// and one with the vertical speed, and something goes with the torque. The first 100 samples are not used.
+/// and one with the vertical speed, and one error varies with the torque. The first 100 samples are not
+/// used.
 FlightDiagnosis flight(const std::string& name, unsigned seed) {
   constexpr std::size_t count = 3600;
   auto samples = std::make_shared<FlightSamples>();
@@ -165,7 +166,7 @@ Diagnosis partial() {
   return diagnosis;
 }
 
-/// The same flights with nothing in them.
+/// The same flights without missing effects.
 Diagnosis silent() {
   Diagnosis diagnosis = partial();
   diagnosis.verdict = Verdict::silent;
@@ -253,7 +254,7 @@ std::string all_of(const std::vector<std::string>& texts) {
   return all;
 }
 
-/// The words of the page, without its data and its script: nothing in them may be the name of no number.
+/// Words of the page, without its data and its script: no NaN or infinity may be printed.
 std::string split_words(const Report& report) {
   const std::string html = report_html(report);
   const std::string body = html.substr(html.find("<body>"), html.find("id=\"data\"") - html.find("<body>"));

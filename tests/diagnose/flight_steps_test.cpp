@@ -50,7 +50,7 @@ TEST(MeanSteps, DifferingFlightIsFoundWithItsStep) {
   EXPECT_NEAR(steps[2].error, 0.2 * std::sqrt(1.0 / 300.0 + 1.0 / 900.0), 0.002);
   EXPECT_NEAR(steps[2].size, 0.15, 3.0 * steps[2].error);
   EXPECT_LT(steps[2].chance, 1e-6);
-  // The others scatter by the one that differs, so none of them stands out.
+  // The differing flight increases the scatter of the others, so none of the others is significant.
   for (const std::size_t other : {0U, 1U, 3U}) EXPECT_GT(steps[other].chance, 0.05);
 }
 
@@ -113,8 +113,8 @@ TEST(MeanSteps, DriftExplainsAllSteps) {
   EXPECT_GT(flights.steps()[1].chance, 0.05);
 }
 
-// Flights differ from each other by 0.1 hPa at random: of 200 campaigns of six, one flight is to be taken for
-// a step in 2; more than 7 once in 1,000 times.
+// Flights differ from each other by 0.1 hPa at random: of 200 campaigns of six, one flight is expected to be
+// reported as a step in 2; more than 7 once in 1,000 times.
 TEST(MeanSteps, RandomScatterIsNotSignificant) {
   std::mt19937_64 engine(5);
   std::normal_distribution<double> normal;

@@ -25,7 +25,7 @@ Finding step_on(double date) {
   return finding;
 }
 
-/// Of the dates that are tried that which a step between two flights is nearest to.
+/// Tried date nearest to a step between two flights.
 double nearest(const std::vector<double>& tried, double date) {
   return *std::min_element(tried.begin(), tried.end(),
                            [date](double a, double b) { return std::abs(a - date) < std::abs(b - date); });
@@ -52,7 +52,7 @@ TEST(StepDates, OfManyFlightsAreSomeUntilOneIsFound) {
   EXPECT_FALSE(dates.refine({other}));
 }
 
-// A step between so many flights and the others is tried so near that half of its evidence is left at least.
+// A step between two groups of flights is tried near enough to keep half of its evidence at least.
 TEST(StepDates, OfManyFlightsLieCloseAtBothEnds) {
   const StepDates dates(begins(2000));
   for (int before = 1; before < 2000; ++before) {
@@ -69,7 +69,7 @@ TEST(StepDates, OtherSystemFindingsDoNotRefineDates) {
   EXPECT_FALSE(dates.refine({other}));
 }
 
-// Wherever the steps are, first and last flights included, they are found to the flight in a few rounds.
+// Steps at any flight, first and last included, are located to the flight in a few rounds.
 TEST(StepDates, LeadToTheFlight) {
   for (const double truth : {101.0, 350.0, 2099.0}) {
     StepDates dates(begins(2000));
