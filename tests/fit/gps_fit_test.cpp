@@ -52,9 +52,9 @@ RefitResult fit(const std::filesystem::path& path, const ModelDefinition& model,
   return pcor::refit({path}, model, pcor::read_references(references, model, {}).used);
 }
 
-constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // of usual flight
+constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // rms over usual flight
 
-/// By how much delta-p of the fit is off in usual flight, hPa.
+/// Error of the fitted delta-p in usual flight, hPa.
 double error_of(const RefitResult& fit) {
   const std::vector<ModelDefinition> models{fit.model, law()};
   std::vector<double> defects;

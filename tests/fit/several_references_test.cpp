@@ -71,7 +71,7 @@ TEST(SeveralReferences, InsensitiveReferencesChangeNoCoefficient) {
   EXPECT_EQ(both.reference_text, "LAMS");
   ASSERT_EQ(both.further.size(), 1U);
   EXPECT_EQ(both.further.front().reference, "total:PSFRD+QCFR");
-  // 1 % of some 65 hPa.
+  // 1 % of about 65 hPa.
   EXPECT_NEAR(both.further.front().after.bias, -0.65, 0.25);
   EXPECT_EQ(both.further.front().after.rms, both.further.front().before.rms);
 }

@@ -122,7 +122,7 @@ TEST_F(FlightTest, AFileWithoutANameIsRefused) {
   EXPECT_EQ(pcor::test::message_of<Error>([] { Flight{""}; }), "the input has no name; name a netCDF file");
 }
 
-// The netCDF library believes a header, and takes the memory it asks for.
+// The netCDF library trusts a header, and allocates the stated memory.
 TEST_F(FlightTest, DamagedHeaderUsesLittleTimeAndMemory) {
   constexpr int mutations = 250;
   constexpr std::size_t max_mutated = 2048;
@@ -174,7 +174,7 @@ TEST_F(FlightTest, ACountThatTheFileHasNoRoomForIsDamage) {
   for (const int mode : {0, NC_64BIT_DATA}) {
     { NetcdfMaker(path(), mode).time(sequence(100, 5)); }
     std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
-    file.seekp(mode == 0 ? 12 : 16);  // how many dimensions
+    file.seekp(mode == 0 ? 12 : 16);  // number of dimensions
     file.put('\x3f');
     file.close();
     EXPECT_THAT(refusal(), HasSubstr("is truncated or damaged: its header cannot be read"));
@@ -360,7 +360,7 @@ TEST_F(FlightTest, AYearBeforeOrAfterAllFlightsIsRefused) {
   EXPECT_THAT(refusal(), HasSubstr("the time of record 2 is 1.00108e+12 s after 1970-01-01"));
 }
 
-// 20:05:00 in 16 bits is 01:52:44, and nothing in the file tells.
+// 20:05:00 in 16 bits is 01:52:44, and the file gives no hint.
 TEST_F(FlightTest, ATimeInTooFewBitsForADayIsRefused) {
   for (const int type : {NC_SHORT, NC_USHORT, NC_BYTE}) {
     make_with_times({100, 101}, type);
@@ -404,7 +404,7 @@ TEST_F(FlightTest, RatesAbove1000HzAreRefusedOnRead) {
 TEST_F(FlightTest, MoreRecordsThanAFlightCanHaveAreRefusedAtOnce) {
   { NetcdfMaker(path(), NC_64BIT_DATA).time({100, 101}); }
   std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
-  file.seekp(7);  // how many records: 2^35 more
+  file.seekp(7);  // number of records: 2^35 more
   file.put('\x08');
   file.close();
   std::filesystem::resize_file(path(), std::uintmax_t{1} << 40);  // a hole
@@ -617,7 +617,7 @@ TEST_F(FlightTest, TheDefaultFillOfEveryPackedTypeIsMissing) {
     put("INT", NC_INT, NC_FILL_INT);
     put("UINT", NC_UINT, NC_FILL_UINT);
     put("INT64", NC_INT64, static_cast<double>(NC_FILL_INT64));
-    put("UINT64", NC_UINT64, 0);  // its fill is no double
+    put("UINT64", NC_UINT64, 0);  // its fill value is not a double
   }
   {
     int id = 0, number = 0;
@@ -964,8 +964,8 @@ TEST_F(FlightTest, OtherVariablesAreListedAndRefused) {
   EXPECT_EQ(flight.variable("ONE").rate, 1);
 }
 
-// What netCDF keeps of variables is set for those that are read, not for all files of the program that links
-// the library.
+// netCDF cache settings apply to the variables being read, not to all files of the program that links the
+// library.
 TEST_F(FlightTest, LeavesTheChunkCacheOfTheProgramAlone) {
   make_with_times({0, 1, 2});
   const auto cache = [] {
@@ -1073,7 +1073,8 @@ TEST_F(FlightTest, BlocksHoldEachRecordOnceAndReadContiguously) {
   };
   EXPECT_EQ(max_block(NC_NETCDF4, 1000), pcor::records_per_block);
   EXPECT_EQ(max_block(0, 1), pcor::records_per_block);
-  // Records of 4,004 bytes: as many as are in a buffer of 1 MiB wherever the first of them lies in it.
+  // Records of 4,004 bytes: the number in a buffer of 1 MiB, for any position of the first record in the
+  // buffer.
   const std::size_t together = max_block(0, 1000);
   EXPECT_LT(together * 4004, std::size_t{1} << 20);
   EXPECT_GT(together * 4004, std::size_t{1} << 19);

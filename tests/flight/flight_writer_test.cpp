@@ -61,7 +61,7 @@ std::string contents(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// What the netCDF library itself says of a written file.
+/// Description of a written file by the netCDF library itself.
 class Written {
  public:
   explicit Written(const std::filesystem::path& path) {
@@ -172,7 +172,7 @@ class FlightWriterTest : public testing::Test {
     return message;
   }
 
-  // Writes a long flight to `path` until something gives; the message of that.
+  // Writes a long flight to `path` until an error occurs; returns the message.
   static std::string write_much(const std::filesystem::path& path, NetcdfFormat kind) {
     return message_of<Error>([&] {
       constexpr std::size_t records = 4096;
@@ -197,7 +197,7 @@ class FlightWriterTest : public testing::Test {
 
 }  // namespace
 
-// What is written
+// Written content
 
 TEST_F(FlightWriterTest, TimeAndVariablesFollowTheConventions) {
   NewFlight flight{midnight + 86399};
@@ -441,9 +441,9 @@ TEST_F(FlightWriterTest, UncopyableVariablesAreReportedInAdvance) {
   EXPECT_FALSE(FlightWriter(output, NewFlight{midnight}, {}).can_copy("PSFD")) << "there is no input";
 }
 
-/// HDF5 has attributes that netCDF does not write, as a text for a missing number, filters that are not
-/// installed everywhere, and texts of a fixed length and long doubles, both of which netCDF takes for texts
-/// of any length and reads into too little room.
+/// HDF5 has attributes that netCDF does not write, such as a text for a missing number, optional filters,
+/// and texts of a fixed length and long doubles, both of which netCDF assumes to be variable-length texts
+/// and reads into a buffer that is too small.
 TEST_F(FlightWriterTest, Hdf5OnlyFeatureIsReportedWithRemedy) {
   const Flight flight(PCOR_SOURCE_DIR "/tests/fuzz/seeds/flight/odd_hdf5.nc");
   FlightWriter writer(output, flight, {});
@@ -512,7 +512,7 @@ TEST_F(FlightWriterTest, TimesMustIncrease) {
               HasSubstr("the time of record 2 does not follow the one before"));
 }
 
-// Whole or not at all
+// Atomic output
 
 TEST_F(FlightWriterTest, NothingIsThereBeforeTheEnd) {
   {

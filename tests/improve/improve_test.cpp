@@ -76,8 +76,8 @@ class Improve : public testing::Test {
     return fit;
   }
 
-  /// A flight of half an hour, and one that is held out, with the rms that the fit of a model says, and
-  /// static pressures that its effects change by `changes_`.
+  /// A flight of half an hour, and a held-out flight, with the rms stated by the fit of a model, and static
+  /// pressures that its effects change by `changes_`.
   std::vector<pcor::internal::TrialFlight> tried(const std::vector<TrialModel>& models) {
     auto samples = std::make_shared<pcor::FlightSamples>();
     samples->name = "made.nc";
@@ -122,7 +122,7 @@ class Improve : public testing::Test {
   std::deque<Diagnosis> diagnoses_;
   double given_rms_ = 1.0;
   bool held_out_tells_ = true;             // the held-out flight knows one model from another
-  std::map<std::string, double> changes_;  // of the static pressure by effects, hPa
+  std::map<std::string, double> changes_;  // change of the static pressure by effects, hPa
 };
 
 pcor::Finding finding(const std::string& id) {
@@ -222,7 +222,7 @@ TEST_F(Improve, DropsWhatHeldOutFlightsContradict) {
   EXPECT_DOUBLE_EQ(improvement.fit.flights[1].after.rms, 1.0);
 }
 
-/// A diagnosis that cannot tell two effects apart, the first of which is there with `probability`.
+/// A diagnosis that cannot separate two effects; the first is present with `probability`.
 Diagnosis two_rivals(const std::string& one, const std::string& other, double probability) {
   Diagnosis unclear = diagnosis(Verdict::ambiguous, {one});
   pcor::Alias alias;

@@ -1,4 +1,4 @@
-// What of a model is archived with the steps of hydrostatic height, so that others are not taken for it.
+// Part of a model that is archived with the steps of hydrostatic height, so that other models are detected.
 #include "model_io/archived_model.hpp"
 
 #include <gmock/gmock.h>

@@ -87,7 +87,7 @@ unit = "hPa"
 source = "engine run-up, 2011-11-02"
 )";
 
-// The least that is a model. What a test adds begins at line 5.
+// The smallest valid model. Additions of a test begin at line 5.
 const std::string least = R"(format = "pcor-model/1"
 [variables]
 static_pressure = "PSFD"
@@ -468,7 +468,7 @@ class ModelGenerator {
   std::mt19937_64 random_;
 };
 
-// A directory of its own for each test, removed afterwards.
+// A separate directory for each test, removed afterwards.
 class ModelFileOnDisk : public testing::Test {
  protected:
   void SetUp() override {
@@ -647,7 +647,7 @@ apple = { used = 12, share = 0.5, clean = true }
   EXPECT_EQ(Description::of(parse_model(written, "m.toml")), Description::of(file)) << written;
 }
 
-// What is known of parameters that are fitted, of others that are only considered, and of samples.
+// Uncertainties of fitted parameters, of parameters that are only considered, and of samples.
 TEST(ModelDefinition, GathersItsUncertainty) {
   const ModelDefinition file = parse_model(least + R"([[effect]]
 id = "static-constant"

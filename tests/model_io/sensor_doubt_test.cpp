@@ -46,7 +46,7 @@ TEST(SensorDoubt, ModelPriorOverridesTheCatalogue) {
       thermometer_of("[uncertainty]\n\"temp-offset.offset\" = 0.05\n\"recovery-factor.da\" = 0\n");
   EXPECT_THAT(names_of(stated), ElementsAre("temp-offset.offset"));
   EXPECT_DOUBLE_EQ(stated[0].size, 0.05);
-  // An effect of the model is what the model says of the sensor.
+  // An effect of the model defines the uncertainty of the sensor.
   EXPECT_THAT(names_of(thermometer_of("[[effect]]\nid = \"temp-offset\"\n")),
               ElementsAre("recovery-factor.da"));
   EXPECT_THROW(thermometer_of("[uncertainty]\n\"static-constant.a0\" = 0.05\n"), Error);

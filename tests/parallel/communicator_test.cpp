@@ -18,7 +18,7 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// What each member of a team comes to, as text.
+/// Result of each member of a team, as text.
 template <class Work>
 std::vector<std::string> each_of(std::size_t size, const Work& work) {
   std::vector<std::string> results(size);
@@ -119,8 +119,8 @@ TEST(Communicator, OfOneIsSilent) {
                   .empty());
 }
 
-/// Members that come and go at random, fail at random, never wait for each other in vain:
-/// `run_with_communicator` fails where they do.
+/// Members that start, end and fail at random never wait for each other forever: otherwise
+/// `run_with_communicator` fails.
 TEST(Communicator, EndsForAllWhateverAnyMemberDoes) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const std::vector<std::string> ends = each_of(4, [seed](Communicator& comm) {
@@ -139,7 +139,7 @@ TEST(Communicator, EndsForAllWhateverAnyMemberDoes) {
       const auto error = comm.leave();
       return std::string(error ? error->what() : "done");
     });
-    // All end well, or none.
+    // Either all members succeed or all fail.
     EXPECT_EQ(std::count(ends.begin(), ends.end(), "done") % 4, 0) << joined(ends);
   }
 }

@@ -19,7 +19,7 @@ using testing::StrEq;
 
 constexpr int max_seconds = 1;
 
-/// "here" in the process that called it, else "in a copy".
+/// "here" in the process that called it, otherwise "in a copy".
 class Place {
  public:
   bool is_here() const { return ::getpid() == here_; }
@@ -83,7 +83,7 @@ TEST(InACopy, WhatIsThrownIsThrownHere) {
 
 volatile std::sig_atomic_t handled = 0;
 
-// What the program does where it is stopped, as to remove what is unfinished, a copy must not do.
+// A copy must not run the program's cleanup on termination, such as the removal of unfinished files.
 TEST(InACopy, HasNoHandlersOfSignalsAndIgnoresWhatIsIgnored) {
   const Place place;
   const auto stop = std::signal(SIGTERM, [](int) { handled = 1; });
