@@ -1,4 +1,4 @@
-// The user's intervals: what the file may say, how it is refused, and what becomes of the found regimes.
+// The user's intervals: valid contents of the file, refusals, and the effect on the found regimes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -40,7 +40,7 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 double wrapped(double heading) { return heading - 360.0 * std::floor(heading / 360.0); }
 
-// Noise that forgets itself after `memory` seconds.
+// Noise with a correlation time of `memory` seconds.
 class Gusts {
  public:
   Gusts(double deviation, double memory, double step, unsigned seed)
@@ -207,7 +207,7 @@ void expect_phases_cover(const FlightMotion& motion, const std::vector<Interval>
   EXPECT_LE(reached, motion.time.back() + 1.001);
 }
 
-// What happened when, in one flight with a bit of everything.
+// Flown regimes of one flight with several kinds of manoeuvres.
 struct Story {
   FlightMotion motion;
   double roll, off, climb_end, pitch, pitch_end, yaw, yaw_end, run, run_end, first_leg_end, second_leg,
@@ -334,7 +334,8 @@ TEST(Regimes, AreFoundAsTheirWordsSay) {
   EXPECT_THAT(pcor::criterion_of(Regime::speed_run, RegimeCriteria::gv()), HasSubstr("by 0.3 m/s2"));
 }
 
-// Every number that the search goes by is in the words for some regime: another number, other words.
+// Every number of the search criteria appears in the words for some regime: another number gives other
+// words.
 TEST(Regimes, CriteriaTextHasAllNumbers) {
   static_assert(std::is_trivially_copyable_v<RegimeCriteria>);
   for (std::size_t number = 0; number < sizeof(RegimeCriteria) / sizeof(double); ++number) {

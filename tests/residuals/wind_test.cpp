@@ -53,7 +53,7 @@ std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::Mod
 }  // namespace
 
 TEST(Wind, ThatIsSteadyLeavesNothing) {
-  // On one heading 1/900 of the wind is taken for the constant.
+  // On one heading the constant absorbs 1/900 of the wind.
   for (const auto& heading : {circles, legs, straight}) {
     for (const double value : residuals(flight(heading), made::air_model())) ASSERT_NEAR(value, 0.0, 0.03);
   }
