@@ -137,7 +137,8 @@ TEST(LegPair, OfOppositeHeadingsSeesNoWind) {
 TEST(LegPair, FindsTheErrorOfTheAirspeed) {
   const LegPair pair = pair_of(flown(70.0, 12.0, -7.0, 0.8), flown(250.0, 12.0, -7.0, 0.8));
   EXPECT_NEAR(pair.airspeed_error.value, 0.8, 1e-12);
-  EXPECT_NEAR(pair.airspeed_error.error, 0.5 * std::sqrt(2.0) * 0.1, 1e-12);  // difference of two means of 0.1 m/s
+  EXPECT_NEAR(pair.airspeed_error.error, 0.5 * std::sqrt(2.0) * 0.1,
+              1e-12);  // difference of two means of 0.1 m/s
 }
 
 TEST(LegPair, TakesOutTheWindThatHeadingsLeave) {

@@ -148,7 +148,8 @@ TEST_P(OfEveryEffect, IsTheDifferenceThatItsCoefficientMakes) {
     const std::size_t first = parameter_count(model) - info.parameter_count();
     for (std::size_t i = 0; i < info.parameter_count(); ++i) {
       const double typical_size = 0.1 * std::abs(info.parameters[i].typical);
-      const double size = typical_size > 0.0 ? typical_size : 0.5;  // shape parameter whose usual value is zero
+      const double size =
+          typical_size > 0.0 ? typical_size : 0.5;  // shape parameter whose usual value is zero
       Model above = model;
       parameter_at(above, first + i) += size;
       Model below = model;
