@@ -580,7 +580,7 @@ TEST(Advice, HoldsWhereItIsFollowed) {
     ASSERT_THAT(before.findings, SizeIs(1));
     const pcor::Advice& advice = before.findings[0].advice;
     if (advice.manoeuvre != "yaw manoeuvre") continue;
-    EXPECT_NEAR(advice.duration, 4.0 * 144.0, 40.0);  // period of the detected cycles, 12 s
+    EXPECT_NEAR(advice.duration, 4.0 * 144.0, 40.0);  // tolerance: detected cycles of 12 s
     const Diagnosis after = diagnose({flight("c130-eq18", seed, effect, yaw + yaw + yaw + yaw)});
     ASSERT_THAT(names_of(after), testing::ElementsAre("static-beta-odd"));
     ++followed;

@@ -100,7 +100,7 @@ SearchResult run(Problem& problem, const SearchOptions& options = {}) {
 struct Dense {
   Eigen::VectorXd estimate;
   Eigen::MatrixXd covariance;
-  double variance = 0.0;  // rms of the remaining residuals, in units of the noise
+  double variance = 0.0;  // variance of the remaining residuals, in units of the noise
 
   Dense(const Problem& problem, const std::vector<Eigen::Index>& places) {
     const Eigen::MatrixXd white = problem.columns(Eigen::all, places) / problem.noise.level[0][0];
@@ -247,7 +247,7 @@ TEST(Search, EvidenceOfOneColumnIsTheKnownOne) {
   const GroupScore score = search.score(0, {});
   const double v = score.covariance(0, 0);
   const double b = score.estimate[0];
-  // Share of all effects whose sizes exceed this multiple of three usual sizes.
+  // Mixture prior: each share of all effects has sizes with this multiple of three usual sizes as spread.
   double known = 0.0;
   for (const auto& [times, share] :
        {std::pair{1.0, 0.65}, std::pair{0.1, 0.1}, std::pair{3.0, 0.2}, std::pair{10.0, 0.05}}) {

@@ -79,7 +79,7 @@ TEST(Separation, GrowsWithRepeatsAsWithLongerIntervals) {
   for (const int length : {100, 200, 400, 800}) {
     const std::vector<FlownRegime> once{regime_of(Regime::circle, rows_of(length, 0.97, 4))};
     const Plan plan = best_plan(once, rivalry);
-    const double power = std::min(plan.power, 0.95);  // size that needs no more repeats
+    const double power = std::min(plan.power, 0.95);  // power at which no more repeats are needed
     EXPECT_GE(power, before) << length;
     EXPECT_LE(power, 1.0);
     before = power;
@@ -115,7 +115,7 @@ TEST(Separation, IsOfTheRivalThatImitatesMost) {
   const std::vector<FlownRegime> regimes{regime_of(Regime::yaw_manoeuvre, rows_of(400, 0.9, 7))};
   SeparationProblem rivalry = rivalry_of(rows, 1.0);
   const Plan of_one = best_plan(regimes, rivalry);
-  rivalry.rests.push_back({base});  // an imitation of no effect
+  rivalry.rests.push_back({base});  // a rival that imitates no effect
   const Plan of_two = best_plan(regimes, rivalry);
   EXPECT_EQ(of_two.repeats, of_one.repeats);
   EXPECT_EQ(of_two.power, of_one.power);

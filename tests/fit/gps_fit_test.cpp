@@ -52,7 +52,7 @@ RefitResult fit(const std::filesystem::path& path, const ModelDefinition& model,
   return pcor::refit({path}, model, pcor::read_references(references, model, {}).used);
 }
 
-constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // rms over usual flight
+constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // values of usual flight
 
 /// Error of the fitted delta-p in usual flight, hPa.
 double error_of(const RefitResult& fit) {

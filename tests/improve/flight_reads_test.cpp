@@ -20,7 +20,7 @@ namespace {
 const std::filesystem::path scenarios = PCOR_SOURCE_DIR "/data/scenarios";
 
 struct Counts {
-  std::map<std::filesystem::path, std::size_t> reads{};  ///< reads of the samples of each flight
+  std::map<std::filesystem::path, std::size_t> reads{};  ///< number of reads of the samples of each flight
   std::size_t residuals = 0;
 };
 

@@ -88,7 +88,7 @@ TEST(Binning, CellsBelowHalfFullEndAStretch) {
   residual[12] = residual[13] = residual[15] = missing;  // a quarter of the fourth
   const Binning bins(residual, seconds(20), 1.0);
   ASSERT_EQ(bins.size(), 4U);
-  EXPECT_EQ(bins.time()[1], 1321560006.5);  // share of the records that are present
+  EXPECT_EQ(bins.time()[1], 1321560006.5);  // mean time of the records that are present
   ASSERT_EQ(bins.segments().size(), 2U);
   EXPECT_EQ(bins.segments()[0].count, 3U);
   EXPECT_EQ(bins.segments()[1].first, 3U);

@@ -101,7 +101,7 @@ TEST(Whitening, PureAutoregressionIsLimitOfVanishingDrift) {
   noise.coefficients = {0.5, -0.3, 0.2, 0.1};
   noise.level = {Eigen::VectorXd::LinSpaced(count, 0.3, 0.5)};
   const Whitening alone(bins, noise, 0);
-  noise.slow = {1e-7};  // tolerance of the level, squared: 1e-13
+  noise.slow = {1e-7};  // share of the level, squared: 1e-13
   const Whitening vanishing(bins, noise, 0);
   // More columns than the filter takes at a time, and not a multiple of them.
   const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(count, 11);

@@ -272,7 +272,7 @@ TEST(LamsTemperature, WithDefectOfTheSameSampleIsTheThermometersOwn) {
   // The 1e-9 hPa of approach 1 are up to 4e-9 K.
   over_the_envelopes([](const Flight& f, const RecoveryFactor& recovery) {
     Flight warm = f;
-    warm.thermometer += 0.5;  // the error includes the error of the thermometer
+    warm.thermometer += 0.5;  // the result includes the error of the thermometer
     const auto found = simultaneous(warm, recovery);
     const double p = f.static_pressure + found.static_defect, q = f.dynamic_pressure - found.static_defect;
     const MoistAir<double> air = moist_air(f.e / p);

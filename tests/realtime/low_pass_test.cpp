@@ -20,7 +20,7 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = 3.14159265358979323846;
 constexpr double rates[] = {1.0, 25.0};
-const Quantity filtered_quantity = pcor::extra_quantity(0);  // with all values valid
+const Quantity filtered_quantity = pcor::extra_quantity(0);  // a quantity whose values are all valid
 
 struct Result {
   double value;

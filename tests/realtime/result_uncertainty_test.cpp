@@ -268,7 +268,7 @@ TEST(ResultUncertainty, CovarianceRootScalesUncertainty) {
   ModelUncertainty twice = of_parameter(model, 1, 0.002);
   twice.random[index(Quantity::dynamic_pressure)] = 0.1;
   twice.static_defect = 0.4;
-  ModelUncertainty other_role;  // effect without influence on delta-p or pressures
+  ModelUncertainty other_role;  // role without influence on delta-p or pressures
   other_role.random[index(Quantity::recovery_temperature)] = 0.1;
   const State<double> a = fly(model, everything_recorded(), once);
   const State<double> b = fly(model, everything_recorded(), twice);

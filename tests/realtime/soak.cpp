@@ -211,10 +211,10 @@ class Soak {
 
   static inline std::uint64_t broken = 0;     ///< results
   static inline std::uint64_t stale = 0;      ///< samples after a gap that are not as a new loop's
-  static inline std::uint64_t allocated = 0;  ///< number of runs
+  static inline std::uint64_t allocated = 0;  ///< allocations during runs
   static inline std::uint64_t gaps = 0;
   static inline std::vector<std::uint64_t> durations =
-      std::vector<std::uint64_t>(1000000);  ///< step of nanoseconds
+      std::vector<std::uint64_t>(1000000);  ///< number of runs by duration in nanoseconds
 
  private:
   // As in flight, as a fault leaves it, or anything at all.
@@ -237,7 +237,7 @@ class Soak {
   void fly_through_a_gap() {
     const double jumps[] = {60.0, 0.1, -10.0, 1e9, missing, infinity};
     const double jump = jumps[random_() % std::size(jumps)];
-    // An invalid time restarts the loop, and so does the next valid time.
+    // An invalid interval restarts the loop, and so does the interval after it.
     if (!std::isfinite(jump)) loop_.run(jump);
     time_ += std::isfinite(jump) ? jump : 0.0;
     if (std::abs(time_) > 1e8) time_ = 0.0;
@@ -287,7 +287,7 @@ class Soak {
   Loop fresh_;
   std::mt19937_64 random_{20111117};
   double time_ = 0.0;
-  double step_ = 1.0 / rate;  // changing value
+  double step_ = 1.0 / rate;  // the interval changes during a run
   std::size_t since_gap_ = 0;
 };
 

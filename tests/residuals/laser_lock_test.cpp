@@ -21,7 +21,7 @@ constexpr double departure = 6.0;
 
 /// An hour in which speed and height change, and a laser that knows the airspeed.
 struct Flight {
-  std::vector<double> airspeed{};  ///< error of the pressures
+  std::vector<double> airspeed{};  ///< airspeed derived from the pressures
   std::vector<double> ratio{};
   std::vector<double> beam{};
   std::vector<std::size_t> samples{};

@@ -52,7 +52,7 @@ std::filesystem::path short_flight_with(const pcor::test::TemporaryDirectory& di
   return directory / "more.nc";
 }
 
-/// Laser delay, s.
+/// Flight whose laser is late by `seconds`.
 std::filesystem::path late_flight(const pcor::test::TemporaryDirectory& directory, double seconds,
                                   bool noise) {
   return short_flight_with(
