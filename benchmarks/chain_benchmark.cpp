@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t flight_samples = 4500;
 
-/// What the six variables cost in the way of nimbus: a table of functions that each begin anew.
+/// Cost of the six variables in the style of nimbus: a table of functions that each repeat the calculation.
 void chain_nimbus_model(benchmark::State& timing) {
   const Flight flight = make_flight(flight_samples);
   const std::vector<nimbus_model::Derivation> chain = nimbus_model::chain();
@@ -87,7 +87,7 @@ Model equation_18() {
 void chain_scalar(benchmark::State& timing) { run_loop(timing, gv_2014(), recorded_roles(), {}); }
 BENCHMARK(chain_scalar);
 
-/// The same with the uncertainties of the results.
+/// Six variables with the uncertainties of the results.
 void chain_uncertainty(benchmark::State& timing) {
   run_loop(timing, gv_2014(), recorded_roles(), uncertainty_of(gv_2014()));
 }

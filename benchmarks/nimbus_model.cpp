@@ -9,7 +9,7 @@ namespace {
 constexpr double gas_constant_dry_air = 8314.472 / 28.9637;
 constexpr double molar_mass_ratio = 18.0153 / 28.9637;
 
-// Of the air of the last sample whose humidity was found.
+// Air of the last sample with a valid humidity.
 double gas_constant = gas_constant_dry_air;
 double specific_heat_pressure = 3.5 * gas_constant_dry_air;
 double specific_heat_volume = 2.5 * gas_constant_dry_air;

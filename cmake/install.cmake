@@ -1,5 +1,5 @@
-# What `cmake --install` puts in place. Three export sets, so that a program on the aircraft, which needs
-# pcor::realtime and the standard library alone, never has to have netCDF to find the package.
+# Files that `cmake --install` copies. Three export sets, so that a program on the aircraft, which needs only
+# pcor::realtime and the standard library, never needs netCDF to find the package.
 include(CMakePackageConfigHelpers)
 set(pcor_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcor)
 
@@ -31,7 +31,7 @@ if(TARGET pcor_tool)
   endif()
 endif()
 
-# Headers of what is not built would promise what cannot be linked.
+# Headers of modules that are not built would declare functions that cannot be linked.
 set(pcor_headers ${pcor_realtime_modules})
 if(PCOR_MODEL)
   list(APPEND pcor_headers ${pcor_model_modules})
@@ -74,7 +74,7 @@ endforeach()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/pcorConfig.cmake.in ${PROJECT_BINARY_DIR}/pcorConfig.cmake
   INSTALL_DESTINATION ${pcor_config_dir}
   PATH_VARS CMAKE_INSTALL_DATADIR)
-# Before 1.0 a minor version may break its users, so 0.3 does not serve who asked for 0.2.
+# Before 1.0 a minor version may be incompatible, so 0.3 does not satisfy a request for 0.2.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/pcorConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/pcorConfig.cmake ${PROJECT_BINARY_DIR}/pcorConfigVersion.cmake
         DESTINATION ${pcor_config_dir})

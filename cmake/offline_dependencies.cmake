@@ -1,5 +1,5 @@
-# What the offline library stands on beside model_dependencies.cmake. Read by the build and by an installed package
-# alike.
+# Dependencies of the offline library in addition to model_dependencies.cmake. Used by the build and by the
+# installed package.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(netcdf_cxx4 REQUIRED IMPORTED_TARGET netcdf-cxx4)
 pkg_check_modules(netcdf REQUIRED IMPORTED_TARGET netcdf)

@@ -1,4 +1,4 @@
-# `cpack` makes a Debian package of what `cmake --install` puts in place.
+# `cpack` builds a Debian package of the files that `cmake --install` copies.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME pcor)
 set(CPACK_PACKAGE_CONTACT "The pcor developers")

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
     const std::size_t flights = (argc > 1 ? std::stoul(argv[1]) : 32) * comm.size();
     const int passes = argc > 2 ? std::stoi(argv[2]) : 5;
     std::mt19937 chance(1);
-    std::lognormal_distribution<double> length(0.0, 0.35);  // of the usual one: a tenth is longer than 1.6
+    std::lognormal_distribution<double> length(0.0, 0.35);  // of the usual length; a tenth is longer than 1.6
     std::vector<std::uint64_t> microseconds;
     double all = 0.0;
     for (std::size_t flight = 0; flight < flights; ++flight) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-// A stand-in for what a host like NCAR nimbus has in its headers: nothing of nimbus itself.
+// Stand-in for the headers of a host such as NCAR nimbus; it contains no code of nimbus.
 
 enum FeedBackType { LOW_RATE_FEEDBACK, HIGH_RATE_FEEDBACK };
 
@@ -16,14 +16,14 @@ struct DERTBL {
   std::string name;
   std::vector<std::string> depends;
   void (*compute)(DERTBL*);
-  std::vector<std::size_t> depend_places{};  ///< in the record of the sample
+  std::vector<std::size_t> depend_places{};  ///< index in the record of the sample
   std::size_t place = 0;
 };
 
-/// The value of the dependency number `input` at this sample; NaN where it is missing.
+/// Value of the dependency number `input` at this sample; NaN if it is missing.
 float GetSample(const DERTBL* entry, std::size_t input);
 void PutSample(const DERTBL* entry, float value);
 
-/// The value of that name in the defaults file, which keeps names in capitals; null where there is none.
+/// Value of the named entry in the defaults file, which keeps names in capitals; null if it is absent.
 const float* GetDefault(const char* name);
 std::vector<std::string> DefaultNames();

@@ -7,8 +7,9 @@ namespace {
 
 using pcor::Quantity;
 
-// It has no `time`: a callback is not told the time, and a clock made from the host's date costs more than
-// the correction. pcor then counts samples; the host calls `pcor_reset` where some are left out.
+// There is no `time` input: the host passes no time to a callback, and a clock made from the host's date
+// costs more than the correction. pcor then counts samples; the host calls `pcor_reset` after omitted
+// samples.
 struct Host {
   using Entry = DERTBL;
   static double get(Entry* entry, std::size_t input) { return static_cast<double>(GetSample(entry, input)); }

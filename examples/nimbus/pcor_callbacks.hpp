@@ -4,14 +4,14 @@
 
 #include "host.hpp"
 
-/// Sets the correction up, before the first sample and before the order of the table is found. False where it
-/// cannot be; `error` says why.
+/// Sets the correction up, before the first sample and before the order of the table is found. Returns false
+/// on failure; `error` states the reason.
 bool pcor_install(std::string* error);
 
-/// Forgets earlier samples: at the start of a flight and after a gap.
+/// Discards earlier samples: call it at the start of a flight and after a gap.
 void pcor_reset();
 
-// What the table of derived variables holds: names of C, as it knows no templates.
+// Names for the table of derived variables: plain C functions, because the table has no templates.
 extern "C" {
 void spcor(DERTBL* entry);
 void spsxc(DERTBL* entry);

@@ -10,7 +10,7 @@ TEST(Phrasing, MakesSentences) {
   EXPECT_EQ(sentence("the fit is done"), "The fit is done.");
   EXPECT_EQ(sentence("Is it?"), "Is it?");
   EXPECT_EQ(sentence(""), "");
-  // Names are spelt as they are.
+  // Names keep their spelling.
   EXPECT_EQ(sentence("rf01.nc: no GPS height"), "rf01.nc: no GPS height.");
   EXPECT_EQ(sentence("static-qp.a2 is held"), "static-qp.a2 is held.");
 }

@@ -31,7 +31,7 @@ TEST(Shortened, CutsBetweenLetters) {
   EXPECT_EQ(shortened("\u20ac\u20ac\u20ac", 2), "\u20ac\u20ac... (3 characters)");
 }
 
-TEST(InQuotes, RepeatsNoMoreThanTellsWhatIsMeant) {
+TEST(InQuotes, QuotedTextIsLimitedInLength) {
   EXPECT_EQ(quote("QCF"), "'QCF'");
   EXPECT_EQ(quote(std::string(1000000, 'x')), "'" + std::string(100, 'x') + "... (1000000 characters)'");
 }

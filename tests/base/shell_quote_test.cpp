@@ -7,7 +7,7 @@
 namespace pcor {
 namespace {
 
-/// What a shell makes of a command's text.
+/// Arguments that a shell reads from the text of a command.
 std::string output_of(const std::string& command) {
   std::FILE* const pipe = popen(command.c_str(), "r");
   std::string text;
@@ -16,7 +16,7 @@ std::string output_of(const std::string& command) {
   return text;
 }
 
-TEST(ShellWord, IsWhatAShellTakesItFor) {
+TEST(ShellWord, ShellRestoresTheOriginalText) {
   for (const std::string word :
        {"rf01.nc", "", " ", "it's mine.toml", "$(date) `date` $HOME", "a\\b\"c", "*?[a]~", "'", "''",
         "two\nlines", "-m", "a;b|c&d>e", "k * (ENGTRQ - 50)", "#", "!x"})

@@ -36,7 +36,7 @@ TEST(TextFile, IsRefusedByNameWhereThereIsNone) {
               ThrowsMessage<Error>(HasSubstr("is a directory; give the path of a model file")));
 }
 
-// A device may never end, and nobody may ever write into a pipe.
+// A device may never end, and a pipe may have no writer.
 TEST(TextFile, IsARegularOneOfUsualSize) {
   const test::TemporaryDirectory directory;
   ASSERT_EQ(mkfifo((directory / "pipe").c_str(), 0600), 0);

@@ -27,7 +27,7 @@ TEST(MomentIn, TakesATimeOfTheDay) {
   }
 }
 
-// What all readers share.
+// Rules common to all readers.
 struct AnyReader final : TomlReader {
   AnyReader() : TomlReader("some.toml") {}
   using TomlReader::parse;

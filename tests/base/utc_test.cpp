@@ -14,7 +14,7 @@ TEST(UtcText, IsAMomentInWords) {
   EXPECT_EQ(utc_text(253402300799.0, "%Y-%m-%d"), "9999-12-31");
 }
 
-TEST(UtcText, TellsTheSecondsOfWhatIsInNoYear) {
+TEST(UtcText, UnrepresentableYearIsPrintedInSeconds) {
   EXPECT_EQ(utc_text(1e300), "1e+300 s after 1970-01-01");
   EXPECT_EQ(utc_text(-std::numeric_limits<double>::infinity()), "-inf s after 1970-01-01");
   EXPECT_EQ(utc_text(std::nan("")), "nan s after 1970-01-01");

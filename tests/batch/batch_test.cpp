@@ -115,7 +115,7 @@ Arrays in_loop(const Model& model, const std::vector<Quantity>& roles, const Arr
   return result;
 }
 
-/// Rounding: 1e-13 of a value, and more at low speed for what comes from the Mach number, the difference of
+/// Rounding: 1e-13 of a value, and more at low speed for results of the Mach number, the difference of
 /// nearly equal pressures.
 double rounding(Quantity quantity, double value, double mach) {
   switch (quantity) {
@@ -138,7 +138,7 @@ double rounding(Quantity quantity, double value, double mach) {
 void expect_equal(const Arrays& found, const Arrays& expected, double iteration = 0.0) {
   for (const auto& [quantity, values] : expected) {
     for (std::size_t i = 0; i < values.size(); ++i) {
-      // What a batch does not find, the loop does not either.
+      // Values missing in a batch are missing in the loop too.
       const double value = found.count(quantity) > 0 ? found.at(quantity)[i] : nan;
       if (std::isnan(value) && std::isnan(values[i])) continue;
       const double mach = expected.at(Quantity::corrected_mach)[i];
@@ -289,7 +289,7 @@ TEST(Batch, TakesOtherCoefficients) {
               testing::Pointwise(testing::NanSensitiveDoubleEq(), expected.at(Quantity::static_defect)));
 }
 
-// Processors with wider registers have kernels of their own.
+// Wider registers have separate kernels.
 Arrays in_kernel(BatchKernel kernel, const Batch& batch, const Arrays& recorded, std::size_t count) {
   Arrays found;
   for (const Quantity quantity : derived) found[quantity].resize(count, 12345.0);
@@ -319,7 +319,7 @@ TEST(Batch, IsTheLoopInEveryKernelThatThisProcessorRuns) {
     expect_equal(in_kernel(kernel, batch, recorded, count), expected);
 }
 
-TEST(Batch, EveryFunctionOfAFormulaIsThatOfTheLoopInEveryKernel) {
+TEST(Batch, EachFormulaFunctionMatchesLoopInEveryKernel) {
   const std::vector<double> values{0.3, -0.7,  0.0, 2.5, nan,  1.0,   -2.0,   17.0,  1e-3,
                                    0.5, -0.31, 4.0, 1e5, -7e4, 700.0, -745.0, 1e-300};
   const std::vector<Quantity> roles{Quantity::static_pressure, Quantity::dynamic_pressure};
@@ -352,7 +352,7 @@ TEST(Batch, EveryFunctionOfAFormulaIsThatOfTheLoopInEveryKernel) {
   }
 }
 
-TEST(Batch, SaysWhichValuesAreMissing) {
+TEST(Batch, MissingValuesAreReported) {
   const Batch batch(gv(), gv_roles);
   Arrays recorded = random_samples(10, gv_roles);
   recorded.erase(Quantity::attack);
@@ -364,8 +364,8 @@ TEST(Batch, SaysWhichValuesAreMissing) {
               ThrowsMessage<Error>(HasSubstr("'lams_airspeed'")));
 }
 
-// Whatever can be asked for comes out as it does beside all the others, and what cannot is refused: no value
-// is missing because a stage was forgotten.
+// Each supported output has the same value alone and among all others; any other output is refused. No value
+// is missing because a stage was omitted.
 TEST(Batch, FindsEveryQuantityForItselfOrRefusesIt) {
   for (const CorrectWith with : {CorrectWith::model, CorrectWith::lams}) {
     const std::vector<Quantity> roles = with_lams(gv_roles);
@@ -390,7 +390,7 @@ TEST(Batch, FindsEveryQuantityForItselfOrRefusesIt) {
   }
 }
 
-TEST(Batch, RefusesWhatIsNotRecordedOrNeedsEarlierSamples) {
+TEST(Batch, UnrecordedAndHistoryInputsAreRefused) {
   const Batch batch(gv(), {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::attack});
   for (const Quantity quantity :
        {Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::height_step,

@@ -11,7 +11,7 @@ check() {
   ar p "$1" "batch_$2.cpp.o" > "$object"
   nm -C "$object" > "$names"
   grep -q "xsimd::$3" "$names" || { echo "there is no kernel $2"; exit 1; }
-  # W: weak functions. Those of the kernel's own register type exist nowhere else.
+  # W: weak functions. Only functions of the kernel's register type are unique to this kernel.
   if grep ' W ' "$names" | grep -v "xsimd::$3"; then
     echo "the object of the kernel $2 offers the functions above to the whole program"
     exit 1

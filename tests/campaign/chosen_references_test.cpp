@@ -38,7 +38,7 @@ TEST(ChosenReferences, WithoutANameAreAllThatModelAndFlightAllow) {
   EXPECT_THAT(names(chosen), ElementsAre("lams", "total:PSFRD+QCFR", "height", "wind"));
 }
 
-TEST(ChosenReferences, SayWhyOneIsNotAmongThem) {
+TEST(ChosenReferences, ExcludedReferenceHasAReason) {
   ModelDefinition model = laser_model();
   model.variables.erase(Quantity::recovery_temperature);
   model.variables.erase(Quantity::ambient_temperature);
@@ -49,7 +49,7 @@ TEST(ChosenReferences, SayWhyOneIsNotAmongThem) {
 }
 
 TEST(ChosenReferences, WithoutALaserAreLeftToTheUser) {
-  // The others see changes of the static pressure, or nothing of it.
+  // The other references are sensitive to static-pressure changes, or insensitive.
   ModelDefinition model = laser_model();
   model.variables.erase(Quantity::lams_airspeed);
   EXPECT_THROW(pcor::read_references({}, model, {short_flight()}), pcor::Error);

@@ -117,7 +117,7 @@ FlightSamples made_flight(const std::vector<Quantity>& roles, double laser_noise
   return samples;
 }
 
-/// A formula beside the catalogue, at another place than the ports and nonlinear in a quantity.
+/// A formula in addition to the catalogue, at another place than the ports and nonlinear in a quantity.
 ModelEffect formula() {
   ModelEffect effect;
   effect.id = "try-1";
@@ -143,7 +143,7 @@ struct Made {
         columns(pcor::internal::find_columns(samples, model, set, 0, {}, 1.0)) {}
 };
 
-/// The same samples with the laser where the model says that the air is.
+/// The same samples with the laser at the model's airspeed.
 std::shared_ptr<const FlightSamples> without_laser_noise(const Made& made) {
   const Residuals residuals(made.samples, made.model, *made.reference);
   auto samples = std::make_shared<FlightSamples>(*made.samples);
@@ -212,12 +212,12 @@ std::set<std::string> expect_differences(const Made& made,
 
 }  // namespace
 
-TEST(Columns, OfEveryCandidateAreDifferencesThroughTheWholeChain) {
+TEST(Columns, EqualDifferencesThroughTheWholeChain) {
   const Made made;
   ASSERT_EQ(std::count(made.columns.mask.begin(), made.columns.mask.end(), pcor::Mask::none),
             static_cast<std::ptrdiff_t>(made.samples->time.size()));
   const std::set<std::string> without_trace = expect_differences(made, without_laser_noise(made));
-  // Of all effects only one has nothing to act on here: there are no transonic speeds.
+  // All effects except one act here: there are no transonic speeds.
   EXPECT_THAT(without_trace, testing::ElementsAre("static-transonic"));
 }
 
@@ -231,7 +231,7 @@ TEST(Columns, AgainstHeightsAreDifferencesOfSumsOverAMinute) {
     EXPECT_EQ(without_trace.count(seen), 0U) << seen;
 }
 
-TEST(Columns, AgainstHeightsUseNoMinuteThatHoldsWhatIsNotUsed) {
+TEST(Columns, HeightColumnsSkipMinutesWithUnusedSamples) {
   Made made(0.3, pcor::height_reference(laser_model()));
   auto samples = std::make_shared<FlightSamples>(*made.samples);
   samples->flaps.assign(samples->time.size(), 0.0);
@@ -274,7 +274,7 @@ TEST(Columns, OfFixedCoefficientsAreNotThere) {
   EXPECT_TRUE(columns.base.col(1).isApprox(made.columns.base.col(2)));
 }
 
-// Or else noise of the laser would be explained by columns that hold it.
+// Otherwise laser noise would be explained by columns that contain it.
 TEST(Columns, HoldNothingOfTheNoiseOfTheLaser) {
   const Made quiet(0.0);
   const Made noisy(0.5);

@@ -41,7 +41,7 @@ std::string message_of(const std::function<void()>& work) {
 
 class FlightSets : public testing::Test {
  protected:
-  /// How many files of this folder the process has open.
+  /// Number of files of this folder that the process has open.
   std::size_t open_files() const {
     std::size_t count = 0;
     for (const auto& entry : fs::directory_iterator("/proc/self/fd")) {

@@ -94,8 +94,8 @@ TEST(LinearRows, DerivativesAreDifferencesOfResiduals) {
   }
 }
 
-// Of what two systems have in common their difference knows nothing, not even by noise.
-TEST(LinearRows, OfTwoSystemsAreExactlyOppositeAtCommonPressures) {
+// Errors common to two systems cancel in their difference, and so does common noise.
+TEST(LinearRows, TwoSystemRowsAreOppositeAtCommonPressures) {
   const ModelDefinition model = laser_model();
   const auto reference = second_system(model);
   const LinearRows rows =
@@ -138,7 +138,7 @@ TEST(LinearRows, MeansAreThoseOfTheSamplesInEachBin) {
   EXPECT_EQ(bins.counts().sum(), static_cast<double>(bins.records().size()));
 }
 
-TEST(LinearRows, OfEachSampleSayWhetherItIsUsedOrWhyNot) {
+TEST(LinearRows, EverySampleHasUseOrReason) {
   const ModelDefinition model = laser_model();
   const auto reference = pcor::lams_reference();
   const auto samples = samples_of(model, *reference);
@@ -175,7 +175,7 @@ TEST(LinearRows, OfAStageAreInItsIntervals) {
     interval.end = begin + last;
     return interval;
   };
-  // The second overlaps the first, and has the samples behind it; the third has none.
+  // The second overlaps the first and contains the samples after it; the third contains no samples.
   samples->intervals = {at(200.0, 230.0), at(220.0, 240.0), at(1e6, 2e6), at(500.0, 510.0)};
   const LinearRows rows =
       rows_of(samples, model, *reference, {Inputs::recorded, {}, 1.0, {pcor::Regime::turn}});

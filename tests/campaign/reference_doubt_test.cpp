@@ -13,7 +13,7 @@ using pcor::internal::ReferenceDoubt;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(ReferenceDoubt, OfAMeasuredPressureIsItsZeroItsGainAndItsDrift) {
+TEST(ReferenceDoubt, PressurePriorCoversZeroGainAndDrift) {
   made::Plan plan;
   plan.defect = made::equation_18;
   const auto flight = made::shared(plan);

@@ -104,7 +104,7 @@ Checks with_both(const std::vector<fs::path>& flights) {
   return check(flights, first_model(), options);
 }
 
-/// By how much the model's airspeed is above the truth in the air, m/s.
+/// Excess of the model's airspeed over the true airspeed, m/s.
 double true_airspeed_error(const fs::path& path, const ModelDefinition& model) {
   const Flight flight(path);
   const FlightAir air = read_flight_air({path}, 0, model);
@@ -179,9 +179,9 @@ constexpr double gain = 0.03;
 
 const std::string gain_effect = "[[effect]]\nid = \"qcf-gain\"\non = \"QCF\"\ngain = 0.03\n";
 
-/// The avionics lag by 1.5 s, 0.75 hPa in a climb of 5 m/s; what is left in level flight is below the 0.15
-/// hPa of the greatest rate that takes part. In the climb, ten minutes to one, there would be most of the
-/// 0.75 hPa.
+/// The avionics lag by 1.5 s, 0.75 hPa in a climb of 5 m/s; the remainder in level flight is below the 0.15
+/// hPa of the greatest rate that is used. The climb, ten minutes of the hour, would show most of the 0.75
+/// hPa.
 TEST_F(CheckTest, LeavesClimbsOutForTheAvionics) {
   const std::string one_system = head.substr(0, head.rfind("[[system]]"));
   const std::string slow = "[avionics]\nresponse = 1.0\ndelay = 0.5\n";
@@ -204,7 +204,7 @@ TEST_F(CheckTest, ReverseHeadingsFindAnErrorOfTheAirspeed) {
   for (int seed = 1; seed <= count; ++seed) {
     const fs::path flight = fly(text, static_cast<std::uint64_t>(seed));
     const double truth = true_airspeed_error(flight, first_model());
-    EXPECT_GT(std::abs(truth), 1.0);  // a gain of 3 % of q is some 1.5 % of 118 m/s
+    EXPECT_GT(std::abs(truth), 1.0);  // a gain of 3 % of q is about 1.5 % of 118 m/s
     const CheckResult result = named(check({flight}, first_model()), "reverse-heading");
     EXPECT_EQ(number(result, "pairs"), 2.0);
     const double error = number(result, "airspeed_error_stderr_m_s");
@@ -235,10 +235,10 @@ TEST_F(CheckTest, CirclesFindAnErrorOfTheAirspeedAndTheWind) {
     if (std::abs(number(result, "airspeed_error_m_s") - truth) < 2.0 * error) ++within;
     EXPECT_LT(error, 0.3);
   }
-  EXPECT_GE(within, 16);  // as for the reverse headings
+  EXPECT_GE(within, 16);  // tolerance of the reverse headings
 }
 
-TEST_F(CheckTest, AThermometerThatIsWrongIsNotBelieved) {
+TEST_F(CheckTest, WrongThermometerIsRejected) {
   // +0.55 K and 1 % of the temperature in degC, 0.3 K matter.
   const fs::path scenarios = PCOR_SOURCE_DIR "/data/scenarios";
   Scenario scenario = read_scenario(scenarios / "c130-climbs.toml");
@@ -268,8 +268,8 @@ TEST_F(CheckTest, LayersSeeALagOfTheStaticLine) {
 }
 
 TEST_F(CheckTest, EighteenPairsReachTheErrorOfTheMemo) {
-  // "18 pairs: +0.6 +- 0.2 m/s" (the memo's GV). Four flights with 18 pairs each tell the scatter of a pair
-  // to 8 %.
+  // "18 pairs: +0.6 +- 0.2 m/s" (the memo's GV). Four flights with 18 pairs each determine the scatter of a
+  // pair to 8 %.
   const std::string text = head + aloft + repeated(leg("reverse-heading", "speed = 118"), 18);
   double squares = 0.0;
   constexpr int flights = 4;
@@ -307,15 +307,15 @@ TEST_F(CheckTest, PitchAndYawSeeATermThatIsWrong) {
   EXPECT_EQ(against_height.verdict, CheckVerdict::inconsistent) << against_height.finding;
   EXPECT_NEAR(number(against_height, "slope_hpa_deg"), 0.28,
               4.0 * number(against_height, "slope_stderr_hpa_deg") + 0.01);
-  // And the second system, which is blind to what both have: but for a tenth, the sum of the a2 of both laws,
-  // which read a dynamic pressure that the fault changes.
+  // The second system cannot detect common errors, except for a tenth, the sum of the a2 of both laws, which
+  // read a dynamic pressure that the fault changes.
   const CheckResult against_second = named(without, "yaw");
   EXPECT_THAT(against_second.finding, HasSubstr("against second system"));
   EXPECT_NE(against_second.verdict, CheckVerdict::inconsistent) << against_second.finding;
   EXPECT_LT(std::abs(number(against_second, "slope_hpa_deg")), 0.15 * std::abs(number(yaw, "slope_hpa_deg")));
 }
 
-TEST_F(CheckTest, SpeedRunSeesATermThatGoesWithTheSpeed) {
+TEST_F(CheckTest, SpeedRunDetectsSpeedDependentTerm) {
   ModelDefinition model = first_model();
   for (ModelEffect& effect : model.model.effects) {
     if (effect.id == "static-qp") effect.parameters[0] = 0.0;
@@ -326,14 +326,14 @@ TEST_F(CheckTest, SpeedRunSeesATermThatGoesWithTheSpeed) {
   // 0.0308 of the change of q from 95 to 145 m/s at 700 hPa (54 hPa) is missing: 1.7 hPa, somewhat less than
   // that as the airspeed goes in a line and q in a bend.
   EXPECT_NEAR(number(result, "delta_p_across_hpa"), -1.6, 0.3);
-  // The airspeed tells the same, within four standard errors of the wind.
+  // The airspeed gives the same result, within four standard errors of the wind.
   EXPECT_NEAR(number(result, "delta_p_across_from_wind_hpa"), number(result, "delta_p_across_hpa"),
               4.0 * number(result, "delta_p_across_from_wind_stderr_hpa"));
 }
 
 // Flights that cannot be checked
 
-TEST_F(CheckTest, SaysWhatIsMissing) {
+TEST_F(CheckTest, MissingInputsAreReported) {
   const Checks checks = check({fly(head + aloft, 1)}, first_model());
   for (const CheckResult& result : checks.results) {
     if (result.ran) continue;
@@ -344,7 +344,7 @@ TEST_F(CheckTest, SaysWhatIsMissing) {
   EXPECT_THAT(named(checks, "reverse-heading").reason, HasSubstr("no reverse heading was found"));
 }
 
-TEST_F(CheckTest, TellsANoteOfSeveralFlightsOnce) {
+TEST_F(CheckTest, NoteOfSeveralFlightsIsPrintedOnce) {
   const Checks checks = check({fly(head + aloft, 1), fly(head + aloft, 2)}, std::nullopt);
   EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("recovery factor")).Times(1));
   EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("flight1.nc, flight2.nc: without a model")));

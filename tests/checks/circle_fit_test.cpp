@@ -17,7 +17,7 @@ constexpr double north_wind = -5.0;     // m/s
 constexpr double too_high = 0.9;        // m/s
 constexpr double turned_too_far = 0.7;  // deg
 
-/// One turn of `degrees` in 150 s, with noise that remembers itself for two seconds.
+/// One turn of `degrees` in 150 s, with noise of correlation time 2 s.
 CircleFit fly(double degrees, double noise, unsigned seed) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;

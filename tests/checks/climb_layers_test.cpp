@@ -1,4 +1,4 @@
-// Temperature of layers: the memo's sums, their errors, and the correction that they ask for.
+// Temperature of layers: the memo's sums, their errors, and the implied correction.
 #include "checks/climb_layers.hpp"
 
 #include <gmock/gmock.h>
@@ -104,7 +104,7 @@ const std::vector<FlightAir>& flights() {
   return all;
 }
 
-/// What is known of the simulated flights: their correction is that of the law, without error.
+/// Truth of the simulated flights: their correction is the correction of the law, without error.
 LayerOptions exact_law() {
   LayerOptions options;
   options.static_bias = 0.0;
@@ -113,7 +113,7 @@ LayerOptions exact_law() {
   return options;
 }
 
-/// T_p - T_m as it is in a layer of a simulated flight.
+/// True T_p - T_m in a layer of a simulated flight.
 double truth(const FlightAir& air, const Layer& layer) {
   const double share = ambient_share(air.mach[(layer.first + layer.last) / 2]);
   const double measured = layer.measured_temperature() - 273.15;
@@ -200,13 +200,13 @@ TEST(Layers, GiveTheMeanTemperatureOfTheStandardAtmosphere) {
   }
 }
 
-TEST(Layers, AreCutInPartsOfEqualThicknessThatShareTheirEnds) {
+TEST(Layers, PartsHaveEqualThicknessAndShareEnds) {
   LayerOptions options;
   options.thickness = 700.0;
   const FlightLayers found = find_layers(made(climb(1000.0, 4500.0, 5.0)), options);
   ASSERT_THAT(found.layers, SizeIs(5));
   for (std::size_t i = 0; i < found.layers.size(); ++i) {
-    EXPECT_NEAR(found.layers[i].s2, 700.0, 5.0);  // to one sample
+    EXPECT_NEAR(found.layers[i].s2, 700.0, 5.0);  // tolerance of one sample
     EXPECT_EQ(found.layers[i].climb, 0U);
     if (i == 0) continue;
     EXPECT_EQ(found.layers[i].first, found.layers[i - 1].last);
@@ -278,8 +278,8 @@ TEST(Layers, RejectWhatCannotBe) {
 // Errors
 
 TEST(LayerErrors, AreThoseOfTheMemo) {
-  // The memo: 12 to 16 kft is 644 to 549 hPa; 0.1 hPa makes 0.3 K. It says so of one end: both have sqrt(2)
-  // of it.
+  // The memo: 12 to 16 kft is 644 to 549 hPa; 0.1 hPa makes 0.3 K. The memo's value is for one end: both
+  // ends together have sqrt(2) of it.
   LayerOptions options;
   options.pressure_noise = 0.1;
   options.thickness = 1e4;
@@ -312,8 +312,8 @@ TEST(LayerErrors, TelescopeAndDoNotFallWithTheNumberOfSamples) {
 }
 
 TEST(LayerErrors, AreWhatAnErrorOfThatSizeDoes) {
-  // Each error is put into the air, and the temperature moves by what is stated: first order in the error,
-  // and the ends meet samples, so to 1 %.
+  // Each error is added to the air, and the temperature changes by the stated error: first order in the
+  // error, and the ends meet samples, so to 1 %.
   const FlightAir air = made(climb(1000.0, 3000.0, 5.0));
   LayerOptions options;
   options.thickness = 1e4;
@@ -332,7 +332,7 @@ TEST(LayerErrors, AreWhatAnErrorOfThatSizeDoes) {
     sloping.geopotential_height[i] += 10.0 / 1e5 * 100.0 * static_cast<double>(i);
   EXPECT_NEAR(moved(sloping) / layer.errors.gradient, 1.0, 0.01);
   FlightAir noisy = air;
-  noisy.geopotential_height[layer.last] += 1.0;  // at one end
+  noisy.geopotential_height[layer.last] += 1.0;  // error of one end
   EXPECT_NEAR(moved(noisy) * std::sqrt(2.0) / layer.errors.height_noise, 1.0, 0.01);
   FlightAir pressure = air;
   pressure.pressure[layer.last] += options.pressure_noise;
@@ -350,9 +350,9 @@ TEST(LayerErrors, LearnTheNoiseOfTheHeightFromTheFlight) {
   const std::vector<double> up = climb(1000.0, 3000.0, 5.0);
   EXPECT_NEAR(find_layers(wave(made(up))).uncertainty.height_noise, 1.41, 0.05);
   EXPECT_EQ(find_layers(made(up)).uncertainty.height_noise, 0.15);
-  // Four minutes are not enough to tell: GPS of 2004.
+  // Four minutes are too short: GPS of 2004.
   EXPECT_EQ(find_layers(made(climb(1000.0, 2200.0, 5.0))).uncertainty.height_noise, 1.0);
-  // A thermometer that is wrong is no noise of the height.
+  // A wrong thermometer does not count as noise of the height.
   EXPECT_EQ(find_layers(made(up, 2.0)).uncertainty.height_noise, 0.15);
 }
 
@@ -488,7 +488,7 @@ TEST(LayerFit, FindsALineWithIndependentErrorsAtTheCentre) {
   EXPECT_GT(fit.correction_error_at(0.0), 10.0 * fit.c0_error);
 }
 
-TEST(LayerFit, KnowsThatLayersOfAClimbShareTheirEnds) {
+TEST(LayerFit, SharedEndsOfLayersAreCorrelated) {
   // Three layers of a climb: the height between them drops out of the mean of the whole.
   const FlightAir air = made(climb(1000.0, 4000.0, 5.0));
   LayerOptions options;
@@ -534,11 +534,11 @@ TEST(LayerFit, GrowsItsErrorsWhereLayersDisagree) {
     flight.layers.push_back(layer_of(270.0 + (i % 2 == 0 ? 3.0 : -3.0), 270.0, i));
   const LayerFit fit = fit_layers({flight});
   EXPECT_GT(fit.error_scale, 5.0);
-  EXPECT_NEAR(fit.offset_error, 3.0 / std::sqrt(5.0), 0.03);  // what the scatter says
+  EXPECT_NEAR(fit.offset_error, 3.0 / std::sqrt(5.0), 0.03);  // error estimated from the scatter
   EXPECT_TRUE(std::isnan(fit.c1));                            // one temperature makes no line
 }
 
-TEST(LayerFit, OfNothingIsUnknown) {
+TEST(LayerFit, EmptyFitIsUnknown) {
   const LayerFit fit = fit_layers({});
   EXPECT_EQ(fit.layers, 0U);
   EXPECT_TRUE(std::isnan(fit.offset));
@@ -578,7 +578,7 @@ TEST(LayerFit, WorksWhereTheMemosInversionIsSingular) {
   }
   EXPECT_LT(Eigen::PartialPivLU<Eigen::Matrix2d>(exact).rcond(),
             static_cast<double>(std::numeric_limits<float>::epsilon()));
-  // And where the inversion succeeds, in double precision, the answer says nothing of a thermometer.
+  // If the inversion succeeds in double precision, the answer does not constrain the thermometer.
   const Eigen::Vector2d fitted = exact.ldlt().solve(right);
   double squares = 0.0;
   for (std::size_t i = 0; i < measured.size(); ++i) {
@@ -588,7 +588,7 @@ TEST(LayerFit, WorksWhereTheMemosInversionIsSingular) {
   const double scatter = std::sqrt(squares / static_cast<double>(measured.size()));
   const double slope_error = scatter * std::sqrt(exact(0, 0) / exact.determinant());
   EXPECT_GT(slope_error, 10.0 * injected_slope);
-  // Layers of the same flight bound what they say, and centred columns are orthogonal.
+  // Layers of the same flight are correlated, and centred columns are orthogonal.
   const LayerFit fit = fit_layers({find_layers(air, exact_law())});
   EXPECT_LT(fit.c1_error, 0.03);
   EXPECT_NEAR(fit.c1, -injected_slope, 2.5 * fit.c1_error);

@@ -1,4 +1,4 @@
-// The check of layers: what it says, and why it does not run where it cannot.
+// The check of layers: its result, and the reasons for no result.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,11 +53,11 @@ std::map<std::string, double> numbers_of(const CheckResult& result) {
   return {result.numbers.begin(), result.numbers.end()};
 }
 
-TEST(LayersCheck, BelievesAThermometerThatIsRight) {
+TEST(LayersCheck, CorrectThermometerPasses) {
   const CheckResult result = check_layers({made(0.0)});
   EXPECT_EQ(result.name, "layers");
   ASSERT_TRUE(result.ran) << result.reason;
-  // One flight, with the usual errors of delta-p, does not tell 0.3 K from none by two errors.
+  // One flight, with the usual errors of delta-p, does not detect 0.3 K at two standard errors.
   EXPECT_EQ(result.verdict, CheckVerdict::inconclusive);
   EXPECT_EQ(numbers_of(result).at("layers"), 8.0);
   EXPECT_NEAR(numbers_of(result).at("offset_k"), 0.0, 0.01);
@@ -72,7 +72,7 @@ TEST(LayersCheck, FindsAnOffsetBeyondItsError) {
   EXPECT_THAT(result.finding, HasSubstr("-2.00"));
 }
 
-TEST(LayersCheck, TellsWhyItCannotRun) {
+TEST(LayersCheck, ReasonForNoResultIsReported) {
   EXPECT_FALSE(check_layers({}).ran);
   CheckedFlight feet = made(0.0);
   for (double& height : feet.air.geopotential_height) height /= 0.3048;

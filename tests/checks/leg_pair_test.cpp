@@ -72,13 +72,13 @@ TEST(LegPair, GivesTheSumsOfTheMemo) {
 }
 
 TEST(LegPair, GivesTheChangeOfAirspeedAndPressureOfTheMemo) {
-  // The new airspeed is faster by what the old one was slower.
+  // The new airspeed is higher by the error of the old one.
   const auto change = [](std::size_t first, Estimated LegPair::*number) {
     return (new_pair(first).*number).value - (standard_pair(first).*number).value;
   };
   EXPECT_NEAR(change(0, &LegPair::airspeed_error), 0.47, printed);
   EXPECT_NEAR(change(2, &LegPair::airspeed_error), 0.32, printed);
-  // 5 %: the state is assumed; from 600 to 750 hPa and 110 to 125 m/s the factor changes by as much.
+  // 5 %: the state is assumed; from 600 to 750 hPa and 110 to 125 m/s the factor changes by 5 %.
   EXPECT_NEAR(change(0, &LegPair::pressure_error), -0.5, 0.025);
   EXPECT_NEAR(change(2, &LegPair::pressure_error), -0.34, 0.017);
 }
@@ -137,14 +137,15 @@ TEST(LegPair, OfOppositeHeadingsSeesNoWind) {
 TEST(LegPair, FindsTheErrorOfTheAirspeed) {
   const LegPair pair = pair_of(flown(70.0, 12.0, -7.0, 0.8), flown(250.0, 12.0, -7.0, 0.8));
   EXPECT_NEAR(pair.airspeed_error.value, 0.8, 1e-12);
-  EXPECT_NEAR(pair.airspeed_error.error, 0.5 * std::sqrt(2.0) * 0.1, 1e-12);  // of two means of 0.1 m/s
+  EXPECT_NEAR(pair.airspeed_error.error, 0.5 * std::sqrt(2.0) * 0.1,
+              1e-12);  // difference of two means of 0.1 m/s
 }
 
 TEST(LegPair, TakesOutTheWindThatHeadingsLeave) {
   const LegPair pair = pair_of(flown(70.0, 12.0, -7.0, 0.8), flown(256.0, 12.0, -7.0, 0.8));
   EXPECT_NEAR(pair.heading_error, 6.0, 1e-9);
   EXPECT_GT(std::abs(pair.heading_share), 0.5);  // a cross wind of 10.7 m/s through 6 deg is 1.1 m/s
-  // What the airspeed's error does to the wind, 0.8 m/s through half of 6 deg squared, is left.
+  // Remainder: effect of the airspeed's error on the wind, 0.8 m/s through half of 6 deg squared.
   EXPECT_NEAR(pair.airspeed_error.value, 0.8, 0.8 * std::pow(6.0 * radians, 2));
 }
 

@@ -52,8 +52,8 @@ void expect_right(const Nuisance& nuisance, const std::string& what) {
   }
   std::cout << what << ": rms of the scores of difference and slope " << std::sqrt(difference) << ", "
             << std::sqrt(slope) << ", inconsistent " << inconsistent << " of " << 2 * seeds << "\n";
-  // Within 0.8 and 1.3, for three flights hardly tell the time of a drift, and three standard errors of the
-  // rms of so many scores.
+  // Within 0.8 and 1.3, because three flights hardly determine the correlation time of a drift, and three
+  // standard errors of the rms of this number of scores.
   const double chance = 3.0 / std::sqrt(2.0 * static_cast<double>(seeds));
   for (const double score : {std::sqrt(difference), std::sqrt(slope)}) {
     EXPECT_GT(score, 0.8 - chance) << what;

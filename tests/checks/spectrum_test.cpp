@@ -101,7 +101,7 @@ TEST(SpectrumCheck, OctavesHaveTheVarianceOfTheSeries) {
   EXPECT_NEAR(sum / 0.09, 1.0, 0.05);
 }
 
-TEST(SpectrumCheck, TellsWhyItCannotRun) {
+TEST(SpectrumCheck, ReasonForNoResultIsReported) {
   EXPECT_FALSE(check_spectrum({}).ran);
   std::vector<double> holes = white(4000, 0.2, 5);
   for (std::size_t i = 0; i < holes.size(); i += 200) holes[i] = std::numeric_limits<double>::quiet_NaN();

@@ -84,7 +84,7 @@ TEST(Compare, ShowsAShiftAsABias) {
   EXPECT_LT(result.models[1].r_squared, result.models[0].r_squared);
 }
 
-TEST(Compare, StatesHowMuchTheCalibrationOfTheLaserMayShiftTheBias) {
+TEST(Compare, ReportsBiasFromLaserCalibration) {
   ComparedModel given = laser_contender();
   given.model.uncertainty.sensors = {{"lams-elevation.dtheta1", 0.0},
                                      {"lams-azimuth.dtheta2", 0.0},
@@ -98,7 +98,7 @@ TEST(Compare, StatesHowMuchTheCalibrationOfTheLaserMayShiftTheBias) {
   const double shift = comparison.models[1].all.bias - comparison.models[0].all.bias;
   // The residual is not linear in the speed: 1 % for a step of 0.2 %.
   EXPECT_NEAR(comparison.models[0].reference_error / std::abs(shift), 1.0, 0.01);
-  EXPECT_EQ(comparison.models[1].reference_error, 0.0);  // the model says what its laser is off by
+  EXPECT_EQ(comparison.models[1].reference_error, 0.0);  // the model states the error of its laser
 }
 
 TEST(Compare, FindsWhatTheScenarioFlew) {
@@ -217,12 +217,12 @@ TEST(Compare, OfTwoSystemsGivesTheFiguresOfTheMemo) {
   EXPECT_NEAR(result.total_pressure->slope, 1.0, 1e-4);
   EXPECT_NEAR(result.total_pressure->rms, 0.04, 0.01);
   EXPECT_LT(std::abs(result.total_pressure->mean_difference), 0.01);
-  // Figure 2: slope 0.99985, rms 0.15 hPa; here the law is true, so only the sensors' noise is left.
+  // Figure 2: slope 0.99985, rms 0.15 hPa; here the law is true, so only the sensors' noise remains.
   EXPECT_NEAR(result.models[0].static_pressure.slope, 1.0, 1e-4);
   EXPECT_LT(result.models[0].static_pressure.rms, 0.05);
 }
 
-TEST(Compare, KeepsTheRecordsOfSomeFlightsAndTheNumbersOfAll) {
+TEST(Compare, KeepsRecordsOfChosenFlightsOnly) {
   const pcor::test::TemporaryDirectory directory;
   pcor::Scenario scenario = pcor::read_scenario(data / "scenarios" / "c130-short.toml");
   std::vector<fs::path> flights;
@@ -267,7 +267,7 @@ TEST(Compare, KeepsTheRecordsOfSomeFlightsAndTheNumbersOfAll) {
     EXPECT_THAT(pcor::comparison_report(some).summary, testing::Contains(HasSubstr("2 of the 5 flights")));
   };
   expect_the_same(pcor::compare(flights, contenders, options));
-  testing::internal::CaptureStderr();  // in further threads HDF5 tells what netCDF asks it for in vain
+  testing::internal::CaptureStderr();  // in further threads HDF5 prints errors of failed netCDF queries
   pcor::test::run_with_communicator(
       3,
       [&](pcor::Communicator& comm) {
@@ -322,7 +322,7 @@ class RealFlight : public testing::Test {
 
 // The corrections of 2011 on a flight of 2004: 0.51 +- 0.46 hPa between the systems while flying, flaps in or
 // out; total pressures with slope 0.99989, offset -0.05 and rms 0.088 hPa.
-TEST_F(RealFlight, SaysWhereEquation18Fails) {
+TEST_F(RealFlight, Equation18FailuresAreLocated) {
   CompareOptions options;
   options.mask.max_flaps = 100.0;
   const Comparison result = pcor::compare({path_}, {pair_contender()}, options);
@@ -338,7 +338,7 @@ TEST_F(RealFlight, SaysWhereEquation18Fails) {
   EXPECT_NEAR(result.total_pressure->rms, 0.088, 0.005);
 }
 
-TEST_F(RealFlight, FailsMostWhereTheLiftSaysThatFlapsAreOut) {
+TEST_F(RealFlight, LargestErrorsOccurWithFlapsExtended) {
   const Comparison result = pcor::compare({path_}, {pair_contender()});
   const pcor::Statistics& out = result.models.front().flaps_out;
   const pcor::Statistics& in = result.models.front().all;
@@ -348,7 +348,7 @@ TEST_F(RealFlight, FailsMostWhereTheLiftSaysThatFlapsAreOut) {
   EXPECT_LT(in.scatter(), 0.3);
 }
 
-TEST_F(RealFlight, IsMendedByARefitOfBothSystems) {
+TEST_F(RealFlight, RefitOfBothSystemsRemovesTheError) {
   const ComparedModel pair = pair_contender();
   pcor::RefitOptions options;
   options.fit_reference = true;

@@ -13,8 +13,8 @@
 #include "support/nuisance.hpp"
 #include "support/synthetic_samples.hpp"
 
-// WhitenedSystem of the bias of a right law, bias / stated error, over all samples, regimes, bands and
-// flights, whatever the noise: their rms is near one.
+// Scores of the bias of a correct law, bias / stated error, over all samples, regimes, bands and flights,
+// for any noise: their rms is near one.
 
 namespace {
 
@@ -68,11 +68,11 @@ double score_of(const pcor::test::Nuisance& nuisance, std::size_t seeds, std::si
   return std::sqrt(sum / count);
 }
 
-/// How far a right method may be off. Four flights of two hours are two to nine times as long as the slowest
-/// drift remembers itself, so they do not tell a drift of an hour from a larger one of a quarter of an hour:
-/// an error that is right in the mean over both is some 20 % too large for the one and too small for the
-/// other. Beside that stands chance: the parts of one comparison have much in common, so that each counts as
-/// two independent scores; three standard errors of their rms.
+/// Permitted error of a correct method. Four flights of two hours are two to nine correlation times of the
+/// slowest drift, so they do not separate a drift of an hour from a larger one of a quarter of an hour: an
+/// error that is correct in the mean over both is about 20 % too large for the one and too small for the
+/// other. Chance is added: the parts of one comparison have much in common, so that each counts as two
+/// independent scores; three standard errors of their rms.
 void expect_right(double score, std::size_t comparisons, const std::string& what) {
   std::cout << what << ": rms of the scores " << score << "\n";
   const double chance = 3.0 / std::sqrt(2.0 * 2.0 * static_cast<double>(comparisons));
@@ -102,7 +102,7 @@ TEST(StatedErrorsOfMeans, HoldWithBursts) {
   expect_right(score_of({0.0, 1.0, 0.0, true}, seeds, flights), seeds, "bursts");
 }
 
-// A flight alone tells its drift even less.
+// A single flight constrains its drift even less.
 TEST(StatedErrorsOfMeans, HoldForOneFlight) {
   expect_right(score_of({0.15, 900.0}, 2 * seeds, 1), 2 * seeds, "one flight, 0.15 hPa, 900 s");
 }

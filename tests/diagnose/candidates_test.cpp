@@ -24,7 +24,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/// A formula beside the catalogue, at another place than the ports and nonlinear in a quantity.
+/// A formula in addition to the catalogue, at another place than the ports and nonlinear in a quantity.
 ModelEffect formula() {
   ModelEffect effect;
   effect.id = "try-1";
@@ -96,7 +96,7 @@ TEST(Candidates, ReadTheUsualVariables) {
   EXPECT_EQ(variables.at(Quantity::cabin_pressure), "PCAB");
   EXPECT_EQ(variables.at(Quantity::transducer_temperature), "TBAY");
   EXPECT_EQ(variables.at(Quantity::sideslip_differential_pressure), "BDIFR");
-  // What the model has named stays.
+  // Variables named in the model stay.
   EXPECT_EQ(variables.at(Quantity::static_pressure), "PSFD");
   EXPECT_EQ(variables.at(Quantity::recovery_temperature), "TTRR");
 }
@@ -147,7 +147,7 @@ TEST(Candidates, OnOtherSystemsAreOneForEachSystem) {
   ASSERT_THAT(of_avionics, testing::SizeIs(3));
   EXPECT_FALSE(of_avionics[1]);
   EXPECT_TRUE(of_avionics[2]);
-  // Two references of one system have its effects in common, whatever its law is in either.
+  // Two references of one system share its effects, for any law in either reference.
   const std::string law = std::string("static:") + PCOR_SOURCE_DIR + "/data/models/c130-psfrd-eq18.toml";
   const auto of_both = number_of({law, pair}, "reference:psfd-bias");
   ASSERT_THAT(of_both, testing::SizeIs(3));

@@ -1,4 +1,4 @@
-// What files say of how their variables were computed.
+// Statements of files about the inputs of their computed variables.
 #include "diagnose/dependencies.hpp"
 
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ using testing::IsEmpty;
 
 namespace {
 
-/// A flight whose variables have these attributes `Dependencies`; none where the text is empty.
+/// A flight whose variables have these attributes `Dependencies`; an empty text gives no attribute.
 Flight flight_of(const TemporaryDirectory& directory,
                  const std::vector<std::pair<std::string, std::string>>& dependencies) {
   const std::filesystem::path path = directory / "flight.nc";

@@ -178,9 +178,9 @@ void expect_same(const Diagnosis& one, const Diagnosis& other) {
   EXPECT_EQ(one.notes, other.notes);
 }
 
-/// Runs a team, and tells what it exchanged.
+/// Runs a team and returns its exchanges.
 void run(std::size_t size, const std::function<void(Communicator&)>& work) {
-  testing::internal::CaptureStderr();  // in further threads HDF5 tells what netCDF asks it for in vain
+  testing::internal::CaptureStderr();  // in further threads HDF5 prints errors of failed netCDF queries
   const auto sent = run_with_communicator(size, work, true);
   testing::internal::GetCapturedStderr();
   std::size_t bytes = 0;
@@ -211,7 +211,7 @@ ModelEffect formula(const std::string& text) {
 
 const std::string beta_odd = "id = \"static-beta-odd\"\nb1 = -0.02\n";
 
-TEST(DiagnosisOfATeam, NamesTheSameEffectAndWhatWouldTellItFromOthers) {
+TEST(DiagnosisOfATeam, FindsSameEffectAndSeparationAdvice) {
   DiagnoseOptions options;
   options.formulas = {formula("k * sideslip")};
   const Diagnosis diagnosis = expect_that_of_one(flights(beta_odd, 10), {lams_reference()}, options);

@@ -72,8 +72,8 @@ std::filesystem::path flight(const std::string& scenario, unsigned seed, const s
   return made[key] = path;
 }
 
-/// Three hours of climbs and descents with a thermometer that reads so much too high, K, and a static
-/// pressure that does, hPa; beside it a second system that is right.
+/// Three hours of climbs and descents with a thermometer bias, K, and a static-pressure bias, hPa, and a
+/// second system without errors.
 std::filesystem::path climbs(unsigned seed, double offset, double bias = 0.0) {
   static const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path path = directory / fmt::format("{}-{}-{}.nc", seed, offset, bias);
@@ -117,7 +117,7 @@ std::vector<std::string> names_of(const Diagnosis& diagnosis) {
   return names;
 }
 
-/// The one that is found and those that cannot be told from it.
+/// The effect found and its indistinguishable rivals.
 std::vector<std::string> family_of(const Finding& finding) {
   std::vector<std::string> names{finding.effect.id};
   for (const Alias& alias : finding.aliases) names.push_back(alias.effect);
@@ -161,7 +161,7 @@ TEST(Diagnose, FindsALagOfTheStaticLine) {
   expect_coefficient(finding, 0.4);
   EXPECT_GT(finding.chi2, diagnosis.threshold);
   EXPECT_LT(finding.p_value, 0.003);
-  // It adds tau dp/dt: the laser shows that the residual falls where it took no part in the fit.
+  // It adds tau dp/dt: the laser shows that the residual decreases in samples excluded from the fit.
   EXPECT_LT(finding.rms_after, finding.rms_before);
   EXPECT_GT(std::abs(finding.worst), finding.rms);
   ASSERT_FALSE(finding.evidence.empty());
@@ -204,7 +204,7 @@ TEST(Diagnose, FindsTwoEffectsAtOnce) {
 }
 
 // Level legs alone: an effect of the manoeuvres is not seen, or not claimed alone.
-TEST(Diagnose, WithoutManoeuvresIsSilentOrDoesNotClaimWhatItCannotTell) {
+TEST(Diagnose, NoManoeuvresGiveNoUnsupportedClaim) {
   for (const auto& [effect, name] : std::vector<std::pair<std::string, std::string>>{
            {"id = \"static-beta-odd\"\nb1 = -0.002\n", "static-beta-odd"},
            {"id = \"load-factor\"\nper_g = 0.5\n", "load-factor"},
@@ -216,7 +216,7 @@ TEST(Diagnose, WithoutManoeuvresIsSilentOrDoesNotClaimWhatItCannotTell) {
   }
 }
 
-TEST(Diagnose, TracesWhatNoEffectExplainsToItsVariable) {
+TEST(Diagnose, UnexplainedStructureIsTracedToItsVariable) {
   const Diagnosis diagnosis = diagnose({flight("c130-eq18", 341, engine_torque)});
   EXPECT_THAT(diagnosis.verdict, AnyOf(Verdict::unexplained, Verdict::partial));
   ASSERT_TRUE(diagnosis.unexplained.significant);
@@ -232,7 +232,7 @@ TEST(Diagnose, TracesWhatNoEffectExplainsToItsVariable) {
   EXPECT_EQ(diagnosis.flights[0].traced.size(), diagnosis.flights[0].samples->time.size());
 }
 
-TEST(Diagnose, DoesNotLookWhereItIsToldNotTo) {
+TEST(Diagnose, ExcludedSamplesAreNotUsed) {
   DiagnoseOptions options;
   options.not_variables = {"ENGTRQ"};
   for (const pcor::EmpiricalPredictor& variable :
@@ -262,7 +262,7 @@ TEST(Diagnose, FindsAFormulaThatIsRight) {
   expect_coefficient(diagnosis.findings[0], 3.0);
 }
 
-TEST(Diagnose, SaysWhyAFormulaWithoutValuesIsNotTested) {
+TEST(Diagnose, FormulaWithoutValuesStatesReason) {
   const Diagnosis diagnosis = diagnose({flight("c130-short", 311)}, with_formula("k * log(sideslip - 100)"));
   EXPECT_EQ(diagnosis.verdict, Verdict::silent);
   bool told = false;
@@ -297,12 +297,12 @@ TEST(Diagnose, LooksAtTheFirstPartAlone) {
     last = i;
   }
   EXPECT_EQ(used, part.samples);
-  // The rest is later.
+  // The remaining samples are later.
   EXPECT_LT(last + 1, whole.flights.at(0).before.size());
   EXPECT_FALSE(std::isnan(whole.flights.at(0).before[last]));
 }
 
-TEST(Diagnose, TwoFlightsTellMoreThanOne) {
+TEST(Diagnose, TwoFlightsConstrainMoreThanOne) {
   const std::filesystem::path first = flight("c130-eq18", 321, static_lag);
   const std::filesystem::path second = flight("c130-eq18", 324, static_lag);
   std::size_t done = 0;
@@ -318,8 +318,8 @@ TEST(Diagnose, TwoFlightsTellMoreThanOne) {
   ASSERT_THAT(names_of(one), testing::ElementsAre("static-lag"));
   EXPECT_THAT(both.flights, SizeIs(2));
   expect_coefficient(both.findings[0], 0.4);
-  // Twice the evidence: the error falls by the root of two, but for what the noise of both together is found
-  // to be, of which two flights know more of the slow part.
+  // Twice the evidence: the error decreases by the root of two, except for the change of the estimated
+  // noise, because two flights determine the slow part better.
   const double ratio =
       both.findings[0].estimates[0].standard_error / one.findings[0].estimates[0].standard_error;
   EXPECT_GT(ratio, 0.9 * std::sqrt(0.5));
@@ -364,7 +364,7 @@ TEST(Diagnose, AModelWithoutFreeCoefficientsIsDiagnosedToo) {
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
 }
 
-TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
+TEST(Diagnose, StaticSystemReferenceFindsUnsharedEffects) {
   const auto reference = pcor::static_system_reference(
       pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml"));
   const Diagnosis diagnosis =
@@ -395,7 +395,7 @@ TEST(Diagnose, ADifferenceOfTwoSystemsNamesAnEffectOnEither) {
 }
 
 // Level legs alone: four effects together describe the engines nearly, and not at all in the total pressure.
-TEST(Diagnose, HoldsALineAgainstEffectsByAllReferences) {
+TEST(Diagnose, LineIsComparedWithEffectsByAllReferences) {
   std::string torque = engine_torque;
   torque.replace(torque.find("3.0"), 3, "6.0");
   const Diagnosis diagnosis =
@@ -404,9 +404,9 @@ TEST(Diagnose, HoldsALineAgainstEffectsByAllReferences) {
   EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("a line in ENGTRQ explains more")));
 }
 
-// What goes with the engines acts at the static ports, or in the total line, of which the total pressures
-// know.
-TEST(Diagnose, TellsByTotalPressuresWhereWhatItTracesActs) {
+// An error that varies with the engines acts at the static ports, or in the total line; the total pressures
+// separate the two.
+TEST(Diagnose, TotalPressuresLocateTracedVariable) {
   for (const bool total : {false, true}) {
     std::string torque = engine_torque;
     if (total) torque.replace(torque.find("static"), 6, "total");
@@ -414,7 +414,7 @@ TEST(Diagnose, TellsByTotalPressuresWhereWhatItTracesActs) {
         pcor::diagnose({flight("c130-eq18", 343, torque)}, model(),
                        {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
     ASSERT_FALSE(diagnosis.unexplained.variables.empty()) << total;
-    // The laser alone shows what is in the total line as a drift that goes with more than one variable.
+    // The laser alone shows an error in the total line as a drift that varies with more than one variable.
     const pcor::EmpiricalPredictor& traced = diagnosis.unexplained.variables.front();
     if (!total) {
       EXPECT_EQ(traced.name, "ENGTRQ");
@@ -427,7 +427,7 @@ TEST(Diagnose, TellsByTotalPressuresWhereWhatItTracesActs) {
 }
 
 // The simulated avionics low-pass their pressures; the second pair does not.
-TEST(Diagnose, TellsWhichOfTwoOtherSystemsAnEffectIsOf) {
+TEST(Diagnose, EffectIsAssignedToOneOfTwoSystems) {
   const Diagnosis diagnosis =
       pcor::diagnose({flight("c130-eq18", 363)}, model(),
                      {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model()),
@@ -440,8 +440,8 @@ TEST(Diagnose, TellsWhichOfTwoOtherSystemsAnEffectIsOf) {
   for (const pcor::UpperLimit& limit : diagnosis.limits) EXPECT_GT(limit.rms, 0.0) << limit.effect;
 }
 
-// The second pair stands still for five minutes of a climb.
-TEST(Diagnose, DoesNotBelieveAFrozenSensorOfAFurtherReference) {
+// The second pair is frozen for five minutes of a climb.
+TEST(Diagnose, FrozenSensorOfFurtherReferenceIsRejected) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path path = directory / "frozen.nc";
   std::filesystem::copy_file(flight("c130-eq18", 362), path);
@@ -459,7 +459,7 @@ TEST(Diagnose, DoesNotBelieveAFrozenSensorOfAFurtherReference) {
 }
 
 // To the laser an offset of the thermometer is a change of the law; to the heights of its climbs it is not.
-TEST(Diagnose, AgainstHeightsTooFindsAThermometerThatIsOff) {
+TEST(Diagnose, HeightsShowThermometerBias) {
   const Paths flights{climbs(391, 1.0)};
   EXPECT_THAT(diagnose(flights).findings, IsEmpty());
   const pcor::References references{pcor::lams_reference(), pcor::height_reference(model())};
@@ -469,12 +469,12 @@ TEST(Diagnose, AgainstHeightsTooFindsAThermometerThatIsOff) {
   EXPECT_THAT(family_of(finding), testing::Contains("temp-offset"));
   EXPECT_LE(family_of(finding).size(), 3U);
   if (finding.effect.id != "temp-offset") return;
-  // Isobars that rise along the track look like some tenths of a kelvin.
+  // Isobars that rise along the track look like a few tenths of a kelvin.
   EXPECT_NEAR(finding.estimates[0].value, 1.0, 0.3);
 }
 
 // The total pressures of two systems show that one is off, the heights which.
-TEST(Diagnose, AgainstHeightsTooTellsWhichSystemIsOff) {
+TEST(Diagnose, HeightsIdentifyTheWrongSystem) {
   const Paths flights{climbs(397, 0.0, 0.5)};
   const auto total = pcor::total_pressure_reference(
       pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml"));
@@ -491,7 +491,7 @@ TEST(Diagnose, AgainstHeightsTooTellsWhichSystemIsOff) {
   EXPECT_LT(with.size(), without.size());
 }
 
-TEST(Diagnose, AgainstHeightsTooIsSilentWhereNothingIsMissing) {
+TEST(Diagnose, CompleteModelAgainstHeightsIsSilent) {
   const pcor::References references{pcor::height_reference(model()), pcor::lams_reference()};
   for (unsigned seed = 394; seed <= 396; ++seed) {
     const Diagnosis diagnosis = pcor::diagnose({climbs(seed, 0.0)}, model(), references);
@@ -500,7 +500,7 @@ TEST(Diagnose, AgainstHeightsTooIsSilentWhereNothingIsMissing) {
   }
 }
 
-TEST(Diagnose, NeedsAReferenceThatTellsOfEachSample) {
+TEST(Diagnose, ReferenceMustResolveSingleSamples) {
   const Paths flights{climbs(394, 0.0)};
   EXPECT_THROW(pcor::diagnose(flights, model(), {pcor::wind_reference(model())}), pcor::Error);
   EXPECT_NO_THROW(pcor::diagnose(flights, model(), {pcor::height_reference(model())}));
@@ -517,7 +517,7 @@ TEST(Diagnose, NeedsFlightsAndSamples) {
   EXPECT_THROW(diagnose({flight("c130-short", 311)}, options), pcor::Error);
 }
 
-// What may be said of advice, whatever the effect.
+// Rules for advice on any effect.
 void expect_advice(const Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) {
     const pcor::Advice& advice = finding.advice;
@@ -555,7 +555,8 @@ TEST(Advice, IsToFlyAgainWhatWasFlown) {
   }
 }
 
-// Level legs alone show the sideslip, and nothing flown tells ports from laser: the catalogue does.
+// Level legs alone show the sideslip, and no flown regime separates ports from laser: the advice comes from
+// the catalogue.
 TEST(Advice, IsThatOfTheCatalogueWhereNothingFlownHelps) {
   const Diagnosis diagnosis =
       diagnose({flight("c130-no-manoeuvres", 371, "id = \"static-beta-odd\"\nb1 = -0.009\n")});
@@ -565,7 +566,8 @@ TEST(Advice, IsThatOfTheCatalogueWhereNothingFlownHelps) {
   EXPECT_THAT(diagnosis.findings[0].advice.manoeuvre, IsEmpty());
 }
 
-// Four more yaw manoeuvres should tell the ports from the laser in about nine of ten flights, and do.
+// Four more yaw manoeuvres are predicted to separate the ports from the laser in about nine of ten flights,
+// and do.
 TEST(Advice, HoldsWhereItIsFollowed) {
   const std::string effect = "id = \"static-beta-odd\"\nb1 = -0.003\n";
   const std::string yaw = "[[leg]]\nkind = \"yaw\"\ncycles = 12\n\n";
@@ -578,7 +580,7 @@ TEST(Advice, HoldsWhereItIsFollowed) {
     ASSERT_THAT(before.findings, SizeIs(1));
     const pcor::Advice& advice = before.findings[0].advice;
     if (advice.manoeuvre != "yaw manoeuvre") continue;
-    EXPECT_NEAR(advice.duration, 4.0 * 144.0, 40.0);  // of cycles of 12 s, as they are found
+    EXPECT_NEAR(advice.duration, 4.0 * 144.0, 40.0);  // tolerance: detected cycles of 12 s
     const Diagnosis after = diagnose({flight("c130-eq18", seed, effect, yaw + yaw + yaw + yaw)});
     ASSERT_THAT(names_of(after), testing::ElementsAre("static-beta-odd"));
     ++followed;

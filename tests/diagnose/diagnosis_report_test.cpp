@@ -29,7 +29,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double start = 1321560000.0;  // 2011-11-17 20:00:00 UTC
 
 /// An hour: a climb, a level leg with a yaw manoeuvre, a descent. Two effects are missing, one with sideslip
-/// and one with the vertical speed, and something goes with the torque. The first 100 samples are not used.
+/// and one with the vertical speed, and one error varies with the torque. The first 100 samples are not
+/// used.
 FlightDiagnosis flight(const std::string& name, unsigned seed) {
   constexpr std::size_t count = 3600;
   auto samples = std::make_shared<FlightSamples>();
@@ -165,7 +166,7 @@ Diagnosis partial() {
   return diagnosis;
 }
 
-/// The same flights with nothing in them.
+/// The same flights without missing effects.
 Diagnosis silent() {
   Diagnosis diagnosis = partial();
   diagnosis.verdict = Verdict::silent;
@@ -253,7 +254,7 @@ std::string all_of(const std::vector<std::string>& texts) {
   return all;
 }
 
-/// The words of the page, without its data and its script: nothing in them may be the name of no number.
+/// Words of the page, without its data and its script: no NaN or infinity may be printed.
 std::string split_words(const Report& report) {
   const std::string html = report_html(report);
   const std::string body = html.substr(html.find("<body>"), html.find("id=\"data\"") - html.find("<body>"));
@@ -261,7 +262,7 @@ std::string split_words(const Report& report) {
   return body;
 }
 
-TEST(DiagnosisReport, SaysWhatIsMissingHowLargeAndHowSure) {
+TEST(DiagnosisReport, StatesFindingSizeAndSignificance) {
   const Report report = diagnosis_report(partial(), model());
   EXPECT_EQ(report.title,
             "Effects are missing: static-beta-odd and static-lag; structure is left that no effect explains");
@@ -300,7 +301,7 @@ TEST(DiagnosisReport, HasAPageInWordsForEachFinding) {
   EXPECT_THAT(all_of(second->paragraphs), HasSubstr("No other effect that was tested"));
 }
 
-TEST(DiagnosisReport, NamesWhatCannotBeToldApart) {
+TEST(DiagnosisReport, NamesIndistinguishableEffects) {
   Diagnosis diagnosis = partial();
   diagnosis.verdict = Verdict::ambiguous;
   EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
@@ -360,7 +361,7 @@ TEST(DiagnosisReport, ShowsOnlySamplesThatWereUsed) {
   EXPECT_EQ(report.intervals.size(), 8U);
 }
 
-TEST(DiagnosisReport, TellsOfStructureWithoutAnExplanation) {
+TEST(DiagnosisReport, ReportsStructureWithoutExplanation) {
   const Report report = diagnosis_report(unexplained(), model());
   EXPECT_EQ(report.title, "Structure is left that no effect explains");
   EXPECT_THAT(report.summary,
@@ -386,7 +387,7 @@ TEST(DiagnosisReport, SilenceComesWithItsLimits) {
   split_words(report);
 }
 
-TEST(DiagnosisReport, NeedsNothingButAVerdict) {
+TEST(DiagnosisReport, VerdictAloneIsSufficient) {
   Diagnosis diagnosis;
   split_words(diagnosis_report(diagnosis, {}));
   diagnosis.findings.resize(1);
@@ -398,7 +399,7 @@ TEST(DiagnosisReport, NeedsNothingButAVerdict) {
   split_words(diagnosis_report(diagnosis, {}));
 }
 
-TEST(DiagnosisReport, LeavesOutWhatIsNoNumber) {
+TEST(DiagnosisReport, NonFiniteValuesAreOmitted) {
   Diagnosis diagnosis = partial();
   Finding& finding = diagnosis.findings.front();
   finding.estimates = {{"b1", "1", nan, nan, 0.0}, {"b2", "hPa", 1.0, nan, nan}};
@@ -450,7 +451,7 @@ TEST(ImprovementReport, ShowsTheLadder) {
   split_words(report);
 }
 
-TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
+TEST(ImprovementReport, StartsWithInputModelAndShowsHeldOutFlights) {
   Improvement made = improvement();
   made.given_rms_holdout = 0.5;
   made.rms_holdout = 0.13;
@@ -483,7 +484,7 @@ TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
   split_words(report);
 }
 
-TEST(ImprovementReport, TellsAPartThatWasHeldOutFromAFlight) {
+TEST(ImprovementReport, HeldOutPartDiffersFromHeldOutFlight) {
   Improvement made = improvement();
   made.holdout_is_flights = true;
   for (const FlightDiagnosis& one : made.steps[0].diagnosis.flights) {

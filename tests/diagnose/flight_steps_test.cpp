@@ -43,14 +43,14 @@ struct Flights {
   }
 };
 
-TEST(MeanSteps, KnowsTheFlightThatDiffersAndByHowMuch) {
+TEST(MeanSteps, DifferingFlightIsFoundWithItsStep) {
   const std::vector<MeanOffset> steps = Flights({0.0, 0.0, 0.15, 0.0}, 1).steps();
   ASSERT_EQ(steps.size(), 4U);
   // The error of a mean of 300 values of 0.2 against that of 900.
   EXPECT_NEAR(steps[2].error, 0.2 * std::sqrt(1.0 / 300.0 + 1.0 / 900.0), 0.002);
   EXPECT_NEAR(steps[2].size, 0.15, 3.0 * steps[2].error);
   EXPECT_LT(steps[2].chance, 1e-6);
-  // The others scatter by the one that differs, so none of them stands out.
+  // The differing flight increases the scatter of the others, so none of the others is significant.
   for (const std::size_t other : {0U, 1U, 3U}) EXPECT_GT(steps[other].chance, 0.05);
 }
 
@@ -62,7 +62,7 @@ TEST(MeanSteps, CompareTwoFlights) {
 }
 
 // A model with a column that is 1 in the second flight and those after it, as that of a step on a date is.
-TEST(MeanSteps, AreNoneWhereTheModelHasTheStep) {
+TEST(MeanSteps, ModelledStepIsNotReported) {
   for (const std::vector<double>& means : {std::vector<double>{0.0, 0.4}, {0.0, 0.4, 0.4}}) {
     Flights flights(means, 8);
     for (std::size_t f = 0; f < means.size(); ++f) {
@@ -74,7 +74,7 @@ TEST(MeanSteps, AreNoneWhereTheModelHasTheStep) {
 }
 
 // Least squares of the model's columns and a constant of each flight together, by another way.
-TEST(MeanSteps, AreThoseOfLeastSquaresWithAConstantOfEachFlight) {
+TEST(MeanSteps, MatchLeastSquaresWithFlightConstants) {
   Flights flights({0.0, 0.2, -0.1, 0.05, 0.0}, 9);
   std::mt19937_64 engine(10);
   std::normal_distribution<double> normal;
@@ -104,18 +104,18 @@ TEST(MeanSteps, OfAModelWithoutACoefficientAreThoseOfTheMeans) {
   EXPECT_NEAR(flights.steps()[1].size, flights.residuals[1].mean() - flights.residuals[0].mean(), 1e-12);
 }
 
-TEST(MeanSteps, OfOneFlightAreNone) { EXPECT_EQ(Flights({0.3}, 3).steps().front().chance, 1.0); }
+TEST(MeanSteps, OneFlightGivesNoSteps) { EXPECT_EQ(Flights({0.3}, 3).steps().front().chance, 1.0); }
 
 // A drift of that size makes means differ as much.
-TEST(MeanSteps, AreNoneWhereDriftExplainsThem) {
+TEST(MeanSteps, DriftExplainsAllSteps) {
   Flights flights({0.1, -0.1}, 4);
   flights.noise.slow = {0.0, 0.0, 0.0, 0.2};
   EXPECT_GT(flights.steps()[1].chance, 0.05);
 }
 
-// Flights differ from each other by 0.1 hPa at random: of 200 campaigns of six, one flight is to be taken for
-// a step in 2; more than 7 once in 1,000 times.
-TEST(MeanSteps, OfFlightsThatScatterAreChance) {
+// Flights differ from each other by 0.1 hPa at random: of 200 campaigns of six, one flight is expected to be
+// reported as a step in 2; more than 7 once in 1,000 times.
+TEST(MeanSteps, RandomScatterIsNotSignificant) {
   std::mt19937_64 engine(5);
   std::normal_distribution<double> normal;
   int claims = 0;

@@ -1,4 +1,4 @@
-// What flights have of each regime that they flew.
+// Samples of each regime that the flights flew.
 #include "diagnose/flown_regimes.hpp"
 
 #include <gmock/gmock.h>
@@ -52,7 +52,7 @@ class Flights {
     return flown_regimes(scores_, [this](std::size_t f) { return FlightInBins{columns_[f], bins_[f]}; });
   }
 
-  /// Of the rows between two times.
+  /// Rows between two times.
   Eigen::MatrixXd information(std::size_t flight, double begin, double end) const {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(width, width);
     for (std::size_t i = 0; i < bins_[flight].size(); ++i) {

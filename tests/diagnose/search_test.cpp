@@ -100,7 +100,7 @@ SearchResult run(Problem& problem, const SearchOptions& options = {}) {
 struct Dense {
   Eigen::VectorXd estimate;
   Eigen::MatrixXd covariance;
-  double variance = 0.0;  // of the residuals left, in units of the noise
+  double variance = 0.0;  // variance of the remaining residuals, in units of the noise
 
   Dense(const Problem& problem, const std::vector<Eigen::Index>& places) {
     const Eigen::MatrixXd white = problem.columns(Eigen::all, places) / problem.noise.level[0][0];
@@ -132,7 +132,7 @@ TEST(Search, FindsTheOneColumnThatIsThere) {
 }
 
 // A model whose own coefficients are off leaves much that they explain: it must not hide what is missing.
-TEST(Search, WhatTheBaseExplainsHidesNothing) {
+TEST(Search, BaseEffectsHideNoColumn) {
   for (const double offset : {0.0, 0.2, 1.0, 5.0}) {
     Problem problem(600, 20, 1, 0.7, offset);
     problem.residual += 0.3 * problem.candidate(7);
@@ -146,7 +146,7 @@ TEST(Search, FindsAPair) {
   EXPECT_THAT(run(problem).chosen, UnorderedElementsAre(4U, 15U));
 }
 
-// The third explains more than each of the two alone, and nothing beside both.
+// The third explains more than each of the two alone, and no more than both together.
 TEST(Search, FindsAPairWhereAThirdColumnIsNearlyTheirSum) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Problem problem(900, 12, seed);
@@ -167,7 +167,7 @@ TEST(Search, TheStrongestIsFirst) {
 }
 
 // One part in 40 is its own, 1/1600 of the variance: the base imitates it nearly, and yet it is seen.
-TEST(Search, WhatTheBaseNearlyImitatesIsFoundByTheRest) {
+TEST(Search, NearImitationIsFoundByItsRemainder) {
   Problem problem(600, 5, 4);
   problem.candidate(3) = 40.0 * problem.columns.col(1) + 0.577 * problem.candidate(3);
   problem.residual += 2.0 * problem.candidate(3);
@@ -177,7 +177,7 @@ TEST(Search, WhatTheBaseNearlyImitatesIsFoundByTheRest) {
   EXPECT_THAT(search.run({}).chosen, ElementsAre(3U));
 }
 
-TEST(Search, WhatTheBaseImitatesIsAbsorbedHoweverStrong) {
+TEST(Search, ColumnsInTheBaseAreAbsorbed) {
   Problem problem(600, 5, 4);
   // One part in 1e4 is its own: less than single precision holds of a column.
   problem.candidate(3) = 1e4 * problem.columns.col(1) + 0.577 * problem.candidate(3);
@@ -193,7 +193,7 @@ TEST(Search, WhatTheBaseImitatesIsAbsorbedHoweverStrong) {
   }
 }
 
-TEST(Search, WhatIsOutOfBoundsIsNotFound) {
+TEST(Search, EstimatesOutsideBoundsAreRejected) {
   Problem problem(600, 8, 5);
   problem.residual -= 0.5 * problem.candidate(3);
   problem.one_by_one();
@@ -217,8 +217,8 @@ TEST(Search, AnEstimateWithinTwoErrorsOfItsBoundIsPossible) {
   EXPECT_FALSE(problem.search().score(1, {}).possible);
 }
 
-// An effect of a usual size is likelier than one of a hundred times its own that does nearly the same.
-TEST(Search, SizesThatAreMetAreLikelier) {
+// An effect of a usual size is more likely than a nearly equal one at a hundred times its usual size.
+TEST(Search, TypicalSizesAreMoreLikely) {
   Problem problem(600, 6, 21);
   problem.candidate(2) = 0.99 * problem.candidate(1) + 0.14 * problem.candidate(2);
   problem.residual += 0.3 * problem.candidate(1);
@@ -228,7 +228,7 @@ TEST(Search, SizesThatAreMetAreLikelier) {
   const Search search = problem.search();
   EXPECT_GT(search.evidence({1}), search.evidence({2}) + 4.0);
   EXPECT_THAT(search.run({}).chosen, ElementsAre(1U));
-  // But no size is impossible: where nothing else does it, the effect is found.
+  // But no size is impossible: without a rival, the effect is found.
   Problem alone(600, 6, 22);
   alone.residual += 0.3 * alone.candidate(2);
   alone.one_by_one();
@@ -247,7 +247,7 @@ TEST(Search, EvidenceOfOneColumnIsTheKnownOne) {
   const GroupScore score = search.score(0, {});
   const double v = score.covariance(0, 0);
   const double b = score.estimate[0];
-  // Of all effects so many have sizes that spread by so many times three of the usual ones.
+  // Mixture prior: each share of all effects has sizes with this multiple of three usual sizes as spread.
   double known = 0.0;
   for (const auto& [times, share] :
        {std::pair{1.0, 0.65}, std::pair{0.1, 0.1}, std::pair{3.0, 0.2}, std::pair{10.0, 0.05}}) {
@@ -333,7 +333,7 @@ TEST(Search, EstimatesAreThoseOfDenseLeastSquares) {
   EXPECT_NEAR(search.variance({2, 5}), dense.variance, 1e-9 * dense.variance);
   EXPECT_NEAR(dense.variance, 1.0, 0.3);  // 300 samples: deviation 0.08
 
-  // A score beside another: the same estimate, and the square of it over its variance.
+  // A score given another column: the same estimate, and its square over its variance.
   const GroupScore score = search.score(5, {2});
   EXPECT_NEAR(score.estimate[0], dense.estimate[3], 1e-8 * std::abs(dense.estimate[3]));
   const Dense without(problem, {0, 1, base + 2});
@@ -356,12 +356,13 @@ TEST(Search, ClaimsNothingInNoise) {
     threshold += result.threshold / 400.0;
   }
   EXPECT_LE(claims, 6);
-  // Of one column 0.3 % exceed 8.81, of thirty that have nothing in common 15.1 (Bonferroni).
+  // For one column 0.3 % exceed 8.81, for thirty independent ones 15.1 (Bonferroni).
   EXPECT_GT(threshold, 8.81);
   EXPECT_LT(threshold, 15.3);
 }
 
-// Without the sign flips, which only take away, chance has what it is given: 20 of 400 at 5 %, deviation 4.4.
+// Without the sign flips, which only remove findings, chance has its nominal rate: 20 of 400 at 5 %,
+// deviation 4.4.
 TEST(Search, TheThresholdIsExceededAsOftenAsItSays) {
   int above = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
@@ -390,7 +391,7 @@ TEST(Search, NoiseWithHeavyTailsIsNotAnEffect) {
     options.draws = 1000;
     claims += run(problem, options).chosen.empty() ? 0 : 1;
   }
-  // One event tells nothing. Flipped signs let 5 % of such flights through, 10 of 200 with a deviation
+  // One event is not significant. Flipped signs let 5 % of such flights through, 10 of 200 with a deviation
   // of 3.1.
   EXPECT_LE(claims, 19);
 }
@@ -416,7 +417,7 @@ TEST(Search, AGivenThresholdAndAGreatestNumberHold) {
   EXPECT_THAT(run(problem, options).chosen, IsEmpty());
 }
 
-TEST(Search, NothingToSearchForIsNothing) {
+TEST(Search, EmptySearchFindsNoColumn) {
   Problem problem(300, 0, 13);
   const Search search = problem.search();
   EXPECT_THAT(search.run({}).chosen, IsEmpty());
@@ -433,7 +434,7 @@ TEST(Correlation, HasTheSignOfTheColumns) {
   EXPECT_NEAR(search.correlation(0, 2, {}), -0.8, 0.1);
   EXPECT_NEAR(search.correlation(1, 0, {}), search.correlation(0, 1, {}), 1e-12);
   EXPECT_NEAR(search.correlation(0, 3, {}), 0.0, 0.3);
-  // What is common to the two is gone beside it.
+  // The common part of the two is removed.
   EXPECT_NEAR(search.correlation(1, 2, {0}), 0.0, 0.3);
 }
 
@@ -456,7 +457,7 @@ TEST(LeftoverRows, AreAtRightAnglesToBaseAndOthers) {
   const Eigen::MatrixXd white = problem.columns / problem.noise.level[0][0];
   for (const Eigen::Index column : {Eigen::Index{0}, Eigen::Index{1}, base + 4})
     EXPECT_NEAR(rows.dot(white.col(column)) / rows.norm() / white.col(column).norm(), 0.0, 1e-9) << column;
-  // Their product with the residual is the evidence, in units of the noise that is left.
+  // Their product with the residual is the evidence, in units of the remaining noise.
   const double evidence = rows.dot(problem.residual) / problem.noise.level[0][0];
   const GroupScore score = search.score(1, {4});
   EXPECT_NEAR(evidence, score.chi2 * search.variance({4}), 1e-8 * evidence);

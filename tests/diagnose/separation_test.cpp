@@ -1,4 +1,4 @@
-// What more flying would separate, against chances by simulation and against laws of what repeats do.
+// Separation by more flying, compared with probabilities by simulation and with laws of repeated regimes.
 #include "diagnose/separation.hpp"
 
 #include <gmock/gmock.h>
@@ -79,7 +79,7 @@ TEST(Separation, GrowsWithRepeatsAsWithLongerIntervals) {
   for (const int length : {100, 200, 400, 800}) {
     const std::vector<FlownRegime> once{regime_of(Regime::circle, rows_of(length, 0.97, 4))};
     const Plan plan = best_plan(once, rivalry);
-    const double power = std::min(plan.power, 0.95);  // with which it needs no more repeats
+    const double power = std::min(plan.power, 0.95);  // power at which no more repeats are needed
     EXPECT_GE(power, before) << length;
     EXPECT_LE(power, 1.0);
     before = power;
@@ -115,7 +115,7 @@ TEST(Separation, IsOfTheRivalThatImitatesMost) {
   const std::vector<FlownRegime> regimes{regime_of(Regime::yaw_manoeuvre, rows_of(400, 0.9, 7))};
   SeparationProblem rivalry = rivalry_of(rows, 1.0);
   const Plan of_one = best_plan(regimes, rivalry);
-  rivalry.rests.push_back({base});  // which imitates nothing
+  rivalry.rests.push_back({base});  // a rival that imitates no effect
   const Plan of_two = best_plan(regimes, rivalry);
   EXPECT_EQ(of_two.repeats, of_one.repeats);
   EXPECT_EQ(of_two.power, of_one.power);
@@ -145,7 +145,7 @@ TEST(Separation, IsWhatTheCatalogueSaysWhereNoRegimeHelps) {
   EXPECT_FALSE(is_separated(rivalry));
 }
 
-// More of the same is no advice to flights that separate the effect nearly, or surely, without it.
+// More of the same regimes is no advice to flights that separate the effect nearly, or surely, without it.
 TEST(Separation, NeedsARegimeThatHalvesTheDoubt) {
   const Eigen::MatrixXd rows = rows_of(300, 0.9);
   const std::vector<FlownRegime> nothing{regime_of(Regime::turn, 1e-3 * rows_of(10, 0.5, 9))};

@@ -57,7 +57,7 @@ TEST(ShapeUncertainty, IsTheDerivativeByThePowerOfTheDynamicPressure) {
   const Eigen::VectorXd effect = 2.0 * example.column;
   const Eigen::ArrayXd logarithm = example.dynamic_pressure.array().log();
   const double mean = (effect.array().square() * logarithm).sum() / effect.squaredNorm();
-  constexpr double change = 1e-6;  // of the power; what is left of the difference is of its order
+  constexpr double change = 1e-6;  // change of the power; the error of the difference is of this order
   const Eigen::ArrayXd ratio = (change * (logarithm - mean)).exp();
   const Eigen::VectorXd difference = (effect.array() * (ratio - 1.0) / change).matrix();
   EXPECT_TRUE(found.isApprox(0.3 * difference, 1e-5));

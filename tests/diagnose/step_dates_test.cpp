@@ -25,7 +25,7 @@ Finding step_on(double date) {
   return finding;
 }
 
-/// Of the dates that are tried that which a step between two flights is nearest to.
+/// Tried date nearest to a step between two flights.
 double nearest(const std::vector<double>& tried, double date) {
   return *std::min_element(tried.begin(), tried.end(),
                            [date](double a, double b) { return std::abs(a - date) < std::abs(b - date); });
@@ -37,7 +37,7 @@ TEST(StepDates, OfFewFlightsAreAllButTheFirst) {
   EXPECT_FALSE(dates.refine({step_on(102.0)}));
 }
 
-TEST(StepDates, OfOneFlightAreNone) {
+TEST(StepDates, OneFlightGivesNoDates) {
   EXPECT_THAT(StepDates(begins(1)).tried(), testing::IsEmpty());
   EXPECT_THAT(StepDates(std::vector<double>{}).tried(), testing::IsEmpty());
 }
@@ -52,7 +52,7 @@ TEST(StepDates, OfManyFlightsAreSomeUntilOneIsFound) {
   EXPECT_FALSE(dates.refine({other}));
 }
 
-// A step between so many flights and the others is tried so near that half of its evidence is left at least.
+// A step between two groups of flights is tried near enough to keep half of its evidence at least.
 TEST(StepDates, OfManyFlightsLieCloseAtBothEnds) {
   const StepDates dates(begins(2000));
   for (int before = 1; before < 2000; ++before) {
@@ -62,14 +62,14 @@ TEST(StepDates, OfManyFlightsLieCloseAtBothEnds) {
   }
 }
 
-TEST(StepDates, AreNotRefinedByWhatIsFoundOfTheOtherSystem) {
+TEST(StepDates, OtherSystemFindingsDoNotRefineDates) {
   StepDates dates(begins(2000));
   Finding other = step_on(dates.tried().front());
   other.of_reference = true;
   EXPECT_FALSE(dates.refine({other}));
 }
 
-// Wherever the steps are, first and last flights included, they are found to the flight in a few rounds.
+// Steps at any flight, first and last included, are located to the flight in a few rounds.
 TEST(StepDates, LeadToTheFlight) {
   for (const double truth : {101.0, 350.0, 2099.0}) {
     StepDates dates(begins(2000));

@@ -58,7 +58,7 @@ Eigen::VectorXd as_vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// Residuals of noise that remembers itself, a base of a constant, and variables that wander.
+/// Residuals with correlated noise, a base of a constant, and random-walk variables.
 struct Flight {
   std::vector<Binning> bins;
   std::vector<Eigen::MatrixXd> columns;
@@ -112,7 +112,7 @@ TEST(Smooth, HasALineAndNoConstant) {
     EXPECT_NEAR(rows.col(0).squaredNorm() / 500.0, 1.0, 1e-12);
     Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
     with << rows, Eigen::VectorXd::Ones(rows.rows());
-    // A constant beside them is a direction of its own.
+    // A constant adds a separate direction.
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition(with);
     EXPECT_EQ(decomposition.rank(), rows.cols() + 1);
     EXPECT_LT(left_of(with, as_vector(values)), 1e-10);
@@ -137,8 +137,9 @@ TEST(Smooth, FollowsABentCurve) {
   EXPECT_LT(left_of(with, wave), 0.05);
 }
 
-// Of a switch with three positions every function is one: as good as a mean for each, less the constant.
-TEST(Smooth, OfFewLevelsIsAnyFunctionOfThem) {
+// For a switch with three positions every function is one column set: equal to a mean for each, less the
+// constant.
+TEST(Smooth, FewLevelsAllowAnyFunctionOfThem) {
   std::vector<double> values(90);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i % 3) * 10.0;
   const Smooth smooth = Smooth::with_knots_at_values(known(values), 6);
@@ -174,7 +175,7 @@ TEST(Smooth, LeavesOutMissingValues) {
   EXPECT_NEAR(with.deviation(), without.deviation(), 1e-14);
 }
 
-TEST(Smooth, OfAConstantIsNothing) {
+TEST(Smooth, ConstantVariableHasNoBasisFunctions) {
   for (const std::vector<double>& values :
        {std::vector<double>(100, 7.0), std::vector<double>(), std::vector<double>(100, missing)}) {
     EXPECT_EQ(Smooth::with_knots_at_values(known(values), 6).columns(), 0U);
@@ -203,7 +204,7 @@ TEST(Smooth, WithEvenKnotsFollowsAWaveWhereFewValuesAre) {
   EXPECT_GT(left(Smooth::with_knots_at_values(known(values), 6)), 0.5);
 }
 
-TEST(Smooth, OfAnAngleDoesNotKnowWhereItBegins) {
+TEST(Smooth, AngleResultIsIndependentOfOrigin) {
   const std::vector<double> headings{0.0, 90.0, 359.0, 180.0, 45.0};
   const Smooth smooth = Smooth::periodic(known(headings), 360.0);
   ASSERT_EQ(smooth.columns(), 4U);
@@ -231,14 +232,14 @@ TEST(StructureTest, KnowsTheSlopeOfALine) {
   const Structure& found = strongest(test);
   ASSERT_EQ(found.name, "v3");
   EXPECT_NEAR(found.slope, 0.05, 4.0 * found.slope_error);
-  // Of a dense fit: the variable wanders with a deviation of 5 whose differences hold most information.
+  // Dense fit: the variable wanders with a deviation of 5 whose differences hold most information.
   EXPECT_LT(found.slope_error, 0.01);
   EXPECT_LE(found.line_gain, found.gain * (1.0 + 1e-9));
 }
 
 TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
   Flight flight(200, 1, 3);
-  // All of the drift that the model knows is there: no variable is likelier beside less of it.
+  // The drift of the model is included in full: no variable is more likely with less of it.
   flight.noise.slow = {0.0, 0.4, 0.0, 0.0};
   for (Eigen::Index i = 0; i < 200; ++i)
     flight.residuals[0][i] += std::sin(step * static_cast<double>(i) / 100.0);
@@ -263,8 +264,8 @@ TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
   EXPECT_NEAR(test.structures()[0].slope_error, std::sqrt(inverse(1, 1)), 0.2 * std::sqrt(inverse(1, 1)));
 }
 
-// A fixed share of flights without structure, one in a hundred, is taken for structure, whatever their noise
-// is like. Of 60 flights more than 4 are once in 2,500 times.
+// A fixed share of flights without structure, one in a hundred, is reported as structure, for any noise.
+// More than 4 of 60 flights occur once in 2,500 times.
 class NoStructure : public testing::TestWithParam<const char*> {};
 
 TEST_P(NoStructure, IsFoundOnceInAHundredFlights) {
@@ -305,7 +306,8 @@ TEST_P(NoStructure, IsFoundOnceInAHundredFlights) {
 
 INSTANTIATE_TEST_SUITE_P(Noise, NoStructure, testing::Values("short memory", "1/f", "drift", "bursts"));
 
-// What goes with a variable as slow as drift is taken for drift where the noise is found without it.
+// Structure that varies with a variable as slow as drift is absorbed by drift if the noise is estimated
+// without it.
 TEST(StructureTest, AVariableCompetesWithDriftOnEqualTerms) {
   Flight flight(1800, 8, 9);
   std::vector<double>& slow = flight.variables[5];
@@ -320,7 +322,8 @@ TEST(StructureTest, AVariableCompetesWithDriftOnEqualTerms) {
   EXPECT_NEAR(strongest(test).slope, 0.25, 4.0 * strongest(test).slope_error);
 }
 
-// Strong structure is no noise, though it goes with some variables by chance when it is shifted.
+// Strong structure does not count as noise, though it correlates with some variables by chance when it is
+// shifted.
 TEST(StructureTest, SetsStrongStructureAside) {
   Flight flight(900, 12, 11);
   flight.residuals[0] += 1.0 * as_vector(flight.variables[7]);
@@ -346,7 +349,7 @@ TEST(StructureTest, FindsAnAngle) {
   EXPECT_EQ(test.structures()[0].slope, 0.0);
 }
 
-TEST(StructureTest, WhatTheModelHasIsNotStructure) {
+TEST(StructureTest, ModelledEffectsAreNotStructure) {
   Flight flight(600, 3, 5);
   flight.columns[0].conservativeResize(Eigen::NoChange, 2);
   flight.columns[0].col(1) = as_vector(flight.variables[1]);
@@ -356,7 +359,7 @@ TEST(StructureTest, WhatTheModelHasIsNotStructure) {
   EXPECT_EQ(test.structures()[1].line_gain, 0.0);
 }
 
-TEST(StructureTest, LeavesOutWhatDoesNotVaryOrIsMissing) {
+TEST(StructureTest, ConstantOrMissingVariablesAreSkipped) {
   Flight flight(300, 3, 6);
   StructureTest test(pcor::internal::FlightPartition(1), flight.bins, flight.columns, flight.residuals,
                      flight.noise, 1);
@@ -371,7 +374,7 @@ TEST(StructureTest, LeavesOutWhatDoesNotVaryOrIsMissing) {
   EXPECT_TRUE(std::isfinite(test.structures()[0].gain));
 }
 
-TEST(SharesNoise, IsWhatWasComputedFromTheSameMeasurement) {
+TEST(SharesNoise, VariablesOfOneMeasurementShareNoise) {
   const std::vector<double> residual = draws(3600, 7);
   std::vector<double> derived = draws(3600, 8);
   for (std::size_t i = 0; i < derived.size(); ++i) derived[i] = 3.0 * derived[i] - residual[i];
@@ -381,7 +384,7 @@ TEST(SharesNoise, IsWhatWasComputedFromTheSameMeasurement) {
 }
 
 // An effect makes residual and variable go together in its manoeuvres alone.
-TEST(SharesNoise, IsNotWhatGoesWithItInManoeuvresAlone) {
+TEST(SharesNoise, CommonManoeuvresDoNotShareNoise) {
   std::vector<double> residual = draws(3600, 10);
   std::vector<double> variable(3600, 0.0);
   const std::vector<double> sensor = draws(3600, 11);
@@ -394,7 +397,7 @@ TEST(SharesNoise, IsNotWhatGoesWithItInManoeuvresAlone) {
       pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {variable.data()}));
 }
 
-TEST(SharesNoise, OfNothingIsFalse) {
+TEST(SharesNoise, EmptyInputSharesNoNoise) {
   const std::vector<double> nothing(600, missing);
   const std::vector<double> values = draws(600, 12);
   EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {nothing}, {values.data()}));
@@ -402,8 +405,8 @@ TEST(SharesNoise, OfNothingIsFalse) {
   EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {values}, {constant.data()}));
 }
 
-// Of twenty minutes and variables that have nothing to do with it, few are taken for it: two windows of 300
-// have a median whose deviation is below 0.058, and the limit of 0.12 is two of them.
+// In twenty minutes few unrelated variables are reported: two windows of 300 have a median whose deviation
+// is below 0.058, and the limit of 0.12 is two of them.
 TEST(SharesNoise, IsRarelyChance) {
   int shared = 0;
   const std::vector<double> residual = draws(1200, 13);

@@ -1,4 +1,4 @@
-// What unexplained structure may go with, brought to one value a record.
+// Variables for the test of unexplained structure, brought to one value a record.
 #include "diagnose/tested_variables.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ constexpr std::size_t records = 60;
 
 class RecordedVariables : public testing::Test {
  protected:
-  /// The variable V of a flight that holds nothing else, as it is tested.
+  /// Tested values of the variable V of a flight with no other variables.
   TestedVariable read(const std::string& units, const std::vector<double>& values, int rate = 1,
                       const std::vector<double>& circle = {}) {
     const std::filesystem::path path = directory_ / "flight.nc";

@@ -109,7 +109,7 @@ TEST(WhitenedSystem, OfBlocksAddUpToTheScore) {
   const WhitenedSystem scores =
       pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
                                   example.columns, example.residuals, example.noise);
-  // What is left after no coefficients has the score of the residual.
+  // The residual without coefficients has the score of the input residual.
   Eigen::VectorXd score = Eigen::VectorXd::Zero(4);
   for (std::size_t f = 0; f < 2; ++f)
     score += scores.rows[f].leftCols(4).transpose() * scores.left(f, Eigen::VectorXd::Zero(4));
@@ -146,8 +146,8 @@ TEST(WhitenedSystem, MarginalizedColumnsAreNoise) {
   EXPECT_EQ(system.rows[0].cols(), 4);
 }
 
-// What drift can be says nothing any more: a column that is a drift is worth little, one that is fast is
-// worth what it was.
+// Shapes of drift carry little information: a column that is a drift has little weight, a fast one keeps its
+// weight.
 TEST(WhitenedSystem, WithDriftSlowColumnsAreWorthLittle) {
   Example example({600}, 2, 3);
   for (Eigen::Index i = 0; i < example.columns[0].rows(); ++i)
@@ -160,11 +160,11 @@ TEST(WhitenedSystem, WithDriftSlowColumnsAreWorthLittle) {
   const WhitenedSystem with =
       pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
                                   example.columns, example.residuals, example.noise);
-  // Forty minutes hold a few pieces of a drift of 800 s and 1 hPa: the coefficient of a wave is known to some
-  // tenths of it.
+  // Forty minutes hold a few pieces of a drift of 800 s and 1 hPa: the coefficient of a wave is known to a
+  // few tenths of it.
   EXPECT_LT(with.information(0, 0), 20.0);
   EXPECT_GT(without.information(0, 0), 200.0);
-  // Of a column without memory a drift that is slower than two minutes hides a tenth at most.
+  // For a column without correlation a drift that is slower than two minutes hides a tenth at most.
   EXPECT_GT(with.information(1, 1), 0.8 * without.information(1, 1));
   EXPECT_NEAR(with.plain(0, 0), without.information(0, 0), 1e-9 * without.information(0, 0));
 }

@@ -161,8 +161,8 @@ TEST(Catalogue, HoldsZeroGainAndDriftAtEveryPlaceThatHasThem) {
 }
 
 TEST(Catalogue, KnowsEveryEffectOfPressureCalibrationOnce) {
-  // What is known of airborne pressure calibration with a laser: a term of a model can describe it, or there
-  // is a reason why none can.
+  // Known effects of airborne pressure calibration with a laser: each can be described by a term of a model,
+  // or a reason is given.
   for (const char* id : {"static-alpha",
                          "static-alpha-quad",
                          "static-mach",
@@ -301,8 +301,8 @@ TEST_P(EveryEffect, NamesEffectsThatLookLikeIt) {
 }
 
 TEST_P(EveryEffect, HasTheUnitOfItsPlace) {
-  // In units half as large, every number of the unit doubles, that of the value included; or the formula has
-  // a constant of that unit.
+  // In units half as large, every number of the unit doubles, the value included; or the formula has a
+  // constant of that unit.
   const std::set<std::pair<std::string, std::string>> with_constant{
       {"temp-deice-heat", "hPa"}, {"roll-static", "deg"}, {"load-factor", "m"}, {"lams-pod-flex", "m"},
       {"line-head", "m"},         {"lams-cloud", "m"},    {"temp-wetting", "m"}};
@@ -331,7 +331,7 @@ TEST_P(EveryEffect, IsAbsentAtItsNeutralParameters) {
 }
 
 TEST_P(EveryEffect, IsLinearInItsParameters) {
-  // Those of shape stay as they are. Some products of rounding 1e-16 of the larger of the parts.
+  // Shape parameters are unchanged. A few products with rounding 1e-16 of the larger of the parts.
   const EffectInfo& info = GetParam();
   Draw draw;
   for (int i = 0; i < 100; ++i) {

@@ -52,9 +52,9 @@ RefitResult fit(const std::filesystem::path& path, const ModelDefinition& model,
   return pcor::refit({path}, model, pcor::read_references(references, model, {}).used);
 }
 
-constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // of usual flight
+constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // values of usual flight
 
-/// By how much delta-p of the fit is off in usual flight, hPa.
+/// Error of the fitted delta-p in usual flight, hPa.
 double error_of(const RefitResult& fit) {
   const std::vector<ModelDefinition> models{fit.model, law()};
   std::vector<double> defects;
@@ -99,7 +99,7 @@ TEST(GpsFit, HoldsWhatOneHeadingLeavesOpen) {
   EXPECT_THAT(result.warnings, Contains(HasSubstr("circles")));
 }
 
-TEST(GpsFit, HeightSaysNothingOfTheLevel) {
+TEST(GpsFit, HeightDoesNotConstrainTheLevel) {
   const RefitResult result = fit(flight("c130-eq18", warm_thermometer), law(), {"height"});
   EXPECT_LT(std::abs(error_of(result)), 0.1) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);

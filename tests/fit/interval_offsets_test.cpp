@@ -31,7 +31,7 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
       plan.outliers = 0.01;
       plan.defect = made::equation_18;
       FlightSamples samples = made::flight(plan);
-      for (const std::size_t begin : {200U, 600U, 900U, 1800U}) {  // the third goes on from the second
+      for (const std::size_t begin : {200U, 600U, 900U, 1800U}) {  // the third continues the second
         Interval interval;
         interval.regime = Regime::pitch_manoeuvre;
         interval.begin = samples.time[begin];
@@ -87,7 +87,7 @@ using IntervalOffsetsOfAnyLoss = IntervalOffsets;
 
 TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
   const Solution found = solution();
-  std::vector<Eigen::MatrixXd> columns;  // of each flight: derivatives by the slopes and by its offsets
+  std::vector<Eigen::MatrixXd> columns;  // derivatives of each flight by the slopes and by its offsets
   std::vector<Eigen::VectorXd> residuals;
   Eigen::Index bins = 0;
   const auto systems = stage_->of_each([&](std::size_t, FitFlight& fit) {
@@ -127,7 +127,7 @@ TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
   const Eigen::VectorXd step = all.colPivHouseholderQr().solve(-residual);
   for (const Eigen::Index k : {0, 1})
     EXPECT_NEAR(found.values[1 + k] / (task_.start[1 + k] + step[k]), 1.0, 1e-10);
-  // The derivatives of the least squares know what the offsets take up.
+  // The derivatives of the least squares include the change of the offsets.
   const Reduction reduction = stage_->reduce(found.values, {});
   const Eigen::MatrixXd information = (all.transpose() * all).inverse().topLeftCorner(2, 2).inverse();
   const Eigen::MatrixXd factor = reduction.factor.leftCols(2);
@@ -150,10 +150,10 @@ TEST_P(IntervalOffsetsOfAnyLoss, LeaveTheDerivativesOfTheLeastLoss) {
     more[1 + k] += step;
     less[1 + k] -= step;
     const double change = stage_->reduce(more, loss).cost - stage_->reduce(less, loss).cost;
-    // Costs of some thousand know their difference to 1e-12 of them.
+    // Costs of a few thousand determine their difference to 1e-12 of their value.
     EXPECT_NEAR(change / (2.0 * step) / gradient[k], 1.0, 1e-5);
   }
-  // They hang on the parameters alone, not on what was asked before.
+  // The result depends only on the parameters, not on earlier calls.
   EXPECT_EQ(stage_->reduce(values, loss).factor, reduction.factor);
 }
 

@@ -35,7 +35,7 @@ RefitResult fit(double (*defect)(double, double, double, double)) {
 
 TEST(Misfit, OfARightLawIsBelowItsNoise) { EXPECT_LT(fit(made::equation_18).left, 0.05); }
 
-// A missing roll was taken for a load factor of 10.
+// A missing roll gave a load factor of 10.
 TEST(Misfit, HasNoLoadFactorWithoutRoll) {
   made::Plan plan;
   plan.defect = made::equation_18;
@@ -66,7 +66,7 @@ TEST(Misfit, HasNoLoadFactorWithoutRoll) {
 TEST(Misfit, OfALawThatLacksAFunctionOfTheStateIsItsSize) {
   const RefitResult right = fit(made::equation_18);
   const RefitResult wrong = fit(curved);
-  // What the law cannot follow makes the residual grow: the squares add up.
+  // The part that the law cannot follow increases the residual: the squares add up.
   const double missing = std::sqrt(wrong.rms * wrong.rms - right.rms * right.rms);
   EXPECT_GT(missing, 0.1);
   EXPECT_NEAR(wrong.left, missing, 0.3 * missing);

@@ -10,8 +10,8 @@
 #include "support/many_seeds.hpp"
 #include "support/temporary_directory.hpp"
 
-// Simulated flights of two hours with all manoeuvres and the usual noise, refitted, over many seeds: the true
-// coefficients come back, within errors that are stated right.
+// Simulated flights of two hours with all manoeuvres and the usual noise, refitted, over many seeds: the
+// fits recover the true coefficients within correctly stated errors.
 
 namespace {
 
@@ -20,7 +20,7 @@ constexpr std::uint64_t first_seed = 5000;
 
 const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
 
-/// What the fits of all seeds say of one coefficient.
+/// Statistics of one coefficient over the fits of all seeds.
 struct Record {
   double truth = 0.0;
   std::vector<double> values;
@@ -107,7 +107,7 @@ TEST(Recovery, OfEquation20WithAnIndependentMachNumber) {
   EXPECT_GT(result.r_squared, 0.75);
 }
 
-TEST(Recovery, OfEquation20WithTheRawMachNumberIsSaidToBeCollinear) {
+TEST(Recovery, Equation20WithRawMachIsReportedCollinear) {
   const pcor::test::TemporaryDirectory directory;
   pcor::simulate_flight(pcor::read_scenario(scenarios / "gv-eq20.toml"), directory / "flight.nc");
   const auto fit_of = [&](const char* name) {
@@ -128,7 +128,7 @@ TEST(Recovery, OfEquation20WithTheRawMachNumberIsSaidToBeCollinear) {
 
 // The noise of the laser must not pass for an effect before it: least squares of delta-p itself would find a
 // recovery factor of 0.2 less in every flight, at 12 standard errors.
-TEST(Recovery, OfEffectsBeforeTheLaserFindsNoneThatIsNotThere) {
+TEST(Recovery, EffectsBeforeTheLaserGiveNoFalseFinding) {
   const pcor::test::TemporaryDirectory directory;
   pcor::Scenario scenario = pcor::read_scenario(scenarios / "c130-eq18.toml");
   pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
@@ -145,8 +145,8 @@ TEST(Recovery, OfEffectsBeforeTheLaserFindsNoneThatIsNotThere) {
       if (own.value < 0.0) ++negative;
       if (own.at_bound) ++at_bound;
       for (const pcor::FittedParameter& p : fit.parameters) {
-        // Of 64 scores one beyond four is a chance of 1 in 250. Beside a coefficient at its bound the errors
-        // are not those of all.
+        // One of 64 scores is beyond four with a probability of 1 in 250. With a coefficient at its bound
+        // the errors do not cover all coefficients.
         const double score = own.at_bound ? 0.0 : std::abs(p.value - p.start) / p.standard_error;
         EXPECT_LT(score, 4.0) << p.name << " seed " << seed;
       }
@@ -164,7 +164,7 @@ TEST(Recovery, OfAFlightWithoutManoeuvresIsExplained) {
       pcor::refit({directory / "flight.nc"}, pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"),
                   {pcor::lams_reference()});
   for (const pcor::FittedParameter& parameter : fit.parameters) {
-    // Not nonsense: where the coefficient is far off, its error says so.
+    // The result is honest: a coefficient far from the truth has a large error.
     EXPECT_LT(std::abs(parameter.value - parameter.start), 4.0 * parameter.standard_error) << parameter.name;
   }
   ASSERT_FALSE(fit.notes.empty());

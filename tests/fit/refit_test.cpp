@@ -86,7 +86,8 @@ TEST(Refit, ReturnsTheTruthWithoutNoise) {
   made::Plan plan = plan_18(1);
   plan.noise = 0.0;
   const RefitResult result = fit({made::shared(plan)}, made::model(equation_18));
-  // The reference pressure is rounded to 1e-13 hPa of some hundred, and 3600 samples determine the rest.
+  // The reference pressure is rounded to 1e-13 hPa of several hundred, and 3600 samples determine the
+  // remainder.
   for (const auto& [name, parameter] : by_name(result))
     EXPECT_NEAR(parameter.value, truth_18.at(name), 1e-12) << name;
   EXPECT_LT(result.rms, 1e-11);
@@ -94,7 +95,7 @@ TEST(Refit, ReturnsTheTruthWithoutNoise) {
 }
 
 TEST(Refit, OfALinearModelIsTheLeastSquares) {
-  // With noise of one level in each five minutes the weights differ little, so take them away: noise-free
+  // With noise of one level in each five minutes the weights differ little, so the test uses noise-free
   // samples and a misfit. Without noise all weights are one.
   made::Plan plan = plan_18(2);
   plan.noise = 0.0;
@@ -114,8 +115,7 @@ TEST(Refit, OfALinearModelIsTheLeastSquares) {
 
 TEST(Refit, StatesItsErrors) {
   // 200 flights: the spread of a coefficient is known to 5 %, and the mean of its stated error better; 20 %
-  // is four times that. Noise that remembers itself for seconds would be underestimated 2.4 times by a
-  // formula that does not know it.
+  // is four times that. A formula for white noise would underestimate correlated noise 2.4 times.
   std::map<std::string, std::vector<double>> scores;
   for (unsigned seed = 100; seed < 300; ++seed) {
     for (const auto& [name, parameter] :
@@ -142,16 +142,17 @@ TEST(Refit, DoesNotMindOutliers) {
     worst = std::max(worst,
                      std::abs(squares.at(name).value - clean.at(name).value) / clean.at(name).standard_error);
   }
-  // Least squares goes along with them: 5 % of 5 hPa is 0.25 hPa of bias, many standard errors.
+  // Least squares follows the outliers: 5 % of 5 hPa is 0.25 hPa of bias, many standard errors.
   EXPECT_GT(worst, 3.0);
-  // Most of them pass for bursts of the pressure, which take no part, with some of their neighbours.
+  // Most of them are classified as bursts of the pressure, which are excluded, with some of their
+  // neighbours.
   const std::size_t bursts = hit.masks[static_cast<std::size_t>(pcor::Mask::burst)];
   EXPECT_GT(static_cast<double>(hit.outliers + bursts), 0.05 * 3600.0 - 40.0);
   EXPECT_LT(bursts, 900U);
 }
 
 TEST(Refit, AddsFlightsUp) {
-  // Two halves of a flight, and the whole, with the weights of one: the same least squares.
+  // Two halves of a flight, and the whole, with the weights of one: equal least squares.
   made::Plan plan = plan_18(4);
   plan.noise = 0.0;
   plan.defect = [](double p, double q, double ratio, double time) {
@@ -247,7 +248,7 @@ TEST(Refit, SaysWhatEachEffectIsWorth) {
 
 TEST(Refit, FitsSlopesToManoeuvresFirst) {
   FlightSamples samples = made::flight(plan_18(12));
-  // A bias outside of the manoeuvre that goes with the angle of attack: only a stage finds the slope.
+  // A bias outside of the manoeuvre that varies with the angle of attack: only a stage finds the slope.
   const double begin = samples.time[600];
   const double end = samples.time[1200];
   const std::vector<double>& adifr = *samples.model.find(Quantity::attack_differential_pressure);
@@ -295,7 +296,7 @@ TEST(Refit, CanFitEverythingInStages) {
   EXPECT_EQ(found.at("static-alpha.a1").stage, 1);
   EXPECT_EQ(found.at("static-qp.a2").stage, 2);
   EXPECT_GT(found.at("static-qp.a2").standard_error, 0.0);
-  // What the offset of an interval takes up is no business of a stage.
+  // A stage ignores the constant that the offset of an interval absorbs.
   options.fix = {};
   options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-constant"}}};
   EXPECT_THAT(message_of({std::make_shared<const FlightSamples>(samples)}, made::model(equation_18), options),
@@ -303,7 +304,7 @@ TEST(Refit, CanFitEverythingInStages) {
 }
 
 TEST(Refit, DrawsToItsStartWhatTheFlightsLeaveOpen) {
-  // What an hour of samples says, the prior leaves; what nearly collinear terms leave open, it decides.
+  // An hour of samples outweighs the prior; the prior decides nearly collinear terms.
   const auto samples = made::shared(plan_18(18));
   RefitOptions with_prior;
   with_prior.use_prior = true;
@@ -319,7 +320,7 @@ TEST(Refit, DrawsToItsStartWhatTheFlightsLeaveOpen) {
   }
 }
 
-TEST(Refit, FindsByGlobalSearchWhatCeresFromTheStartDoesNot) {
+TEST(Refit, GlobalSearchFindsOptimumThatCeresMisses) {
   // A wave in time: between the start and the truth lie many minima of its frequency.
   made::Plan plan = plan_18(13);
   plan.defect = [](double p, double q, double ratio, double time) {
@@ -414,7 +415,7 @@ TEST(Refit, RefusesWhatCannotBeDone) {
   EXPECT_THAT(message_of({made::shared(plan)}, made::model({})), HasSubstr("no coefficient is free"));
   plan.samples = 2;
   EXPECT_THAT(message_of({made::shared(plan)}, model), HasSubstr("2 samples are too few for 3 coefficients"));
-  // Twelve bins of four seconds tell no noise: an earlier fit stated errors of 1e-11.
+  // Twelve bins of four seconds do not determine the noise: an earlier fit stated errors of 1e-11.
   plan.samples = 48;
   EXPECT_THAT(message_of({made::shared(plan)}, model),
               HasSubstr("48 samples, in 12 intervals of four seconds, are too few for 3 coefficients"));

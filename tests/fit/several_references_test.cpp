@@ -52,7 +52,7 @@ const FittedParameter& parameter(const RefitResult& fit, const std::string& name
 
 }  // namespace
 
-TEST(SeveralReferences, FindTogetherWhatOneCannotTell) {
+TEST(SeveralReferences, CombinationSeparatesCoefficients) {
   // The laser takes a gain of QCF for static-qp; total pressures do not.
   const FittedParameter alone = parameter(fit(law_with_gain(), {"lams"}), "qcf-gain.gain");
   const FittedParameter both = parameter(fit(law_with_gain(), {"lams", "total:PSFRD+QCFR"}), "qcf-gain.gain");
@@ -61,7 +61,7 @@ TEST(SeveralReferences, FindTogetherWhatOneCannotTell) {
   EXPECT_LT(std::abs(both.value - gain), 0.1 * gain);
 }
 
-TEST(SeveralReferences, ThatSeeNoCoefficientChangeNothing) {
+TEST(SeveralReferences, InsensitiveReferencesChangeNoCoefficient) {
   const RefitResult alone = fit(law(), {"lams"});
   const RefitResult both = fit(law(), {"lams", "total:PSFRD+QCFR"});
   for (std::size_t p = 0; p < alone.parameters.size(); ++p) {
@@ -71,12 +71,12 @@ TEST(SeveralReferences, ThatSeeNoCoefficientChangeNothing) {
   EXPECT_EQ(both.reference_text, "LAMS");
   ASSERT_EQ(both.further.size(), 1U);
   EXPECT_EQ(both.further.front().reference, "total:PSFRD+QCFR");
-  // 1 % of some 65 hPa.
+  // 1 % of about 65 hPa.
   EXPECT_NEAR(both.further.front().after.bias, -0.65, 0.25);
   EXPECT_EQ(both.further.front().after.rms, both.further.front().before.rms);
 }
 
-TEST(SeveralReferences, DoNotTellWhatTwoSystemsHaveAlike) {
+TEST(SeveralReferences, CommonErrorsOfTwoSystemsStayUnresolved) {
   ModelDefinition model = pcor::add_effects(law(), {pcor::neutral_effect("total-lag")}, {});
   model.fits.back().front().bounds =
       pcor::Bounds{-30.0, 30.0};  // the flight has no lag, and may go below zero

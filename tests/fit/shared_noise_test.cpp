@@ -16,7 +16,7 @@ using namespace pcor::internal;
 namespace {
 
 constexpr std::size_t count = 34;  // the memory is found from each third
-constexpr std::size_t loud = 16;   // which is none of those
+constexpr std::size_t loud = 16;   // equal to no shared level
 
 /// The robust deviation of the innovations of each flight.
 std::vector<double> deviations(std::size_t memory) {
@@ -47,11 +47,12 @@ std::vector<double> deviations(std::size_t memory) {
 TEST(SharedNoise, LeavesEveryFlightItsOwnLevels) {
   const std::vector<double> kept = deviations(std::size_t{512} << 20U);
   for (std::size_t f = 0; f < count; ++f) {
-    // A level of ten times the common one is brought towards it by 15 % of its logarithm, 10^0.15 = 1.41;
-    // 900 innovations tell a robust deviation to 4 %, and what is slow may be of the others alone.
+    // A level of ten times the common one is moved towards it by 15 % of its logarithm, 10^0.15 = 1.41; 900
+    // innovations determine a robust deviation to 4 %, and the slow part may come from the other flights
+    // alone.
     EXPECT_NEAR(kept[f], f == loud ? 1.41 : 1.0, 0.2) << f;
   }
-  // Flights that are made anew in every pass have the levels that they had.
+  // Flights that are rebuilt in every pass keep their levels.
   EXPECT_EQ(deviations(0), kept);
 }
 

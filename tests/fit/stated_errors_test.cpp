@@ -22,7 +22,7 @@ using Flights = std::vector<std::shared_ptr<const pcor::FlightSamples>>;
 const std::map<std::string, double> truth{
     {"static-constant.a0", 0.004127875}, {"static-alpha.a1", 0.021279816}, {"static-qp.a2", 0.030849643}};
 
-/// Beside it stands noise of 0.3 hPa that remembers itself for 3 s.
+/// Noise of 0.3 hPa with a correlation time of 3 s is added.
 using pcor::test::Nuisance;
 
 std::shared_ptr<const pcor::FlightSamples> flight(unsigned seed, const Nuisance& nuisance) {
@@ -64,8 +64,8 @@ std::map<std::string, double> scores_of(const Nuisance& nuisance, std::size_t se
   return squares;
 }
 
-/// The rms of n scores of a right error scatters by 1/sqrt(2n); three of these either side. Beside that
-/// stands what a right method may be off by: the strength of a drift is found from the flight itself.
+/// The rms of n scores of a correct error scatters by 1/sqrt(2n); three of these either side. The permitted
+/// error of a correct method is added: the strength of a drift is estimated from the flight itself.
 void expect_right(const std::map<std::string, double>& scores, std::size_t seeds, const std::string& what) {
   const double chance = 3.0 / std::sqrt(2.0 * static_cast<double>(seeds));
   for (const auto& [name, score] : scores) {

@@ -68,7 +68,7 @@ RefitResult fit_of(const std::vector<std::shared_ptr<const FlightSamples>>& of, 
                made::pressure_reference(), options);
 }
 
-TEST(TeamFit, IsThatOfOneProcessForAnyNumberOfMembersAndThreads) {
+TEST(TeamFit, ResultIsIndependentOfMembersAndThreads) {
   const auto all = flights(5);
   const std::string alone_result = text_of(fit_of(all, serial_communicator()));
   EXPECT_EQ(text_of(fit_of(all, serial_communicator(), 2)), alone_result);
@@ -80,7 +80,7 @@ TEST(TeamFit, IsThatOfOneProcessForAnyNumberOfMembersAndThreads) {
   }
 }
 
-TEST(TeamFit, IsSoWithMoreFlightsThanTheNoiseIsFoundFromOfWhichSomeTellNothing) {
+TEST(TeamFit, ManyFlightsWithUninformativeOnesAgree) {
   std::vector<std::shared_ptr<const FlightSamples>> all = flights(19);
   for (const std::size_t blind : {0U, 2U, 4U, 18U}) {
     auto without = std::make_shared<FlightSamples>(*all[blind]);
@@ -93,7 +93,7 @@ TEST(TeamFit, IsSoWithMoreFlightsThanTheNoiseIsFoundFromOfWhichSomeTellNothing) 
   test::run_with_communicator(4,
                               [&](Communicator& comm) { results[comm.rank()] = text_of(fit_of(all, comm)); });
   EXPECT_THAT(results, Each(text_of(alone_result)));
-  // The order of the flights does not matter, but for the rounding of sums.
+  // The order of the flights does not matter, except for the rounding of sums.
   std::reverse(all.begin(), all.end());
   const RefitResult reversed = fit_of(all, serial_communicator());
   for (std::size_t p = 0; p < reversed.parameters.size(); ++p) {
@@ -122,7 +122,7 @@ TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
   constexpr std::size_t many = 34;
   const std::vector<std::size_t> with_few = bytes_of_exchanges(few);
   const std::vector<std::size_t> with_many = bytes_of_exchanges(many);
-  // Of which exchanges there are, most are passes of the solver: the growth that is met most often is theirs.
+  // Most exchanges are passes of the solver: the most frequent growth is that of a pass.
   std::map<std::size_t, std::size_t> growths;
   for (std::size_t i = 0; i < std::min(with_few.size(), with_many.size()); ++i) {
     if (with_many[i] > with_few[i]) ++growths[(with_many[i] - with_few[i]) / (many - few)];

@@ -41,7 +41,7 @@ Pair gv() {
   return pair;
 }
 
-/// By how much a fit moved the corrected static pressure of the own system, and its stated error, rms over a
+/// Change of the corrected static pressure of the own system by a fit, and its stated error, rms over a
 /// flight, hPa.
 struct Change {
   double own = 0.0;
@@ -95,8 +95,8 @@ pcor::RefitResult fit_both(const Pair& pair, const std::filesystem::path& flight
 
 }  // namespace
 
-// An earlier fit took the noise of the difference, which was in the derivatives too, for a signal: started at
-// the truth it came out 27.7 hPa (GV) and 40.2 hPa (C-130) off, with stated errors of 2e-5.
+// An earlier fit mistook the noise of the difference, which was in the derivatives too, for a signal:
+// started at the truth its error was 27.7 hPa (GV) and 40.2 hPa (C-130), with stated errors of 2e-5.
 TEST(TwoSystems, AtTheTruthStayThere) {
   const pcor::test::TemporaryDirectory directory;
   const std::size_t seeds = pcor::test::number_of_seeds() / 5;  // 20 in the long tests
@@ -114,15 +114,15 @@ TEST(TwoSystems, AtTheTruthStayThere) {
       const Change change = change_of(fit, pair, directory / "flight.nc");
       EXPECT_LT(change.own, 0.05) << pair.own.model.name << " seed " << seed;
       EXPECT_LT(change.own, 2.0 * change.own_error) << pair.own.model.name << " seed " << seed;
-      // What both have in common is as doubtful as before: tenths of a hPa by the typical sizes.
+      // The common part keeps its prior error: tenths of a hPa by the typical sizes.
       EXPECT_GT(change.own_error, 0.3) << pair.own.model.name << " seed " << seed;
     }
   }
 }
 
-// Of the same effect in both laws the flights tell the difference, and the mean keeps the typical size of
-// both over the root of two: that of a mean of two independent ones.
-TEST(TwoSystems, StateThePriorAsTheErrorOfWhatTheyHaveInCommon) {
+// For one effect in both laws the flights determine the difference, and the mean keeps the typical size of
+// both over the root of two, the error of a mean of two independent values.
+TEST(TwoSystems, CommonPartKeepsPriorError) {
   const pcor::test::TemporaryDirectory directory;
   const Pair pair = c130();
   pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");
@@ -131,13 +131,13 @@ TEST(TwoSystems, StateThePriorAsTheErrorOfWhatTheyHaveInCommon) {
     const pcor::FittedParameter& parameter = fit.parameters[p];
     const std::string effect = parameter.name.substr(0, parameter.name.find('.'));
     const double typical = pcor::effect_info[pcor::effect_named(effect)].parameters[0].typical;
-    // The difference, known to a few per cent of that, adds next to nothing.
+    // The difference, known to a few per cent of that error, adds very little.
     EXPECT_NEAR(parameter.standard_error, typical / std::sqrt(2.0), 0.05 * typical) << parameter.name;
   }
   EXPECT_TRUE(fit.warnings.empty());
 }
 
-TEST(TwoSystems, WithAWrongDifferenceMendTheDifferenceAlone) {
+TEST(TwoSystems, WrongDifferenceCorrectsDifferenceOnly) {
   const pcor::test::TemporaryDirectory directory;
   Pair pair = c130();
   pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");
@@ -148,12 +148,12 @@ TEST(TwoSystems, WithAWrongDifferenceMendTheDifferenceAlone) {
   const double own = fit.parameters[0].value - fit.parameters[0].start;
   const double other = fit.parameters[3].value - fit.parameters[3].start;
   ASSERT_EQ(fit.parameters[3].name, "reference:static-constant.a0");
-  // The difference comes back within what the noise and the typical sizes of the other terms leave.
+  // The fit recovers the difference within the noise and the typical sizes of the other terms.
   EXPECT_NEAR(own - other, -2.0 * off, 0.1 * off);
   EXPECT_NEAR(own + other, 0.0, 0.1 * off);
 }
 
-TEST(TwoSystems, TakeTheCovarianceOfAFileForWhatIsKnown) {
+TEST(TwoSystems, FileCovarianceIsUsedAsPrior) {
   const pcor::test::TemporaryDirectory directory;
   Pair pair = c130();
   pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");

@@ -1,4 +1,4 @@
-// What programs learn of an error without reading its message.
+// Error codes that programs can use without parsing the message.
 #include <gmock/gmock.h>
 #include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>

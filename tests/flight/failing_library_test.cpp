@@ -15,8 +15,7 @@ using pcor::test::of_library;
 
 namespace {
 
-/// What the netCDF library answers when it is asked for a certain attribute or variable; NC_NOERR: what it
-/// finds.
+/// Simulated return code of the netCDF library for one attribute or variable; NC_NOERR: the real result.
 int answer = NC_NOERR;
 std::string asked_for;
 
@@ -24,7 +23,7 @@ bool fails(const char* name) { return answer != NC_NOERR && asked_for == name; }
 
 }  // namespace
 
-// They stand before those of the library.
+// These functions replace the functions of the library.
 extern "C" {
 
 int nc_inq_att(int file, int variable, const char* name, nc_type* type, std::size_t* length) {
@@ -52,7 +51,7 @@ class FailingLibrary : public testing::Test {
 };
 
 // As if they were not there, numbers would come without their scale, or a variable would be left out.
-TEST_F(FailingLibrary, IsNotTakenForAnAttributeThatIsNotThere) {
+TEST_F(FailingLibrary, FailureIsNotReportedAsAbsentAttribute) {
   for (const char* const name : {"scale_factor", "add_offset", "_FillValue", "valid_range", "units"}) {
     fail(name, NC_EHDFERR);
     EXPECT_THROW(Flight(flight_).variable("PSFD"), Error) << name;
@@ -63,7 +62,7 @@ TEST_F(FailingLibrary, IsNotTakenForAnAttributeThatIsNotThere) {
   }
 }
 
-TEST_F(FailingLibrary, SaysWhatCanBeDoneWithAnAttributeThatItCannotRead) {
+TEST_F(FailingLibrary, UnreadableAttributeErrorStatesRemedy) {
   fail("units", NC_EATTMETA);
   try {
     Flight(flight_).variable("PSFD");
@@ -73,7 +72,7 @@ TEST_F(FailingLibrary, SaysWhatCanBeDoneWithAnAttributeThatItCannotRead) {
   }
 }
 
-TEST_F(FailingLibrary, IsNotTakenForAVariableThatIsNotThere) {
+TEST_F(FailingLibrary, FailureIsNotReportedAsAbsentVariable) {
   const NetcdfFile file(flight_);
   EXPECT_TRUE(file.find_variable("PSFD"));
   fail("PSFD", NC_EHDFERR);
@@ -82,7 +81,7 @@ TEST_F(FailingLibrary, IsNotTakenForAVariableThatIsNotThere) {
   EXPECT_THROW(file.find_variable("PSFD"), std::bad_alloc);
   fail("PSFD", NC_ENOTVAR);
   EXPECT_FALSE(file.find_variable("PSFD"));
-  // As of words in attributes that are no names.
+  // Text attributes without valid names follow the same rule.
   for (const std::string& word : {std::string(300, 'x'), std::string("a/b"), std::string("\xff")}) {
     EXPECT_FALSE(file.find_variable(word)) << word;
     EXPECT_FALSE(file.find_attribute(NC_GLOBAL, word)) << word;

@@ -21,7 +21,7 @@ TEST(FileState, StaysAsLongAsTheFileDoes) {
   EXPECT_NE(FileState(directory / "copy.nc"), before);
 }
 
-TEST(FileState, IsAnotherWhereOldTimesAreSetAfterwards) {
+TEST(FileState, DiffersAfterOldTimesAreRestored) {
   const test::TemporaryDirectory directory;
   const std::filesystem::path path = directory / "flight.nc";
   std::ofstream(path) << "a flight";

@@ -1,4 +1,4 @@
-// A format beside netCDF: what a flight is does not depend on how its file is stored.
+// A second file format: the content of a flight does not depend on its storage.
 #include "flight/flight_file.hpp"
 
 #include <gmock/gmock.h>

@@ -122,8 +122,8 @@ TEST_F(FlightTest, AFileWithoutANameIsRefused) {
   EXPECT_EQ(pcor::test::message_of<Error>([] { Flight{""}; }), "the input has no name; name a netCDF file");
 }
 
-// The netCDF library believes a header, and takes the memory it asks for.
-TEST_F(FlightTest, ADamagedHeaderIsRefusedOrReadSoonAndInLittleMemory) {
+// The netCDF library trusts a header, and allocates the stated memory.
+TEST_F(FlightTest, DamagedHeaderUsesLittleTimeAndMemory) {
   constexpr int mutations = 250;
   constexpr std::size_t max_mutated = 2048;
   const auto begin = std::chrono::steady_clock::now();
@@ -174,7 +174,7 @@ TEST_F(FlightTest, ACountThatTheFileHasNoRoomForIsDamage) {
   for (const int mode : {0, NC_64BIT_DATA}) {
     { NetcdfMaker(path(), mode).time(sequence(100, 5)); }
     std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
-    file.seekp(mode == 0 ? 12 : 16);  // how many dimensions
+    file.seekp(mode == 0 ? 12 : 16);  // number of dimensions
     file.put('\x3f');
     file.close();
     EXPECT_THAT(refusal(), HasSubstr("is truncated or damaged: its header cannot be read"));
@@ -283,7 +283,7 @@ TEST_F(FlightTest, WithoutBaseTimeTheFlightDateServes) {
   }
 }
 
-TEST_F(FlightTest, MonthsAndYearsAreNoUnitsOfAFlightsTime) {
+TEST_F(FlightTest, MonthsAndYearsAreInvalidTimeUnits) {
   for (const char* units : {"months since 2004-01-01", "years since 2004-01-01"}) {
     { NetcdfMaker(path()).time({1, 2}, units); }
     EXPECT_THAT(refusal(), AllOf(HasSubstr(units), HasSubstr("ncatted -a units,Time")));
@@ -292,7 +292,7 @@ TEST_F(FlightTest, MonthsAndYearsAreNoUnitsOfAFlightsTime) {
   EXPECT_EQ(Flight(path()).time().step, 86400) << "slow, and not wrong";
 }
 
-TEST_F(FlightTest, ATimeThatCannotBeToldSaysHowToStateIt) {
+TEST_F(FlightTest, AmbiguousTimeStatesHowToDefineIt) {
   { NetcdfMaker(path()).time({51720, 51721}, "seconds since 1141-01-00 00:00:00 +0000"); }
   EXPECT_THAT(refusal(), AllOf(HasSubstr("does not tell the time"), HasSubstr("1141-01-00"),
                                HasSubstr("ncatted -a units,Time")));
@@ -360,7 +360,7 @@ TEST_F(FlightTest, AYearBeforeOrAfterAllFlightsIsRefused) {
   EXPECT_THAT(refusal(), HasSubstr("the time of record 2 is 1.00108e+12 s after 1970-01-01"));
 }
 
-// 20:05:00 in 16 bits is 01:52:44, and nothing in the file tells.
+// 20:05:00 in 16 bits is 01:52:44, and the file gives no hint.
 TEST_F(FlightTest, ATimeInTooFewBitsForADayIsRefused) {
   for (const int type : {NC_SHORT, NC_USHORT, NC_BYTE}) {
     make_with_times({100, 101}, type);
@@ -383,7 +383,7 @@ TEST_F(FlightTest, TwoVariablesOfOneNameAreRefused) {
   EXPECT_THAT(refusal(), HasSubstr("has two variables PSFD"));
 }
 
-TEST_F(FlightTest, MoreThanAThousandSamplesASecondAreRefusedWhenTheyAreRead) {
+TEST_F(FlightTest, RatesAbove1000HzAreRefusedOnRead) {
   const auto make = [this](std::size_t rate, double step) {
     NetcdfMaker maker(path());
     maker.time({100, 100 + step}, "seconds since 2004-02-18 00:00:00 +0000", NC_DOUBLE);
@@ -404,14 +404,14 @@ TEST_F(FlightTest, MoreThanAThousandSamplesASecondAreRefusedWhenTheyAreRead) {
 TEST_F(FlightTest, MoreRecordsThanAFlightCanHaveAreRefusedAtOnce) {
   { NetcdfMaker(path(), NC_64BIT_DATA).time({100, 101}); }
   std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
-  file.seekp(7);  // how many records: 2^35 more
+  file.seekp(7);  // number of records: 2^35 more
   file.put('\x08');
   file.close();
   std::filesystem::resize_file(path(), std::uintmax_t{1} << 40);  // a hole
   EXPECT_THAT(refusal(), HasSubstr("and a flight has at most 100000000"));
 }
 
-TEST_F(FlightTest, TimeThatRunsBackwardsNamesTheRecordAndCountsThem) {
+TEST_F(FlightTest, BackwardTimeReportsRecordAndCount) {
   make_with_times({100, 101, 102, 101, 102, 90, 91});
   EXPECT_THAT(refusal(),
               AllOf(HasSubstr("runs backwards at record 3 (2004-02-18 00:01:41 after 2004-02-18 00:01:42)"),
@@ -487,7 +487,7 @@ TEST_F(FlightTest, AMissingVariableSuggestsThoseThatLookLikeIt) {
   EXPECT_FALSE(flight.has("QCF"));
 }
 
-TEST_F(FlightTest, AMissingVariableOfTheModelNamesItsRoleAndWhatFits) {
+TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
   {
     NetcdfMaker maker(path());
     maker.time({100});
@@ -535,7 +535,7 @@ TEST_F(FlightTest, NoMoreThanSixVariablesThatFitAreNamed) {
       HasSubstr("it has ABCD1, ABCD2, ABCD3, ABCD4, ABCD5, ABCD6 in degC and 3 more (units that fit)"));
 }
 
-TEST_F(FlightTest, AUnitOfTheModelTakesThePlaceOfTheFiles) {
+TEST_F(FlightTest, ModelUnitOverridesFileUnit) {
   {
     NetcdfMaker maker(path());
     maker.time({100});
@@ -617,7 +617,7 @@ TEST_F(FlightTest, TheDefaultFillOfEveryPackedTypeIsMissing) {
     put("INT", NC_INT, NC_FILL_INT);
     put("UINT", NC_UINT, NC_FILL_UINT);
     put("INT64", NC_INT64, static_cast<double>(NC_FILL_INT64));
-    put("UINT64", NC_UINT64, 0);  // its fill is no double
+    put("UINT64", NC_UINT64, 0);  // its fill value is not a double
   }
   {
     int id = 0, number = 0;
@@ -632,7 +632,7 @@ TEST_F(FlightTest, TheDefaultFillOfEveryPackedTypeIsMissing) {
     EXPECT_THAT(read(name), ElementsAre(5, IsNan())) << name;
 }
 
-TEST_F(FlightTest, SignedIntegersThatAreCalledUnsignedAreReadAsSuch) {
+TEST_F(FlightTest, UnsignedAttributeAppliesToSignedIntegers) {
   {
     NetcdfMaker maker(path(), 0);
     maker.time({100, 101, 102, 103});
@@ -676,7 +676,7 @@ TEST_F(FlightTest, WhatIsNotValidIsMissing) {
   EXPECT_THAT(read("PACKED"), ElementsAre(5, 10, IsNan())) << "the range is that of the packed numbers";
 }
 
-TEST_F(FlightTest, ARangeInWordsIsReadWhereItIsTwoNumbersAndElseIgnored) {
+TEST_F(FlightTest, TextRangeIsUsedOnlyIfTwoNumbers) {
   {
     NetcdfMaker maker(path(), 0);
     maker.time({100, 101, 102});
@@ -699,7 +699,7 @@ TEST_F(FlightTest, ARangeInWordsIsReadWhereItIsTwoNumbersAndElseIgnored) {
   EXPECT_EQ(Flight(path()).variable("ONE").ignored_range, "valid_range = '90'");
 }
 
-TEST_F(FlightTest, TheAircraftIsFoundInEverySpellingOfItsAttribute) {
+TEST_F(FlightTest, AircraftAttributeIsReadInEverySpelling) {
   for (const char* const name :
        {"platform", "Platform", "PLATFORM", "Aircraft", "aircraft", "tail_number", "platform_name"}) {
     {
@@ -725,7 +725,7 @@ TEST_F(FlightTest, CapitalsAndACommaInTheUnitOfTimeAreRead) {
   EXPECT_EQ(Flight(path()).time().first, 804988800);
 }
 
-TEST_F(FlightTest, ATimeOfAnotherNameIsKnownByItsDimensionOrItsStandardName) {
+TEST_F(FlightTest, TimeIsFoundByDimensionOrStandardName) {
   for (const bool by_standard_name : {false, true}) {
     {
       NetcdfMaker maker(path());
@@ -771,7 +771,7 @@ TEST_F(FlightTest, WhatIsTooMuchToBeMeasuredIsMissing) {
   EXPECT_THAT(read("PACKED"), ElementsAre(0, IsNan(), IsNan(), 1e300));
 }
 
-TEST_F(FlightTest, NumbersThatCannotBeToldAreRefusedWhenTheyAreRead) {
+TEST_F(FlightTest, AmbiguousNumbersAreRefusedOnRead) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101});
@@ -807,7 +807,7 @@ TEST_F(FlightTest, NumbersThatCannotBeToldAreRefusedWhenTheyAreRead) {
   EXPECT_THAT(read("DIGITS"), ElementsAre(5, 5.5));
 }
 
-TEST_F(FlightTest, WhatAConversionCallsImpossibleIsCountedAndTakesNoPartInAMean) {
+TEST_F(FlightTest, ImpossibleValuesAreCountedAndExcluded) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101});
@@ -823,7 +823,7 @@ TEST_F(FlightTest, WhatAConversionCallsImpossibleIsCountedAndTakesNoPartInAMean)
               ElementsAre(DoubleEq(80.1), DoubleEq(80.6), testing::_, testing::_, testing::_, testing::_));
 }
 
-TEST_F(FlightTest, WhatFlagsOfTheFileCallUnusableIsMissing) {
+TEST_F(FlightTest, FlaggedUnusableValuesAreMissing) {
   {
     NetcdfMaker file(path());
     file.time({0, 1, 2, 3});
@@ -860,7 +860,7 @@ TEST_F(FlightTest, WhatFlagsOfTheFileCallUnusableIsMissing) {
   EXPECT_THAT(flight.variable("HARMLESS").flags, testing::IsEmpty());
 }
 
-TEST_F(FlightTest, FlagsOfAnyTypeAreReadAsTheyAreMeant) {
+TEST_F(FlightTest, FlagsOfAnyTypeAreInterpreted) {
   {
     NetcdfMaker file(path());
     file.time({0, 1, 2, 3});
@@ -893,7 +893,7 @@ TEST_F(FlightTest, FlagsOfAnyTypeAreReadAsTheyAreMeant) {
   EXPECT_THAT(read("FAST"), ElementsAre(1, 2, IsNan(), IsNan(), 5, 6, IsNan(), IsNan()));
 }
 
-TEST_F(FlightTest, AVariableThatIsMissingThroughoutIsAnErrorWhenRequired) {
+TEST_F(FlightTest, RequiredVariableWithoutValuesIsAnError) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101});
@@ -940,7 +940,7 @@ TEST_F(FlightTest, PackedIntegersAreUnpacked) {
   EXPECT_THAT(read("PACKED"), ElementsAre(105, IsNan()));
 }
 
-TEST_F(FlightTest, WhatIsNotATimeSeriesIsListedAndRefused) {
+TEST_F(FlightTest, OtherVariablesAreListedAndRefused) {
   {
     NetcdfMaker maker(path());
     maker.time({100});
@@ -964,8 +964,8 @@ TEST_F(FlightTest, WhatIsNotATimeSeriesIsListedAndRefused) {
   EXPECT_EQ(flight.variable("ONE").rate, 1);
 }
 
-// What netCDF keeps of variables is set for those that are read, not for all files of the program that links
-// the library.
+// netCDF cache settings apply to the variables being read, not to all files of the program that links the
+// library.
 TEST_F(FlightTest, LeavesTheChunkCacheOfTheProgramAlone) {
   make_with_times({0, 1, 2});
   const auto cache = [] {
@@ -1052,7 +1052,7 @@ TEST_F(FlightTest, BlocksOfAnySizeGiveTheSame) {
   }
 }
 
-TEST_F(FlightTest, BlocksHoldEveryRecordOnceAndWhatLiesTogetherIsReadTogether) {
+TEST_F(FlightTest, BlocksHoldEachRecordOnceAndReadContiguously) {
   constexpr std::size_t records = 5000;
   const auto max_block = [&](int mode, int rate) {
     {
@@ -1073,7 +1073,8 @@ TEST_F(FlightTest, BlocksHoldEveryRecordOnceAndWhatLiesTogetherIsReadTogether) {
   };
   EXPECT_EQ(max_block(NC_NETCDF4, 1000), pcor::records_per_block);
   EXPECT_EQ(max_block(0, 1), pcor::records_per_block);
-  // Records of 4,004 bytes: as many as are in a buffer of 1 MiB wherever the first of them lies in it.
+  // Records of 4,004 bytes: the number in a buffer of 1 MiB, for any position of the first record in the
+  // buffer.
   const std::size_t together = max_block(0, 1000);
   EXPECT_LT(together * 4004, std::size_t{1} << 20);
   EXPECT_GT(together * 4004, std::size_t{1} << 19);

@@ -61,7 +61,7 @@ std::string contents(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// What the netCDF library itself says of a written file.
+/// Description of a written file by the netCDF library itself.
 class Written {
  public:
   explicit Written(const std::filesystem::path& path) {
@@ -172,7 +172,7 @@ class FlightWriterTest : public testing::Test {
     return message;
   }
 
-  // Writes a long flight to `path` until something gives; the message of that.
+  // Writes a long flight to `path` until an error occurs; returns the message.
   static std::string write_much(const std::filesystem::path& path, NetcdfFormat kind) {
     return message_of<Error>([&] {
       constexpr std::size_t records = 4096;
@@ -197,7 +197,7 @@ class FlightWriterTest : public testing::Test {
 
 }  // namespace
 
-// What is written
+// Written content
 
 TEST_F(FlightWriterTest, TimeAndVariablesFollowTheConventions) {
   NewFlight flight{midnight + 86399};
@@ -297,7 +297,7 @@ TEST_F(FlightWriterTest, AVariableWithoutAnyValueHasNoRange) {
   }
 }
 
-TEST_F(FlightWriterTest, WhatAFloatCannotHoldIsMissing) {
+TEST_F(FlightWriterTest, ValuesOutsideFloatRangeAreMissing) {
   NewFlight start{midnight};
   FlightWriter writer(output, start, {});
   const std::size_t number = writer.define(pressure());
@@ -320,7 +320,7 @@ TEST_F(FlightWriterTest, TimesThatAreNotWholeSecondsAreKept) {
   EXPECT_THAT(Written(output).values("Time"), ElementsAre(100.5, 101.5));
 }
 
-TEST_F(FlightWriterTest, CopiesKeepValuesTypesShapesAndAttributesInEveryKindOfFile) {
+TEST_F(FlightWriterTest, CopiesAreIdenticalForEveryFileKind) {
   for (const int mode : {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4, NC_NETCDF4 | NC_CLASSIC_MODEL}) {
     make_input_of(mode);
     {
@@ -411,7 +411,7 @@ TEST_F(FlightWriterTest, AVariableThatWasNotWrittenInFullIsAnError) {
   EXPECT_EQ(directory.entries(), 1) << "only the input is left";
 }
 
-TEST_F(FlightWriterTest, WhatCannotBeCopiedIsToldBeforeAndLeavesTheRest) {
+TEST_F(FlightWriterTest, UncopyableVariablesAreReportedInAdvance) {
   {
     NetcdfMaker maker(input);
     maker.time({100, 101});
@@ -441,10 +441,10 @@ TEST_F(FlightWriterTest, WhatCannotBeCopiedIsToldBeforeAndLeavesTheRest) {
   EXPECT_FALSE(FlightWriter(output, NewFlight{midnight}, {}).can_copy("PSFD")) << "there is no input";
 }
 
-/// HDF5 has attributes that netCDF does not write, as a text for a missing number, filters that are not
-/// installed everywhere, and texts of a fixed length and long doubles, both of which netCDF takes for texts
-/// of any length and reads into too little room.
-TEST_F(FlightWriterTest, WhatOnlyHdf5AllowsIsToldWithWhatToDo) {
+/// HDF5 has attributes that netCDF does not write, such as a text for a missing number, optional filters,
+/// and texts of a fixed length and long doubles, both of which netCDF assumes to be variable-length texts
+/// and reads into a buffer that is too small.
+TEST_F(FlightWriterTest, Hdf5OnlyFeatureIsReportedWithRemedy) {
   const Flight flight(PCOR_SOURCE_DIR "/tests/fuzz/seeds/flight/odd_hdf5.nc");
   FlightWriter writer(output, flight, {});
   EXPECT_THAT(message_of<Error>([&] { writer.copy("PSFD"); }),
@@ -458,7 +458,7 @@ TEST_F(FlightWriterTest, WhatOnlyHdf5AllowsIsToldWithWhatToDo) {
               AllOf(HasSubstr("cannot read PACKED"), HasSubstr("install the plug-in of HDF5")));
 }
 
-TEST_F(FlightWriterTest, AnAttributeThatTheTypeOfItsVariableCannotHoldIsNamed) {
+TEST_F(FlightWriterTest, AttributeOutsideVariableTypeIsNamed) {
   {
     NetcdfMaker maker(input, 0);
     maker.time({100});
@@ -474,7 +474,7 @@ TEST_F(FlightWriterTest, AnAttributeThatTheTypeOfItsVariableCannotHoldIsNamed) {
 }
 
 /// The library lists it and does not find it.
-TEST_F(FlightWriterTest, AnAttributeWhoseNameIsNoTextIsNamed) {
+TEST_F(FlightWriterTest, NonTextAttributeNameIsReported) {
   {
     NetcdfMaker maker(input, 0);
     maker.time({100});
@@ -512,7 +512,7 @@ TEST_F(FlightWriterTest, TimesMustIncrease) {
               HasSubstr("the time of record 2 does not follow the one before"));
 }
 
-// Whole or not at all
+// Atomic output
 
 TEST_F(FlightWriterTest, NothingIsThereBeforeTheEnd) {
   {
@@ -555,7 +555,7 @@ TEST_F(FlightWriterTest, ASymbolicLinkIsFollowed) {
   EXPECT_EQ(Flight(directory / "real.nc").records(), 1);
 }
 
-TEST_F(FlightWriterTest, WhatIsNotFinishedIsHiddenBesideTheOutputAndGoesAtASignal) {
+TEST_F(FlightWriterTest, UnfinishedOutputIsHiddenAndRemovedOnSignal) {
   for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
     std::ofstream(output) << "old";
     NewFlight flight{midnight};
@@ -579,7 +579,7 @@ TEST_F(FlightWriterTest, AFinishedFileStaysAtASignal) {
   EXPECT_EQ(Flight(output).records(), 1);
 }
 
-TEST_F(FlightWriterTest, MoreUnfinishedFilesThanAreListedAreStillWritten) {
+TEST_F(FlightWriterTest, UnfinishedFilesBeyondListLimitAreWritten) {
   std::vector<std::unique_ptr<pcor::AtomicFile>> files;
   for (int i = 0; i < 20; ++i)
     files.push_back(std::make_unique<pcor::AtomicFile>(directory / std::to_string(i)));
@@ -619,7 +619,7 @@ TEST_F(FlightWriterTest, TheInputIsNeverTheOutputNotEvenByALink) {
 
 // Outputs that cannot be written
 
-TEST_F(FlightWriterTest, AnOutputThatIsNoFileIsRefused) {
+TEST_F(FlightWriterTest, NonFileOutputIsRefused) {
   EXPECT_THAT(refusal(directory.path()), HasSubstr("is a directory"));
   EXPECT_THAT(refusal("/dev/full"), HasSubstr("is not a regular file"));
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
@@ -635,7 +635,7 @@ TEST_F(FlightWriterTest, ADirectoryThatCannotBeWrittenIsRefused) {
   EXPECT_THAT(message_of<Error>([] { FlightWriter("", NewFlight{midnight}, {}); }), HasSubstr("has no name"));
 }
 
-TEST_F(FlightWriterTest, TimesBeyond32BitsAreWrittenAsTheyAre) {
+TEST_F(FlightWriterTest, TimesBeyond32BitsAreUnchanged) {
   NetcdfMaker(input).time({51720, 3e9}, "seconds since 2004-02-18 00:00:00 +0000", NC_DOUBLE);
   const Flight flight(input);
   FlightWriter(output, flight, {}).finish();
@@ -643,7 +643,7 @@ TEST_F(FlightWriterTest, TimesBeyond32BitsAreWrittenAsTheyAre) {
 }
 
 // Another program writes a new version of the flight while this one is read.
-TEST_F(FlightWriterTest, AnInputThatChangesMeanwhileIsRefusedAndTheEarlierOutputStays) {
+TEST_F(FlightWriterTest, ChangedInputIsRefusedAndOldOutputKept) {
   for (const int kind : {0, NC_NETCDF4}) {
     for (const bool renamed : {true, false}) {
       const auto make = [kind](const std::filesystem::path& path, double pressure) {
@@ -670,7 +670,7 @@ TEST_F(FlightWriterTest, AnInputThatChangesMeanwhileIsRefusedAndTheEarlierOutput
   }
 }
 
-TEST_F(FlightWriterTest, AFileThatMayNotGrowLeavesNothing) {
+TEST_F(FlightWriterTest, FileSizeLimitLeavesNoOutput) {
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);

@@ -1,4 +1,4 @@
-/// In place of libFuzzer: reads every file in the folders that are named, each as a text of its own.
+/// Replacement for libFuzzer: reads every file in the given folders, each as a separate input.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>

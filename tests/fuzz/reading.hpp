@@ -8,7 +8,7 @@
 
 namespace fuzz {
 
-/// Does what may be refused. To be refused is no fault, all else is.
+/// Calls a function that may refuse its input. A refusal is valid; any other failure is a fault.
 template <class Work>
 void refusable(Work work) {
   try {

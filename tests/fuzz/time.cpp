@@ -12,7 +12,7 @@
 
 namespace {
 
-/// A file of nothing but times. Lines of a text are the attributes of the time and of the file, the base time
+/// A file with times only. The lines of a text are the attributes of the time and of the file, the base time
 /// and the times.
 class TimesFile final : public pcor::internal::FlightFile {
  public:

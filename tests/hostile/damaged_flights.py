@@ -111,7 +111,7 @@ def main():
             content = flight.read_bytes()
             chance = random.Random(f"{kind} {given.seed}")
             changes = [damaged(content, chance) for _ in range(given.count)]
-            # There HDF5 reads beyond its own memory, which a sanitizer tells of.
+            # HDF5 reads beyond its memory there, and a sanitizer reports the read.
             if kind == "NETCDF4" and not os.environ.get("PCOR_SANITIZED"):
                 changes += damaged_heaps(content)
             for number, change in enumerate(changes):

@@ -24,7 +24,7 @@
 
 // NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): names of the C library
 extern "C" {
-// Those of the C library, by names that nobody takes the place of: dlsym itself asks for memory.
+// Functions of the C library, by names that no program replaces: dlsym itself allocates memory.
 void* __libc_malloc(std::size_t bytes);
 void* __libc_calloc(std::size_t count, std::size_t bytes);
 void* __libc_realloc(void* memory, std::size_t bytes);
@@ -58,7 +58,7 @@ void report(const char* call) {
   ::syscall(SYS_close, file);
 }
 
-/// Whether this call is the one that fails; errno then says why.
+/// True if this call is the failing one; errno then gives the reason.
 bool fails(const Kind& kind, const char* call) {
   if (failing_kind == nullptr || std::strcmp(kind.name, failing_kind) != 0 || --calls_left != 0) return false;
   report(call);
@@ -66,7 +66,7 @@ bool fails(const Kind& kind, const char* call) {
   return true;
 }
 
-/// The function of that name that this one stands before.
+/// The replaced function of the given name.
 template <class Function>
 Function* real(Function* /*this_one*/, const char* name) {
   return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
@@ -148,7 +148,7 @@ int rename(const char* from, const char* to) noexcept {
   return fails(renaming, to) ? -1 : real(rename, "rename")(from, to);
 }
 
-// What cannot be closed is closed all the same.
+// A file that cannot be closed is closed regardless.
 int close(int file) {
   const int status = real(close, "close")(file);
   return fails(closing, "close") ? -1 : status;

@@ -22,8 +22,8 @@ from pathlib import Path
 
 KINDS = ("memory", "open", "read", "write", "sync", "rename", "close", "stop")
 EARLIER = b"an earlier output"
-# What a message names: a file, a stream, what is exhausted, or the data of a library. A library that fails may say
-# something of its own before.
+# Subjects named in a message: a file, a stream, the exhausted resource, or the data of a library. A failing
+# library may print its own message first.
 NAMED = re.compile(r"pcor: [^\n]*(\.nc|\.toml|\.html|\.json|standard output|memory|UDUNITS)[^\n]*\n\Z")
 
 

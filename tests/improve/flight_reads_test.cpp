@@ -11,7 +11,7 @@
 #include "residuals/reference_on_samples.hpp"
 #include "support/temporary_directory.hpp"
 
-// How often a whole improvement opens its flights, reads their samples and builds residuals.
+// Number of times that a whole improvement opens its flights, reads their samples and builds residuals.
 
 using namespace pcor;
 
@@ -20,11 +20,11 @@ namespace {
 const std::filesystem::path scenarios = PCOR_SOURCE_DIR "/data/scenarios";
 
 struct Counts {
-  std::map<std::filesystem::path, std::size_t> reads{};  ///< of the samples of each flight
+  std::map<std::filesystem::path, std::size_t> reads{};  ///< number of reads of the samples of each flight
   std::size_t residuals = 0;
 };
 
-/// The laser, which counts what is asked of it.
+/// The laser, which counts its calls.
 class CountingReference final : public Reference {
  public:
   explicit CountingReference(std::shared_ptr<Counts> counts) : counts_(std::move(counts)) {}
@@ -68,8 +68,7 @@ TEST(FlightReads, OfAnImprovementAreOneForEachSetOfRoles) {
   const Improvement improvement =
       improve(flights.part(0, 2), model, {std::make_shared<CountingReference>(counts)}, options);
   ASSERT_EQ(improvement.steps.size(), 2U) << "one effect is found";
-  // What the model reads, what it and all candidates read, and the same once more with the effect that is
-  // added.
+  // Inputs of the model, inputs of it and all candidates, and both again with the effect that is added.
   for (const auto& [path, reads] : counts->reads) EXPECT_LE(reads, 4U) << path;
   EXPECT_EQ(counts->reads.size(), 3U);
   EXPECT_LE(counts->residuals, 30U);

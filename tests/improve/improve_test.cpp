@@ -76,8 +76,8 @@ class Improve : public testing::Test {
     return fit;
   }
 
-  /// A flight of half an hour, and one that is held out, with the rms that the fit of a model says, and
-  /// static pressures that its effects change by `changes_`.
+  /// A flight of half an hour, and a held-out flight, with the rms stated by the fit of a model, and static
+  /// pressures that its effects change by `changes_`.
   std::vector<pcor::internal::TrialFlight> tried(const std::vector<TrialModel>& models) {
     auto samples = std::make_shared<pcor::FlightSamples>();
     samples->name = "made.nc";
@@ -122,7 +122,7 @@ class Improve : public testing::Test {
   std::deque<Diagnosis> diagnoses_;
   double given_rms_ = 1.0;
   bool held_out_tells_ = true;             // the held-out flight knows one model from another
-  std::map<std::string, double> changes_;  // of the static pressure by effects, hPa
+  std::map<std::string, double> changes_;  // change of the static pressure by effects, hPa
 };
 
 pcor::Finding finding(const std::string& id) {
@@ -222,7 +222,7 @@ TEST_F(Improve, DropsWhatHeldOutFlightsContradict) {
   EXPECT_DOUBLE_EQ(improvement.fit.flights[1].after.rms, 1.0);
 }
 
-/// A diagnosis that cannot tell two effects apart, the first of which is there with `probability`.
+/// A diagnosis that cannot separate two effects; the first is present with `probability`.
 Diagnosis two_rivals(const std::string& one, const std::string& other, double probability) {
   Diagnosis unclear = diagnosis(Verdict::ambiguous, {one});
   pcor::Alias alias;
@@ -253,7 +253,7 @@ TEST_F(Improve, TakesTheRivalOfTheLeastExpectedError) {
             write_model(improvement.model));
 }
 
-TEST_F(Improve, TakesTheNamedOneWhereItDoesNotMatterWhichIsThere) {
+TEST_F(Improve, IrrelevantChoiceTakesTheNamedCandidate) {
   diagnoses_ = {two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.5};
   changes_ = {{"static-lag", 0.8}, {"total-lag", 0.81}};  // hPa, at a noise of 0.25
@@ -281,7 +281,7 @@ TEST_F(Improve, LeavesAloneWhatMayBeOfTheOtherSystem) {
   EXPECT_THAT(improvement.why_stopped, HasSubstr("fly a yaw manoeuvre"));
 }
 
-TEST_F(Improve, BelievesTheFittedFlightsWhereWhatIsHeldOutTellsNothing) {
+TEST_F(Improve, UninformativeHoldOutUsesFittedFlights) {
   held_out_tells_ = false;
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.5};
@@ -304,12 +304,12 @@ TEST_F(Improve, DropsWhatCannotBeFitted) {
   EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag was tried, but cannot be fitted: tau and a0"));
 }
 
-TEST_F(Improve, PassesOnThatTheModelItselfCannotBeFitted) {
+TEST_F(Improve, UnfittableModelIsReported) {
   loop_.refit = [](const TrialModel&) -> RefitResult { throw pcor::Error("no sample is left"); };
   EXPECT_THROW(run(), pcor::Error);
 }
 
-TEST_F(Improve, DoesNotTakeTheNameOfAPartialFindingForTheCause) {
+TEST_F(Improve, PartialFindingIsNotNamedAsCause) {
   diagnoses_ = {diagnosis(Verdict::partial, {"static-lag"}), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.9};
   const Improvement improvement = run();
@@ -388,7 +388,7 @@ TEST_F(Improve, TellsTheNoiseOfEveryFitAsTheFitDoes) {
   EXPECT_DOUBLE_EQ(improvement.steps[1].noise_rms, 0.25);
 }
 
-TEST_F(Improve, TakesNoStepThatMakesTheHeldOutResidualWorse) {
+TEST_F(Improve, WorseHeldOutResidualRejectsStep) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"})};
   rms_ = {1.0, 1.0001};
   const Improvement improvement = run();
@@ -396,7 +396,7 @@ TEST_F(Improve, TakesNoStepThatMakesTheHeldOutResidualWorse) {
   EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag was tried and dropped"));
 }
 
-TEST_F(Improve, CallsAModelWorseThatIsWorseThanTheOneGiven) {
+TEST_F(Improve, DegradedModelIsReportedAsWorse) {
   diagnoses_ = {diagnosis(Verdict::silent)};
   given_rms_ = 0.75;
   EXPECT_THAT(run().worse, HasSubstr("1.3333 times that of the model as it was given"));
@@ -405,7 +405,7 @@ TEST_F(Improve, CallsAModelWorseThatIsWorseThanTheOneGiven) {
   EXPECT_DOUBLE_EQ(run().given_rms_holdout, 1.25);
 }
 
-TEST_F(Improve, DoesNotEndSilentWhereWhatIsHeldOutIsOff) {
+TEST_F(Improve, HeldOutBiasPreventsSilentVerdict) {
   diagnoses_ = {diagnosis(Verdict::silent)};
   loop_.refit = [this](const TrialModel& model) {
     RefitResult fit = fitted(model.file);

@@ -96,7 +96,7 @@ TEST(Trials, TheTruthIsBetterAndTheRestWorseByTheSame) {
   EXPECT_TRUE(comparison_of(flights, 0, 1, false).is_worse());
 }
 
-TEST(Trials, TheFirstReferenceIsHeardWhereTheOthersAddNoiseAlone) {
+TEST(Trials, NoisyFurtherReferencesAreIgnored) {
   Comparison comparison;
   comparison.gain = 97.0;
   comparison.gain_error = 141.0;
@@ -135,7 +135,7 @@ TEST(Trials, StaticPressuresDifferByWhatAnEffectAdds) {
   }
 }
 
-TEST(Trials, WhatBothSystemsHaveAlikeIsNoDifferenceOfTheirTotalPressures) {
+TEST(Trials, CommonErrorsCancelInTotalPressureDifference) {
   const pcor::ModelEffect loss{"pitot-angle", {0.0004, 2.0}};
   const pcor::References total{
       pcor::total_pressure_reference(pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"))};

@@ -61,7 +61,7 @@ std::string to_string(const testing::TestParamInfo<std::filesystem::path>& info)
 
 TEST(PublishedLaws, AreTwentyFive) { EXPECT_THAT(laws(), SizeIs(25)); }
 
-TEST_P(PublishedLaw, GoesThroughEveryCommandOnAFlightThatHasAllVariables) {
+TEST_P(PublishedLaw, EveryCommandAcceptsAFlightWithAllVariables) {
   const ModelDefinition file = law(GetParam());
   for (const std::string text : {"lams", "pressure:PS_A"}) {
     SCOPED_TRACE(text);

@@ -33,7 +33,7 @@ TEST(RivalChoice, NothingIsAppliedThatARivalCallsAHarm) {
   EXPECT_NEAR(choice.error, std::sqrt(0.9 * 0.64 + 0.1 * 0.36), 1e-12);  // rounding
 }
 
-TEST(RivalChoice, ARivalThatChangesNothingForbidsAllButTheTolerance) {
+TEST(RivalChoice, UnchangedRivalLimitsCorrectionToTolerance) {
   EXPECT_FALSE(choose_rival({Series(10, 0.5), Series(10, 0.0)}, {0.99, 0.01}, 0.01).rival.has_value());
   EXPECT_TRUE(choose_rival({Series(10, 0.009), Series(10, 0.0)}, {0.99, 0.01}, 0.01).rival.has_value());
 }

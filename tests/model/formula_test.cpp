@@ -166,7 +166,7 @@ TEST(Formula, ChoosesByComparison) {
   EXPECT_EQ(evaluate("if(x < 0, 0, sqrt(x))", {{"x", -1.0}}), 0.0) << "the branch not taken may be NaN";
 }
 
-TEST(Formula, GivesNanOutsideADomainAndInfinityForADivisionByZero) {
+TEST(Formula, DomainErrorIsNanAndZeroDivisionIsInfinite) {
   for (const char* text :
        {"sqrt(x)", "log(x)", "log10(x)", "x^1.5", "x^y", "pow(x, 0.5)", "0/(x+1)", "sqrt(-1)"}) {
     EXPECT_THAT(evaluate(text, {{"x", -1.0}, {"y", 0.5}}), IsNan()) << text;

@@ -1,4 +1,4 @@
-// What of a model is archived with the steps of hydrostatic height, so that others are not taken for it.
+// Part of a model that is archived with the steps of hydrostatic height, so that other models are detected.
 #include "model_io/archived_model.hpp"
 
 #include <gmock/gmock.h>
@@ -38,7 +38,7 @@ TEST(ArchivedModel, IsTheSameForTheSamePressures) {
   EXPECT_EQ(archived_difference(archived(model), archived(published())), "");
 }
 
-TEST(ArchivedModel, DiffersWithWhatMakesPressuresAndTemperature) {
+TEST(ArchivedModel, DiffersIfPressureOrTemperatureModelDiffers) {
   const std::string here = archived(published());
   ModelDefinition model = published();
   model.model.effects[0].parameters[0] = 0.005;
@@ -60,7 +60,7 @@ TEST(ArchivedModel, DiffersWithWhatMakesPressuresAndTemperature) {
   EXPECT_NE(archived(read_model(models / "c130-psfd-eq19.toml")), here);
 }
 
-TEST(ArchivedModel, KnowsTheLaserOnlyWhereItCorrects) {
+TEST(ArchivedModel, IncludesLaserOnlyIfItCorrects) {
   ModelDefinition model = published();
   model.variables[Quantity::lams_airspeed] = "VLAMS";
   model.variables[Quantity::attack] = "ATTACK";

@@ -1,4 +1,4 @@
-// The correction of the temperature in a model: put in, taken off, written, read, applied, and held by a
+// The correction of the temperature in a model: added, removed, written, read, applied, and fixed in a
 // refit.
 #include "model_io/calibration.hpp"
 
@@ -53,7 +53,7 @@ ModelDefinition with_curve(ModelDefinition file) {
   return with_calibration(std::move(file), curve, its_errors, its_covariance);
 }
 
-/// What a loop of the model makes of a recorded ambient temperature, K.
+/// Ambient temperature that a loop of the model computes from a recorded one, K.
 double applied(const ModelDefinition& file, double celsius) {
   Model model = file.model;
   std::string error;
@@ -203,7 +203,7 @@ TEST(Calibration, IsHeldByARefit) {
   // without.
   for (std::size_t e = 0; e < 3; ++e)
     EXPECT_EQ(with.model.model.effects[e].parameters, without.model.model.effects[e].parameters);
-  // The calibration is held with a stated error, which here goes on to nothing.
+  // The calibration is fixed with a stated error, which here has no effect on other results.
   EXPECT_THAT(with.covariance_names,
               ElementsAre("static-constant.a0", "static-alpha.a1", "static-qp.a2", "temp-calibration.a0",
                           "temp-calibration.a1", "temp-calibration.a2"));

@@ -87,7 +87,7 @@ unit = "hPa"
 source = "engine run-up, 2011-11-02"
 )";
 
-// The least that is a model. What a test adds begins at line 5.
+// The smallest valid model. Additions of a test begin at line 5.
 const std::string least = R"(format = "pcor-model/1"
 [variables]
 static_pressure = "PSFD"
@@ -468,7 +468,7 @@ class ModelGenerator {
   std::mt19937_64 random_;
 };
 
-// A directory of its own for each test, removed afterwards.
+// A separate directory for each test, removed afterwards.
 class ModelFileOnDisk : public testing::Test {
  protected:
   void SetUp() override {
@@ -647,7 +647,7 @@ apple = { used = 12, share = 0.5, clean = true }
   EXPECT_EQ(Description::of(parse_model(written, "m.toml")), Description::of(file)) << written;
 }
 
-// What is known of parameters that are fitted, of others that are only considered, and of samples.
+// Uncertainties of fitted parameters, of parameters that are only considered, and of samples.
 TEST(ModelDefinition, GathersItsUncertainty) {
   const ModelDefinition file = parse_model(least + R"([[effect]]
 id = "static-constant"
@@ -718,7 +718,7 @@ TEST(ModelDefinition, WhatIsWrittenRestoresEveryBit) {
   }
 }
 
-TEST(ModelDefinition, WhateverTheTextNothingButAnErrorHappens) {
+TEST(ModelDefinition, ArbitraryTextGivesAnErrorOnly) {
   std::mt19937_64 random(1);
   const std::string letters = "[]{}=\"'.,#\n\\ \t\r0-+_:eEnaifxu\x80\xff\x01" + std::string(1, '\0');
   const auto below = [&](std::size_t end) { return static_cast<std::size_t>(random() % end); };
@@ -1053,7 +1053,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"ProvenanceNaN", "[provenance]\nrms = { a = [nan] }\n", "6:14", {"not finite"}}),
     [](const auto& test) { return test.param.name; });
 
-TEST(ModelDefinition, CannotBeWrittenWithWhatCannotBeRead) {
+TEST(ModelDefinition, UnreadableDefinitionCannotBeWritten) {
   ModelDefinition file = parse_model(published_example, "m.toml");
   file.model.effects[0].parameters[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(write_error_of(file),
@@ -1071,7 +1071,7 @@ TEST(ModelDefinition, CannotBeWrittenWithWhatCannotBeRead) {
   EXPECT_THAT(write_error_of(file), HasSubstr("cannot be written"));
 }
 
-TEST(ModelDefinition, ARecoveryFactorThatWasChangedLosesItsPublishedName) {
+TEST(ModelDefinition, ChangedRecoveryFactorLosesPublishedName) {
   ModelDefinition file =
       parse_model(least + "[temperature]\nrecovery_factor = \"rosemount-heated\"\n", "m.toml");
   EXPECT_THAT(write_model(file), HasSubstr("recovery_factor = \"rosemount-heated\""));
@@ -1084,7 +1084,7 @@ TEST_F(ModelFileOnDisk, IsNamedInMessages) {
   EXPECT_THAT(read_error_of(path), StartsWith(path.string() + ":6:13: "));
 }
 
-TEST_F(ModelFileOnDisk, ThatIsAbsentOrADirectoryIsRefused) {
+TEST_F(ModelFileOnDisk, AbsentFileOrDirectoryIsRefused) {
   EXPECT_THAT(read_error_of(directory_ / "none.toml"), HasSubstr("none.toml: there is no such file"));
   EXPECT_THAT(read_error_of(directory_), HasSubstr("is a directory"));
 }
@@ -1113,7 +1113,7 @@ TEST_F(ModelFileOnDisk, ThatWasReadIsNeverWrittenOver) {
   EXPECT_EQ(content(input), published_example);
 }
 
-TEST_F(ModelFileOnDisk, IsNotTouchedByAModelThatCannotBeWritten) {
+TEST_F(ModelFileOnDisk, UnwritableModelLeavesFileUnchanged) {
   ModelDefinition file = parse_model(published_example, "m.toml");
   file.model.effects[0].parameters[0] = std::numeric_limits<double>::infinity();
   const fs::path output = write("out.toml", "old");

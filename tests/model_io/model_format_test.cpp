@@ -1,4 +1,4 @@
-// data/models/FORMAT.md says what the program does: its tables are those of the code.
+// data/models/FORMAT.md describes the program: its tables equal the tables of the code.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -215,7 +215,7 @@ TEST(ModelFormat, StatesTheLimitsOfFormulas) {
   EXPECT_THAT(text, HasSubstr(fmt::format("at most {} variables that are no quantities", extra_capacity)));
 }
 
-// An example is a whole file, or stands for itself beside the two pressures.
+// An example is a whole file, or a part that is valid with the two pressures.
 TEST(ModelFormat, ExamplesAreRead) {
   std::size_t examples = 0;
   std::optional<std::string> example;

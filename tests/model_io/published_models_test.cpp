@@ -44,7 +44,7 @@ ModelDefinition read_published(const std::string& name) {
   return read_model(model_directory / (name + ".toml"));
 }
 
-// What is measured at one moment. What a law does not need it does not see.
+// Quantities measured at one moment. A law ignores the quantities that it does not need.
 struct Sample {
   double p = 700.0;
   double q = 70.0;
@@ -218,7 +218,7 @@ TEST(PublishedModels, ReproduceNimbus) {
 }
 
 // The tables below were computed independently of this program and printed to 0.01 hPa, the angle of attack
-// and its ratio more coarsely. So the tests recompute the state that a row stands for. Then all columns agree
+// and its ratio more coarsely. The tests therefore recompute the state of each row. Then all columns agree
 // within the rounding; the tolerance is twice that.
 constexpr double table_tolerance = 0.01;
 
@@ -294,8 +294,7 @@ TEST(PublishedModels, ReproduceTheTableOfTheC130) {
     const bool tapered = read_published(columns[column]).model.policy.taper_below > 0.0;
     for (const C130Row& row : c130_rows()) {
       const Sample sample = c130_sample(row);
-      // Half of the last printed digit and, where that decides, the two constants and the standard
-      // atmosphere.
+      // Half of the last printed digit and, if larger, the two constants and the standard atmosphere.
       EXPECT_NEAR(sample.q, row.q, 0.055);
       EXPECT_NEAR(sample.attack, row.attack, 0.0501);
       EXPECT_NEAR(sample.attack_ratio, row.attack_ratio, 0.0006);
@@ -306,9 +305,8 @@ TEST(PublishedModels, ReproduceTheTableOfTheC130) {
   }
 }
 
-// The files say by how much the fits of 2011 differ from the laws that came after them. The table is of level
-// flight.
-TEST(PublishedModels, FitsOfTheMemoTellHowFarTheLawOf2016IsFromThem) {
+// The files state the difference of the fits of 2011 from the later laws. The table is for level flight.
+TEST(PublishedModels, MemoFitsStateDistanceFromLawOf2016) {
   const auto column = [](const std::string& name) {
     const auto found = std::find(c130_columns().begin(), c130_columns().end(), name);
     return static_cast<std::size_t>(found - c130_columns().begin());
@@ -382,7 +380,7 @@ TEST(PublishedModels, TrailingConeAndAvionicsFormulaOfTheGvAreOne) {
   for (sample.p = 150.0; sample.p < 1000.0; sample.p += 50.0) EXPECT_EQ(cone(sample), avionics(sample));
 }
 
-// As printed the avionics formula asks for an error that no aircraft has.
+// As printed the avionics formula implies an error that no aircraft has.
 TEST(PublishedModels, AvionicsFormulaOfTheGvIsNoLawAsPrinted) {
   Sample sample;
   sample.p = 250.0;
@@ -392,7 +390,7 @@ TEST(PublishedModels, AvionicsFormulaOfTheGvIsNoLawAsPrinted) {
 
 // The slope there is 11.4405 hPa for a unit of the ratio, and the minimum is printed to 0.001 hPa, so
 // 4.66 - 11.4405 * 0.31 = 1.1134 is the minimum within its rounding.
-TEST(PublishedModels, TrailingConeOfPsfdIsContinuousWhereItsMinimumBegins) {
+TEST(PublishedModels, TrailingConePsfdIsContinuousAtItsMinimum) {
   for (const char* name : {"c130-psfd-qcf-2003", "c130-psfd-qcr-2003"}) {
     const Law law(name);
     Sample above, below;
@@ -407,7 +405,7 @@ TEST(PublishedModels, TrailingConeOfPsfdIsContinuousWhereItsMinimumBegins) {
   }
 }
 
-TEST(PublishedModels, TrailingConeOfPsfrdIsContinuousWhereItsMinimumBegins) {
+TEST(PublishedModels, TrailingConePsfrdIsContinuousAtItsMinimum) {
   const Law law("c130-psfrd-2003");
   Sample sample;
   sample.q = 55.0;
@@ -420,8 +418,8 @@ TEST(PublishedModels, TrailingConeOfPsfrdIsContinuousWhereItsMinimumBegins) {
   EXPECT_NEAR(law(sample), 6.02, 1e-12);
 }
 
-// nimbus takes 3 deg and says nothing.
-TEST(PublishedModels, AMissingAngleOfAttackIsToldNotReplaced) {
+// nimbus assumes 3 deg without a warning.
+TEST(PublishedModels, MissingAttackAngleIsReported) {
   Sample sample;
   sample.attack = missing<double>();
   for (const char* name : {"c130-psfd-2014", "c130-psfd-2016", "c130-psfrd-2014", "c130-psfrd-2016",
@@ -473,7 +471,8 @@ TEST(PublishedModels, ReproduceAFlightOf2004) {
   }
 }
 
-// What the memo prints of its fits, and the abstract of the paper of 2014; other sources print none.
+// Uncertainties that the memo prints for its fits, and the abstract of the paper of 2014; other sources
+// print no uncertainty.
 TEST(PublishedModels, StateTheUncertaintyThatTheirSourcesPrint) {
   const std::map<std::string, double> ratios{{"c130-psfd-eq18", 0.00045}, {"gv-psf-eq20", 0.00081}};
   const std::set<std::string> of_2014{"c130-psfd-2014", "c130-psfrd-2014", "gv-psf-2014"};

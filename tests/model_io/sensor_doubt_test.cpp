@@ -37,7 +37,7 @@ std::vector<internal::SensorDoubt> thermometer_of(const std::string& more) {
   return internal::doubts_of(parse_model(model_text(more), "m.toml"), internal::thermometer_calibration);
 }
 
-TEST(SensorDoubt, IsThatOfTheCatalogueUnlessTheModelStatesAnother) {
+TEST(SensorDoubt, ModelPriorOverridesTheCatalogue) {
   const auto usual = thermometer_of("");
   EXPECT_THAT(names_of(usual), ElementsAre("temp-offset.offset", "recovery-factor.da"));
   EXPECT_DOUBLE_EQ(usual[0].size, 0.3);
@@ -46,13 +46,13 @@ TEST(SensorDoubt, IsThatOfTheCatalogueUnlessTheModelStatesAnother) {
       thermometer_of("[uncertainty]\n\"temp-offset.offset\" = 0.05\n\"recovery-factor.da\" = 0\n");
   EXPECT_THAT(names_of(stated), ElementsAre("temp-offset.offset"));
   EXPECT_DOUBLE_EQ(stated[0].size, 0.05);
-  // An effect of the model is what the model says of the sensor.
+  // An effect of the model defines the uncertainty of the sensor.
   EXPECT_THAT(names_of(thermometer_of("[[effect]]\nid = \"temp-offset\"\n")),
               ElementsAre("recovery-factor.da"));
   EXPECT_THROW(thermometer_of("[uncertainty]\n\"static-constant.a0\" = 0.05\n"), Error);
 }
 
-TEST(SensorDoubt, LeavesTheModelAsItIsAndItsErrorBesideIt) {
+TEST(SensorDoubt, ModelAndItsErrorStayUnchanged) {
   const ModelDefinition given = parse_model(model_text(""), "m.toml");
   const ModelDefinition doubted =
       internal::with_doubts(given, internal::doubts_of(given, internal::thermometer_calibration));
@@ -66,7 +66,7 @@ TEST(SensorDoubt, LeavesTheModelAsItIsAndItsErrorBesideIt) {
   EXPECT_DOUBLE_EQ(uncertainty.covariance[3 * 4 + 3], 0.005 * 0.005);
 }
 
-TEST(SensorDoubt, OfACovarianceSurvivesTheFileAndCountsWithItsEffectOnly) {
+TEST(SensorDoubt, CovarianceRoundTripsAndFollowsItsEffect) {
   ModelDefinition file = parse_model(model_text(""), "m.toml");
   file.covariance = {{"static-constant.a0", "temp-offset.offset"}, {{1e-6, 1e-4}, {1e-4, 0.04}}};
   const ModelDefinition read = parse_model(write_model(file), "m.toml");

@@ -82,13 +82,13 @@ TEST(Binning, EveryRecordOfABinCountsOnceSoSumsStay) {
   EXPECT_LE(counts.maxCoeff(), 4.0);
 }
 
-TEST(Binning, CellsThatAreLessThanHalfFullAreLeftOutAndEndAStretch) {
+TEST(Binning, CellsBelowHalfFullEndAStretch) {
   std::vector<double> residual(20, 1.0);
   residual[4] = residual[5] = missing;                   // half of the second cell is there
   residual[12] = residual[13] = residual[15] = missing;  // a quarter of the fourth
   const Binning bins(residual, seconds(20), 1.0);
   ASSERT_EQ(bins.size(), 4U);
-  EXPECT_EQ(bins.time()[1], 1321560006.5);  // of the records that are there
+  EXPECT_EQ(bins.time()[1], 1321560006.5);  // mean time of the records that are present
   ASSERT_EQ(bins.segments().size(), 2U);
   EXPECT_EQ(bins.segments()[0].count, 3U);
   EXPECT_EQ(bins.segments()[1].first, 3U);
@@ -134,13 +134,13 @@ TEST(Outliers, SpikesAreReplacedAndNothingElseIs) {
     residual[i] += spikes % 2 == 0 ? 5.0 : -5.0;
   std::size_t count = 0;
   const std::vector<double> result = without_outliers(residual, count);
-  // 4.5 deviations: 7e-6 of normal samples, so not one of 3600, but for the error of the level.
+  // 4.5 deviations: 7e-6 of normal samples, so not one of 3600, except for the error of the level.
   EXPECT_GE(count, spikes);
   EXPECT_LE(count, spikes + 3);
   std::size_t changed = 0;
   for (std::size_t i = 0; i < result.size(); ++i) {
     changed += result[i] != residual[i] ? 1 : 0;
-    // What replaces a spike is a prediction: off by an innovation, 0.16, and four of them at most.
+    // A prediction replaces a spike, with the error of an innovation, 0.16, and four of them at most.
     EXPECT_NEAR(result[i], clean[i], 0.7) << i;
   }
   EXPECT_EQ(changed, count);

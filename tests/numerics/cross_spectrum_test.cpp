@@ -49,10 +49,10 @@ TEST(CrossSpectrum, FindsADelayAtAllPeriods) {
   const CrossSpectrum found = cross_spectrum(late, early, times(count, step), step);
   ASSERT_GT(found.period.size(), 10U);
   for (std::size_t k = 0; k < found.period.size(); ++k) {
-    // 1 / (1 + 0.3^2), to what some 60 segments times frequencies tell.
+    // 1 / (1 + 0.3^2), within the error of about 60 segments times frequencies.
     EXPECT_NEAR(found.coherence[k], 0.917, 0.05) << found.period[k];
     if (found.period[k] < 3.2)
-      continue;  // half a period of a wave and less: the phase is known but for a turn
+      continue;  // half a period of a wave and less: the phase is known except for a full turn
     EXPECT_NEAR(found.delay[k], 1.5, 4.0 * found.delay_error[k] + 0.02) << found.period[k];
     EXPECT_LT(found.delay_error[k], 0.1 * found.period[k]);
   }
@@ -84,7 +84,7 @@ TEST(CrossSpectrum, ShowsALagByLessDelayAtShortPeriods) {
   }
 }
 
-TEST(CrossSpectrum, KnowsWhatHasNothingToDoWithEachOther) {
+TEST(CrossSpectrum, UnrelatedSeriesHaveNoCoherence) {
   const CrossSpectrum found = cross_spectrum(white(8000, 4), white(8000, 5), times(8000, 1.0), 1.0);
   std::size_t delays = 0;
   for (std::size_t k = 0; k < found.period.size(); ++k) {

@@ -1,4 +1,4 @@
-// Least squares whose errors know the memory of the noise.
+// Least squares whose errors include the correlation of the noise.
 #include "numerics/least_squares.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ struct Series {
   std::vector<double> time, x, y;
 };
 
-/// y = 2 + 0.5 x with noise of rms one that remembers itself for some eight samples.
+/// y = 2 + 0.5 x with noise of rms one and a correlation time of about eight samples.
 Series made(unsigned seed) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
@@ -79,7 +79,7 @@ TEST(LeastSquares, IsCombinedByErrors) {
   // Ten errors apart, they are known no better than they scatter: half of their distance.
   EXPECT_NEAR(combined({{1.0, 0.1}, {2.0, 0.1}}).error, 0.5, 1e-12);
   EXPECT_NEAR(combined({{nan_value, 0.1}, {2.0, 0.1}}).value, 2.0, 1e-12);
-  EXPECT_EQ(combined({{0.0, 0.0}, {0.0, 0.0}}).value, 0.0);  // without any noise
+  EXPECT_EQ(combined({{0.0, 0.0}, {0.0, 0.0}}).value, 0.0);  // a series without noise
   EXPECT_TRUE(std::isnan(combined({}).value));
 }
 

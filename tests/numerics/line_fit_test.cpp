@@ -40,7 +40,7 @@ TEST(LineFit, FindsAnExactLine) {
   }
 }
 
-TEST(LineFit, OfTwoVariablesWithEqualNoiseIsTheSameEitherWay) {
+TEST(LineFit, EqualNoiseFitIsSymmetricInVariables) {
   const Pairs pairs = noisy(2000, 5.0, 5.0, 2);
   const LineFit forth = pcor::orthogonal_fit(pairs.x, pairs.y);
   const LineFit back = pcor::orthogonal_fit(pairs.y, pairs.x);

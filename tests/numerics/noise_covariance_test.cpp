@@ -43,7 +43,7 @@ TEST(NoiseCovariance, IsTheInverseOfWhitening) {
   Eigen::MatrixXd u(v.rows(), v.cols());
   for (Eigen::Index c = 0; c < v.cols(); ++c) u.col(c) = whitening.transposed(white.col(c));
   const Eigen::MatrixXd expected = white.transpose() * white;
-  // The run-out of the autoregression is cut off after 300 bins; rounding is left.
+  // The tail of the autoregression is cut off after 300 bins; rounding remains.
   EXPECT_LT((noise_covariance(u, bins, noise, 0) - expected).norm(), 1e-9 * expected.norm());
 }
 

@@ -92,7 +92,7 @@ TEST(Whitening, TurnsTheCovarianceOfTheProcessIntoUnity) {
     const Eigen::MatrixXd white =
         pcor::internal::whitened(Eigen::MatrixXd::Identity(level.size(), level.size()), bins, noise, 0);
     const Eigen::MatrixXd left = white * covariance * white.transpose();
-    // Rounding; the sums of the autocovariance are cut off where they are nothing.
+    // Rounding; the sums of the autocovariance are cut off at negligible terms.
     EXPECT_LT((left - Eigen::MatrixXd::Identity(level.size(), level.size())).cwiseAbs().maxCoeff(), 1e-10)
         << coefficients.size();
   }
@@ -122,8 +122,8 @@ TEST(NoiseModel, HasTheCoefficientsAndTheLevelsOfTheProcess) {
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
   const NoiseModel noise = pcor::internal::estimate_noise(bins, {second_order(count, 12, level)});
   ASSERT_GE(noise.coefficients.size(), 2U);
-  // Standard errors sqrt((1 - 0.25)/3600) = 0.015; what drift shapes take away of the slow noise adds as
-  // much.
+  // Standard errors sqrt((1 - 0.25)/3600) = 0.015; the slow noise removed by drift shapes adds the same
+  // amount.
   EXPECT_NEAR(noise.coefficients[0], 1.0, 0.08);
   EXPECT_NEAR(noise.coefficients[1], -0.5, 0.08);
   const Eigen::Index half = count / 2;
@@ -158,7 +158,7 @@ TEST(NoiseModel, OfSeveralFlightsHasALevelForEach) {
   ASSERT_EQ(noise.level.size(), 2U);
   EXPECT_EQ(noise.level[0].size(), 600);
   EXPECT_EQ(noise.level[1].size(), 900);
-  // As above: 3^0.15 = 1.18, and 8 % of error.
+  // Same rule as above: 3^0.15 = 1.18, and 8 % of error.
   EXPECT_NEAR(noise.level[0].mean(), 0.11, 0.02);
   EXPECT_NEAR(noise.level[1].mean(), 0.29, 0.04);
 }
@@ -177,14 +177,14 @@ TEST(NoiseModel, GivesAFlightItsLevelsFromWhatFlightsShare) {
     const auto levels = pcor::internal::noise_levels(bins[f], residuals[f], noise);
     EXPECT_EQ(pcor::internal::level_of_bins(levels, bins[f]), noise.level[f]);
   }
-  // What is left out of a flight does not change the levels of the rest.
+  // Samples excluded from a flight do not change the levels of the other samples.
   const auto levels = pcor::internal::noise_levels(bins[1], residuals[1], noise);
   std::vector<double> part(900, 0.0);
   std::fill(part.begin() + 100, part.begin() + 400, std::nan(""));
   const Eigen::VectorXd of_part = pcor::internal::level_of_bins(levels, bins_of(part));
   EXPECT_EQ(of_part.head(100), noise.level[1].head(100));
   EXPECT_EQ(of_part.tail(500), noise.level[1].tail(500));
-  // A flight of which nothing is left has the level of all.
+  // A flight without remaining samples has the common level.
   const auto nothing = pcor::internal::noise_levels(Binning(), Eigen::VectorXd(), noise);
   ASSERT_EQ(nothing.size(), 1U);
   EXPECT_NEAR(nothing.front().rms, noise.scale * noise.common_level, 1e-12);

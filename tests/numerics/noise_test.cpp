@@ -56,7 +56,7 @@ TEST(Segments, EndAtMissingValuesAndGaps) {
 }
 
 TEST(Segments, EndWhereTimeDoesNotGoOn) {
-  // Two flights one after another, the earlier one last, and a time that stands.
+  // Two flights one after another, the earlier one last, and a constant time.
   const std::vector<Segment> segments =
       pcor::contiguous_segments({1, 2, 3, 4, 5, 6}, {100, 101, 20, 21, 22, 22}, 1.0);
   ASSERT_EQ(segments.size(), 3U);
@@ -183,7 +183,7 @@ TEST(CovarianceOfSums, IsTheDoubleSumOverTheAutocovariance) {
     }
     return total;
   };
-  // The filter is cut off after 300 samples, where 0.8^300 is nothing: rounding alone is left.
+  // The filter is cut off after 300 samples, where 0.8^300 is negligible: rounding alone remains.
   EXPECT_NEAR(matrix[0], sum(u, u), 1e-10 * sum(u, u));
   EXPECT_NEAR(matrix[1], sum(u, v), 1e-10 * sum(u, u));
   EXPECT_NEAR(matrix[3], sum(v, v), 1e-10 * sum(u, u));

@@ -18,7 +18,7 @@ TEST(InParallel, EachIsCalledOnceWhateverTheNumberOfThreads) {
   parallel_for(0, 4, [](std::size_t) { FAIL() << "there is nothing to call"; });
 }
 
-TEST(InParallel, WhatIsThrownArrivesWhenAllHaveEnded) {
+TEST(InParallel, ExceptionIsRethrownAfterAllThreadsEnd) {
   std::atomic<int> running = 0;
   const auto work = [&](std::size_t i) {
     ++running;

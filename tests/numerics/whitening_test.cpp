@@ -25,8 +25,8 @@ Binning bins_of(const std::vector<double>& residual) {
   return Binning(residual, time, step);
 }
 
-/// White noise of that deviation and a first-order process of `slow` hPa that remembers itself for `memory`
-/// s.
+/// White noise of the given deviation and a first-order process of `slow` hPa with a correlation time of
+/// `memory` s.
 Eigen::VectorXd drifting(std::size_t count, unsigned seed, double white, double slow, double memory) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
@@ -91,7 +91,7 @@ TEST(Whitening, TurnsTheCovarianceOfSlowPartsIntoUnity) {
   }
 }
 
-TEST(Whitening, OfAnAutoregressionAloneIsThatOfVanishingSlowParts) {
+TEST(Whitening, PureAutoregressionIsLimitOfVanishingDrift) {
   std::vector<double> residual(60, 1.0);
   residual[2] = residual[5] = missing;  // a stretch that is shorter than the autoregression
   for (std::size_t i = 20; i < 30; ++i) residual[i] = missing;
@@ -101,7 +101,7 @@ TEST(Whitening, OfAnAutoregressionAloneIsThatOfVanishingSlowParts) {
   noise.coefficients = {0.5, -0.3, 0.2, 0.1};
   noise.level = {Eigen::VectorXd::LinSpaced(count, 0.3, 0.5)};
   const Whitening alone(bins, noise, 0);
-  noise.slow = {1e-7};  // of the level, squared: 1e-13
+  noise.slow = {1e-7};  // share of the level, squared: 1e-13
   const Whitening vanishing(bins, noise, 0);
   // More columns than the filter takes at a time, and not a multiple of them.
   const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(count, 11);
@@ -134,8 +134,8 @@ TEST(SlowNoise, GivesTheMeanOfAFlightItsError) {
       const double mean = one.dot(whitening(residual[0]).col(0)) / information;
       squares += mean * mean * information;
     }
-    // Forty scores tell their rms to 11 %. How slow a drift is of which a flight holds a dozen pieces is
-    // known to a factor of two, and the error of a mean goes with its root.
+    // Forty scores determine their rms to 11 %. The time of a drift is known to a factor of two if a flight
+    // holds a dozen pieces of it, and the error of a mean varies with its root.
     EXPECT_NEAR(std::sqrt(squares / flights), 1.0, 0.35) << each.slow << " hPa, " << each.memory << " s";
   }
 }

@@ -18,7 +18,7 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// What each member of a team comes to, as text.
+/// Result of each member of a team, as text.
 template <class Work>
 std::vector<std::string> each_of(std::size_t size, const Work& work) {
   std::vector<std::string> results(size);
@@ -40,7 +40,7 @@ std::string joined(const std::vector<std::string>& parts) {
 
 std::string number(std::size_t value) { return std::to_string(value); }
 
-TEST(Communicator, GathersWhatAllHaveInTheOrderOfRanks) {
+TEST(Communicator, GathersValuesInRankOrder) {
   const auto gather = [](Communicator& comm) {
     const std::string first = joined(comm.gather(std::string(comm.rank(), 'x')));
     return first + joined(comm.gather(std::string("\0\n", 2) + number(comm.rank()), 7));
@@ -50,7 +50,7 @@ TEST(Communicator, GathersWhatAllHaveInTheOrderOfRanks) {
   EXPECT_EQ(gather(serial_communicator()), "<><" + zero + "0>");
 }
 
-TEST(Communicator, FailsOnAllMembersWithTheErrorThatOneAloneWouldMeetFirst) {
+TEST(Communicator, AllMembersFailWithTheEarliestError) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 1) comm.fail(Error(Error::Code::unit, "flight 5"), 6);
     if (comm.rank() == 2) comm.fail(Error(Error::Code::file, "flight 3"), 4);
@@ -72,7 +72,7 @@ TEST(Communicator, MayGoOnAfterAnErrorThatAllKnowOf) {
   EXPECT_THAT(each_of(3, work), Each("<no unit><no unit><no unit>"));
 }
 
-TEST(Communicator, ToldByTheLastWordsOfAMemberWhyNothingComesOfItAnyMore) {
+TEST(Communicator, LastMessageExplainsMemberFailure) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 1) return "left: " + std::string(comm.leave(Error("no memory"))->what());
     std::string said;
@@ -88,7 +88,7 @@ TEST(Communicator, ToldByTheLastWordsOfAMemberWhyNothingComesOfItAnyMore) {
   EXPECT_THAT(each_of(3, work), Each("left: no memory"));
 }
 
-TEST(Communicator, LeavesWithoutAWordWhereAllAreDone) {
+TEST(Communicator, FinishedMembersExitSilently) {
   const auto work = [](Communicator& comm) {
     comm.gather("");
     return comm.leave() ? "error" : "done";
@@ -97,7 +97,7 @@ TEST(Communicator, LeavesWithoutAWordWhereAllAreDone) {
   EXPECT_THAT(each_of(1, work), ElementsAre("done"));
 }
 
-TEST(Communicator, FailsWhereMembersComeToDifferentNumbersOrPlaces) {
+TEST(Communicator, DifferentResultsOrPlacesAreAnError) {
   EXPECT_THAT(each_of(3, [](Communicator& comm) { return joined(comm.gather("", comm.rank() / 2)); }),
               Each(HasSubstr("different results")));
   const auto stops_early = [](Communicator& comm) {
@@ -119,8 +119,8 @@ TEST(Communicator, OfOneIsSilent) {
                   .empty());
 }
 
-/// Members that come and go at random, fail at random, never wait for each other in vain:
-/// `run_with_communicator` fails where they do.
+/// Members that start, end and fail at random never wait for each other forever: otherwise
+/// `run_with_communicator` fails.
 TEST(Communicator, EndsForAllWhateverAnyMemberDoes) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const std::vector<std::string> ends = each_of(4, [seed](Communicator& comm) {
@@ -139,7 +139,7 @@ TEST(Communicator, EndsForAllWhateverAnyMemberDoes) {
       const auto error = comm.leave();
       return std::string(error ? error->what() : "done");
     });
-    // All end well, or none.
+    // Either all members succeed or all fail.
     EXPECT_EQ(std::count(ends.begin(), ends.end(), "done") % 4, 0) << joined(ends);
   }
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// The values dealt out to so many members at random.
+/// The values distributed at random to the given number of members.
 double of_team(std::size_t members, const std::vector<double>& values) {
   std::mt19937 chance(7);
   std::vector<std::vector<double>> dealt(members);

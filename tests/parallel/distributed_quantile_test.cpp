@@ -28,7 +28,7 @@ TEST(OrderOfAll, IsThatOfOneListWhoeverHasWhich) {
   const std::vector<std::uint64_t> places{0, 1, 250, 499, 500, 1000, 1000};
   for (const std::size_t size : {1U, 2U, 3U}) {
     run_with_communicator(size, [&](Communicator& comm) {
-      std::vector<double> own;  // of the last member none
+      std::vector<double> own;  // the last member has no values
       for (std::size_t i = 0; i < values.size(); ++i) {
         if (i * i % std::max<std::size_t>(size - 1, 1) == comm.rank()) own.push_back(values[i]);
       }

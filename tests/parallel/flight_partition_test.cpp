@@ -19,7 +19,7 @@ namespace {
 using test::run_with_communicator;
 using ::testing::Each;
 
-/// What the flights of each member weigh together.
+/// Total weight of the flights of each member.
 std::vector<std::uint64_t> loads(std::size_t members, const std::vector<std::uint64_t>& sizes) {
   std::vector<std::uint64_t> load(members, 0);
   std::vector<int> owners(sizes.size(), 0);
@@ -41,14 +41,15 @@ std::vector<std::uint64_t> loads(std::size_t members, const std::vector<std::uin
   return load;
 }
 
-TEST(FlightPartition, GivesEveryFlightToOneMemberAndAboutAsMuchToEach) {
+TEST(FlightPartition, FlightsAreAssignedOnceWithBalancedLoad) {
   std::mt19937 chance(1);
   std::vector<std::uint64_t> sizes;
   for (int flight = 0; flight < 60; ++flight) sizes.push_back(1'000'000 + chance() % 9'000'000);
   const std::uint64_t all = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0});
   for (const std::size_t members : {1, 2, 3, 7}) {
     const std::vector<std::uint64_t> load = loads(members, sizes);
-    // The longest first is at most a third beyond the best that can be (Graham 1969), far less for so many.
+    // Assignment by decreasing length is at most a third above the optimum (Graham 1969), far less for this
+    // number of flights.
     EXPECT_LT(*std::max_element(load.begin(), load.end()),
               1.02 * static_cast<double>(all) / static_cast<double>(members));
   }
@@ -94,7 +95,7 @@ Part part_of(std::size_t flight) {
   return part;
 }
 
-TEST(FlightPartition, GathersThePartsOfAllFlightsBitByBitInTheirOrder) {
+TEST(FlightPartition, GatheredPartsKeepBitsAndFlightOrder) {
   constexpr std::size_t flights = 7;
   std::vector<Part> alone_parts(flights);
   for (std::size_t flight = 0; flight < flights; ++flight) alone_parts[flight] = part_of(flight);

@@ -92,7 +92,7 @@ TEST(ForkCommunicator, FailsWhereAMemberIsKilled) {
   EXPECT_THAT(by_team(3, work), AllOf(HasSubstr("one of the 3 processes"), HasSubstr("was killed")));
 }
 
-TEST(ForkCommunicator, FailsWithoutAWordWhereAMemberHasSaidWhyItEnds) {
+TEST(ForkCommunicator, ReportedFailureIsNotRepeated) {
   const auto ends_with = [](int status) {
     return by_team(3, [status](Communicator& comm) {
       if (comm.rank() == 1) ::_exit(status);

@@ -19,7 +19,7 @@ using testing::StrEq;
 
 constexpr int max_seconds = 1;
 
-/// "here" in the process that called it, else "in a copy".
+/// "here" in the process that called it, otherwise "in a copy".
 class Place {
  public:
   bool is_here() const { return ::getpid() == here_; }
@@ -49,7 +49,7 @@ TEST(InACopy, ACrashTakesOneResultAlong) {
                                    std::nullopt));
 }
 
-TEST(InACopy, WhatSpoilsTheCopyIsNotTheFaultOfTheNext) {
+TEST(InACopy, CrashAffectsOnlyItsOwnCopy) {
   static bool is_spoilt = false;
   const auto results = in_a_copy(3, max_seconds, [](std::size_t i) -> std::string {
     if (is_spoilt) std::abort();
@@ -83,7 +83,7 @@ TEST(InACopy, WhatIsThrownIsThrownHere) {
 
 volatile std::sig_atomic_t handled = 0;
 
-// What the program does where it is stopped, as to remove what is unfinished, a copy must not do.
+// A copy must not run the program's cleanup on termination, such as the removal of unfinished files.
 TEST(InACopy, HasNoHandlersOfSignalsAndIgnoresWhatIsIgnored) {
   const Place place;
   const auto stop = std::signal(SIGTERM, [](int) { handled = 1; });

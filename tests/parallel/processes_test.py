@@ -171,7 +171,7 @@ class Processes(unittest.TestCase):
                     self.assertEqual(alone.returncode, 1)
                     together = on_processes(3, *words, cwd=self.path)
                     self.assertEqual(together.returncode, 1)
-                    # mpirun adds lines of its own.
+                    # mpirun adds other lines.
                     told = [line for line in together.stderr.splitlines() if line.startswith("pcor: ")]
                     self.assertEqual("\n".join(told) + "\n", alone.stderr)
                     self.assertFalse(list(self.path.glob("*fitted*")))

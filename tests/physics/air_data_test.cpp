@@ -89,7 +89,7 @@ TEST(AirData, MachNumberAndDynamicPressureAreInverses) {
 }
 
 TEST(AirData, SmallestPressuresKeepTheStatedAccuracy) {
-  // q/p = 1e-5: gamma M^2/2 = q/p (1 - ...), with M^2/4 = 3.6e-6 of compressibility taken off.
+  // q/p = 1e-5: gamma M^2/2 = q/p (1 - ...), with M^2/4 = 3.6e-6 of compressibility subtracted.
   const double x = 1e-5;
   const double m2 = 2 / 1.4 * x;  // leading order
   const double mach = std::sqrt(m2 / (1 + m2 / 4));
@@ -123,7 +123,7 @@ TEST(AirData, EnergyAndEntropyAreConserved) {
   }
 }
 
-TEST(AirData, HeatingIsWhatMachNumberTemperatureAndAirspeedShare) {
+TEST(AirData, HeatingRelatesMachTemperatureAndAirspeed) {
   // To a few units of the last place of each factor.
   for (const double e_over_p : {0.0, 0.01, 0.05}) {
     const MoistAir<double> air = moist_air(e_over_p);

@@ -14,7 +14,7 @@ using pcor::normal_gravity;
 namespace {
 
 /// The normal potential of WGS 84 in closed form (Heiskanen and Moritz, Physical Geodesy, eq. 2-62), m2/s2:
-/// exact at every height, and nothing in it is a series in the height.
+/// exact at every height, without a series in the height.
 long double normal_potential(double latitude, double height) {
   constexpr long double a = 6378137.0L, flattening = 1.0L / 298.257223563L;
   constexpr long double mass = 3.986004418e14L, rotation = 7.292115e-5L;
@@ -60,7 +60,7 @@ TEST(Geodesy, NormalGravityIsTheSameInTheSouth) {
 }
 
 TEST(Geodesy, GravityIsThatOfTheNormalPotential) {
-  // Differences over 2 m lose nothing in long double. The series ends before -4 (h/a)^3: 1e-7 at 20 km,
+  // Differences over 2 m keep all digits in long double. The series ends before -4 (h/a)^3: 1e-7 at 20 km,
   // 4e-7 at 30 km.
   for (const double latitude : {-90.0, -60.0, -30.0, 0.0, 20.0, 45.0, 75.0}) {
     for (const double height : {-1000.0, 0.0, 5000.0, 12000.0, 20000.0, 30000.0}) {
@@ -74,7 +74,7 @@ TEST(Geodesy, GravityIsThatOfTheNormalPotential) {
 }
 
 TEST(Geodesy, GeopotentialHeightIsThatOfTheNormalPotential) {
-  // The integral of what the series leaves out: (h/a)^3 h and up to twice the flattening times (h/a)^2 h, 2
+  // Integral of the terms that the series omits: (h/a)^3 h and up to twice the flattening times (h/a)^2 h, 2
   // mm at 20 km and 7 mm at 30 km.
   for (const double latitude : {-90.0, -60.0, -30.0, 0.0, 20.0, 45.0, 75.0}) {
     for (const double height : {-1000.0, 0.0, 1000.0, 5000.0, 12000.0, 20000.0, 30000.0}) {
@@ -101,7 +101,7 @@ TEST(Geodesy, GeopotentialHeightAgreesWithTheGuideOfTheWmo) {
   }
 }
 
-TEST(Geodesy, GeopotentialHeightIsThatOfTheStandardAtmosphere) {
+TEST(Geodesy, GeopotentialHeightMatchesStandardAtmosphere) {
   // US Standard Atmosphere 1976, table I: heights in whole metres, at the latitude of standard gravity, of an
   // earth whose gravity falls with the radius 6356.766 km (Lambert).
   constexpr double latitude = 45.5425;

@@ -32,7 +32,7 @@ double climbed(double top, double gas_constant) {
 }  // namespace
 
 TEST(HydrostaticStep, ClosesInTheStandardAtmosphere) {
-  // 0.1 m are asked for. The mean of both ends errs by (step/scale height)^2 of a step: 1e-5 m in 20 km.
+  // 0.1 m is required. The mean of both ends errs by (step/scale height)^2 of a step: 1e-5 m in 20 km.
   EXPECT_NEAR(climbed(20000.0, standard_gas_constant), 20000.0, 1e-3);
   EXPECT_NEAR(climbed(11000.0, standard_gas_constant), 11000.0, 1e-3);
 }

@@ -83,7 +83,7 @@ double exact_cosine(double elevation, double azimuth, double attack, double side
   return b[0] * s[0] + b[1] * s[1] + b[2] * s[2];
 }
 
-TEST(BeamCosine, IsTheProductOfTheUnitVectorsWhereOneAngleIsNotZero) {
+TEST(BeamCosine, MatchesUnitVectorsWithOneNonzeroAngle) {
   for (double angle = -8; angle <= 8; angle += 0.5) {
     EXPECT_NEAR(beam_cosine(angle, 0.0, 0.0, 0.0), exact_cosine(angle, 0, 0, 0), 1e-15) << angle;
     EXPECT_NEAR(beam_cosine(0.0, angle, 0.0, 0.0), exact_cosine(0, angle, 0, 0), 1e-15) << angle;
@@ -255,7 +255,7 @@ TEST(Approach4, IsRefusedWithItsReasonAndWhatToUseInstead) {
   EXPECT_EQ(refusal.find('\n'), std::string::npos);
 }
 
-TEST(TwinIdentity, CorrectedPressuresReturnTheLasersAirspeedWhateverTheTemperature) {
+TEST(TwinIdentity, CorrectedPressuresGiveLaserAirspeed) {
   // With delta-p of the same sample, the airspeed of the thermometer is the laser's own: a test of reverse
   // headings then tests the laser alone.
   over_the_envelopes([](const Flight& f, const RecoveryFactor&) {
@@ -272,7 +272,7 @@ TEST(LamsTemperature, WithDefectOfTheSameSampleIsTheThermometersOwn) {
   // The 1e-9 hPa of approach 1 are up to 4e-9 K.
   over_the_envelopes([](const Flight& f, const RecoveryFactor& recovery) {
     Flight warm = f;
-    warm.thermometer += 0.5;  // the error of the thermometer comes back with it
+    warm.thermometer += 0.5;  // the result includes the error of the thermometer
     const auto found = simultaneous(warm, recovery);
     const double p = f.static_pressure + found.static_defect, q = f.dynamic_pressure - found.static_defect;
     const MoistAir<double> air = moist_air(f.e / p);

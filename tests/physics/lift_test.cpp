@@ -6,7 +6,7 @@ using pcor::load_factor;
 
 namespace {
 
-// The numbers are exact but for rounding.
+// The numbers are exact except for rounding.
 constexpr double rounding = 1e-12;
 
 TEST(LoadFactor, IsOneInLevelFlightAndTwoInATurnOfSixtyDegrees) {

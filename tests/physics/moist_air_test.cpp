@@ -65,7 +65,7 @@ TEST(MoistAir, WithoutVapourIsDry) {
   EXPECT_EQ(air.poisson_exponent, 2.0 / 7.0);
 }
 
-TEST(MoistAir, OfVapourAloneIsThatOfAGasOfSixDegreesOfFreedom) {
+TEST(MoistAir, PureVapourHasSixDegreesOfFreedom) {
   const MoistAir<double> steam = moist_air(1.0);
   EXPECT_NEAR(steam.gas_constant / c::gas_constant_water_vapor, 1.0, 1e-15);
   EXPECT_NEAR(steam.specific_heat_volume / c::gas_constant_water_vapor, 3.0, 1e-14);

@@ -27,7 +27,7 @@ TEST(RecoveryFactor, AConstantLawKnowsNoMachNumber) {
   for (const double mach : {0.0, 0.3, 0.8, std::nan("")}) EXPECT_EQ(law(mach), 0.975);
 }
 
-TEST(RecoveryFactor, ALawOfTheMachNumberIsAPolynomialOfItsLogarithm) {
+TEST(RecoveryFactor, MachLawIsPolynomialOfLogarithm) {
   const RecoveryFactor law{{0.9, 0.1, 0.01, 0.001}};
   EXPECT_FALSE(law.is_constant());
   EXPECT_DOUBLE_EQ(law(1.0), 0.9);
@@ -47,7 +47,7 @@ TEST(RecoveryFactor, IsTheSameBySquareOfTheMachNumber) {
   EXPECT_TRUE(std::isnan(law.at_square(-0.3)));
 }
 
-TEST(RecoveryFactor, PublishedNamesAreUniqueAndEachSaysWhereItIsFrom) {
+TEST(RecoveryFactor, PublishedNamesAreUniqueWithSources) {
   for (const auto& law : published_recovery_factors) {
     const auto same = [&law](const auto& other) { return other.name == law.name; };
     EXPECT_EQ(std::count_if(published_recovery_factors.begin(), published_recovery_factors.end(), same), 1)

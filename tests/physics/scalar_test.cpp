@@ -12,7 +12,7 @@ using archetype::Physics;
 
 namespace {
 
-// What all functions of the physics say of one sample, in the scalar S.
+// Results of all functions of the physics for one sample, in the scalar S.
 template <class S>
 std::array<S, 24> everything(double p, double q, double v, double T, double e, double mach) {
   using namespace pcor;
@@ -57,7 +57,7 @@ TEST(Scalar, ArchetypeConvertsToNothing) {
   static_assert(!std::is_convertible_v<archetype::Truth, bool>);
 }
 
-TEST(Scalar, AllOfThePhysicsCompilesForAScalarThatIsNoDouble) {
+TEST(Scalar, PhysicsCompilesForNonDoubleScalar) {
   // Powers are exp(y log x) there instead of pow: 1e-15 relative, which chi turns into 1e-12 hPa of 1000.
   for (const auto& [p, q, v, T, e, mach] :
        {std::array{700.0, 68.0, 120.0, 275.0, 4.0, 0.36}, {250.0, 121.0, 230.0, 245.0, 0.05, 0.77}}) {
@@ -117,7 +117,7 @@ TEST(Scalar, FunctionsAgreeWithTheStandardLibrary) {
 }
 
 TEST(Scalar, APowerLessOneIsExactInFlightAndBeyond) {
-  // In flight, where polynomials are taken, to 1e-15; elsewhere the one that is taken away costs digits:
+  // In flight, in the range of the polynomials, to 1e-15; elsewhere the subtraction of one costs digits:
   // 4e-16 of the power itself.
   const auto expected = [](double ratio, double exponent) {
     return std::expm1(static_cast<long double>(exponent) * std::log1p(static_cast<long double>(ratio)));

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string_view>
 
-// How delta-p from LAMS answers to errors of its inputs: the table that says what each effect costs, and the
-// two formulas that it comes from.
+// Response of delta-p from LAMS to errors of its inputs: the table of the cost of each effect, and its two
+// source formulas.
 
 using atmosphere::standard_temperature;
 using pcor::beam_cosine;
@@ -21,7 +21,7 @@ namespace {
 const MoistAir<double> dry = pcor::dry_air<double>();
 constexpr double recovery = 0.97;
 
-// A state without defect, as it is measured, and the table's row for it.
+// A measured state without defect, and the table's row for it.
 struct Row {
   std::string_view name;
   double p, v;
@@ -46,7 +46,7 @@ struct Row {
   }
 };
 
-// ISO 2533 temperatures. Printed digits; those of `q` to three.
+// ISO 2533 temperatures. Printed digits; three digits of `q`.
 const Row table[] = {
     {"C-130 low", 900, 110, .327, 69.1, -1.20, -1.22, .234, -.014, .929, -.071, -.64, -.132, .18, -.215},
     {"C-130 mid", 700, 120, .365, 67.6, -1.06, -1.09, .237, -.017, .912, -.088, -.62, -.127, .17, -.104},

@@ -1,7 +1,7 @@
-// The stated uncertainties of corrected samples against flights whose truth is known: of many flights, each
-// with errors of its own in the law, the transducers, the thermometer and every sample, 68 % of the results
-// are within one standard uncertainty of the truth and 95 % within two. The truth is the simulator's, which
-// shares no physics with the corrections.
+// Check of the stated uncertainties of corrected samples on flights whose truth is known: over many flights,
+// each with separate errors in the law, the transducers, the thermometer and every sample, 68 % of the
+// results are within one standard uncertainty of the truth and 95 % within two. The truth is the
+// simulator's, which shares no physics with the corrections.
 #include <pcor/process/process.hpp>
 
 #include <gmock/gmock.h>
@@ -45,7 +45,7 @@ high = 135
 rate = 0.5
 )";
 
-// What a fit of equation 18 leaves unknown: L of the covariance L L', in the order a0, a1, a2.
+// Covariance of a fit of equation 18: L of the covariance L L', in the order a0, a1, a2.
 constexpr std::array<std::array<double, 3>, 3> factor{
     {{4e-4, 0.0, 0.0}, {1e-3, 1.2e-3, 0.0}, {-3e-3, 1e-3, 2e-3}}};
 constexpr std::array<double, 3> coefficients{0.004127875, 0.021279816, 0.030849643};
@@ -99,7 +99,7 @@ id = "temp-offset"
   return parse_model(write_model(file), "model.toml");
 }
 
-// A flight of the seed: its law and offsets are drawn from what the model states of them.
+// A flight of the seed: its law and offsets are drawn from the uncertainties that the model states.
 Scenario scenario_of(std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
@@ -151,7 +151,7 @@ std::vector<std::size_t> samples_of(const SimulationSummary& summary) {
   return samples;
 }
 
-TEST(Coverage, IsTwoThirdsWithinOneAndNineteenOfTwentyWithinTwo) {
+TEST(Coverage, SharesWithinOneAndTwoSigmaAreNormal) {
   const test::TemporaryDirectory directory;
   const ModelDefinition file = model();
   std::array<Shares, compared.size()> shares{};
@@ -180,7 +180,7 @@ TEST(Coverage, IsTwoThirdsWithinOneAndNineteenOfTwentyWithinTwo) {
   const auto share = [](std::size_t part, std::size_t of) {
     return static_cast<double>(part) / static_cast<double>(of);
   };
-  // Four standard errors of a share where only flights are independent, which 200 of them beat: with four
+  // Four standard errors of a share if only flights are independent, which 200 of them satisfy: with four
   // results and six samples each the errors of the shares are less than half of that.
   const auto tolerance = [flights](double probability, double wanted) {
     if (flights >= 200) return wanted;

@@ -1,4 +1,4 @@
-// The main job on the real flight of 2004, against what NCAR nimbus computed of the same samples.
+// The main job on the real flight of 2004, compared with the results of NCAR nimbus for the same samples.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

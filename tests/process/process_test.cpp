@@ -58,7 +58,7 @@ parameters = { a2 = 0.030849643 }
                      "test.toml");
 }
 
-// What the instruments read in air that moves at `airspeed` with the static defect `defect`.
+// Instrument readings in air that moves at `airspeed` with the static defect `defect`.
 struct Reading {
   double static_pressure, dynamic_pressure, attack_pressure, recovery_temperature, beam_speed;
 };
@@ -77,7 +77,8 @@ Reading reading(double airspeed, double defect) {
           recovery_temperature(temperature, mach, 0.95, air), airspeed * beam_cosine(1.5, 0.0, attack, 0.0)};
 }
 
-// Writes a flight of so many samples in which the true static pressure is 700 hPa and delta-p is 2 hPa.
+// Writes a flight with the given number of samples in which the true static pressure is 700 hPa and delta-p
+// is 2 hPa.
 void write_flight(const std::filesystem::path& path, std::size_t records, int rate, double start = 50000.0) {
   const std::size_t samples = records * static_cast<std::size_t>(rate);
   std::vector<double> p, q, attack, temperature, beam;
@@ -109,7 +110,7 @@ void write_flight(const std::filesystem::path& path, std::size_t records, int ra
 
 class Process : public testing::Test {
  protected:
-  /// For flights that are steadier than any: what never varies is no sensor that is frozen.
+  /// Setting for flights that are steadier than any real one: a constant sensor does not count as frozen.
   static ProcessOptions steady() {
     ProcessOptions options;
     options.keep_frozen = true;
@@ -320,10 +321,10 @@ parameters = { a0 = 0.5, a1 = 0.01, a2 = 0.0005 }
   ProcessOptions options;
   options.suffix = "_NEW";
   EXPECT_THAT(process_flight(input_, calibrated, output_, options).outputs, Contains("ATX_NEW"));
-  // 0.5 - 0.2 + 0.2, 0.5 and 0.5 + 0.1 + 0.05; 32-bit floats of some 10 degC.
+  // 0.5 - 0.2 + 0.2, 0.5 and 0.5 + 0.1 + 0.05; 32-bit floats of about 10 degC.
   EXPECT_THAT(read("ATX_NEW", "degC"),
               testing::Pointwise(testing::DoubleNear(2e-6), std::vector<double>{-19.5, 0.5, 10.65}));
-  // At the same Mach number the airspeed goes as the root of the temperature.
+  // At the same Mach number the airspeed varies with the root of the temperature.
   EXPECT_NEAR(read("TASX_NEW", "m/s")[0] / airspeed, std::sqrt(253.65 / 253.15), 2e-7);
 }
 
@@ -407,7 +408,7 @@ TEST_F(FilteredTemperature, LosesPeriodsUnderThreeSeconds) {
 TEST_F(FilteredTemperature, TakesNothingAcrossGaps) {
   for (const int rate : {1, 25}) {
     std::vector<double> time = test::sequence(50000.0, 40);
-    // A short gap, which the filter has not left when the flight goes on; and a stretch shorter than it.
+    // A short gap, shorter than the tail of the filter; and a stretch shorter than the filter.
     for (const double start : {50042.0, 50200.0, 60000.0}) {
       const std::size_t length = start == 50200.0 ? 3 : 40;
       for (const double each : test::sequence(start, length)) time.push_back(each);
@@ -434,7 +435,7 @@ TEST_F(FilteredTemperature, TakesNothingAcrossGaps) {
         } else {
           ASSERT_NEAR(together[place], expected, 1e-4) << place;  // 32-bit floats of degC
         }
-        // The bit stands at the sample that has no value.
+        // The bit is set at the sample that has no value.
         ASSERT_EQ(flags[place] == static_cast<double>(Quality::filter_window_incomplete),
                   std::isnan(expected));
       }
@@ -466,7 +467,7 @@ TEST_F(FilteredTemperature, IsMissingWithItsSample) {
   EXPECT_EQ(summary.flagged[place], flagged);
 }
 
-// Of a flight of noise one sensor is frozen for two minutes.
+// One sensor of a noisy flight is frozen for two minutes.
 TEST_F(Process, LeavesOutAFrozenSensorAndSaysSo) {
   constexpr std::size_t first = 2000, count = 120, records = 4000;
   const auto bit = static_cast<std::uint32_t>(Quality::sensor_frozen);
@@ -510,7 +511,7 @@ TEST_F(Process, LeavesOutAFrozenSensorAndSaysSo) {
   }
 }
 
-// A lag is undone at even samples; at others a bit says that it may not be.
+// A lag is undone at even samples; at others a bit marks a doubtful value.
 TEST_F(Process, SaysWhereSamplesAreUneven) {
   std::vector<double> time = test::sequence(50000.0, 100), p, q;
   for (double& each : time) each = 50000.0 + 4.0 * (each - 50000.0);
@@ -617,7 +618,7 @@ TEST_F(Process, WritesUncertaintiesBesideTheirResults) {
     return note.find("temp-offset.offset to be 0 +- 0.3") != std::string::npos;
   };
   EXPECT_EQ(std::count_if(summary.notes.begin(), summary.notes.end(), is_of_thermometer), 1);
-  // The thermometer's 0.3 K and 0.005 of the recovery heating, some 8 K: nothing else matters as much.
+  // The thermometer's 0.3 K and 0.005 of the recovery heating, about 8 K: all other terms are smaller.
   EXPECT_NEAR(read("ATX_uncertainty_NEW", "K")[5], 0.3, 0.01);
 }
 
@@ -814,7 +815,7 @@ TEST_F(NoisyLag, IsUndoneWhereThereIsMoreSignalThanNoise) {
   EXPECT_LT(scatter(corrected, 100, 1000), 2.0 * noise);
 }
 
-TEST_F(NoisyLag, IsLeftWhereItWouldAddMoreNoiseThanItTakesErrorAway) {
+TEST_F(NoisyLag, LagIsSkippedIfNoiseExceedsErrorReduction) {
   constexpr double noise = 0.1;
   const ProcessSummary summary = run(0.0, noise);
   EXPECT_THAT(summary.notes,

@@ -10,7 +10,8 @@ import numpy
 FLIGHT = "GOTEX-rf06-C130-2004.nc"
 LAW = (0.0033746, 0.0179237, 0.0415025)  # a0, a1, a2 of the own system: what least squares finds on this flight
 OTHER_LAW = (0.002047, 0.008890, 0.07119)  # of the second system, equation 18 of the memo
-# What nimbus computed from the recorded pressures: it would tell of pressures that the case has changed.
+# Variables that nimbus computed from the recorded pressures: they would reveal pressures that the case has
+# changed.
 COMPUTED = {"PSFC", "PSFDC", "PSX", "PSXC", "PSFD1", "PSFD2", "PSURF", "QCFC", "QCFRC", "QCRC", "QCX", "QCXC", "XMACH2", "PCONE"}
 ROLES = {"recovery_temperature": "TTX", "vapor_pressure": "EDPC", "radome_dynamic_pressure": "QCR",
          "attack_differential_pressure": "ADIFR", "sideslip_differential_pressure": "BDIFR", "attack": "ATTACK",

@@ -58,7 +58,7 @@ using pcor::Loop;
 using pcor::Model;
 using pcor::Quantity;
 
-// All stages at work: LAMS, flow angles from the radome, a lag, a formula with a variable of its own, taper,
+// All stages active: LAMS, flow angles from the radome, a lag, a formula with an extra variable, taper,
 // humidity, a calibrated temperature, its filter, and the correction by LAMS.
 Model everything(pcor::LamsApproach approach) {
   Model model;

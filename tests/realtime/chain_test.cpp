@@ -193,7 +193,7 @@ TEST(Chain, DerivesTheMachNumberOfTheMeasuredPairInDryAir) {
   const Recorded recorded{{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67.6}};
   const double mach = std::sqrt(5 * (std::pow(1 + 67.6 / 700, 2.0 / 7.0) - 1));
   EXPECT_NEAR(fly(model, recorded)[Quantity::static_defect], 0.01 * mach * 700, 1e-12);
-  // An independent Mach number is taken as it is.
+  // An independent Mach number is used unchanged.
   EXPECT_NEAR(fly(model, with(recorded, Quantity::mach, 0.4))[Quantity::static_defect], 2.8, 1e-12);
 }
 
@@ -211,7 +211,7 @@ TEST(Chain, AddsEffectsWhateverTheirOrderInTheModel) {
               1e-12);
 }
 
-TEST(Chain, ScalesAnEffectAtEveryPlaceByTheMeasuredPressures) {
+TEST(Chain, EffectsScaleWithMeasuredPressures) {
   // A scaled effect is the formula with the pressures written out. To rounding of some products.
   const Recorded recorded = truth.recorded();
   const auto corrected = [&](const ModelEffect& effect) {
@@ -240,7 +240,7 @@ TEST(Chain, WithoutEffectsCorrectsNothing) {
   EXPECT_EQ(s[Quantity::corrected_static_pressure], 700.0);
 }
 
-TEST(Policy, TaperIsContinuousAtItsEndAndZeroWithoutAirflow) {
+TEST(Policy, TaperIsContinuousAndZeroWithoutAirflow) {
   Model model = truth.model();
   model.policy.taper_below = 40;
   const auto defect = [&model](double q) {
@@ -364,8 +364,8 @@ TEST(Air, TakesAnAmbientTemperatureAsItIs) {
   EXPECT_NEAR(s[Quantity::lams_static_defect], truth.defect(), 1e-9);
 }
 
-TEST(Air, KeepsARecordedAmbientTemperatureBesideAThermometer) {
-  // A radiometer's, 1 K warmer than the thermometer says: approach 3 stands on it, whenever it is asked.
+TEST(Air, RecordedAmbientIsKeptWithThermometer) {
+  // Temperature of a radiometer, 1 K above the thermometer: approach 3 always depends on it.
   Recorded recorded = with(truth.recorded(), Quantity::ambient_temperature, truth.T + 1);
   Model model = truth.model();
   model.lams.approach = LamsApproach::with_temperature;
@@ -380,8 +380,8 @@ TEST(Air, KeepsARecordedAmbientTemperatureBesideAThermometer) {
 
 namespace {
 
-// Air of which the thermometer, brought to ambient, says `uncalibrated`: with t in degC the truth is that
-// plus 0.55 K + 0.01 t - 0.0002 t^2.
+// Air in which the thermometer, reduced to ambient, gives `uncalibrated`: with t in degC the truth is
+// `uncalibrated` plus 0.55 K + 0.01 t - 0.0002 t^2.
 struct Miscalibrated : Truth {
   double uncalibrated = 265;
 
@@ -391,7 +391,7 @@ struct Miscalibrated : Truth {
   }
   Model model() const { return with(Truth::model(), catalogued("temp-calibration", {0.55, 0.01, -0.0002})); }
   Recorded recorded() const {
-    // The thermometer feels the dynamic heating of the true Mach number.
+    // The thermometer includes the dynamic heating of the true Mach number.
     const double heating = 0.5 * (air().heat_capacity_ratio - 1) * mach() * mach();
     return with(Truth::recorded(), Quantity::recovery_temperature, uncalibrated * (1 + recovery * heating));
   }
@@ -416,7 +416,7 @@ TEST(Calibration, FindsTheAirBehindAThermometerThatErrs) {
     EXPECT_NEAR(s[Quantity::ambient_temperature], air.T, 1e-10);
     EXPECT_NEAR(s[Quantity::corrected_airspeed], air.v, 1e-10);
     EXPECT_NEAR(s[Quantity::lams_temperature], air.T, 1e-9);
-    // Approach 2 stops within 1e-7 hPa, and stands some digits nearer.
+    // Approach 2 stops within 1e-7 hPa, and is a few digits more accurate.
     const double tolerance = approach == LamsApproach::iterated ? 1e-8 : 1e-9;
     EXPECT_NEAR(s[Quantity::lams_static_defect], air.defect(), tolerance);
   }
@@ -540,7 +540,7 @@ TEST(Lams, ApproachesAgree) {
   EXPECT_NEAR(fly(model, truth.recorded())[Quantity::lams_static_defect], one, 1e-6);
 }
 
-TEST(Lams, WithItsOwnCorrectionReturnsItsAirspeedAndTheThermometersTemperature) {
+TEST(Lams, CorrectionReturnsAirspeedAndTemperature) {
   Recorded warm = truth.recorded();
   warm[Quantity::recovery_temperature] += 0.5;
   const Chain chain = build(truth.model(), warm);
@@ -552,7 +552,7 @@ TEST(Lams, WithItsOwnCorrectionReturnsItsAirspeedAndTheThermometersTemperature) 
   EXPECT_NEAR(s[Quantity::lams_temperature], s[Quantity::ambient_temperature], 5e-9);
 }
 
-// Effects before the static ports: each does what a change of what it acts on does.
+// Effects before the static ports: each equals a change of its physical input.
 
 TEST(Upstream, LamsElevationTiltsTheBeam) {
   const Model tilted = with(truth.model(), catalogued("lams-elevation", {0.5}));
@@ -591,7 +591,8 @@ TEST(Upstream, StaticLagMovesBothPressuresAtThePorts) {
                                     {Quantity::corrected_static_pressure, -1.0},
                                     {Quantity::corrected_dynamic_pressure, 1.0}})
     EXPECT_NEAR(s[after] - still[after], sign * 0.18, 1e-12) << info_of(after).name;
-  // Delta-p of the model stands in recorded pressures; that of LAMS in those of the ports, so it loses all.
+  // Delta-p of the model is a function of recorded pressures, delta-p of LAMS of the pressures at the ports,
+  // so LAMS loses all.
   EXPECT_EQ(s[Quantity::static_defect], still[Quantity::static_defect]);
   EXPECT_NEAR(s[Quantity::lams_static_defect] - still[Quantity::lams_static_defect], 0.18, 1e-9);
   EXPECT_TRUE(build(lagging, truth.recorded()).derives(Quantity::static_pressure_rate));
@@ -613,7 +614,7 @@ Model radome_model() {
   return model;
 }
 
-TEST(Upstream, TheRadomeRatioMovesItsEffectsAndTheAngleOfAttack) {
+TEST(Upstream, RadomeRatioMovesEffectsAndAttackAngle) {
   // Sensitivity 5 % high, zero 0.01 high, and 0.005 higher each hour: at two hours 0.95 (-0.3) - 0.02.
   const Model drifting = with(radome_model(), catalogued("adif-drift", {0.05, 0.01, 0.005}));
   const Recorded recorded = with(radome_record(), Quantity::time, 7200);
@@ -653,8 +654,8 @@ TEST(Upstream, ARecordedAngleIsNotOfTheRadomeRatio) {
   EXPECT_NEAR(fly(drifting, recorded)[Quantity::attack_ratio], -0.2, 1e-12);
 }
 
-TEST(Upstream, VapourThatIsNeglectedAndCountedAgainGivesMoistAir) {
-  // To the rounding of the chain, whatever the humidity is recorded as; with supersaturated air at its limit.
+TEST(Upstream, NeglectedVapourAddedBackGivesMoistAir) {
+  // Within the rounding of the chain, for any recorded humidity; with supersaturated air at its limit.
   const Recorded dry = without(truth.recorded(), Quantity::vapor_pressure);
   for (const auto& [humidity, value] : {std::pair{Quantity::vapor_pressure, 3.0},
                                         {Quantity::vapor_pressure, 30.0},
@@ -799,7 +800,7 @@ TEST(Formula, ReadsVariablesOfTheFileAndRoles) {
   EXPECT_TRUE(s.has(Quality::effect_input_missing));
 }
 
-// Quality bits: each is set by what it says, and only then.
+// Quality bits: each is set under its documented condition, and only then.
 
 namespace {
 
@@ -923,8 +924,9 @@ TEST(QualityBits, ADefectBelowTheNegativeDynamicPressureIsNone) {
     EXPECT_TRUE(std::isnan(s[gone])) << pcor::info_of(gone).name;
 }
 
-TEST(QualityBits, ALaserThatAsksForADefectBeyondTheDynamicPressureIsNotBelieved) {
-  // Half the airspeed asks for three quarters of the dynamic pressure; 1.6 times it for more than all of it.
+TEST(QualityBits, LaserDefectAboveDynamicPressureIsRejected) {
+  // Half the airspeed requires three quarters of the dynamic pressure; 1.6 times the airspeed requires more
+  // than all of it.
   const double beam = truth.recorded()[Quantity::lams_airspeed];
   EXPECT_FALSE(std::isnan(fly(truth.model(), with(truth.recorded(), Quantity::lams_airspeed,
                                                   0.5 * beam))[Quantity::lams_static_defect]));
@@ -980,7 +982,7 @@ TEST(Ramp, AirspeedBeginsAtTheLeastDynamicPressure) {
   EXPECT_FALSE(std::isnan(at(0.1)[Quantity::corrected_airspeed]));
 }
 
-// What Chain::build refuses, and what it says.
+// Models that Chain::build refuses, and its messages.
 
 TEST(Build, WantsBothPressures) {
   EXPECT_EQ(error_of({}, {{Quantity::dynamic_pressure, 0}}),
@@ -1088,7 +1090,7 @@ TEST(Build, TellsProgramsWhatIsMissing) {
 TEST(Build, ToleratesThatNobodyAsksWhy) { EXPECT_FALSE(Chain::build({}, {}, nullptr).has_value()); }
 
 TEST(Chain, IsSharedByThreads) {
-  // It holds nothing of a sample, so that loops of several rates and threads of a batch use one.
+  // It stores no state of a sample, so that loops of several rates and threads of a batch share one.
   const Chain chain = build(full_model(), full_record());
   const Sample alone = fly(chain, full_record());
   std::vector<double> found(4);
@@ -1137,7 +1139,7 @@ TEST(Chain, CompilesForAScalarThatIsNoDouble) {
   }
 }
 
-// What is added at a place, and what an effect gives by itself.
+// Sum at a place, and the contribution of a single effect.
 
 TEST(Additions, DoWhatAnEffectThereDoes) {
   // At every place: the chain with a formula of constant value is the chain with that amount added.
@@ -1167,7 +1169,7 @@ TEST(Additions, DoWhatAnEffectThereDoes) {
   }
 }
 
-TEST(Additions, AskForNothingAndChangeNothingWhereAPlaceIsOfNoUse) {
+TEST(Additions, UnusedPlacesNeedAndChangeNoData) {
   // A model whose angle of attack is recorded reads no radome; one without a laser has no beam.
   const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);
   Model model = with({}, catalogued("static-attack", {0.001}));

@@ -1,4 +1,5 @@
-// What the sample loop promises of every result, whatever comes in: a value, or NaN with a bit that says why.
+// Contract of the sample loop for every result and any input: a value, or NaN with a bit that gives the
+// reason.
 #include <pcor/realtime/loop.hpp>
 
 #include <gmock/gmock.h>
@@ -45,7 +46,7 @@ struct RoleCase {
   }
 };
 
-/// A middle of what is possible, where a flight has no special value.
+/// Central values of the possible ranges, without special values of a flight.
 double good_value(Quantity role) {
   const Sample special{{Quantity::ambient_temperature, 274.0},
                        {Quantity::dew_point, 270.0},
@@ -90,12 +91,12 @@ Model model_of(Quantity role) {
 
 Sample sample_of(const RoleCase& given) {
   Sample sample = level;
-  // One humidity and one temperature: another would take no part.
+  // One humidity and one temperature: a second one would not be used.
   if (given.role == Quantity::dew_point || given.role == Quantity::frost_point)
     sample.erase(Quantity::vapor_pressure);
   if (given.role == Quantity::ambient_temperature) {
     sample.erase(Quantity::recovery_temperature);
-    sample.erase(Quantity::lams_airspeed);  // which needs it
+    sample.erase(Quantity::lams_airspeed);  // required by the stage
   }
   sample[given.role] = given.good;
   return sample;
@@ -151,8 +152,8 @@ class Contract : public testing::TestWithParam<RoleCase> {
 INSTANTIATE_TEST_SUITE_P(Roles, Contract, testing::ValuesIn(all_roles()),
                          [](const auto& each) { return std::string(pcor::info_of(each.param.role).name); });
 
-// The result is that of a good sample where it does not depend on the role; else it is missing, or another,
-// and a bit says so: dry air is taken where the humidity is missing, the model where the laser is.
+// The result equals the result of a good sample if it does not depend on the role; otherwise it is missing,
+// or another, and a bit is set: dry air is assumed if the humidity is missing, the model if the laser is.
 TEST_P(Contract, WithoutAValueAResultIsUnhurtOrABitSaysSo) {
   for (const double none : {missing, infinity, -infinity}) {
     judge_each(none, [](double value, double expected, std::uint32_t bits) {
@@ -163,8 +164,8 @@ TEST_P(Contract, WithoutAValueAResultIsUnhurtOrABitSaysSo) {
   }
 }
 
-// Numbers that are none of a flight, at the limits of the role and beyond: no infinity comes out, and NaN
-// only with a bit.
+// Numbers that no flight has, at the limits of the role and beyond: no result is infinite, and NaN only with
+// a bit.
 TEST_P(Contract, AnyNumberGivesAValueOrABit) {
   const pcor::QuantityInfo& info = pcor::info_of(GetParam().role);
   for (const double number :

@@ -107,7 +107,7 @@ Model c130() {
   return model;
 }
 
-// Level flight at 700 hPa. The laser's airspeed goes with a delta-p near that of the model.
+// Level flight at 700 hPa. The laser's airspeed implies a delta-p near that of the model.
 const Sample level{{Quantity::static_pressure, 700.0},
                    {Quantity::dynamic_pressure, 67.6},
                    {Quantity::radome_dynamic_pressure, 67.1},
@@ -372,7 +372,7 @@ TEST(Loop, DriesAThermometerAfterACloud) {
   }
 }
 
-// A lag of 0.3 s in both lines, undone at each rate: what is left of it at periods of 2 s and more.
+// A lag of 0.3 s in both lines, undone at each rate: its remainder at periods of 2 s and more.
 TEST(Loop, UndoesLagsAtEveryRate) {
   constexpr double tau = 0.3;
   Model lagging;
@@ -380,7 +380,7 @@ TEST(Loop, UndoesLagsAtEveryRate) {
   for (const double rate : {5.0, 25.0, 50.0}) {
     for (const double period : {2.0, 4.0, 20.0}) {
       const double turn = 2.0 * 3.14159265358979 / period;
-      // What a first-order lag makes of the wave: less, and later.
+      // Output of a first-order lag for the wave: smaller, and later.
       const double size = 1.0 / std::sqrt(1.0 + turn * turn * tau * tau);
       const double phase = std::atan(turn * tau);
       const auto true_static = [&](double t) { return 700.0 + std::sin(turn * t); };
@@ -473,7 +473,8 @@ std::vector<double> steps(const std::vector<std::pair<int, double>>& parts) {
   return times;
 }
 
-/// Every result is right, or missing or doubtful with a bit that says so. How many are right.
+/// Every result is correct, or missing or doubtful with the appropriate bit. Returns the number of correct
+/// results.
 std::size_t expect_right_or_told(const Lagged& lagged) {
   constexpr double right = 10.0;  // tau times the rate of change
   std::size_t count = 0;
@@ -492,7 +493,7 @@ std::size_t expect_right_or_told(const Lagged& lagged) {
   return count;
 }
 
-TEST(LoopInterval, ThatChangesOrIsAnotherGivesTheRightResultOrABit) {
+TEST(LoopInterval, ChangedIntervalGivesCorrectResultOrBit) {
   EXPECT_GT(expect_right_or_told(run_lagged(1.0, steps({{100, 1.0}, {90, 0.25}, {100, 1.0}}))), 150U);
   EXPECT_GT(expect_right_or_told(run_lagged(1.0, steps({{100, 1.0}, {90, 1.4}}))), 80U);
   expect_right_or_told(run_lagged(25.0, steps({{2000, 0.01}})));
@@ -523,8 +524,8 @@ TEST(LoopInterval, SaysThatLaterSamplesAreAwaited) {
   }
 }
 
-/// A flight of noise at 25 Hz, in steps of `resolution`, in which one role is frozen for some time: at which
-/// samples the bit stands.
+/// Noisy flight at 25 Hz, in steps of `resolution`, in which one role is frozen for some time: returns the
+/// samples with the bit.
 std::vector<bool> told_frozen(Quantity role, double noise, double resolution, std::size_t from,
                               std::size_t to) {
   const Sample flown{{Quantity::static_pressure, 700.0},
@@ -600,8 +601,8 @@ TEST(LoopGap, MayBeAskedFor) {
   EXPECT_THAT(loop.state()[Quantity::corrected_static_pressure], IsNan());
 }
 
-// One sample between two gaps has no neighbour, and so no rate of change. What is still in the loop comes out
-// by runs without values.
+// One sample between two gaps has no neighbour, and so no rate of change. Runs without values flush the
+// samples in the loop.
 TEST(LoopGap, SaysWhereASampleIsAlone) {
   Model model;
   model.effects = {{"static-lag", {0.15}}};
@@ -654,7 +655,7 @@ TEST(LoopVariables, OfFormulasAreSetByName) {
   EXPECT_TRUE(loop.quality().has(Quality::effect_input_missing));
 }
 
-// What a functor of the user's own computes is there before the stage that reads it, whatever the stage.
+// Results of a user's functor are available before the stage that reads them, for any stage.
 TEST(LoopFunctors, MayStandBetweenTheStagesOfTheModel) {
   Model model = c130();
   model.effects.push_back(formula(EffectLocation::static_defect, "THRUST"));
@@ -755,7 +756,7 @@ TEST(LoopLams, IsRefusedWithoutItsAirspeed) {
 }
 
 // Approach 3 takes the radiometer's temperature, not the thermometer's that the loop might derive.
-TEST(LoopLams, UsesARecordedAmbientTemperatureBesideARecoveryTemperature) {
+TEST(LoopLams, RecordedAmbientIsUsedWithRecovery) {
   Model model = c130();
   model.lams.approach = pcor::LamsApproach::with_temperature;
   Sample radiometer = with(level, {{Quantity::ambient_temperature, 274.0}});
@@ -768,7 +769,7 @@ TEST(LoopLams, UsesARecordedAmbientTemperatureBesideARecoveryTemperature) {
   expect_same(both, alone);
 }
 
-// At an absurd airspeed all of the total pressure would be dynamic, and none static.
+// At an absurd airspeed all of the total pressure would be dynamic, and the static pressure zero.
 TEST(LoopLams, LeavesSomeStaticPressure) {
   Model model = c130();
   model.lams.approach = pcor::LamsApproach::with_temperature;
@@ -940,8 +941,8 @@ TEST(Loop, KeepsTheTotalPressure) {
   }
 }
 
-// Air at random over the envelope of an aircraft, and what a pressure system that errs by a delta-p makes of
-// it. The thermometer errs too: what it says is the truth for LAMS.
+// Random air over the envelope of an aircraft, and the readings of a pressure system with an error delta-p.
+// The thermometer errs too: LAMS uses its reading as the truth.
 Sample random_flight(bool jet, const pcor::RecoveryFactor& recovery, std::mt19937& random) {
   const auto between = [&random](double lower, double upper) {
     return std::uniform_real_distribution<double>(lower, upper)(random);
@@ -966,10 +967,10 @@ Sample random_flight(bool jet, const pcor::RecoveryFactor& recovery, std::mt1993
       {Quantity::lams_airspeed, speed}};
 }
 
-// With the pressures corrected by LAMS sample by sample, the airspeed is that of the laser and the
-// temperature that of the thermometer, whatever they are, and whatever calibrates the temperature: memo eq.
+// With the pressures corrected by LAMS sample by sample, the airspeed equals the airspeed of the laser and
+// the temperature that of the thermometer, for any values and any calibration of the temperature: memo eq.
 // 11 and 12.
-TEST(LoopIdentity, LamsReturnsItsAirspeedAndTheThermometersTemperature) {
+TEST(LoopIdentity, LamsReturnsAirspeedAndTemperature) {
   std::mt19937 random(20120106);
   for (const bool jet : {false, true}) {
     for (const bool calibrated : {false, true}) {
@@ -985,7 +986,7 @@ TEST(LoopIdentity, LamsReturnsItsAirspeedAndTheThermometersTemperature) {
         const Sample sample = random_flight(jet, model.recovery, random);
         run(loop, sample, i / 25.0);
         const State<double>& s = loop.state();
-        // A thermometer below the truth may say that the air is saturated.
+        // A thermometer below the truth may imply saturated air.
         ASSERT_EQ(own_bits(loop) & ~bits({Quality::humidity_limited}), bits({Quality::corrected_with_lams}));
         const double laser =
             sample.at(Quantity::lams_airspeed) /
@@ -1004,7 +1005,7 @@ TEST(Loop, CalibratesARecordedTemperatureOnce) {
   Model model = c130();
   model.lams.approach = pcor::LamsApproach::with_temperature;
   model.effects.push_back({"temp-calibration", {0.55, 0.01, 0.0}});
-  model.effects.push_back({"clock-skew", {0.5}});  // which takes the rate of the temperature as recorded
+  model.effects.push_back({"clock-skew", {0.5}});  // which uses the rate of the temperature as recorded
   Sample sample = level;
   sample.erase(Quantity::recovery_temperature);
   for (const CorrectWith correct_with : {CorrectWith::model, CorrectWith::lams}) {
@@ -1029,18 +1030,19 @@ TEST(Loop, FiltersTheTemperatureOfLams) {
       run(loop, with(level, {{Quantity::lams_airspeed, 117.0 + 0.02 * i / rate}}), i / rate);
       unfiltered.push_back(loop.state()[Quantity::lams_temperature]);
       if (i < 2 * delay) continue;
-      // The temperature goes as the square of the airspeed: a curve of 2e-5 K/s2, which a filter without
-      // second moment to speak of leaves within 1e-3 K.
+      // The temperature varies with the square of the airspeed: a curve of 2e-5 K/s2, which a filter with a
+      // negligible second moment keeps within 1e-3 K.
       EXPECT_NEAR(loop.state()[Quantity::filtered_lams_temperature],
                   unfiltered[static_cast<std::size_t>(i - delay)], 1e-3);
     }
-    // After a gap it begins anew.
+    // After a gap it restarts.
     run(loop, level, 1e5);
     EXPECT_THAT(loop.state()[Quantity::filtered_lams_temperature], IsNan());
   }
 }
 
-// An infinite value is no value: in every role, all that a NaN would lose is lost, with the same bits.
+// An infinite value is not a value: in every role, it invalidates the same results as a NaN, with the same
+// bits.
 TEST(LoopGarbage, InfinityCountsAsMissing) {
   for (const CorrectWith correct_with : {CorrectWith::model, CorrectWith::lams}) {
     Model model = c130();
@@ -1096,7 +1098,7 @@ std::string text(const Sample& sample) {
   return text.str();
 }
 
-// Nothing of a bad sample stays: after any number of them a good sample is what a new loop makes of it.
+// No effect of a bad sample remains: after any number of them a good sample gives the result of a new loop.
 TEST(LoopGarbage, LeavesNothingForTheNextSample) {
   std::mt19937 random(20111102);
   std::vector<Model> models(4, c130());
@@ -1133,7 +1135,7 @@ TEST(LoopGarbage, LeavesNothingForTheNextSample) {
   }
 }
 
-// With rates of change nothing is lost beside the bad sample.
+// With rates of change only the bad sample is lost.
 TEST(LoopGarbage, CostsALagNoFurtherSample) {
   Model model = c130();
   model.effects.push_back({"static-lag", {0.15}});

@@ -1,4 +1,4 @@
-// What a program does that turns to fast mathematics by a pragma, of which the preprocessor learns nothing.
+// Behaviour in a program that enables fast mathematics by a pragma, which the preprocessor cannot detect.
 #include <gtest/gtest.h>
 
 #if defined(__GNUC__) && !defined(__clang__)

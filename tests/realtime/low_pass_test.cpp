@@ -20,7 +20,7 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = 3.14159265358979323846;
 constexpr double rates[] = {1.0, 25.0};
-const Quantity filtered_quantity = pcor::extra_quantity(0);  // of which all is believed
+const Quantity filtered_quantity = pcor::extra_quantity(0);  // a quantity whose values are all valid
 
 struct Result {
   double value;
@@ -47,7 +47,7 @@ class Filter {
   LowPass filter_;
 };
 
-// What the filter makes of a series, each value at the sample that it is of; the ends have part of a window.
+// Filter output of a series, each value at its sample; the ends have part of a window.
 std::vector<Result> filtered(double rate, const std::vector<double>& series) {
   Filter filter(rate);
   std::vector<Result> results;
@@ -145,7 +145,7 @@ TEST(LowPass, PassesAConstantToTheLastBit) {
   }
 }
 
-// Whatever is missing, a line passes or there is no value: nothing in between.
+// For any missing samples, a line passes or there is no value.
 TEST(LowPass, PassesALineWhateverIsMissing) {
   std::mt19937 random(20120106);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -172,7 +172,7 @@ TEST(LowPass, LeavesPeriodsOfSixSecondsAndMoreAndShiftsNone) {
     for (const double period : {6.0, 7.3, 8.0, 10.1, 12.0, 31.0, 60.0, 300.0}) {
       const Response left = response(rate, period);
       EXPECT_NEAR(left.in_phase, 1.0, 0.006) << rate << " Hz, " << period << " s";
-      // A symmetric filter shifts nothing; what is left is the rounding of 3000 products.
+      // A symmetric filter has no delay; the remainder is the rounding of 3000 products.
       EXPECT_NEAR(left.in_quadrature, 0.0, 1e-9) << rate << " Hz, " << period << " s";
     }
     EXPECT_NEAR(response(rate, 3.0).in_phase, 0.5, 0.005) << "half the amplitude";

@@ -14,8 +14,8 @@
 namespace pcor {
 namespace {
 
-// The values of nimbus have nine digits. Half of the last one is the tolerance where its functions are exact;
-// where a tolerance is wider the test says why.
+// The values of nimbus have nine digits. Half of the last one is the tolerance if its functions are exact;
+// the test gives the reason for any wider tolerance.
 
 const test::ReferenceTable& reference() {
   static const test::ReferenceTable table;

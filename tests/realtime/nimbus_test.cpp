@@ -38,7 +38,7 @@ struct DERTBL {
   std::size_t output = 0;
 };
 
-// Of each variable, one value at the low rate and those of a second at the high rate.
+// Values of each variable: one at the low rate and one second of values at the high rate.
 struct Values {
   float low;
   float high[high_rate];
@@ -310,7 +310,7 @@ std::vector<double> seconds(double from, double to) {
   return result;
 }
 
-TEST(NimbusSystem, ComputesWhatPlainLoopsDoForTwoSystemsAtBothRates) {
+TEST(NimbusSystem, TwoSystemsMatchPlainLoopsAtBothRates) {
   expect_plain_loops(seconds(36000.0, 36040.0), raw_value);
 }
 
@@ -332,7 +332,7 @@ TEST(NimbusSystem, StartsTheStateOfEachRateAnewAfterAGap) {
 TEST(NimbusSystem, GivesEachRateItsOwnRateOfChange) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());
-  // The pressure falls 1 hPa a second, and by steps: what the radome pair's lag of 0.15 s sees tells the
+  // The pressure falls 1 hPa a second, and by steps: the effect of the radome pair's lag of 0.15 s shows the
   // rate.
   const auto falling = [](const std::string& name, double time) {
     return name == "PSFRD" ? static_cast<float>(700.0 - time) : raw_value(name, 0.0);
@@ -340,7 +340,7 @@ TEST(NimbusSystem, GivesEachRateItsOwnRateOfChange) {
   const auto lag = [](float corrected, double measured, float defect) {
     return static_cast<double>(corrected) - measured - static_cast<double>(defect);
   };
-  // What is put is of six samples ago at the low rate, of three seconds ago at the high one.
+  // The output is six samples old at the low rate, and three seconds old at the high one.
   const auto dry = static_cast<float>(Quality::dry_air_assumed);
   for (double second = 0.0; second < 30.0; second += second == 14.0 ? 5.0 : 1.0) {
     SCOPED_TRACE(second);
@@ -388,7 +388,7 @@ TEST(NimbusSystem, GivesUncertaintiesAsDifferences) {
   Table table(raw_names, {{"PCOR", fuselage_inputs, System::compute},
                           {"ATX_U", {"PCOR"}, System::fetch<Quantity::ambient_temperature_uncertainty>}});
   table.compute(0.0, raw_value);
-  // A thermometer's error is the temperature's but for the dynamic heating of some percent.
+  // A thermometer error equals the temperature error except for the dynamic heating of a few per cent.
   EXPECT_NEAR(static_cast<double>(table.low("ATX_U")), 0.1, 0.005);
 }
 
@@ -444,7 +444,7 @@ TEST(NimbusSystem, GivesAResultToSeveralEntries) {
   }
 }
 
-TEST(NimbusSystem, AResultOfAnEarlierSampleIsGivenToNoneOfItsEntries) {
+TEST(NimbusSystem, EarlierSampleResultReachesNoOtherEntry) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, {{"PCOR", fuselage_inputs, Fuselage::compute},
                           {"PSXC", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>},
@@ -461,7 +461,7 @@ TEST(NimbusSystem, AResultOfAnEarlierSampleIsGivenToNoneOfItsEntries) {
   }
 }
 
-// A host that is not told the time.
+// A host that provides no time.
 struct Timeless {
   using Entry = DERTBL;
   static double get(Entry* entry, std::size_t input) { return Host::get(entry, input); }
@@ -511,7 +511,7 @@ TEST(NimbusSystem, AsksForTheTimeOnceInASample) {
   EXPECT_EQ(Clock::asked(), 26);
 }
 
-TEST(NimbusSystem, StartsAnewWhenReset) {
+TEST(NimbusSystem, ResetRestartsTheState) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());
   for (const double second : seconds(0.0, 8.0)) table.compute(second, raw_value);
@@ -634,7 +634,7 @@ TEST(NimbusDefaults, NameEveryCoefficientOnce) {
                                                              "PCOR.my-thrust.k0", "PCOR.my-thrust.k1"));
 }
 
-TEST(NimbusDefaults, TellOfOverridesThatNothingReads) {
+TEST(NimbusDefaults, UnusedOverridesAreReported) {
   const Defaults defaults(
       "RECFB 1 0.95\n"
       "PCOR.static-constant.a0 1 0.005\n"

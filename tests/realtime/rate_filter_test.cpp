@@ -37,7 +37,7 @@ double rate_of(RateFilter& filter, double rate, const Function& function) {
   return rate_of(filter, around(filter, rate, function));
 }
 
-/// What becomes of exp(i 2 pi t / period) at 0 s.
+/// Response to exp(i 2 pi t / period) at 0 s.
 Complex response(RateFilter& filter, double rate, double period) {
   return {rate_of(filter, rate, [&](double t) { return std::cos(2.0 * pi * t / period); }),
           rate_of(filter, rate, [&](double t) { return std::sin(2.0 * pi * t / period); })};
@@ -53,7 +53,7 @@ TEST(RateFilter, PassesConstantsAndStraightLines) {
     for (const double delay : delays) {
       RateFilter filter(rate, delay);
       EXPECT_EQ(rate_of(filter, rate, [](double) { return 701.3; }), 0.0);
-      // Rounding of weights of up to 50 per sample, some hundred of them.
+      // Rounding of weights of up to 50 per sample, a few hundred of them.
       EXPECT_NEAR(rate_of(filter, rate, [](double t) { return 701.3 - 1.7 * t; }), -1.7, 1e-9);
     }
   }
@@ -100,7 +100,7 @@ TEST(RateFilter, TakesShortPeriodsAway) {
 }
 
 TEST(RateFilter, UndoesALagOfTheFirstOrder) {
-  // What a lag of tau makes of a sine is known: y = Re(H exp(i w t)), H = 1/(1 + i w tau).
+  // Known response of a lag tau to a sine: y = Re(H exp(i w t)), H = 1/(1 + i w tau).
   for (const double rate : {5.0, 25.0}) {
     for (const double tau : {0.05, 0.3, 1.0, 8.0}) {
       for (const double period : {2.0, 5.0, 20.0}) {
@@ -117,8 +117,8 @@ TEST(RateFilter, UndoesALagOfTheFirstOrder) {
 }
 
 TEST(RateFilter, UndoesALagOfARamp) {
-  // A ramp from -1 s on, through a lag of tau: t + 1 - tau (1 - exp(-(t + 1)/tau)). Of its corner, periods
-  // under 1 s are not given back: 3 % of tau a second later.
+  // A ramp from -1 s on, through a lag of tau: t + 1 - tau (1 - exp(-(t + 1)/tau)). Periods under 1 s of its
+  // corner are not restored: 3 % of tau a second later.
   constexpr double tau = 0.3;
   RateFilter filter(25.0);
   const auto lagged = [](double t) {
@@ -144,8 +144,8 @@ TEST(RateFilter, IsTheSameBackwards) {
 }
 
 TEST(RateFilter, LeavesLittleNoise) {
-  // The integral of (2 pi f)^2 over the part of the band that is left, cut off sharply at 1 Hz: 0.72 of
-  // 12.5 Hz; the slope of the cut-off adds to it.
+  // The integral of (2 pi f)^2 over the remaining part of the band, cut off sharply at 1 Hz: 0.72 of 12.5
+  // Hz; the slope of the cut-off adds to it.
   EXPECT_NEAR(RateFilter(25.0).gain(), std::pow(2.0 * pi, 2) / 3.0 / 12.5, 0.2);
   std::mt19937_64 engine(5);
   std::normal_distribution<double> normal;
@@ -203,7 +203,7 @@ TEST(RateFilter, IsAsGoodForDelaysOfHalfASample) {
 }
 
 TEST(RateFilter, MakesUpNothingBeyondAGapThatADelayReachesOver) {
-  // What was there 5 s ago is not known: 3 s ago there is the begin.
+  // Values 5 s ago are unknown: 3 s ago is the start.
   RateFilter filter(1.0, 5.0);
   const std::vector<double> line = around(filter, 1.0, [](double t) { return 2.0 * t; });
   EXPECT_TRUE(std::isnan(filter(line.data() + filter.before(), 3, filter.after())));
@@ -213,7 +213,7 @@ TEST(RateFilter, MakesUpNothingBeyondAGapThatADelayReachesOver) {
   EXPECT_TRUE(std::isnan(rate_of(filter, holed)));
 }
 
-TEST(RateFilter, CutsOffWhereItIsTold) {
+TEST(RateFilter, CutOffMatchesTheRequest) {
   RateFilter filter(1.0, 0.0, 10.0);
   EXPECT_NEAR(std::abs(response(filter, 1.0, 10.0)) / std::abs(ideal(0.0, 10.0)), 0.5, 0.02);
   EXPECT_NEAR(std::abs(response(filter, 1.0, 20.0)) / std::abs(ideal(0.0, 20.0)), 1.0, 0.01);

@@ -119,13 +119,14 @@ ModelUncertainty of_parameter(const Model& model, std::size_t place, double size
   return uncertainty;
 }
 
-/// What `size` up and down of something does to each result, by the chain alone, beside what is stated.
+/// Effect on each result of a change by `size` up and down, by the chain alone, in addition to the stated
+/// one.
 void expect_stated(const State<double>& stated, const State<double>& above, const State<double>& below,
                    const std::string& what) {
   for (const UncertainResult& each : uncertain_results) {
     const double difference = std::abs(above[each.result] - below[each.result]) / 2.0;
-    // Dry constants are within 2 %. Left out is what an effect on the temperature feels of the calibration of
-    // that temperature itself, 0.5 K here: 3e-4 K.
+    // Dry constants are within 2 %. Omitted: effect of the calibration of the temperature, 0.5 K here, on an
+    // effect at that temperature: 3e-4 K.
     EXPECT_NEAR(stated[each.uncertainty], difference, 0.02 * difference + 3e-4)
         << what << ": " << info_of(each.result).name;
   }
@@ -147,7 +148,8 @@ TEST_P(OfEveryEffect, IsTheDifferenceThatItsCoefficientMakes) {
     const std::size_t first = parameter_count(model) - info.parameter_count();
     for (std::size_t i = 0; i < info.parameter_count(); ++i) {
       const double typical_size = 0.1 * std::abs(info.parameters[i].typical);
-      const double size = typical_size > 0.0 ? typical_size : 0.5;  // of a shape whose usual value is zero
+      const double size =
+          typical_size > 0.0 ? typical_size : 0.5;  // shape parameter whose usual value is zero
       Model above = model;
       parameter_at(above, first + i) += size;
       Model below = model;
@@ -213,7 +215,7 @@ TEST(ResultUncertainty, OfADewPointAndOfARecordedTemperature) {
   }
 }
 
-TEST(ResultUncertainty, FollowsTheTaperAndKeepsThatOfTheLawAtItsMinimum) {
+TEST(ResultUncertainty, TaperAndMinimumKeepLawUncertainty) {
   Model model = law();
   model.policy.taper_below = 100.0;
   const Recorded recorded = everything_recorded();
@@ -258,7 +260,7 @@ TEST(ResultUncertainty, CountsCorrelations) {
   }
 }
 
-TEST(ResultUncertainty, ScalesWithTheRootOfTheCovarianceAndIsZeroWithoutOne) {
+TEST(ResultUncertainty, CovarianceRootScalesUncertainty) {
   const Model model = law();
   ModelUncertainty once = of_parameter(model, 1, 0.001);
   once.random[index(Quantity::dynamic_pressure)] = 0.05;
@@ -266,7 +268,7 @@ TEST(ResultUncertainty, ScalesWithTheRootOfTheCovarianceAndIsZeroWithoutOne) {
   ModelUncertainty twice = of_parameter(model, 1, 0.002);
   twice.random[index(Quantity::dynamic_pressure)] = 0.1;
   twice.static_defect = 0.4;
-  ModelUncertainty other_role;  // that touches neither delta-p nor pressures
+  ModelUncertainty other_role;  // role without influence on delta-p or pressures
   other_role.random[index(Quantity::recovery_temperature)] = 0.1;
   const State<double> a = fly(model, everything_recorded(), once);
   const State<double> b = fly(model, everything_recorded(), twice);
@@ -337,7 +339,7 @@ TEST_F(InALoop, IsMissingWhereItsResultIsAndBackWithIt) {
   }
 }
 
-TEST_F(InALoop, IsFoundAnewWhereThePressuresMove) {
+TEST_F(InALoop, UncertaintyIsUpdatedWithPressures) {
   build(CorrectWith::model);
   EXPECT_NEAR(run()[Quantity::static_defect_uncertainty], 0.07, 1e-12);
   EXPECT_NEAR(run(Quantity::static_pressure, 690.0)[Quantity::static_defect_uncertainty], 0.07, 1e-12)
@@ -372,7 +374,7 @@ TEST(ResultUncertainty, RefusesACovarianceThatIsNotOfTheModel) {
   EXPECT_EQ(error_of({1e-8, 1e-8, 1e-8, 1e-8}), "no error");
 }
 
-TEST(Covariance, IsToldFromWhatIsNone) {
+TEST(Covariance, InvalidMatrixIsRefused) {
   EXPECT_TRUE(is_covariance({}, 0));
   EXPECT_TRUE(is_covariance({0.0}, 1));
   EXPECT_FALSE(is_covariance({-1.0}, 1));

@@ -53,7 +53,7 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rate = 25.0;  // samples in a second
 
-/// What a flight has of a role.
+/// Usual values of a role in flight.
 struct Usual {
   Quantity quantity;
   double least;
@@ -67,7 +67,7 @@ struct World {
   pcor::CorrectWith with = pcor::CorrectWith::model;
 };
 
-/// What is believed of a result. That of the filter is of an earlier sample, as are the bits that go with it.
+/// Expected properties of a result. A filtered result belongs to an earlier sample, and so do its bits.
 struct Believed {
   Quantity quantity;
   double least;
@@ -92,8 +92,8 @@ constexpr Believed results[] = {
     {Quantity::corrected_airspeed_uncertainty, 0.0, 1e300},
 };
 
-/// True where some bit says why a result is missing; the others tell how one was found. What a model knows of
-/// itself says nothing of the laser that corrected a sample.
+/// True if a bit gives the reason for a missing result; the other bits state the method of a result. Bits
+/// about the model do not concern the laser that corrected a sample.
 bool says_why(pcor::QualityFlags quality, Quantity result) {
   if (result >= Quantity::static_defect_uncertainty && quality.has(Quality::corrected_with_lams)) return true;
   constexpr Quality reasons[] = {Quality::static_pressure_missing,
@@ -211,10 +211,10 @@ class Soak {
 
   static inline std::uint64_t broken = 0;     ///< results
   static inline std::uint64_t stale = 0;      ///< samples after a gap that are not as a new loop's
-  static inline std::uint64_t allocated = 0;  ///< in runs
+  static inline std::uint64_t allocated = 0;  ///< allocations during runs
   static inline std::uint64_t gaps = 0;
   static inline std::vector<std::uint64_t> durations =
-      std::vector<std::uint64_t>(1000000);  ///< by nanoseconds
+      std::vector<std::uint64_t>(1000000);  ///< number of runs by duration in nanoseconds
 
  private:
   // As in flight, as a fault leaves it, or anything at all.
@@ -237,7 +237,7 @@ class Soak {
   void fly_through_a_gap() {
     const double jumps[] = {60.0, 0.1, -10.0, 1e9, missing, infinity};
     const double jump = jumps[random_() % std::size(jumps)];
-    // A time that is none begins anew, and so does the one after it.
+    // An invalid interval restarts the loop, and so does the interval after it.
     if (!std::isfinite(jump)) loop_.run(jump);
     time_ += std::isfinite(jump) ? jump : 0.0;
     if (std::abs(time_) > 1e8) time_ = 0.0;
@@ -287,7 +287,7 @@ class Soak {
   Loop fresh_;
   std::mt19937_64 random_{20111117};
   double time_ = 0.0;
-  double step_ = 1.0 / rate;  // which changes
+  double step_ = 1.0 / rate;  // the interval changes during a run
   std::size_t since_gap_ = 0;
 };
 

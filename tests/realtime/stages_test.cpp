@@ -1,4 +1,4 @@
-// What the stages of a chain say of themselves is true, so that loops and batches may rely on it.
+// The declarations of the stages of a chain are true, so that loops and batches may rely on them.
 #include <pcor/realtime/stages.hpp>
 
 #include <gmock/gmock.h>
@@ -56,8 +56,8 @@ bool is_in(const Quantities& quantities, std::size_t place) {
   return std::find(quantities.begin(), quantities.end(), static_cast<Quantity>(place)) != quantities.end();
 }
 
-// A stage makes the same of its sample whatever stands in quantities that it does not say it reads, and
-// leaves alone those that it does not say it writes.
+// A stage gives the same results for any values in quantities outside its declared inputs, and changes only
+// its declared outputs.
 void expect_true_words(const Correction& correction) {
   State<double> before;
   for (const Quantity input : correction.chain.inputs()) {
@@ -119,7 +119,7 @@ TEST(Stages, ReadAndWriteWhatTheySay) {
   }
 }
 
-// Only what a quantity is said to be found from moves it.
+// A quantity depends only on its declared sources.
 TEST(Stages, KnowTheSourcesOfWhatIsDerived) {
   Model model;
   model.effects = {{"static-alpha", {0.02}}, {"static-qp", {0.03}}, {"static-beta-odd", {0.01}},
@@ -154,7 +154,7 @@ TEST(Stages, KnowTheSourcesOfWhatIsDerived) {
   }
 }
 
-TEST(Stages, WithoutLaserAndTemperatureReadAndWriteWhatTheySay) {
+TEST(Stages, StatedAccessHoldsWithoutLaserAndTemperature) {
   Model model;
   model.effects = {{"static-qp", {0.03}}, {"static-mach2", {0.01}}};
   expect_true_words(model, {Quantity::static_pressure, Quantity::dynamic_pressure}, CorrectWith::model);

@@ -1,4 +1,4 @@
-// The user's intervals: what the file may say, how it is refused, and what becomes of the found regimes.
+// The user's intervals: valid contents of the file, refusals, and the effect on the found regimes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ UserIntervals add(Regime regime, double begin, double end, int pair = 0) {
   return user;
 }
 
-TEST(IntervalsFile, HoldsWhatItSays) {
+TEST(IntervalsFile, ContentsAreReadExactly) {
   const UserIntervals user = parse(R"(
 flight = "DC3-TEST-rf01.nc"
 [[add]]
@@ -111,14 +111,14 @@ reason = "PSXC iced"
   EXPECT_EQ(user.exclude[0].reason, "PSXC iced");
 }
 
-TEST(IntervalsFile, MaySayNothing) {
+TEST(IntervalsFile, EmptyFileIsValid) {
   const UserIntervals user = parse("");
   EXPECT_THAT(user.add, IsEmpty());
   EXPECT_THAT(user.veto, IsEmpty());
   EXPECT_THAT(user.exclude, IsEmpty());
 }
 
-TEST(IntervalsFile, TellsDatesOfLeapYears) {
+TEST(IntervalsFile, LeapYearDatesAreAccepted) {
   const UserIntervals user = parse(R"(
 [[veto]]
 begin = 2004-02-29T23:59:59Z
@@ -242,7 +242,7 @@ TEST(Applied, AVetoTakesAllOfAManoeuvreAndBothLegsOfAPair) {
               ElementsAre("pitch manoeuvre 0-100", "reverse heading 600-700"));
 }
 
-TEST(Applied, AnAdditionTakesThePlaceOfWhatWasFound) {
+TEST(Applied, AdditionReplacesDetectedInterval) {
   const std::vector<Interval> regimes{found(Regime::level, 0, 100), found(Regime::climb, 100, 200),
                                       found(Regime::yaw_manoeuvre, 20, 40)};
   const std::vector<Interval> yaw =

@@ -40,7 +40,7 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 double wrapped(double heading) { return heading - 360.0 * std::floor(heading / 360.0); }
 
-// Noise that forgets itself after `memory` seconds.
+// Noise with a correlation time of `memory` seconds.
 class Gusts {
  public:
   Gusts(double deviation, double memory, double step, unsigned seed)
@@ -207,7 +207,7 @@ void expect_phases_cover(const FlightMotion& motion, const std::vector<Interval>
   EXPECT_LE(reached, motion.time.back() + 1.001);
 }
 
-// What happened when, in one flight with a bit of everything.
+// Flown regimes of one flight with several kinds of manoeuvres.
 struct Story {
   FlightMotion motion;
   double roll, off, climb_end, pitch, pitch_end, yaw, yaw_end, run, run_end, first_leg_end, second_leg,
@@ -334,8 +334,9 @@ TEST(Regimes, AreFoundAsTheirWordsSay) {
   EXPECT_THAT(pcor::criterion_of(Regime::speed_run, RegimeCriteria::gv()), HasSubstr("by 0.3 m/s2"));
 }
 
-// Every number that the search goes by is in the words for some regime: another number, other words.
-TEST(Regimes, AreToldWithAllTheirNumbers) {
+// Every number of the search criteria appears in the words for some regime: another number gives other
+// words.
+TEST(Regimes, CriteriaTextHasAllNumbers) {
   static_assert(std::is_trivially_copyable_v<RegimeCriteria>);
   for (std::size_t number = 0; number < sizeof(RegimeCriteria) / sizeof(double); ++number) {
     RegimeCriteria criteria;
@@ -437,7 +438,7 @@ TEST(Regimes, CanDoWithoutRoll) {
   EXPECT_THAT(of(Regime::reverse_heading, found), SizeIs(2));
 }
 
-TEST(Regimes, ThatCannotBeToldAreAbsent) {
+TEST(Regimes, UndeterminedRegimesAreAbsent) {
   Story story = tell();
   FlightMotion motion = story.motion;
   motion.sideslip.clear();
@@ -539,7 +540,7 @@ TEST(Regimes, OfAClimbAreNoManoeuvres) {
   EXPECT_THAT(found, SizeIs(3));
 }
 
-TEST(Regimes, AHalfTurnBetweenDifferentHeightsIsNoReverseHeading) {
+TEST(Regimes, HalfTurnWithClimbIsNotReverseHeading) {
   Pilot pilot;
   pilot.level(300);
   pilot.turn(180.0, 20.0);
@@ -548,7 +549,7 @@ TEST(Regimes, AHalfTurnBetweenDifferentHeightsIsNoReverseHeading) {
   EXPECT_THAT(of(Regime::reverse_heading, find_regimes(pilot.motion())), IsEmpty());
 }
 
-TEST(Regimes, AQuarterTurnIsNoReverseHeading) {
+TEST(Regimes, QuarterTurnIsNotReverseHeading) {
   Pilot pilot;
   pilot.level(300);
   pilot.turn(90.0, 20.0);
@@ -597,7 +598,7 @@ TEST(Regimes, OfTheGvAskForMoreAcceleration) {
   EXPECT_THAT(of(Regime::speed_run, find_regimes(pilot.motion(), RegimeCriteria::gv())), IsEmpty());
 }
 
-TEST(Regimes, RefuseWhatIsNoMotion) {
+TEST(Regimes, InputWithoutMotionIsRefused) {
   FlightMotion motion;
   motion.time = {1.0, 2.0, 2.0};
   EXPECT_THROW(find_regimes(motion), Error);
@@ -606,7 +607,7 @@ TEST(Regimes, RefuseWhatIsNoMotion) {
   EXPECT_THROW(find_regimes(motion), Error);
 }
 
-TEST(Regimes, OfSamplesBeginWithTheirIntervalAndEndBeforeItsEnd) {
+TEST(Regimes, SampleRegimesUseHalfOpenIntervals) {
   const std::vector<Interval> intervals{{Regime::level, 1.0, 3.0}, {Regime::turn, 2.0, 10.0}};
   const std::vector<RegimeSet> regimes = regimes_of_samples({0.0, 1.0, 2.0, 3.0}, intervals);
   const auto has = [&](std::size_t sample, Regime regime) {

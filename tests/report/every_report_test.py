@@ -25,7 +25,7 @@ from firefox import Firefox
 TOOL, SOURCE, BUILD = (Path(word).resolve() for word in sys.argv[1:4])
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
-# What takes long is for those with most kinds of pictures, and for all of them in the long tests.
+# Slow checks run on the reports with most kinds of pictures, and on all of them in the long tests.
 EVERY_REPORT = os.environ.get("PCOR_EVERY_REPORT")
 AXE_VERSION = "4.14.1"
 MADE = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes

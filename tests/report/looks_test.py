@@ -24,8 +24,7 @@ SAMPLE_REPORT, SOURCE = (Path(word).resolve() for word in sys.argv[1:3])
 ACCEPTED = SOURCE / "tests/report/accepted"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FONT = Path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf")
-# Name, width in pixels, what stands behind # in the address, whether it is for print, and at which part of its size it
-# is kept.
+# Name, width in pixels, fragment of the address after #, print mode, and scale of the stored picture.
 LOOKS = (("wide", 1400, "light", False, 0.25), ("narrow", 420, "light", False, 0.35), ("dark", 1400, "dark", False, 0.25),
          ("print", 700, "light", True, 0.35))
 BLOCK = 10  # pixels: what is compared are means of squares of such sides

@@ -226,7 +226,7 @@ class ReportUnderTheHand(unittest.TestCase):
         time, other = self.panels("time"), self.panels("binned", "plane", "pair")
         self.browser.point(*self.place(time[0], 0.3))
         sample = self.value("pcorReport.cursor")
-        # Three tenths along the axis; a sample is 1 s of 6,000 or so, a pixel some 5 s.
+        # Three tenths along the axis; a sample is 1 s of about 6,000, a pixel about 5 s.
         self.assertAlmostEqual(self.value(f"pcorReport.samples.position[{sample}] / pcorReport.samples.length"), 0.3, delta=0.005)
         told = self.readouts()
         for panel in time + other:

@@ -39,7 +39,7 @@ Report report_of(std::size_t samples, std::size_t columns) {
   return report;
 }
 
-// What the page's script reads.
+// Data that the page's script reads.
 nlohmann::json data_of(const std::string& html) {
   const std::string opening = "id=\"data\">";
   const std::size_t begin = html.find(opening) + opening.size();
@@ -60,7 +60,7 @@ std::vector<std::uint8_t> from_base64(const std::string& text) {
   return bytes;
 }
 
-// Whole numbers by what each differs from the one before, with runs of those that do not.
+// Whole numbers by the differences of neighbours, with runs of equal numbers.
 std::vector<std::int64_t> unpacked(const std::string& text) {
   const std::vector<std::uint8_t> bytes = from_base64(text);
   std::size_t at = 0;
@@ -317,7 +317,7 @@ TEST(Report, MayHaveNoSamples) {
   EXPECT_THAT(report_html(report), HasSubstr("<h1>Bars only</h1>"));
 }
 
-TEST(Report, IsWrittenWholeOrNotAtAll) {
+TEST(Report, FileIsWrittenAtomically) {
   const test::TemporaryDirectory directory;
   const auto path = directory / "report.html";
   Report report = report_of(3, 1);

@@ -33,7 +33,7 @@ const std::vector<Leg> legs{{"climb", 17, 4200, 118},   {"level", 14, 4200, 118}
                             {"climb", 10, 6600, 112},   {"level", 20, 6600, 112}, {"manoeuvre", 8, 6600, 112},
                             {"descent", 11, 2100, 125}, {"level", 15, 2100, 125}, {"descent", 14, 300, 95}};
 
-constexpr double start = 1054468800 + 600;  // of the first flight, s since 1970
+constexpr double start = 1054468800 + 600;  // start of the first flight, s since 1970
 
 struct Columns {
   std::vector<double> latitude, longitude, altitude, pressure, mach, attack, sideslip, dynamic, old_model,

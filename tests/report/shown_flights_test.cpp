@@ -82,7 +82,7 @@ TEST(ShownFlights, OfAReportKeepTheirRecordsAndIntervals) {
   EXPECT_EQ(report.intervals[1].end, 230);
 }
 
-TEST(ShownFlights, AreToldOfWhereTheyAreNotAll) {
+TEST(ShownFlights, OmittedFlightsAreReported) {
   EXPECT_THAT(shown_text(16, 16), IsEmpty());
   EXPECT_THAT(shown_text(16, 200), HasSubstr("16 of the 200 flights"));
 }

@@ -18,7 +18,7 @@ namespace {
 
 using Series = std::vector<double>;
 
-/// An hour of a dynamic pressure with gusts, and the residual of a reference that feels them.
+/// An hour of a dynamic pressure with gusts, and the residual of a reference that responds to them.
 struct Flight {
   Series pressure{};
   Series residual{};
@@ -48,7 +48,7 @@ struct Flight {
 };
 
 TEST(Bursts, AreNotWhatTheAirAndManoeuvresDo) {
-  // The gusts begin and end within seconds: nothing of them is in the residual.
+  // The gusts begin and end within seconds: the residual shows no part of them.
   EXPECT_THAT(Flight().bursts(), IsEmpty());
 }
 
@@ -56,7 +56,7 @@ TEST(Bursts, AreFoundFromFirstToLast) {
   for (const std::size_t length : {1U, 5U, 15U}) {
     Flight flight;
     flight.disturb(1000, length, 8.0, 0.0);
-    // The sample before and the one after stand beside the jump, and three more on either side are taken.
+    // The sample before and the sample after the jump, and three more on either side, are masked.
     EXPECT_THAT(flight.bursts(), AllOf(Each(Ge(996U)), Each(Le(1003U + length)))) << length;
     for (std::size_t i = 1000; i < 1000 + length; ++i) EXPECT_THAT(flight.bursts(), Contains(i)) << length;
   }

@@ -192,7 +192,7 @@ State<S> recorded_state() {
   return state;
 }
 
-// What a fit compares: delta-p from LAMS, and the temperature of the corrected pressures.
+// Quantities that a fit compares: delta-p from LAMS, and the temperature of the corrected pressures.
 template <class S>
 State<S> run(const Chain& chain, const std::vector<S>& parameters) {
   State<S> state = recorded_state<S>();
@@ -214,7 +214,7 @@ std::vector<Jet> dual(const std::vector<double>& parameters) {
 
 }  // namespace
 
-TEST(Chain, StaticDefectKeepsAStateOfNumbersApartFromParametersThatVary) {
+TEST(Chain, StaticDefectSeparatesStateFromParameters) {
   // The Jacobian of eq. 18 is its basis: p, ADIFR/QCR p and q.
   const Chain chain = build(memo_model(false));
   State<double> state = recorded_state<double>();
@@ -272,7 +272,7 @@ TEST(Chain, EveryStageHasItsDerivative) {
   }
 }
 
-TEST(Chain, TheLagOfTheLineMovesLamsByTheRateOfThePressure) {
+TEST(Chain, LineLagMovesLamsByPressureRate) {
   // An error of the line leaves pt, so delta-p from LAMS loses the whole of it: d/dtau = -dp/dt.
   const Chain chain = build(memo_model(true));
   const State<Jet> state = run(chain, dual(chain.parameters()));
@@ -281,7 +281,7 @@ TEST(Chain, TheLagOfTheLineMovesLamsByTheRateOfThePressure) {
 
 namespace {
 
-// What a fit with the laser makes zero: delta-p that the laser asks for less that of the law.
+// Target of a fit with the laser, zero: delta-p required by the laser minus delta-p of the law.
 template <class S>
 S residual(const Chain& chain, const std::vector<S>& parameters) {
   const State<S> state = run(chain, parameters);
@@ -318,7 +318,7 @@ TEST_P(EveryEffect, MovesTheResidualByItsDerivative) {
     };
     const double width = info().parameters[i].upper - info().parameters[i].lower;
     const double expected = difference(along, chain.parameters()[i], 1e-4 * width);
-    // Of the range of the coefficient 1e-7 hPa, a thousandth of what a fit can see, and 1e-6 of the
+    // 1e-7 hPa over the range of the coefficient, a thousandth of the resolution of a fit, and 1e-6 of the
     // derivative.
     EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)] * width, expected * width,
                 1e-7 + 1e-6 * std::abs(expected * width))

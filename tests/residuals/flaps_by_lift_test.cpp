@@ -17,7 +17,7 @@ namespace {
 
 constexpr double min_airspeed = 60.0;
 
-/// A C-130 that takes off, cruises for an hour and a half, and approaches.
+/// A C-130 that climbs out, cruises for an hour and a half, and approaches.
 struct Flight {
   FlightSamples samples{};
   std::vector<double> attack{};  ///< deg

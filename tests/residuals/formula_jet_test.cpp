@@ -94,7 +94,7 @@ TEST(FormulaJet, DifferentiatesByBothAtOnce) {
 
 // On the ground the dynamic pressure is zero, where the derivative of its root is infinite; the derivatives
 // by the parameters do not depend on that.
-TEST(FormulaJet, HasDerivativesByParametersWhereOneByAVariableIsInfinite) {
+TEST(FormulaJet, ParameterDerivativesStayFiniteAtSingularity) {
   const auto formula = Formula::parse("k + m*sqrt(max(x, 0)) + n*max(x, 0)^1.5 + m*(x^0.5 - 1)", names);
   ASSERT_TRUE(formula);
   const double x = 0.0;

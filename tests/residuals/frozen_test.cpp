@@ -14,8 +14,8 @@ namespace {
 using Series = std::vector<double>;
 
 struct Sensor {
-  double noise = 0.3;       ///< from one sample to the next
-  double resolution = 0.0;  ///< 0: that of a double
+  double noise = 0.3;       ///< change from one sample to the next
+  double resolution = 0.0;  ///< 0: resolution of a double
   double turn = 400.0;      ///< s in which the flight changes
   double swing = 30.0;
 };

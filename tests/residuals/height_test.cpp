@@ -51,7 +51,7 @@ TEST(Height, SeesAThermometerThatIsOffInEveryClimb) {
   }
 }
 
-TEST(Height, DoesNotSeeADefectThatIsAConstantPartOfThePressure) {
+TEST(Height, ProportionalPressureDefectIsInvisible) {
   for (const double value : residuals(climb(), made::air_model({{"static-constant", 0.01}}))) {
     if (std::isnan(value)) continue;
     ASSERT_NEAR(value, 0.0, 1e-9);
@@ -59,7 +59,7 @@ TEST(Height, DoesNotSeeADefectThatIsAConstantPartOfThePressure) {
 }
 
 TEST(Height, SeesAZeroOfTheStaticPressureGrowWithHeight) {
-  // A hPa taken off every reading makes a climb larger, by p d(1/p) in a minute: rho g 300 m / p.
+  // Subtracting one hPa from every reading makes a climb larger, by p d(1/p) in a minute: rho g 300 m / p.
   const pcor::FlightSamples flight = climb();
   const std::vector<double> left = residuals(flight, made::air_model({{"psfd-bias", 1.0}}));
   const std::vector<double>& p = *flight.model.find(Quantity::static_pressure);
@@ -73,7 +73,7 @@ TEST(Height, HasTheDerivativesOfItsResiduals) {
   EXPECT_LT(made::derivative_error(climb(), model, *pcor::height_reference(model), 1e-3), 1e-5);
 }
 
-// Or else a fit would shrink the residual by a coefficient that the heights do not see.
+// Otherwise a fit would shrink the residual by a coefficient to which the heights are insensitive.
 TEST(Height, HasDerivativesWithoutTheNoiseOfTheHeights) {
   auto flight = std::make_shared<pcor::FlightSamples>(climb());
   for (std::size_t i = 0; i < flight->time.size(); ++i)

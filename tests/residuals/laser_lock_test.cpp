@@ -21,7 +21,7 @@ constexpr double departure = 6.0;
 
 /// An hour in which speed and height change, and a laser that knows the airspeed.
 struct Flight {
-  std::vector<double> airspeed{};  ///< of the pressures
+  std::vector<double> airspeed{};  ///< airspeed derived from the pressures
   std::vector<double> ratio{};
   std::vector<double> beam{};
   std::vector<std::size_t> samples{};
@@ -33,7 +33,7 @@ struct Flight {
     for (int i = 0; i < 3600; ++i) {
       const double truth = speed * (1.0 + 0.2 * std::sin(i / 170.0)) + 2.0 * std::sin(i / 9.0);
       const double sound = 320.0 - 15.0 * std::sin(i / 900.0);
-      // q/p = 0.7 M^2 for what matters here, and a pressure that is too low makes it too large.
+      // q/p = 0.7 M^2 is accurate enough here, and a low pressure makes it too large.
       const double mach = truth / sound;
       const double q = 0.7 * mach * mach;
       ratio.push_back((q + defect) / (1.0 - defect));
@@ -81,11 +81,11 @@ TEST(LaserLock, IsLostWhereTheBeamLocksOnSomethingElse) {
 
 TEST(LaserLock, IsNotLostInGusts) {
   Flight flight(0.02);
-  // What a flap or a sideslip does, 1.5 hPa at 70 m/s: 1.8 m/s.
+  // Error caused by a flap or a sideslip, 1.5 hPa at 70 m/s: 1.8 m/s.
   Flight slow(0.0, 70.0, 0.05);
   for (std::size_t i = 500; i < 700; ++i) slow.beam[i] += 1.8;
   EXPECT_THAT(slow.unlocked(), IsEmpty());
-  // One sample in a hundred is five standard deviations astray.
+  // One sample in a hundred is wrong by five standard deviations.
   for (std::size_t i = 0; i < flight.beam.size(); i += 100) flight.beam[i] += 1.0;
   EXPECT_THAT(flight.unlocked(), IsEmpty());
 }

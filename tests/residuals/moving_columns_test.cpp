@@ -52,7 +52,7 @@ std::filesystem::path short_flight_with(const pcor::test::TemporaryDirectory& di
   return directory / "more.nc";
 }
 
-/// Its laser late by so much.
+/// Flight whose laser is late by `seconds`.
 std::filesystem::path late_flight(const pcor::test::TemporaryDirectory& directory, double seconds,
                                   bool noise) {
   return short_flight_with(
@@ -76,7 +76,7 @@ TEST(MovingColumns, ChangeAsTheirSlopeSays) {
   double largest = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (!std::isfinite(before[i]) || !std::isfinite(column[i])) continue;
-    // The curvature over the step: some 1 m/s2 a second squared.
+    // The curvature over the step: about 1 m/s2 a second squared.
     EXPECT_NEAR(column[i] - before[i], step * slope[i], 2e-3);
     largest = std::max(largest, std::abs(slope[i]));
   }
@@ -142,7 +142,7 @@ TEST(MovingColumns, KnowHowTheWetnessHangsOnTheDrying) {
   for (std::size_t i = 0; i < before.size(); ++i) {
     EXPECT_GE(before[i], 0.0);
     EXPECT_LE(before[i], 1.0);
-    // The curvature over 0.1 s: exp(-t/tau) has at most some 0.02 per second squared.
+    // The curvature over 0.1 s: exp(-t/tau) has at most about 0.02 per second squared.
     EXPECT_NEAR(now[i] - before[i], 0.1 * slope[i], 2e-4);
     largest = std::max(largest, slope[i]);
   }

@@ -82,12 +82,12 @@ void expect_derivatives(const Residuals& tested) {
 
 TEST(Residuals, AgainstTheTruePressureAreThoseOfTheSensors) {
   const Residuals tested = residuals(laser_model(), *pcor::pressure_reference("TRUE_PS"));
-  // The model has the law of the truth: what is left is the noise of PSFD, 0.01 to 0.02 hPa, and a little
+  // The model has the law of the truth: the remainder is the noise of PSFD, 0.01 to 0.02 hPa, and a little
   // from the other sensors of the law.
   EXPECT_LT(rms_of(tested, tested.values(tested.parameters().data())), 0.03);
 }
 
-TEST(Residuals, AgainstLamsAreTheDefectOfTheLaserLessThatOfTheModel) {
+TEST(Residuals, LamsResidualIsLaserMinusModelDefect) {
   const Residuals tested = residuals(laser_model(), *pcor::lams_reference());
   const double* const at = tested.parameters().data();
   const std::vector<double> values = tested.values(at);
@@ -133,7 +133,8 @@ TEST(Residuals, HaveTheDerivativesOfTheReferenceToo) {
 }
 
 TEST(Residuals, AtTheSensorAreThoseOfThePressureToFirstOrder) {
-  // With a recovery thermometer the temperature goes with the Mach number, with an ambient one it does not.
+  // With a recovery thermometer the temperature varies with the Mach number, with an ambient one it does
+  // not.
   for (const bool with_recovery : {true, false}) {
     ModelDefinition model = laser_model();
     if (!with_recovery) {
@@ -141,7 +142,7 @@ TEST(Residuals, AtTheSensorAreThoseOfThePressureToFirstOrder) {
       model.variables[Quantity::ambient_temperature] = "TRUE_AT";
       model.model.lams.approach = pcor::LamsApproach::with_temperature;
     }
-    // The laser 1 cm/s from where the model says that the air is.
+    // The laser differs by 1 cm/s from the model's airspeed.
     pcor::FlightSamples samples =
         pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
     const Residuals recorded(std::make_shared<const pcor::FlightSamples>(samples), model,
@@ -160,7 +161,7 @@ TEST(Residuals, AtTheSensorAreThoseOfThePressureToFirstOrder) {
     const double* const at = tested.parameters().data();
     tested.evaluate(places.data(), places.size(), at, {}, pressure.data(), nullptr);
     tested.evaluate_at_sensor(places.data(), places.size(), at, {}, at_sensor.data(), nullptr);
-    // What is of second order is 1 cm/s over the airspeed, 1e-4.
+    // The second-order part is 1 cm/s over the airspeed, 1e-4.
     for (std::size_t i = 0; i < places.size(); ++i)
       EXPECT_NEAR(at_sensor[i] / pressure[i], 1.0, 3e-4) << (with_recovery ? "recovery" : "ambient");
   }

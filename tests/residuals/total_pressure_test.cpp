@@ -13,7 +13,7 @@ namespace {
 
 using Effects = std::vector<std::pair<std::string, double>>;
 
-/// Two systems in one air, of which the second has a static defect and errors of its own.
+/// Two systems in one air; the second has a static defect and independent errors.
 pcor::FlightSamples flight() {
   std::vector<double> height;
   std::vector<double> airspeed;

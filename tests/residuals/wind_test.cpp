@@ -53,13 +53,13 @@ std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::Mod
 }  // namespace
 
 TEST(Wind, ThatIsSteadyLeavesNothing) {
-  // On one heading 1/900 of the wind is taken for the constant.
+  // On one heading the constant absorbs 1/900 of the wind.
   for (const auto& heading : {circles, legs, straight}) {
     for (const double value : residuals(flight(heading), made::air_model())) ASSERT_NEAR(value, 0.0, 0.03);
   }
 }
 
-TEST(Wind, SaysByHowMuchDeltaPIsOffWhereHeadingsAreTurned) {
+TEST(Wind, EstimatesDeltaPErrorFromHeadingReversals) {
   // 1 hPa too much of delta-p is an airspeed too small by dV/dp; to second order of 1 hPa in 75.
   const pcor::ModelDefinition model = made::air_model({{"static-constant", 1.0 / 674.2}});
   for (const auto& heading : {circles, legs}) {
@@ -68,7 +68,7 @@ TEST(Wind, SaysByHowMuchDeltaPIsOffWhereHeadingsAreTurned) {
   }
 }
 
-TEST(Wind, SaysNothingOnOneHeading) {
+TEST(Wind, SingleHeadingGivesNoEstimate) {
   const pcor::ModelDefinition model = made::air_model({{"static-constant", 1.0 / 674.2}});
   for (const double value : residuals(flight(straight), model)) ASSERT_NEAR(value, 0.0, 0.03);
 }
@@ -87,7 +87,7 @@ TEST(Wind, LooksAtTheAirAlone) {
   EXPECT_NEAR(left[300], 0.0, 0.03) << "and what was recorded there does not matter afterwards";
 }
 
-TEST(Wind, DoesNotBelieveASensorThatIsFrozen) {
+TEST(Wind, FrozenSensorIsRejected) {
   for (const Quantity frozen : {Quantity::heading, Quantity::ground_speed, Quantity::ground_track}) {
     pcor::FlightSamples samples = flight(circles);
     for (auto& [quantity, values] : samples.reference.columns) {

@@ -127,12 +127,12 @@ TEST(WithEffects, ChoosesAmongTheVariablesOfAFlight) {
   EXPECT_EQ(suffixed.variables.at(Quantity::attack), "AKRD_RWO");
 }
 
-TEST(WithEffects, TellsWhatTheFlightLacks) {
+TEST(WithEffects, MissingFlightVariablesAreReported) {
   EXPECT_THAT(message_of({of_catalogue("static-attack")}, {"PSFD", "QCF"}),
               AllOf(HasSubstr("'static-attack'"), HasSubstr("'attack'"), HasSubstr("ATTACK, AKRD")));
 }
 
-TEST(WithEffects, TellsTheRoleThatNobodyCanGuess) {
+TEST(WithEffects, AmbiguousRoleIsReported) {
   EXPECT_THAT(
       message_of({thrust("k * lams_airspeed")}),
       AllOf(HasSubstr("'my-thrust'"), HasSubstr("'lams_airspeed'"), HasSubstr("lams_airspeed = \"...\"")));

@@ -84,7 +84,7 @@ TEST(ShortestPeriod, IsTheWholeBandOfWhatHasNoNoise) {
 }
 
 TEST(ShortestPeriod, CutsNoiseOff) {
-  // All of the wave is at 40 s; what is shorter is noise. Half an octave to either side is left.
+  // All of the wave is at 40 s; shorter periods are noise. Half an octave to either side is excluded.
   const double period = signal_band_of(wave(4000, 1, 0.3), seconds(4000), 1.0).min_period;
   EXPECT_GT(period, 8.0);
   EXPECT_LT(period, 40.0);

@@ -61,7 +61,7 @@ class PlausiblePressure : public testing::Test {
   test::TemporaryDirectory folder_;
 };
 
-TEST_F(PlausiblePressure, HectopascalsThatAreCalledPascalsAreRefusedWithTheirUnit) {
+TEST_F(PlausiblePressure, HectopascalsLabelledPascalsAreRefused) {
   const Flight wrong = flight("Pa", 700.0, "GGALT", 3000.0);
   EXPECT_THAT(test::message_of<Error>([&] { require_possible_pressure(wrong, model()); }),
               AllOf(HasSubstr("PSFD in 'Pa'"), HasSubstr("the height GGALT"),

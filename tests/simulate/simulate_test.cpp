@@ -1,4 +1,4 @@
-// The simulator against laws of nature and against what it promises: truth, sensors, effects, reader.
+// The simulator compared with laws of nature and with its documentation: truth, sensors, effects, reader.
 #include <pcor/simulate/simulate.hpp>
 
 #include <gmock/gmock.h>
@@ -448,8 +448,8 @@ TEST(Simulate, StaticLagFollowsTheClimb) {
   }
 }
 
-// What an effect changes in the file, and nothing else. A change of the static pressure at the port is one of
-// QCR and of the radome's differentials too, which are in proportion to it.
+// Changes of an effect in the file, and no others. A change of the static pressure at the port also changes
+// QCR and the radome's differentials, which are in proportion to it.
 struct Change {
   std::string effect;
   std::vector<std::string> variables;
@@ -572,7 +572,7 @@ TEST(Simulate, AirInTheLineHasWeight) {
   }
 }
 
-TEST(Simulate, ForwardAccelerationIsThatOfTheSpeedAndOfGravity) {
+TEST(Simulate, ForwardAccelerationMatchesSpeedAndGravity) {
   const Simulated flight(head + noiseless + calm + systems + aloft +
                          leg("speed-run", "low = 100\nhigh = 130\nrate = 0.5"));
   const auto speed = flight("TASX", "m/s"), forward = flight("BLONA", "m/s2"),
@@ -627,7 +627,7 @@ TEST(Simulate, HiddenCauseIsInTheDefect) {
              torque = with("ENGTRQ", "percent");
   const auto [first, last] = with.leg("level");
   for (std::size_t i = first; i < last; ++i) {
-    // The law stands in measured quantities and answers to the extra defect with some percent of it.
+    // The law is a function of measured quantities and changes by a few per cent of the extra defect.
     const double extra = 2.0 * (torque[i] - 50.0) / 100.0;
     EXPECT_NEAR(d1[i] - d0[i], extra, 0.05 * std::abs(extra) + 1e-5);
   }
@@ -778,7 +778,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "[[effect]]\nid = \"unknown\"\nstrength = 1\nof = \"ENGTRK\"\nwhere = \"static\"\n",
                 {"ENGTRK", "ENGTRQ"}},
         Refusal{head + systems + aloft + "[noise]\nQFC = 0.1\n", {"QFC", "QCF"}}),
-    // The last lines, which tell the case.
+    // The last lines, which describe the case.
     [](const auto& refusal) {
       const std::string& text = refusal.param.text;
       const std::size_t line = text.rfind('\n', text.size() - 2);

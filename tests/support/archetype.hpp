@@ -19,10 +19,10 @@ class Truth {
   bool value_;
 };
 
-/// What the scalar is for: the physics alone, or users' formulas too, which call more functions.
+/// Purpose of the scalar: the physics alone, or users' formulas too, which call more functions.
 enum class Use { physics, formulas };
 
-/// A number that converts to and from nothing by itself.
+/// A number without implicit conversions.
 template <Use use = Use::physics>
 class Number {
  public:

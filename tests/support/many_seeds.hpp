@@ -4,12 +4,12 @@
 #include <cstdlib>
 #include <string>
 
-// What studies over many simulated flights share: how many they fly, and what they may then demand. A right
-// program fails a demand with a probability of about 1e-4.
+// Number of flights of studies over many simulated flights, and the resulting limits. A correct program
+// exceeds a limit with a probability of about 1e-4.
 
 namespace pcor::test {
 
-/// How many seeds: 20, or as many as the environment's PCOR_SEEDS says.
+/// Number of seeds: 20, or the value of PCOR_SEEDS in the environment.
 inline std::size_t number_of_seeds() {
   const char* wanted = std::getenv("PCOR_SEEDS");
   return wanted == nullptr ? 20 : std::stoul(wanted);
@@ -34,8 +34,8 @@ inline std::size_t least_within(std::size_t count, double probability) {
   return count - outside;
 }
 
-/// By how much the spread of `count` values may differ from the true one, as a share of it: four times the
-/// 1/sqrt(2 (n - 1)) to which it is known.
+/// Permitted difference of the spread of `count` values from the true one, as a share of it: four times its
+/// standard error 1/sqrt(2 (n - 1)).
 inline double tolerance_of_spread(std::size_t count) {
   return 4.0 / std::sqrt(2.0 * (static_cast<double>(count) - 1.0));
 }

@@ -63,7 +63,7 @@ class NetcdfMaker {
     if (rank > 0) count.insert(count.begin(), left);
     if (!values.empty()) {
       const int status = nc_put_vara_double(id_, variable, start.data(), count.data(), values.data());
-      if (status != NC_ERANGE) check(status);  // infinities are stored all the same
+      if (status != NC_ERANGE) check(status);  // infinities are stored too
     }
     nc_redef(id_);
   }

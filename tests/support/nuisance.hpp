@@ -14,7 +14,7 @@ struct Nuisance {
   double drift_time = 1.0;  ///< s
   double flicker = 0.0;     ///< rms of 1/f noise in a decade of frequency, hPa
   bool bursts = false;      ///< half a minute with five times a noise of 0.3 hPa, every ten minutes
-  bool stuck = false;       ///< the series stands still for a minute
+  bool stuck = false;       ///< the series is constant for a minute
   bool is_off = false;      ///< zero, gain and drift of a pressure are off by draws of their usual doubts
 };
 

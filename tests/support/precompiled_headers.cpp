@@ -1,1 +1,1 @@
-// What CMake asks for beside the headers themselves.
+// Source file that CMake requires in addition to the headers.

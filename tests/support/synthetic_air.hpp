@@ -25,7 +25,7 @@ struct AirPlan {
   double low = 1000.0;                ///< geopotential m, of the climbs and descents
   double high = 6000.0;
   double period = 3600.0;   ///< s, of a climb and a descent
-  double slope_east = 0.0;  ///< of isobars
+  double slope_east = 0.0;  ///< slope of isobars
   double slope_north = 0.0;
   double offset = 0.0;  ///< the thermometer reads too high by offset + gain t, t in degC, K
   double gain = 0.0;
@@ -67,8 +67,8 @@ inline pcor::internal::FlightAir air(const AirPlan& plan) {
     air.flying.push_back(true);
     air.pressure.push_back(1000.0 * std::pow(temperature / plan.ground_temperature, exponent));
     air.temperature.push_back(shown);
-    // At 120 m/s and with an angle of attack that grows with the height, some 2 deg in a climb more than in a
-    // descent.
+    // At 120 m/s and with an angle of attack that increases with the height, about 2 deg in a climb more
+    // than in a descent.
     air.dynamic.push_back(0.5 * air.pressure.back() / (gas_constant * temperature) * 120.0 * 120.0);
     air.attack_ratio.push_back(-0.2 + 1e-5 * height + 0.02 * std::cos(2.0 * M_PI * (t / plan.period - 0.25)));
     air.airspeed.push_back(120.0);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// Flights in memory whose truth is known: a reference pressure, and noise that remembers itself.
+/// Flights in memory whose truth is known: a reference pressure, and correlated noise.
 namespace made {
 
 struct Plan {

@@ -8,7 +8,7 @@
 
 namespace pcor::test {
 
-/// A directory of its own for one test, removed with all it holds.
+/// A separate directory for one test, removed with all its contents.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -26,7 +26,7 @@ class TemporaryDirectory {
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
-  /// How many files and directories it holds, hidden ones too.
+  /// Number of files and directories in it, including hidden ones.
   std::size_t entries() const {
     const std::filesystem::directory_iterator begin(path_), end;
     return static_cast<std::size_t>(std::distance(begin, end));

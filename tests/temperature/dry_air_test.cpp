@@ -21,7 +21,7 @@ using testing::Not;
 
 const fs::path scenarios = fs::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
 
-/// A climb by 2 km, over which the vapour of the model makes so much of the thickness, m.
+/// A climb by 2 km, with the given contribution of the model's vapour to the thickness, m.
 HeightRecord climb_from(double height, double by_vapor) {
   HeightRecord record;
   record.name = "climb";

@@ -120,7 +120,7 @@ TEST(HeightLikelihood, FilterIsGeneralisedLeastSquaresWrittenOut) {
                 1e-5 * std::sqrt(wanted(i, i) * wanted(unknowns, unknowns)));
   }
   EXPECT_NEAR(found.squares / wanted(unknowns, unknowns), 1.0, 1e-5);
-  // ln det of the contrasts: that of the whole plus ln of the weight of a constant.
+  // ln det of the contrasts: ln det of the whole plus ln of the weight of a constant.
   const double determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum() + std::log(weight);
   EXPECT_NEAR(found.log_determinant, determinant, 1e-4);
 }
@@ -178,7 +178,7 @@ TEST(HeightLikelihood, FindsTheNoiseThatThereIs) {
   EXPECT_NEAR(found.noise.wander_time, 80.0, 16.0);
   EXPECT_LT(found.noise.walk * std::sqrt(3600.0), 0.3);
   EXPECT_NEAR(found.equations.best(2)[0], -0.4, 3.0 * std::sqrt(found.equations.covariance(2)(0, 0)));
-  // And leaves innovations that are white and of variance one: 2880 blocks tell it to 0.03 and 0.02.
+  // The innovations are white and of variance one: 2880 blocks determine it to 0.03 and 0.02.
   double squares = 0.0;
   double products = 0.0;
   double count = 0.0;
@@ -280,7 +280,7 @@ TEST(HeightLikelihood, TheLessTheBetterTheNoiseIsKnown) {
         maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
     const Eigen::MatrixXd stated = covariance_over_noise(records, 2, HeightPrior{}, likely, one_thread);
     const Eigen::MatrixXd more = stated - likely.equations.covariance(2);
-    // No combination of coefficients gets surer, but for rounding.
+    // No combination of coefficients becomes more certain, except for rounding.
     EXPECT_GT(more.trace(), 0.0);
     EXPECT_GT(more.determinant(), -1e-9 * stated.determinant());
     const double part = more(0, 0) / stated(0, 0);
@@ -293,7 +293,7 @@ TEST(HeightLikelihood, TheLessTheBetterTheNoiseIsKnown) {
 TEST(HeightLikelihood, AnUnknownSlopeOfIsobarsIsFound) {
   made::AirPlan plan;
   plan.seconds = 7200;
-  plan.turning = 7200.0;  // a wide circle: the way goes with the climbs
+  plan.turning = 7200.0;  // a wide circle: the way varies with the climbs
   plan.gps = 0.3;
   plan.gps_memory = 60.0;
   plan.slope_east = 1e-4;
@@ -306,7 +306,7 @@ TEST(HeightLikelihood, AnUnknownSlopeOfIsobarsIsFound) {
   const HeightEquations fitted = height_equations(record_of(plan), noise, {1e-4, {}});
   const HeightEquations level = height_equations(record_of(plan), noise, {0.0, {}});
   EXPECT_NEAR(fitted.best(1)[0], -0.5, 3.0 * std::sqrt(fitted.covariance(1)(0, 0)));
-  // Taken for level, the slope goes into the temperature, and by more than the noise.
+  // If the isobars are assumed level, the slope changes the temperature, and by more than the noise.
   EXPECT_GT(std::abs(level.best(1)[0] + 0.5), 5.0 * std::sqrt(level.covariance(1)(0, 0)));
 }
 
@@ -315,7 +315,7 @@ TEST(HeightLeastSquares, IsTheLineThroughHeights) {
   plan.offset = 0.5;
   plan.gain = 0.01;
   const pcor::TemperatureFit fit = pcor::internal::fit_height_by_least_squares({record_of(plan)}, 2);
-  EXPECT_NEAR(fit.coefficients[0], -0.5 / 1.01, 1e-6);  // no noise: exact but for the trapezium rule
+  EXPECT_NEAR(fit.coefficients[0], -0.5 / 1.01, 1e-6);  // no noise: exact except for the trapezium rule
   EXPECT_NEAR(fit.coefficients[1], -0.01 / 1.01, 1e-7);
   EXPECT_LT(fit.sigma, 1e-3);
 }
@@ -341,8 +341,8 @@ TEST(HeightLeastSquares, ErrorsAreTooSmallWhereNoiseRemembersItself) {
     squares_least += std::pow(least.coefficients[0] / least.standard_errors[0], 2);
     squares_likely += std::pow(likely.best(1)[0], 2) / likely.covariance(1)(0, 0);
   }
-  // WhitenedSystem of the likelihood have a mean square of 1, known to sqrt(2/40) = 0.22 from 40 seeds; those
-  // of least squares one of about twice the memory, 240.
+  // Scores of the likelihood have a mean square of 1, known to sqrt(2/40) = 0.22 from 40 seeds; scores of
+  // least squares one of about twice the correlation time, 240.
   EXPECT_NEAR(squares_likely / seeds, 1.0, 0.67);
   EXPECT_GT(squares_least / seeds, 50.0);
 }

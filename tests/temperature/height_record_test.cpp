@@ -68,7 +68,7 @@ TEST(HeightRecord, ErrorOfTheThermometerIsWhatTheColumnsSay) {
   ASSERT_EQ(truth.blocks.size(), wrong.blocks.size());
   for (std::size_t i = 0; i < truth.blocks.size(); ++i) {
     const HeightBlock& block = wrong.blocks[i];
-    // Exact but for rounding: the integral is linear in the coefficients.
+    // Exact except for rounding: the integral is linear in the coefficients.
     EXPECT_NEAR(block.excess - a0 * block.columns[0] - a1 * block.columns[1], truth.blocks[i].excess, 1e-6);
   }
 }
@@ -98,7 +98,7 @@ TEST(HeightRecord, ErrorOfTheHumidityIsWhatItSays) {
   const HeightRecord truth = moist(1.2);
   double largest = 0.0;
   for (std::size_t i = 0; i < truth.blocks.size(); ++i) {
-    // The integral is linear in R_a: exact but for rounding.
+    // The integral is linear in R_a: exact except for rounding.
     const double lacks = 0.2 * measured.blocks[i].errors[pcor::internal::with_vapor];
     EXPECT_NEAR(measured.blocks[i].excess - truth.blocks[i].excess, lacks, 1e-6);
     largest = std::max(largest, lacks);
@@ -112,7 +112,7 @@ TEST(HeightRecord, ErrorsOfTheLawAreWhatTheySay) {
   HeightRecordOptions options;
   options.recovers = true;
   const HeightRecord truth = pcor::internal::height_record(right, {}, options);
-  // The error as a part of the pressure, for some 0.1 hPa each.
+  // The error as a part of the pressure, for about 0.1 hPa each.
   const auto part = [&right](pcor::internal::HeightError error, std::size_t i) {
     if (error == pcor::internal::with_dynamic) return 1e-3 * right.dynamic[i] / right.pressure[i];
     if (error == pcor::internal::with_attack) return 1e-3 * right.attack_ratio[i];
@@ -123,8 +123,8 @@ TEST(HeightRecord, ErrorsOfTheLawAreWhatTheySay) {
                                     {pcor::internal::with_attack, 1e-3}}) {
     FlightAir air = right;
     for (std::size_t i = 0; i < air.size(); ++i) {
-      // What the law adds to the static pressure it takes from the dynamic one, the total pressure as it is;
-      // a thermometer that recovers all heating then shows the same for T (P/p)^(2/7).
+      // The law adds to the static pressure the amount that it subtracts from the dynamic one, with the
+      // total pressure unchanged; a thermometer with full recovery then shows the same for T (P/p)^(2/7).
       air.pressure[i] *= 1.0 + part(error, i);
       air.temperature[i] *= std::pow(1.0 + part(error, i), 2.0 / 7.0);
     }
@@ -180,7 +180,7 @@ TEST(HeightRecord, KeepsOnlyWhatClimbsFastEnough) {
   for (const HeightBlock& block : climbs.blocks) EXPECT_GE(std::abs(block.climb), 2.0);
 }
 
-TEST(HeightRecord, ArchivedStepsTakeThePlaceOfPressureAndHumidity) {
+TEST(HeightRecord, ArchivedStepsReplacePressureAndHumidity) {
   const pcor::internal::FlightAir air = made::air({});
   std::vector<double> steps(air.size(), nan);
   for (std::size_t i = 1; i < air.size(); ++i)
@@ -215,7 +215,7 @@ void expect_same_way(const HeightRecord& one, const HeightRecord& other) {
 }
 
 TEST(HeightRecord, WayThroughTheAirStandsInForThatOverTheGround) {
-  pcor::internal::FlightAir air = made::air({});  // in calm air
+  pcor::internal::FlightAir air = made::air({});  // flight in calm air
   const HeightRecord over_ground = record_of(air);
   EXPECT_EQ(over_ground.way, WayKnown::over_ground);
   air.east_speed.clear();

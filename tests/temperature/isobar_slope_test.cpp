@@ -42,7 +42,8 @@ double range_of_excess(const HeightRecord& record) {
 TEST(IsobarSlope, ClimbsAndDescentsAndTheWholeFlightFindIt) {
   for (const IsobarSlope option : {IsobarSlope::climb_descent, IsobarSlope::whole_flight}) {
     const pcor::internal::IsobarSlopeEstimate slope = estimate_isobar_slope(record_of(sloping()), option);
-    // Surfaces are met again over some tens of km: the usual slope draws the estimate by a few per cent.
+    // Surfaces are crossed again within a few tens of km: the usual slope shifts the estimate by a few per
+    // cent.
     EXPECT_NEAR(slope.east, 1e-4, 1e-5);
     EXPECT_NEAR(slope.north, -5e-5, 1e-5);
     EXPECT_GT(slope.blocks, 100U);
@@ -60,14 +61,14 @@ TEST(IsobarSlope, LevelLegsFindIt) {
   EXPECT_NEAR(slope.north, -5e-5, 1e-5);
 }
 
-TEST(IsobarSlope, WhatIsTakenOffLeavesNothing) {
+TEST(IsobarSlope, SubtractedSlopeLeavesNoResidual) {
   HeightRecord record = record_of(sloping());
   const double before = range_of_excess(record);
   take_off_isobar_slope(record, IsobarSlope::whole_flight);
   EXPECT_LT(range_of_excess(record), 0.15 * before);
 }
 
-TEST(IsobarSlope, NothingIsTakenOffForNoneAndFitted) {
+TEST(IsobarSlope, ModesNoneAndFittedSubtractNoSlope) {
   for (const IsobarSlope option : {IsobarSlope::none, IsobarSlope::fitted}) {
     HeightRecord record = record_of(sloping());
     const double before = range_of_excess(record);
@@ -85,7 +86,7 @@ TEST(IsobarSlope, GeostrophicWindOfTheSlopeTakesItOff) {
   for (std::size_t i = 0; i < air.size(); ++i) {
     const double wind_east = -over * plan.slope_north;
     const double wind_north = over * plan.slope_east;
-    // The way over the ground stays as it is: the aircraft heads into the wind.
+    // The way over the ground is unchanged: the aircraft heads into the wind.
     const double through_east = air.east_speed[i] - wind_east;
     const double through_north = air.north_speed[i] - wind_north;
     air.airspeed[i] = std::hypot(through_east, through_north);
@@ -113,7 +114,7 @@ TEST(IsobarSlope, EstimatesLeaveAPartForTheLikelihood) {
   EXPECT_EQ(record.slope_left, 1.0);
 }
 
-TEST(IsobarSlope, WhatTheFlightDoesNotTellIsLeftToTheLikelihood) {
+TEST(IsobarSlope, UndeterminedSlopeIsPassedToTheLikelihood) {
   pcor::internal::FlightAir air = made::air(sloping());
   air.east_speed.clear();
   air.north_speed.clear();
@@ -134,9 +135,9 @@ TEST(IsobarSlope, WhatTheFlightDoesNotTellIsLeftToTheLikelihood) {
   EXPECT_THAT(no_directions.notes, ElementsAre(HasSubstr("heading"), HasSubstr("--slope fitted")));
 }
 
-TEST(IsobarSlope, AFlightAlongALineTakesTheOtherDirectionForLevel) {
+TEST(IsobarSlope, StraightFlightAssumesLevelCrossTrack) {
   made::AirPlan plan = sloping();
-  plan.turning = 1e9;  // to the north only
+  plan.turning = 1e9;  // slope to the north only
   const pcor::internal::IsobarSlopeEstimate slope =
       estimate_isobar_slope(record_of(plan), IsobarSlope::whole_flight);
   EXPECT_NEAR(slope.east, 0.0, 1e-9);

@@ -81,8 +81,8 @@ TemperatureOptions of_degree(int degree) {
   return options;
 }
 
-/// What has to be added to the measured temperature, by regression on it: the simulator knows the air. It
-/// puts the fault into the recovery temperature, so that there is no closed form.
+/// Correction of the measured temperature, by regression on it: the simulator knows the air. It adds the
+/// fault to the recovery temperature, so that there is no closed form.
 std::array<double, 2> truth(const fs::path& path) {
   const Flight flight(path);
   const FlightAir air = read_flight_air({path}, 0, model());
@@ -148,7 +148,7 @@ class Temperature : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-/// By how much two corrections differ, in standard errors of the first, at most.
+/// Greatest difference of two corrections, in standard errors of the first.
 double apart(const TemperatureFit& one, const TemperatureFit& other) {
   if (one.coefficients.size() != other.coefficients.size()) return std::nan("");
   double most = 0.0;
@@ -165,7 +165,7 @@ constexpr double search_stops = 0.1;
 
 const std::size_t seeds = test::number_of_seeds();
 
-/// What the fits of all seeds say of one coefficient: how far it is from the truth, and its stated errors.
+/// Statistics of one coefficient over the fits of all seeds: its error, and its stated errors.
 struct WhitenedSystem {
   std::vector<double> errors;
   std::vector<double> stated;
@@ -229,8 +229,9 @@ TEST_F(TemperatureRecovery, OfOffsetAndSlopeOverIsobarsThatSlope) {
     const double bias_is_known_to = 1.0 / std::sqrt(static_cast<double>(seeds));
     EXPECT_LT(std::abs(likelihood[k].bias()), (0.3 + 4.0 * bias_is_known_to) * likelihood[k].spread())
         << name;
-    // Heights that remember themselves for 60 s are one independent sample in two minutes, so least squares
-    // states errors that are sqrt(120), 11 times, too small: half of that, where the height is not all.
+    // Heights with a correlation time of 60 s give one independent sample in two minutes, so least squares
+    // states errors that are sqrt(120), 11 times, too small: half of that, because the height is not the
+    // only source.
     EXPECT_GT(least_squares[k].spread_over_stated(), 5.0) << name;
     EXPECT_LT(least_squares[k].within(2.0), seeds / 2) << name;
   }
@@ -243,8 +244,8 @@ Scenario::Effect effect(const std::string& id, const std::map<std::string, doubl
   return result;
 }
 
-/// The default errors know what is usually wrong with pressures and humidity: flights on which each is wrong
-/// as it is known beforehand, the law by 0.3 hPa in each of its terms.
+/// The default errors include the usual errors of pressures and humidity: flights on which each has an error
+/// drawn from its prior, the law by 0.3 hPa in each of its terms.
 TEST_F(TemperatureRecovery, WithAllThatIsUsuallyWrong) {
   WhitenedSystem scores;
   std::mt19937_64 engine(1);
@@ -273,7 +274,7 @@ TEST_F(TemperatureRecovery, WithAllThatIsUsuallyWrong) {
   RecordProperty("within_1", std::to_string(scores.within(1.0)));
   RecordProperty("within_2", std::to_string(scores.within(2.0)));
   RecordProperty("spread_over_stated", std::to_string(scores.spread_over_stated()));
-  // Errors that are taken for twice as large as they are have a spread of a half.
+  // Errors that are assumed twice too large have a spread of a half.
   EXPECT_NEAR(scores.spread_over_stated(), 1.0, test::tolerance_of_spread(seeds));
   EXPECT_GE(scores.within(2.0), test::least_within(seeds, test::within_two));
   EXPECT_LE(scores.within(1.0), seeds - seeds / 10);  // 68 % are expected, not all
@@ -281,7 +282,7 @@ TEST_F(TemperatureRecovery, WithAllThatIsUsuallyWrong) {
 
 // Humidity
 
-TEST_F(Temperature, AThermometerIsNotBlamedForTheHumidity) {
+TEST_F(Temperature, HumidityErrorIsNotAssignedToThermometer) {
   // A vapour pressure 20 % low is twice its usual error, and like 0.35 K where the likelihood takes it for
   // true.
   for (std::uint64_t seed = 51; seed < 56; ++seed) {
@@ -314,7 +315,7 @@ TEST_F(Temperature, DryAirIsRefusedUnlessItIsWanted) {
 
 // The law
 
-TEST_F(Temperature, AnErrorOfTheLawIsNoContradictionOfLeastSquares) {
+TEST_F(Temperature, LawErrorDoesNotContradictLeastSquares) {
   // Between climbs and descents the error with the attack looks like a slope of isobars to an estimate that
   // takes the law for right; least squares then contradicted the likelihood in 13 of 20 flights.
   Scenario scenario = one_climb();
@@ -346,7 +347,7 @@ TEST_F(Temperature, ProfileAndCurvatureAgree) {
   }
 }
 
-TEST_F(Temperature, TheModelFileHasWhatTheResultSays) {
+TEST_F(Temperature, ModelFileMatchesTheResult) {
   const TemperatureResult result = fit_temperature({fly(one_climb(), 1)}, model(), of_degree(1));
   const ModelDefinition read = parse_model(write_model(result.model), "made");
   const ModelEffect& effect = read.model.effects.back();
@@ -354,7 +355,7 @@ TEST_F(Temperature, TheModelFileHasWhatTheResultSays) {
   EXPECT_THAT(effect.parameters,
               ElementsAre(result.likelihood.coefficients[0], result.likelihood.coefficients[1], 0.0));
   EXPECT_EQ(read.covariance.matrix, result.covariance);
-  // Applied, it is what the table of corrections says.
+  // The applied correction equals the table of corrections.
   for (const TemperatureCorrection& at : result.corrections)
     EXPECT_NEAR(effect.parameters[0] + effect.parameters[1] * at.temperature, at.correction, 1e-12);
 }
@@ -498,7 +499,8 @@ TEST_F(Temperature, HeldOutFlightsChooseTheDegree) {
   const TemperatureResult with_slope = fit_temperature(fly_several(one_climb(), 21, 4), model());
   EXPECT_THAT(with_slope.likelihood.coefficients, SizeIs(2));
   for (const TemperatureResult& result : {without_slope, with_slope}) {
-    // More coefficients never fit worse, and flights that took no part are never foretold better than fitted.
+    // More coefficients never fit worse, and the prediction of held-out flights is never better than their
+    // fit.
     ASSERT_THAT(result.degrees, SizeIs(4));
     EXPECT_EQ(result.degrees[0].degree, -1);
     EXPECT_EQ(result.degrees[0].held_out, 0.0);
@@ -520,7 +522,7 @@ TEST_F(Temperature, ASmallGainIsNoReasonForACoefficient) {
 
 // Slopes of isobars
 
-TEST_F(Temperature, StatedErrorsKnowWhatAnEstimateOfTheSlopeLeaves) {
+TEST_F(Temperature, StatedErrorsIncludeSlopeEstimateRemainder) {
   // The wind of the scenario is not the one in balance with its isobars. 8 normal scores have an rms of more
   // than 1.7 once in 300 times; without a slope in the errors it was 6.
   double squares = 0.0;
@@ -539,9 +541,9 @@ TEST_F(Temperature, StatedErrorsKnowWhatAnEstimateOfTheSlopeLeaves) {
   EXPECT_LT(std::sqrt(squares / static_cast<double>(flights)), 1.7);
 }
 
-// In turn with the pressure
+// Iteration with the pressure
 
-TEST_F(Temperature, InTurnComesToRest) {
+TEST_F(Temperature, AlternatingFitConverges) {
   const std::vector<fs::path> flights = fly_several(one_climb(), 1, 2);
   ModelDefinition start = model();
   start.model.effects[0].parameters = {0.006};  // by 0.0019 of the pressure too much
@@ -573,7 +575,7 @@ TEST_F(Temperature, InTurnComesToRest) {
   EXPECT_LT(again.rounds[0].temperature_change, 1e-3);  // K
 }
 
-TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
+TEST_F(Temperature, AlternatingFitReportsDegreeSelection) {
   const std::vector<fs::path> flights{fly(one_climb(), 1)};
   const IterativeCalibration found =
       calibrate_iteratively(flights, model(), {pcor::lams_reference()}, {}, {});
@@ -585,7 +587,7 @@ TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
     EXPECT_THAT(round.coefficients, SizeIs(found.rounds.front().coefficients.size()));
 }
 
-TEST_F(Temperature, InTurnSaysHowFarThePressureMoved) {
+TEST_F(Temperature, AlternatingFitReportsPressureChange) {
   const std::vector<fs::path> flights{fly(one_climb(), 1)};
   const IterativeCalibration found =
       calibrate_iteratively(flights, model(), {pcor::lams_reference()}, {}, of_degree(1));
@@ -632,7 +634,7 @@ TEST_F(Temperature, MakesAReport) {
   ASSERT_THAT(result.flights[1].left_out, HasSubstr("climbs by"));
   const Report report = temperature_report(result);
 
-  // A picture has the flights that took part, each of which is a stretch of time of its own.
+  // A picture has the flights that were used, each of which is a separate stretch of time.
   EXPECT_THAT(report.flight_names, ElementsAre("flight1.nc", "flight3.nc"));
   EXPECT_THAT(report.flight_starts, ElementsAre(0U, result.flights[0].time.size()));
   EXPECT_EQ(report.time.size(), result.flights[0].time.size() + result.flights[2].time.size());
@@ -666,9 +668,9 @@ TEST_F(Temperature, MakesAReport) {
   EXPECT_THAT(body, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));
 }
 
-// What cannot be done
+// Unsupported requests
 
-TEST_F(Temperature, RefusesWhatTellsNothing) {
+TEST_F(Temperature, UninformativeFlightsAreRefused) {
   EXPECT_THAT([] { fit_temperature({}, model()); }, ThrowsMessage<Error>(HasSubstr("at least one flight")));
   EXPECT_THROW(calibrate_iteratively({}, model(), {pcor::lams_reference()}, {}, {}), Error);
   TemperatureOptions archived;

@@ -213,7 +213,7 @@ class BadInput(CheckTest):
         report = self.path / "check.html"
         self.done("check", nothing, "--report", report)
         self.assertIn("not run", report.read_text())
-        # Another flight is checked all the same, and the result says which was not.
+        # The other flight is still checked, and the result names the unchecked one.
         result = self.json_of("check", nothing, TWO)
         self.assertTrue(result["checks"][0]["ran"])
         self.assertTrue(any("changed.nc" in note for note in result["notes"]))

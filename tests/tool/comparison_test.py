@@ -83,7 +83,7 @@ def contents(folder):
     return {path.name: path.read_bytes() if path.is_file() else None for path in folder.iterdir()}
 
 
-# Their calibration is in doubt, and the covariance says how it goes with the coefficients.
+# Their calibration is uncertain, and the covariance gives its correlation with the coefficients.
 THERMOMETER = ["temp-offset.offset", "recovery-factor.da"]
 
 
@@ -544,7 +544,7 @@ class Refit(ComparisonTest):
     def test_a_stage_finds_its_coefficient_in_its_regime(self):
         fit = self.refit("--stage", "pitch manoeuvre: static-alpha")
         self.assert_true_law(fit)
-        # A hundred samples tell less than a thousand.
+        # A hundred samples constrain less than a thousand.
         self.assertGreater(errors_of(fit)["a1"], errors_of(self.refit())["a1"])
 
     def test_the_estimator_is_stated(self):

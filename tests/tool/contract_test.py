@@ -21,7 +21,8 @@ SOURCE = Path(sys.argv[2]).resolve()
 MODEL = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
 FILL = -32767.0  # as NCAR's files have it
 
-# What is found from each input, and so is missing with it. Without humidity the air counts as dry, and a bit says so.
+# Results derived from each input, and so missing with it. Without humidity the air counts as dry, and a bit
+# is set.
 OF_LASER = {"PCOR_LAMS", "ATLAMS", "QCLAMS"}
 OF_MODEL = {"PCOR", "PSXC", "QCXC", "MACHX", "ATX", "TASX"}
 FOUND_FROM = {
@@ -37,13 +38,13 @@ FOUND_FROM = {
 }
 RESULTS = sorted(OF_MODEL | OF_LASER)
 
-# Values that are none, or that no flight has, of whatever input.
+# Invalid values, or values that no flight has, for any input.
 NONE = {"the fill value": FILL, "NaN": np.nan, "infinity": np.inf, "minus infinity": -np.inf, "1e30": 1e30,
         "the usual fill value": netCDF4.default_fillvals["f8"], "1e300": 1e300, "-1e20": -1e20}
 # Values that some input may have, and others may not.
 ODD = {"zero": 0.0, "a denormal": 5e-324, "minus one": -1.0, "ten thousand": 1e4, "minus a thousand": -1e3}
 
-# What any air about an aircraft is between (hPa, 1, K or degC, m/s): far wider than what is flown.
+# Limits of any air about an aircraft (hPa, 1, K or degC, m/s): far wider than flown.
 POSSIBLE = {"PCOR": (-1100, 1100), "PCOR_LAMS": (-1100, 1100), "PSXC": (0, 1200), "QCXC": (0, 2000), "QCLAMS": (0, 2000),
             "MACHX": (0, 5), "ATX": (-150, 400), "ATLAMS": (-150, 400), "TASX": (0, 1500)}
 
@@ -69,7 +70,7 @@ class ContractTest(unittest.TestCase):
             values = {name: np.ma.filled(flight[name][:].astype(float), np.nan) for name in ("Time", *FOUND_FROM)}
             whole = np.flatnonzero(np.all([np.isfinite(each) for each in values.values()], axis=0) & (values["QCF"] > 50.0))
             kinds = list(itertools.product(FOUND_FROM, {**NONE, **ODD}.items()))
-            # Two good records between spoilt ones show that these do nothing to them.
+            # Two good records between invalid ones show that the invalid ones do not affect them.
             step = min(3, len(whole) // len(kinds))
             assert step == 3, "the flight is too short for all cases"
             for file in (good, spoilt):
@@ -117,7 +118,7 @@ class ContractTest(unittest.TestCase):
         untouched[list(self.cases)] = False
         for name in RESULTS:
             np.testing.assert_array_equal(self.spoilt[name][untouched], self.good[name][untouched], name)
-        # Of what is averaged over time, ATLAMSF alone, a bit says that not all of its window was there.
+        # A bit marks an incomplete window of time averages, ATLAMSF alone.
         other = ~np.uint32(1 << 16)
         np.testing.assert_array_equal(self.bits[untouched] & other, self.good_bits[untouched] & other)
 

@@ -191,7 +191,7 @@ class Unreadable(ManyFlights):
             alone = self.process([bad], model=model)
             self.assertEqual(alone.returncode, 1)
             crashes += "the HDF5 library could not read it" in alone.stderr
-            # What it spoils may be seen at the next flight only, which is not said to be the damaged one then.
+            # Memory corruption may show at the next flight only, so the report may name another flight.
             together = self.run_tool("compare", a, bad, b, "-m", model, "--quiet")
             self.assertEqual(together.returncode, 1)
             self.assertRegex(together.stderr, f"{bad.name}|read before it")

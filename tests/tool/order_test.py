@@ -19,7 +19,7 @@ from tool_test import SOURCE, TOOL, replace  # noqa: E402
 
 THREE, CLIMBS = FLIGHTS / "three.nc", FLIGHTS / "climbs.nc"
 
-# What tells when a result was made, and where.
+# Time and place of the computation of a result.
 OF_THE_RUN = ("statistics_seconds", "date", "history", "created", "command")
 
 REGIMES = ("turn", "climb", "descent")

@@ -19,7 +19,7 @@ TOOL = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 MODEL = SOURCE / "data/models/c130-psfd-qcr-2003.toml"
 CDL = subprocess.run([SOURCE / "tools/make_example_flight"], check=True, capture_output=True, text=True).stdout
-# Of the CF table, what pcor writes.
+# Part of the CF table that pcor writes.
 STANDARD_NAMES = {"air_pressure", "air_temperature", "altitude", "barometric_altitude", "latitude", "longitude",
                   "platform_speed_wrt_air", "status_flag", "time"}
 UNCERTAIN_MODEL = MODEL.read_text().replace("[[effect]]", "[uncertainty]\nstatic_defect = 0.1\n\n[[effect]]", 1)

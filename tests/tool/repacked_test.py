@@ -96,7 +96,7 @@ class RepackedTest(unittest.TestCase):
         for number, records in enumerate((slice(0, 700), slice(700, None))):
             copy(self.path / f"{number}.nc", records=records)
             parts.append(self.results(self.path / f"{number}.nc"))
-        # The laser's filter begins anew, and a bit says so.
+        # The laser's filter restarts, and a bit is set.
         filtered = ~np.array(1 << 16, expected["PCORFLAG"].dtype)
         for name in RESULTS:
             joined, whole = np.concatenate([part[name] for part in parts]), expected[name]

@@ -218,7 +218,7 @@ class OneEffect(WhatIfTest):
         self.assertRegex(words, r"correlation of (−?0\.\d{3})")
         rows = self.value("pcorReport.whatIf.pairTable.tBodies[0].rows.length")
         self.assertEqual(rows, self.value("pcorReport.samples.regimes.size") + 1)
-        # What static-lag takes off is the residual with nothing switched on less that with static-lag.
+        # Contribution of static-lag: the residual with all effects off minus the residual with static-lag.
         self.switch("static-lag")
         differs = self.value("""(() => {
           const {live, residual, sides, nothing, takenOff} = pcorReport.whatIf;

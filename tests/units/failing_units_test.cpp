@@ -13,7 +13,7 @@ using pcor::test::of_library;
 
 namespace {
 
-std::string failing;  // the function of UDUNITS that fails, where there is one
+std::string failing;  // the failing function of UDUNITS, if any
 int reason = 0;       // errno that it leaves
 
 bool fails(const char* name) {
@@ -24,7 +24,7 @@ bool fails(const char* name) {
 
 }  // namespace
 
-// They stand before those of the library.
+// These functions replace the functions of the library.
 extern "C" {
 
 ut_unit* ut_parse(const ut_system* system, const char* text, ut_encoding encoding) {
@@ -39,8 +39,8 @@ int ut_are_convertible(const ut_unit* one, const ut_unit* other) {
 namespace pcor {
 namespace {
 
-/// A unit that cannot be read for want of memory is no unit that is wrong: what it is of would be left out.
-TEST(FailingUnits, AreNotTakenForWrongOnes) {
+/// A unit that cannot be read for want of memory is not a wrong unit: its variable would be dropped.
+TEST(FailingUnits, LibraryFailureIsNotReportedAsInvalidUnit) {
   EXPECT_TRUE(is_convertible("mbar", "hPa"));
   for (const char* const function : {"ut_parse", "ut_are_convertible"}) {
     failing = function;

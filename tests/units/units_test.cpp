@@ -31,7 +31,7 @@ double convert(double value, const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST(Units, TheSpellingsOfRealFilesMeanWhatTheirAuthorsMeant) {
+TEST(Units, FileSpellingsMapToIntendedUnits) {
   EXPECT_DOUBLE_EQ(convert(10, "C", "K"), 283.15);
   EXPECT_DOUBLE_EQ(convert(10, "deg_C", "degC"), 10);
   EXPECT_DOUBLE_EQ(convert(10, "degC", "K"), 283.15);
@@ -93,7 +93,7 @@ TEST(Units, ConversionThereAndBackIsTheIdentity) {
   for (const double value : {-459.67, -40.0, 0.0, 32.0, 212.0}) EXPECT_NEAR(back(there(value)), value, 1e-10);
 }
 
-TEST(Units, MissingStaysMissing) {
+TEST(Units, MissingValuesStayMissing) {
   EXPECT_TRUE(std::isnan(convert(std::numeric_limits<double>::quiet_NaN(), "C", "K")));
 }
 

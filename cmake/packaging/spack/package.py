@@ -1,5 +1,5 @@
-# A recipe for Spack: copy the folder to packages/pcor of a repository of your own. The address of the sources and the
-# checksums of releases are for whoever publishes it.
+# A recipe for Spack: copy the folder to packages/pcor of a local package repository. The publisher sets the
+# address of the sources and the checksums of releases.
 from spack.package import *
 
 
