@@ -165,7 +165,7 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
         const double gain = 0.5 * weight * weight * found.right.dot(factor.solve(found.right)) +
                             alone.matrixLLT().diagonal().array().log().sum() -
                             factor.matrixLLT().diagonal().array().log().sum();
-        if (gain <= best) continue;
+        if (!(gain > best)) continue;
         best = gain;
         surface.size = size;
         surface.coefficient = coefficient;

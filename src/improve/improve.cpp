@@ -203,17 +203,15 @@ class Climb {
   /// effect; the uncertainty is part of its stated error.
   void choose_among_rivals() {
     std::vector<RungChoice> choices(rungs_.size(), 0);
-    ProvenanceList rivals;
-    double squares = 0.0;
     for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
       if (rungs_[rung].size() < 2) continue;
       ImproveStep& step = result_.steps[rung + 1];
       choices[rung] = choice_of(rung, step);
-      squares += step.rival_error * step.rival_error;
+      rival_squares_ += step.rival_error * step.rival_error;
       for (const RungRival& rival : step.rivals)
-        rivals.emplace_back(fmt::format("{} for {}: probability {:.3f}{}", rival.effect, step.added,
-                                        rival.probability,
-                                        rival.effect == step.delivered ? ", applied" : ""));
+        rivals_.emplace_back(fmt::format("{} for {}: probability {:.3f}{}", rival.effect, step.added,
+                                         rival.probability,
+                                         rival.effect == step.delivered ? ", applied" : ""));
     }
     const bool is_top =
         std::all_of(choices.begin(), choices.end(), [](const RungChoice& choice) { return choice == 0U; });
@@ -230,12 +228,16 @@ class Climb {
       }
     }
     result_.model = delivered_.file;
-    if (squares > 0.0) {
-      double& stated = result_.model.uncertainty.static_defect.emplace(
-          result_.model.uncertainty.static_defect.value_or(0.0));
-      stated = std::sqrt(stated * stated + squares);
+    add_rival_error(result_.model);
+  }
+
+  /// States the expected error of the choice among rivals, and the rivals, in a model.
+  void add_rival_error(ModelDefinition& model) const {
+    if (rival_squares_ > 0.0) {
+      double& stated = model.uncertainty.static_defect.emplace(model.uncertainty.static_defect.value_or(0.0));
+      stated = std::sqrt(stated * stated + rival_squares_);
     }
-    if (!rivals.empty()) result_.model.provenance.emplace_back("rivals", ProvenanceValue{std::move(rivals)});
+    if (!rivals_.empty()) model.provenance.emplace_back("rivals", ProvenanceValue{rivals_});
   }
 
   /// Measures the change of static pressure by the rivals of a rung, with the rest as at the top of the
@@ -291,9 +293,15 @@ class Climb {
     const bool is_open = now.verdict == Verdict::partial || now.verdict == Verdict::unexplained || has_attack;
     if (!loop_.offer_surface || !is_open) return;
     const TrialModel before{result_.model, delivered_.alike};
-    std::optional<SurfaceOffer> offer = loop_.offer_surface(before);
+    std::optional<SurfaceOffer> offer;
+    try {
+      offer = loop_.offer_surface(before);
+    } catch (const Error& error) {  // the model without a surface stands
+      if (error.code() == Error::Code::file) throw;
+      result_.why_stopped += fmt::format("; a surface was not tested: {}", error.what());
+    }
     if (!offer) return;
-    const std::string id = offer->fit.surfaces.front().effect;
+    const std::string& id = offer->effect;
     const Comparison& out = offer->out_of_fit;
     const std::string figures = fmt::format(
         "{} the rms is {} with it and {} without it (its squared residuals fall by {:.0f} +- {:.0f} in "
@@ -304,13 +312,15 @@ class Climb {
       return;
     }
     ImproveStep step;
-    step.added = id;
+    step.added = step.delivered = id;
     step.title = std::string(surface_named(id)->title);
     measure(step, offer->fit, before.alike);
     step.rms_holdout = out.rms_after;
     step.learnt =
         fmt::format("{}: {:.1f} degrees of freedom; {}; it describes the residual and identifies no cause",
-                    id, offer->fit.surfaces.front().degrees_of_freedom, figures);
+                    id, offer->degrees_of_freedom, figures);
+    // The uncertainty of the choice among rivals stays part of the stated error.
+    add_rival_error(offer->fit.model);
     delivered_ = {offer->fit.model, before.alike};
     result_.model = offer->fit.model;
     take(std::move(step), std::move(offer->fit), {}, before.alike);
@@ -524,6 +534,8 @@ class Climb {
   ModelDefinition refitted_;
   std::vector<std::string> alike_{};  // effects of the model at the top of the ladder
   TrialModel delivered_{};
+  double rival_squares_ = 0.0;  // sum of the squared expected errors of the choices among rivals, hPa^2
+  ProvenanceList rivals_{};
   std::vector<std::vector<Choice>> rungs_{};  // alternatives for each added effect, the effect itself first
 };
 

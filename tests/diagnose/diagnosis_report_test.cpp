@@ -367,7 +367,7 @@ TEST(DiagnosisReport, ReportsStructureWithoutExplanation) {
   EXPECT_THAT(report.summary,
               Contains(HasSubstr("0.047 hPa rms is left that no effect explains; most of it lies in "
                                  "the regime level")));
-  EXPECT_THAT(report.summary, Contains(HasSubstr("engine torque (ENGTRQ), which takes 31 %")));
+  EXPECT_THAT(report.summary, Contains(HasSubstr("engine torque (ENGTRQ), which explains 31 %")));
   EXPECT_NE(item<ReportTable>(report, "Variables that the unexplained structure varies with"), nullptr);
   const auto* binned = item<BinnedPanel>(report, "What is left, against ENGTRQ");
   ASSERT_NE(binned, nullptr);

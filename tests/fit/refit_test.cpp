@@ -426,7 +426,7 @@ TEST(Refit, RefusesWhatCannotBeDone) {
               testing::AllOf(HasSubstr("N677F"), HasSubstr("N130AR")));
   FlightSamples slow = made::flight(plan);
   slow.motion.airspeed.assign(slow.time.size(), 20.0);
-  EXPECT_THAT(message_of({std::make_shared<const FlightSamples>(slow)}, model), HasSubstr("100 slower than"));
+  EXPECT_THAT(message_of({std::make_shared<const FlightSamples>(slow)}, model), HasSubstr("--min-airspeed"));
   RefitOptions options;
   options.fix = {"static-alfa"};
   EXPECT_THAT(message_of({made::shared(plan)}, model, options), HasSubstr("static-alpha"));

@@ -185,12 +185,12 @@ class OtherAircraft(unittest.TestCase):
         self.run_tool("simulate", SOURCE / "data/scenarios/c130-eq18.toml", "-o", flight, "--quiet")
 
         def notes(path):
-            return [note for note in self.json("inspect", path)["flights"][0]["notes"] if "contradict" in note]
+            return [note for note in self.json("inspect", path)["flights"][0]["notes"] if "opposite signs" in note]
 
         self.assertEqual(notes(flight), [])
         for variable, words in (("GGVSPD", "the vertical speed and the change of altitude"),
                                 ("ROLL", "the roll and the turning of the heading"),
-                                ("GGTRK", "the turning of the ground track and that of the heading"),
+                                ("GGTRK", "the turning of the ground track and the turning of the heading"),
                                 ("ATTACK", "the angle of attack and the pitch above the path"),
                                 ("PITCH", "the pitch and the angle of attack and of climb together"),
                                 ("SSLIP", "the sideslip and the drift")):

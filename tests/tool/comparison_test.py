@@ -379,7 +379,7 @@ class References(ComparisonTest):
         text = self.done("compare", ONE, "-m", self.model(), "--reference", "pressure:TRUE_PS", "--reference", "height",
                          "--reference", "total:PSFRD+QCFR").stdout
         self.assertIn("references: pressure:TRUE_PS, total:PSFRD+QCFR, height", text)
-        self.assertIn("residual = hydrostatic height against that of GPS", text)
+        self.assertIn("residual = hydrostatic height against GPS height", text)
         self.assertIn("residual = total pressure of 'PSFRD+QCFR'", text)
 
     def test_a_reference_of_one_model_is_shown_for_that_alone(self):

@@ -380,7 +380,7 @@ class Inspect(Changed):
         hdf5.H5Fclose(file)
         result = self.run_tool("inspect", path, timeout=90)
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stderr, r"linked\.nc .*pipe")
+        self.assertRegex(result.stderr, r"linked\.nc.*pipe")
 
 
 if __name__ == "__main__":

@@ -116,7 +116,7 @@ class Folder(ManyFlights):
         for output in (self.path / "file", self.path / "out.nc"):
             result = self.process(flights, output=output)
             self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
-            self.assertIn("folder", result.stderr)
+            self.assertIn("directory", result.stderr)
         self.assertFalse((self.path / "out.nc").exists())
 
     def test_a_folder_into_which_nothing_came_is_taken_away(self):

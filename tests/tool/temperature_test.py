@@ -262,7 +262,6 @@ class Fit(TemperatureTest):
         flight = self.simulated(GOOD_THERMOMETER)
         text = self.text_of(flights=(flight,))
         self.assertIn("not significant", text)
-        self.assertIn("no better than none", text)
         self.assertNotIn("To apply it", text)
 
     def test_a_correction_that_makes_it_worse(self):
@@ -404,7 +403,7 @@ class Refusal(TemperatureTest):
         self.assertGreater(result["parts"]["spread_of_flights_k"], 0.2)
         self.assertGreater(result["stderr"]["a0"], self.temperature()["stderr"]["a0"])
         text = self.text_of(flights=(ONE, self.good))
-        self.assertRegex(text.splitlines()[0], "thermometers of the flights differ: one.nc says .* good.nc says .* 0.01")
+        self.assertRegex(text.splitlines()[0], "thermometers of the flights differ: one.nc: .* good.nc: .* 0.01")
 
     def test_thermometers_that_agree(self):
         result = self.temperature(flights=(ONE, TWO, THREE))
@@ -718,7 +717,7 @@ class BadHeight(TemperatureTest):
 
         result = self.temperature(flights=(self.edited(changed("GGALT", spikes)),))
         self.assertEqual(result["samples"], self.temperature()["samples"] - 11)
-        self.assertIn("11 sample(s) in spikes", " ".join(result["notes"]))
+        self.assertIn("11 samples", " ".join(result["notes"]))
         self.assert_is_truth(result)
 
     def test_dropouts(self):

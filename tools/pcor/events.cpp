@@ -1,5 +1,6 @@
 #include "events.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -10,11 +11,14 @@
 namespace pcor::tool {
 namespace {
 
-/// The file descriptor for events; 0 without PCOR_EVENTS.
+/// The file descriptor for events; 0 without PCOR_EVENTS, or if the descriptor is not a pipe or a socket.
 int descriptor() {
   static const int number = [] {
     const char* const given = std::getenv("PCOR_EVENTS");
-    return given == nullptr ? 0 : static_cast<int>(std::strtol(given, nullptr, 10));
+    const int number_given = given == nullptr ? 0 : static_cast<int>(std::strtol(given, nullptr, 10));
+    struct stat status {};
+    const bool is_open = fstat(number_given, &status) == 0;
+    return is_open && (S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode)) ? number_given : 0;
   }();
   return number;
 }
