@@ -92,7 +92,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
       find_first_noise(estimate);
     else
       find_noise(chosen, estimate);
-    find_search(round == 0 ? std::vector<std::size_t>() : chosen);
+    find_search(chosen);
     SearchOptions options;
     options.seed = seed_;
     if (round == 0) {

@@ -143,7 +143,7 @@ Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector
 }
 
 /// Common input of the sums over all references and equations.
-struct WhitenedSystem {
+struct ScoreContext {
   const std::vector<std::size_t>& all;  // the parameters of all equations and those that are held
   Eigen::Index fitted;                  // number of parameters in equations
   const Blocks& blocks;
@@ -155,7 +155,7 @@ struct WhitenedSystem {
 };
 
 /// Sums of one reference. @param first parameter of the equations among all
-Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index first, WhitenedSystem& scores) {
+Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index first, ScoreContext& scores) {
   const std::vector<std::size_t>& all = scores.all;
   const bool is_first_reference = &flights == equations.flights;
   const Solution& solution = equations.solution;
@@ -236,7 +236,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index fi
 }
 
 /// Sums over all references; innovations of different references are independent.
-Sums sums_of(const FitEquations& equations, Eigen::Index first, WhitenedSystem& scores) {
+Sums sums_of(const FitEquations& equations, Eigen::Index first, ScoreContext& scores) {
   Sums whole;
   for (FitFlights* const flights : equations.flights->joint()) {
     const Sums more = sums_of(*flights, equations, first, scores);
@@ -287,7 +287,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
   Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitBasis::count());
-  WhitenedSystem scores{all, fitted, blocks, misfit, misfit_columns, &last, doubts_of(*last.flights), {}};
+  ScoreContext scores{all, fitted, blocks, misfit, misfit_columns, &last, doubts_of(*last.flights), {}};
   scores.stages.resize(last.flights->count());
   Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(scores.doubts.size()));
   Eigen::Index first = 0;
