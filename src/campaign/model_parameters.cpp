@@ -24,7 +24,7 @@ std::vector<std::size_t> free_parameters(const ModelDefinition& model) {
   std::size_t number = 0;
   for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
     for (std::size_t p = 0; p < model.model.effects[e].parameters.size(); ++p, ++number) {
-      if (!model.fit(e, p).fixed) free.push_back(number);
+      if (!model.fit(e, p).fixed && !model.model.effects[e].is_surface()) free.push_back(number);
     }
   }
   return free;

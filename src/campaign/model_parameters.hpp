@@ -16,7 +16,8 @@ std::size_t parameter_count(const Model& model);
 /// Index of the first parameter of an effect among the parameters of a model; nullopt if the model lacks it.
 std::optional<std::size_t> first_parameter_of(const ModelDefinition& model, std::string_view effect);
 
-/// Indices of the fitted parameters among all parameters of a model.
+/// Indices, among all parameters of a model, of those that a diagnosis fits: neither fixed nor coefficients
+/// of a surface, which are held.
 std::vector<std::size_t> free_parameters(const ModelDefinition& model);
 
 /// Location of an effect.

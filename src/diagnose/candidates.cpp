@@ -216,13 +216,15 @@ std::string name_of_system(const ModelDefinition& model, const References& refer
 }
 
 std::vector<BaseCoefficient> base_of(const ModelDefinition& model) {
+  const std::vector<std::size_t> free = free_parameters(model);
   std::vector<BaseCoefficient> base;
+  std::size_t number = 0;
   for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
     const ModelEffect& effect = model.model.effects[e];
     const std::vector<std::string> names = parameter_names(effect);
     const EffectInfo* const info = effect.is_formula() ? nullptr : &effect_info[effect_named(effect.id)];
-    for (std::size_t p = 0; p < names.size(); ++p) {
-      if (model.fit(e, p).fixed || effect.is_surface()) continue;  // coefficients of a surface are held
+    for (std::size_t p = 0; p < names.size(); ++p, ++number) {
+      if (!std::binary_search(free.begin(), free.end(), number)) continue;
       base.push_back({effect.id + "." + names[p],
                       std::string(info == nullptr ? "" : info->parameters[p].unit), effect.parameters[p],
                       model.bounds(e, p), false, info == nullptr ? 0.0 : info->parameters[p].typical});

@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "campaign/columns.hpp"
+#include "campaign/model_parameters.hpp"
 #include "support/short_flight.hpp"
 
 using pcor::ModelDefinition;
@@ -52,6 +55,21 @@ CandidateSet candidates_of_file(const ModelDefinition& model, const std::vector<
 }
 
 }  // namespace
+
+TEST(Candidates, BaseIsTheFreeParametersWithoutThoseOfASurface) {
+  ModelDefinition model = laser_model();
+  const std::size_t terms = pcor::internal::free_parameters(model).size();
+  model.model.effects.push_back(pcor::surface_effect(
+      "static-surface", {{{Quantity::attack_ratio, -0.4, 0.0, 6}, {Quantity::mach, 0.2, 0.5, 6}}}));
+  EXPECT_EQ(pcor::internal::free_parameters(model).size(), terms);
+  const CandidateSet set = candidates_of_file(model);
+  EXPECT_EQ(set.base.size(), terms);
+  // Columns of every free parameter fit into the matrix of the base.
+  const auto samples = std::make_shared<const pcor::FlightSamples>(
+      pcor::read_samples(pcor::Flight(short_flight()), set.extended, *pcor::lams_reference(), {}));
+  const pcor::internal::FlightColumns columns = pcor::internal::find_columns(samples, model, set, 0, {}, 1.0);
+  EXPECT_EQ(static_cast<std::size_t>(columns.base.cols()), terms);
+}
 
 TEST(Candidates, AreTheCatalogueThatTheModelLacks) {
   const CandidateSet set = candidates_of_file(laser_model());
