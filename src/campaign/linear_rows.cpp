@@ -5,6 +5,7 @@
 
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
+#include "residuals/predicted_pressures.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -54,21 +55,19 @@ LinearRows::LinearRows(Residuals residuals, const ModelDefinition& model, const 
   if (!setup.regimes.empty()) keep_regimes(setup.regimes);
 }
 
-/// Columns should not share noise with their row. This holds for two systems, whose derivatives use common
-/// pressures, and for the laser's noise in a diagnosis. A fit otherwise takes its columns at the recorded
-/// samples, and pressures, temperature and their rates are recorded values everywhere. Inputs predicted from
-/// sensors outside the residual would extend this to all references; implement them here.
+/// A column must not hold noise that its own row holds. A diagnosis takes pressures, their rates and the
+/// speed of the laser from predictions; temperatures are recorded values. A fit takes the pressures of two
+/// systems from their mean, and recorded samples otherwise.
 void LinearRows::choose_inputs(const ModelDefinition& model, const Reference& reference, Inputs inputs) {
   if (inputs == Inputs::none) return;
   std::shared_ptr<const FlightSamples> elsewhere = residuals_.at_common_pressures();
-  if (!elsewhere && inputs == Inputs::noise_free) {
-    if (auto predicted = residuals_.predicted_sensor(residuals_.parameters().data())) {
-      auto noiseless = std::make_shared<FlightSamples>(samples());
-      for (auto& [quantity, values] : noiseless->model.columns) {
-        if (quantity == predicted->first) values = std::move(predicted->second);
-      }
-      elsewhere = std::move(noiseless);
-    }
+  if (inputs == Inputs::noise_free) {
+    auto predicted =
+        std::make_shared<FlightSamples>(with_predicted_pressures(elsewhere ? *elsewhere : samples()));
+    const Residuals of_predicted(predicted, model, reference, residuals_.mask());
+    if (auto sensor = of_predicted.predicted_sensor(residuals_.parameters().data()))
+      *predicted->model.find(sensor->first) = std::move(sensor->second);
+    elsewhere = std::move(predicted);
   }
   if (elsewhere) derived_.emplace(std::move(elsewhere), model, reference, residuals_.mask());
 }

@@ -11,7 +11,7 @@
 #include "residuals/masks.hpp"
 #include "residuals/model_on_samples.hpp"
 #include "residuals/moving_columns.hpp"
-#include "residuals/radome_prediction.hpp"
+#include "residuals/predicted_pressures.hpp"
 #include "residuals/reference_on_samples.hpp"
 
 namespace pcor {

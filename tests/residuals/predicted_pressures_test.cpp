@@ -1,4 +1,4 @@
-#include "residuals/radome_prediction.hpp"
+#include "residuals/predicted_pressures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <vector>
 
 using pcor::Quantity;
+using pcor::internal::predicted_by_height;
 using pcor::internal::predicted_by_radome;
 
 namespace {
@@ -79,6 +80,65 @@ TEST(RadomePrediction, KeepsTheValuesOfAShortFlight) {
   Series odd = flight.dynamic_pressure;
   odd[3] += 5.0;
   EXPECT_EQ(predicted_by_radome(odd, flight.samples), odd);
+}
+
+/// Heights of a flight that climbs and descends in waves, and the pressure of the ICAO atmosphere there.
+struct Climbs {
+  Series altitude{};  // m
+  Series pressure{};  // hPa
+
+  explicit Climbs(std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) {
+      altitude.push_back(3000.0 + 2000.0 * std::sin(static_cast<double>(i) / 400.0));
+      pressure.push_back(1013.25 * std::pow(1.0 - 2.25577e-5 * altitude[i], 5.25588));
+    }
+  }
+};
+
+TEST(HeightPrediction, ReproducesTheStandardAtmosphere) {
+  const Climbs flight(4000);
+  const Series predicted = predicted_by_height(flight.pressure, flight.altitude, 1.0);
+  // A polynomial of fourth degree in 4 km differs from ln p by 1e-6.
+  for (std::size_t i = 0; i < predicted.size(); ++i) EXPECT_NEAR(predicted[i], flight.pressure[i], 0.005);
+}
+
+TEST(HeightPrediction, KeepsASlowDifferenceFromTheHeight) {
+  Climbs flight(8000);
+  for (std::size_t i = 0; i < flight.pressure.size(); ++i)
+    flight.pressure[i] *= 1.0 + 0.003 * std::sin(static_cast<double>(i) / 1500.0);
+  const Series predicted = predicted_by_height(flight.pressure, flight.altitude, 1.0);
+  // A tenth of the wave of 2.4 hPa: the Gaussian lowers it by 2 %, and the height has a part of it by chance.
+  for (std::size_t i = 600; i + 600 < predicted.size(); ++i)
+    EXPECT_NEAR(predicted[i], flight.pressure[i], 0.25);
+}
+
+TEST(HeightPrediction, LeavesOutNoiseOfAMinute) {
+  const Climbs flight(8000);
+  std::mt19937 engine(7);
+  std::normal_distribution<double> normal;
+  Series noise(flight.pressure.size(), 0.0);
+  const double memory = std::exp(-1.0 / 60.0);
+  for (std::size_t i = 1; i < noise.size(); ++i)
+    noise[i] = memory * noise[i - 1] + 0.2 * std::sqrt(1.0 - memory * memory) * normal(engine);
+  Series noisy = flight.pressure;
+  for (std::size_t i = 0; i < noise.size(); ++i) noisy[i] += noise[i];
+  const Series predicted = predicted_by_height(noisy, flight.altitude, 1.0);
+  double product = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    product += noise[i] * (predicted[i] - flight.pressure[i]);
+    squares += noise[i] * noise[i];
+  }
+  // 120 s over 300 s sqrt(2 pi) is 0.16; a flight has about 70 independent values.
+  EXPECT_LT(product / squares, 0.3);
+}
+
+TEST(HeightPrediction, KeepsTheValuesWithoutHeight) {
+  Climbs flight(1000);
+  EXPECT_EQ(predicted_by_height(flight.pressure, {}, 1.0), flight.pressure);
+  flight.altitude[500] = std::numeric_limits<double>::quiet_NaN();
+  flight.pressure[500] = 700.0;
+  EXPECT_EQ(predicted_by_height(flight.pressure, flight.altitude, 1.0)[500], 700.0);
 }
 
 }  // namespace
