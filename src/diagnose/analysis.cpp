@@ -282,7 +282,8 @@ void Analysis::take_out_common_noise(WhitenedSystem& scores) const {
   sum_up(scores);
 }
 
-WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) const {
+WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more,
+                                     Eigen::Index marginalized) const {
   std::vector<Eigen::MatrixXd> columns;
   for (std::size_t f = 0; f < more.size(); ++f) {
     Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
@@ -290,8 +291,36 @@ WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) c
   }
   WhitenedSystem scores = whiten(columns);
   take_out_common_noise(scores);
-  marginalize(scores, uncertainty_.front().cols());
+  marginalize(scores, marginalized);
   return scores;
+}
+
+Competition Analysis::competition(const std::vector<std::size_t>& chosen,
+                                  const std::vector<Eigen::MatrixXd>& rivals, std::size_t width) const {
+  const std::vector<Eigen::MatrixXd> effects = all_columns_of(chosen);
+  std::vector<Eigen::MatrixXd> more;
+  for (std::size_t f = 0; f < rivals.size(); ++f) {
+    Eigen::MatrixXd& both = more.emplace_back(rivals[f].rows(), effects[f].cols() - base_ + rivals[f].cols());
+    both << effects[f].rightCols(effects[f].cols() - base_), rivals[f];
+  }
+  Competition result;
+  result.system = scores_with(more, shape_columns * as_index(added_.size()));
+  const Eigen::Index before = binned_.columns.front().cols() - base_;  // first column of the shapes
+  Eigen::Index first = 0;
+  for (const std::size_t group : chosen) {
+    ColumnGroup& effect = result.groups.emplace_back(groups_[group]);
+    effect.first = first;
+    effect.shape_first += more.front().cols() - before;
+    first += effect.count;
+  }
+  for (; first < more.front().cols(); first += as_index(width)) {
+    ColumnGroup& rival = result.groups.emplace_back();
+    rival.first = first;
+    rival.count = as_index(width);
+    rival.effect = groups_.size() + result.groups.size();
+    rival.bounds.resize(width);
+  }
+  return result;
 }
 
 HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {

@@ -27,6 +27,12 @@ struct HeldOut {
   Eigen::VectorXd chi2;  ///< squared innovations of each minute, all references, in units of the noise
 };
 
+/// Chosen effects and their rivals in one system.
+struct Competition {
+  WhitenedSystem system{};
+  std::vector<ColumnGroup> groups{};  ///< the chosen effects, then the rivals
+};
+
 /// Statistics of a diagnosis: noise and missing effects, estimated alternately because each needs the other.
 ///
 /// Each flight has one entry per reference; entries against the first reference come first, and each
@@ -60,7 +66,13 @@ class Analysis {
   const WhitenedSystem& scores() const { return *scores_; }
   /// Scores of the base followed by other columns instead of the candidates'. @param more in bins, of each
   /// flight against each reference
-  WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more) const;
+  WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more) const {
+    return scores_with(more, uncertainty_.front().cols());
+  }
+  /// Scores of the base, the chosen effects with their uncertain shapes, and rivals. @param rivals in bins,
+  /// of each flight against each reference @param width columns of a rival
+  Competition competition(const std::vector<std::size_t>& chosen, const std::vector<Eigen::MatrixXd>& rivals,
+                          std::size_t width) const;
   const std::vector<ColumnGroup>& groups() const { return groups_; }
   const SearchResult& result() const { return result_; }
   Eigen::Index base() const { return base_; }
@@ -109,6 +121,8 @@ class Analysis {
     return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
   }
   std::vector<Eigen::MatrixXd> all_columns_of(const std::vector<std::size_t>& groups) const;
+  /// @param marginalized number of last columns of uncertain shapes that count as noise
+  WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more, Eigen::Index marginalized) const;
 
   /// Residual of a flight after base and groups, in bins.
   Eigen::VectorXd left_of(std::size_t flight, const std::vector<std::size_t>& groups,

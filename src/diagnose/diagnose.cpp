@@ -232,14 +232,14 @@ std::array<std::size_t, mask_count> count_masks(const TeamColumns& columns) {
   return all;
 }
 
-Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
+Verdict verdict_of(const Diagnosis& diagnosis, double explained, const UnexplainedStructure& structure) {
   constexpr double notable = 0.03;  // fraction of the explained part
   if (diagnosis.findings.empty())
     return diagnosis.unexplained.significant ? Verdict::unexplained : Verdict::silent;
-  if (diagnosis.unexplained.significant && left > notable * explained) return Verdict::partial;
+  if (diagnosis.unexplained.significant && structure.left > notable * explained) return Verdict::partial;
   const bool alone = std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
                                  [](const Finding& finding) { return finding.aliases.empty(); });
-  return alone ? Verdict::identified : Verdict::ambiguous;
+  return alone && structure.rival.empty() ? Verdict::identified : Verdict::ambiguous;
 }
 
 /// Withdraws the findings if one variable of the files explains more than they do.
@@ -334,12 +334,18 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   for (std::size_t f = 0; f < structure.traced.size(); ++f)
     diagnosis.flights[f].traced = std::move(structure.traced[f]);
   if (structure.overrules) overrule(diagnosis);
+  if (!structure.rival.empty()) {
+    diagnosis.notes.push_back(
+        fmt::format("a straight line in {} explains the residual about as well as the effects; neither is "
+                    "ruled out with a probability of 95 %",
+                    structure.rival));
+  }
   if (!flaps.empty())
     diagnose_flaps(analysis, flaps, groups_of(set, flaps.candidates), options.seed, diagnosis);
   keep_series(analysis, options.series_of, diagnosis.flights);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
-  diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);
+  diagnosis.verdict = verdict_of(diagnosis, explained, structure);
   judge_held_out(diagnosis);
   std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
   diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());

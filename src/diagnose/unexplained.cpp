@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <set>
 
 #include "diagnose/dependencies.hpp"
@@ -14,13 +15,14 @@
 #include "diagnose/structure.hpp"
 #include "diagnose/tested_variables.hpp"
 #include "numerics/chi_squared.hpp"
+#include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double chance = 0.01;   // probability that the best of all variables matches noise alone
-constexpr double min_gain = 1.1;  // ratio of a line in a variable to effects with a name
+constexpr double chance = 0.01;  // probability that the best of all variables matches noise alone
+constexpr double sure = 3.0;     // log odds, a probability of 95 %
 constexpr std::size_t max_variables = 10;
 /// Twice the gain in log-likelihood by drift. Noise of short memory gains 17 at most in a dozen flights
 /// without drift, since no autoregression describes it wholly.
@@ -303,9 +305,20 @@ bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity
   return covariance * covariance > image * image * variances;
 }
 
-/// Line in a variable that explains most in addition to the base, among possible causes that are not inputs
-/// of an effect. It has a separate slope against each reference because the location of the cause is unknown.
-GroupScore best_line(const Analysis& analysis, const Tested& tested, const EffectInputs& inputs) {
+/// Most likely line in a variable.
+struct LineRival {
+  std::string variable{};
+  double log_odds = -infinity;  ///< against all chosen effects
+};
+
+/// Compares the most likely line in one variable with all chosen effects: marginal likelihoods, times
+/// the expected number of effects and of causes among the variables, shared by those that were tested. The
+/// line has a separate slope against each reference because the location of the cause is unknown; the shapes
+/// of the effects are uncertain. Inputs of an effect are no rivals of it.
+LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested,
+                    const EffectInputs& inputs) {
+  constexpr double expected_effects = 0.5;
+  constexpr double expected_variables = 0.1;
   const auto is_input = [&](const TestedVariable& variable) {
     return inputs.variables.count(variable.name) != 0 ||
            std::any_of(inputs.quantities.begin(), inputs.quantities.end(),
@@ -316,50 +329,26 @@ GroupScore best_line(const Analysis& analysis, const Tested& tested, const Effec
     const TestedVariable& variable = *tested.variables[i];
     if (variable.may_be_cause && variable.turn == 0.0 && !is_input(variable)) causes.push_back(i);
   }
+  LineRival best;
+  if (causes.empty()) return best;
   const std::size_t references = reference_count(analysis);
-  std::vector<ColumnGroup> groups(causes.size());
-  for (std::size_t k = 0; k < groups.size(); ++k) {
-    groups[k].first = as_index(references * k);
-    groups[k].count = as_index(references);
-    groups[k].bounds.resize(references);
-  }
-  const WhitenedSystem scores =
-      analysis.scores_with(lines_in(analysis, tested, causes, as_index(references)));
-  const Search search(scores, analysis.base(), groups);
-  GroupScore best;
-  for (std::size_t k = 0; k < groups.size(); ++k) {
-    GroupScore line = search.score(k, {});
-    if (line.chi2 - line.freedom > best.chi2 - best.freedom) best = std::move(line);
+  const std::vector<Eigen::MatrixXd> lines = lines_in(analysis, tested, causes, as_index(references));
+  const Competition competition = analysis.competition(chosen, lines, references);
+  const Search search(competition.system, analysis.base(), competition.groups);
+  std::vector<std::size_t> effects(chosen.size());
+  std::iota(effects.begin(), effects.end(), std::size_t{0});
+  const auto prior = [](double expected, std::size_t tested_count) {
+    return std::log(expected / static_cast<double>(tested_count));
+  };
+  const double against =
+      search.evidence(effects) +
+      static_cast<double>(chosen.size()) * prior(expected_effects, analysis.groups().size()) -
+      prior(expected_variables, causes.size());
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    const double log_odds = search.evidence({chosen.size() + k}) - against;
+    if (log_odds > best.log_odds) best = {tested.variables[causes[k]]->name, log_odds};
   }
   return best;
-}
-
-/// Whether a line in one variable is more likely than all chosen effects: it explains a tenth more than an
-/// effect does, or it replaces several effects, because simultaneous causes are rare. The threshold is raised
-/// for the number of tested variables. Inputs of an effect are not rivals of it. All references are used for
-/// both.
-bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested,
-                    const EffectInputs& inputs) {
-  if (tested.variables.empty()) return false;
-  const Search& search = analysis.search();
-  const auto rows = static_cast<double>(analysis.scores().row_count);
-  const double choices = std::log(static_cast<double>(tested.variables.size()));
-  double by_effects = 0.0;
-  for (const std::size_t group : chosen) by_effects += search.score(group, {}).freedom;
-  const double together = (search.variance({}) / search.variance(chosen) - 1.0) * rows;
-  const GroupScore best = best_line(analysis, tested, inputs);
-  double line = best.chi2;
-  if (chosen.size() > 1) {
-    const double likelihood =
-        -0.5 * rows * std::log1p(-std::min(line / rows, 0.999)) - 0.5 * best.freedom * std::log(rows);
-    const double price = std::log(static_cast<double>(analysis.groups().size()));
-    if (likelihood - choices > search.evidence(chosen) - price * static_cast<double>(chosen.size()))
-      return true;
-  }
-  // Both in units of the noise remaining after all effects.
-  line *= search.variance({}) / search.variance(chosen);
-  const double margin = 9.0 + 2.0 * choices;
-  return line - best.freedom > min_gain * (together - by_effects) + margin;
 }
 
 /// Indices of variables with significant structure, without duplicates.
@@ -423,7 +412,9 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   if (!chosen.empty() && (by_variables < chance || chosen.size() > 1)) {
     beside_base =
         std::make_unique<const Tested>(analysis, std::vector<std::size_t>(), variables, options.seed);
-    result.overrules = line_overrules(analysis, chosen, *beside_base, inputs);
+    const LineRival line = best_line(analysis, chosen, *beside_base, inputs);
+    result.overrules = line.log_odds > sure;
+    if (line.log_odds > -sure && !result.overrules) result.rival = line.variable;
   }
   const Tested& shown = result.overrules ? *beside_base : beside_all;
 

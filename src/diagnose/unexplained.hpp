@@ -20,9 +20,10 @@ struct EffectInputs {
 struct UnexplainedStructure {
   Unexplained found;
   double left = 0.0;  ///< chi2 of the best variable in addition to base and chosen effects
-  /// True if a straight line in one variable of the files explains more than all chosen effects: these are
-  /// then rejected, and `found` describes the residual of the base alone.
+  /// True if a straight line in one variable of the files is more likely than all chosen effects, with a
+  /// probability of 95 %: these are then rejected, and `found` describes the residual of the base alone.
   bool overrules = false;
+  std::string rival{};  ///< variable of such a line with a probability of 5 to 95 %; otherwise empty
   std::vector<std::vector<double>> traced{};  ///< best variable of each local flight, one value per record
 };
 

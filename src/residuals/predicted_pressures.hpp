@@ -17,7 +17,8 @@ namespace pcor::internal {
 ///
 /// @param dynamic_pressure hPa, a value for each sample, NaN if missing
 /// @param samples of the model, with the radome's pressures if they are recorded
-/// @return hPa; unchanged if the radome has no value, and everywhere if fewer than 300 samples have one
+/// @return hPa; unchanged if the radome has no value, and everywhere if fewer than 300 samples have one or
+/// the combination misses the pressure by more than 5 % (rms)
 std::vector<double> predicted_by_radome(std::vector<double> dynamic_pressure, const ModelSamples& samples);
 
 /// Static pressure predicted from the height: its fast part is that of a least-squares polynomial of ln p in
@@ -27,7 +28,8 @@ std::vector<double> predicted_by_radome(std::vector<double> dynamic_pressure, co
 /// @param static_pressure hPa, a value for each sample, NaN if missing
 /// @param altitude m, a value for each sample, NaN if missing; empty: not recorded
 /// @param step s, from sample to sample
-/// @return hPa; unchanged if the height has no value, and everywhere if fewer than 300 samples have one
+/// @return hPa; unchanged if the height has no value, and everywhere if fewer than 300 samples have one or
+/// the polynomial misses the pressure by more than 2 % (rms)
 std::vector<double> predicted_by_height(std::vector<double> static_pressure,
                                         const std::vector<double>& altitude, double step);
 

@@ -30,6 +30,10 @@ class NoisySensor {
   virtual void predict(const std::size_t* samples, std::size_t count, const Jet* parameters,
                        Jet* out) const = 0;
 
+  /// Derivative of the predicted reading with respect to delta-p, units per hPa, at some samples.
+  virtual void differentiate_by_defect(const std::size_t* samples, std::size_t count,
+                                       const double* parameters, double* out) const = 0;
+
   /// Derivative of the residual with respect to the sensor, hPa per unit, at the prediction with the files'
   /// parameters, for every sample.
   virtual std::vector<double> sensitivity() const = 0;

@@ -177,9 +177,27 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
   sensor->predict(samples, count, parameters, residual);
   for (std::size_t i = 0; i < count; ++i)
     residual[i] = sensitivity[samples[i]] * (recorded[samples[i]] - residual[i]);
-  std::vector<std::size_t> all(wanted.size());
-  std::iota(all.begin(), all.end(), 0);
-  differentiate(count, {parameters, parameters + own.parameters.size()}, wanted, all, derivatives,
+  // In some coefficients delta-p is linear, and the reading depends on them through delta-p alone.
+  const std::vector<bool> linear = own.model.linear();
+  std::vector<std::size_t> curved;  // indices in `wanted`
+  std::vector<LinearColumn> by_defect;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    if (wanted[k] < linear.size() && linear[wanted[k]])
+      by_defect.push_back({wanted[k], derivatives + k * count});
+    else
+      curved.push_back(k);
+  }
+  if (!by_defect.empty()) {
+    std::vector<double> store;
+    own.model.differentiate_linear(own.model.gathered(samples, count, parameters, store), count, parameters,
+                                   by_defect);
+    std::vector<double> slope(count);
+    sensor->differentiate_by_defect(samples, count, parameters, slope.data());
+    for (const LinearColumn& each : by_defect) {
+      for (std::size_t i = 0; i < count; ++i) each.derivatives[i] *= slope[i];
+    }
+  }
+  differentiate(count, {parameters, parameters + own.parameters.size()}, wanted, curved, derivatives,
                 [&](const Jet* dual, Jet* out) { sensor->predict(samples, count, dual, out); });
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     for (std::size_t i = 0; i < count; ++i) derivatives[k * count + i] *= -sensitivity[samples[i]];

@@ -200,7 +200,10 @@ TEST(LinearRows, DoNotHangOnHowTheMasksAreKnown) {
   const std::vector<double>& start = found.residuals().parameters();
   EXPECT_EQ(given.used(), found.used());
   EXPECT_EQ(at_used(given, start, all_parameters(given)), at_used(found, start, all_parameters(found)));
-  const std::vector<double>& shown = *found.inputs().model.find(Quantity::lams_airspeed);
+  // The laser at which derivatives are taken is the prediction by the pressures at which they are taken.
+  const auto inputs = std::make_shared<const pcor::FlightSamples>(found.inputs());
+  const pcor::Residuals at_inputs(inputs, model, *reference, found.mask());
+  const std::vector<double>& shown = *inputs->model.find(Quantity::lams_airspeed);
   EXPECT_THAT(shown, testing::Pointwise(testing::NanSensitiveDoubleEq(),
-                                        found.residuals().predicted_sensor(start.data())->second));
+                                        at_inputs.predicted_sensor(start.data())->second));
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -139,6 +140,13 @@ TEST(HeightPrediction, KeepsTheValuesWithoutHeight) {
   flight.altitude[500] = std::numeric_limits<double>::quiet_NaN();
   flight.pressure[500] = 700.0;
   EXPECT_EQ(predicted_by_height(flight.pressure, flight.altitude, 1.0)[500], 700.0);
+}
+
+TEST(HeightPrediction, KeepsTheValuesWithTheHeightOfAnotherFlight) {
+  const Climbs flight(4000);
+  Series other = flight.altitude;
+  std::rotate(other.begin(), other.begin() + 700, other.end());
+  EXPECT_EQ(predicted_by_height(flight.pressure, other, 1.0), flight.pressure);
 }
 
 }  // namespace

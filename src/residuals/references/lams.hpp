@@ -70,6 +70,13 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
     for (std::size_t i = 0; i < count; ++i) out[i] = predicted_at(samples[i], parameters);
   }
 
+  void differentiate_by_defect(const std::size_t* samples, std::size_t count, const double* parameters,
+                               double* out) const override {
+    const std::vector<Jet> constant(parameters, parameters + model_.parameters().size());
+    for (std::size_t i = 0; i < count; ++i)
+      out[i] = predicted_at(samples[i], constant.data(), Jet(0.0, 0)).v[0];
+  }
+
   std::vector<double> sensitivity() const override {
     const std::vector<Jet> parameters(model_.parameters().begin(), model_.parameters().end());
     std::vector<double> result(beam_.size());
@@ -88,13 +95,14 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
     return model_.chain().lams_static_defect(state, parameters, flags) - state[Quantity::static_defect];
   }
 
-  /// Airspeed along the beam implied by pressures and temperature, m/s.
+  /// Airspeed along the beam implied by pressures and temperature, m/s. @param more is added to delta-p, hPa
   template <class S>
-  S predicted_at(std::size_t sample, const S* parameters) const {
+  S predicted_at(std::size_t sample, const S* parameters, const S& more = S(0.0)) const {
     State<S> state;
     NoQualityFlags flags;
     const Chain& chain = model_.chain();
     model_.corrected_static_pressure(sample, parameters, state);
+    state[Quantity::static_defect] = state[Quantity::static_defect] + more;
     chain.correct(state, state[Quantity::static_defect], flags);
     // Cosine of the beam, without effects on its speed.
     const S along = state[Quantity::lams_airspeed] / chain.lams_airspeed(state, parameters);
