@@ -408,13 +408,13 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   for (const Structure& structure : beside_all.test.structures()) {
     if (by_variables < chance) result.left = std::max(result.left, structure.gain - structure.freedom);
   }
+  const LineRival line = chosen.empty() ? LineRival() : best_line(analysis, chosen, beside_all, inputs);
+  result.overrules = line.log_odds > sure;
+  if (line.log_odds > -sure && !result.overrules) result.rival = line.variable;
   std::unique_ptr<const Tested> beside_base;
-  if (!chosen.empty() && (by_variables < chance || chosen.size() > 1)) {
+  if (result.overrules) {
     beside_base =
         std::make_unique<const Tested>(analysis, std::vector<std::size_t>(), variables, options.seed);
-    const LineRival line = best_line(analysis, chosen, *beside_base, inputs);
-    result.overrules = line.log_odds > sure;
-    if (line.log_odds > -sure && !result.overrules) result.rival = line.variable;
   }
   const Tested& shown = result.overrules ? *beside_base : beside_all;
 
