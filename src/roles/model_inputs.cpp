@@ -104,7 +104,7 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
     if (!flight.variable(input.variable).flags.empty()) flagged.push_back(input.variable);
   }
   if (!flagged.empty()) {
-    notes.push_back(fmt::format("samples that flags of the file call bad or missing count as missing: of {}",
+    notes.push_back(fmt::format("samples flagged as bad or missing in the file are treated as missing: {}",
                                 fmt::join(flagged, ", ")));
   }
   if (!without_range.empty()) {
@@ -127,7 +127,7 @@ void note_left_out(const ModelInput& input, const RejectedCounts& left_out, std:
   note(left_out.impossible, fmt::format("outside {:g} to {:g}{}, which is impossible",
                                         input.conversion.least(), input.conversion.greatest(), unit));
   note(left_out.invalid, "outside the range that the file states as valid");
-  note(left_out.enormous, "values beyond 1e30, which mark missing values");
+  note(left_out.enormous, "beyond 1e30, which marks missing values");
 }
 
 std::vector<std::string> notes_on_law(const Flight& flight, const ModelDefinition& file) {

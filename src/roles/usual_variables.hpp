@@ -26,7 +26,7 @@ const VariableNaming& family_of(const ModelDefinition& model, const Flight& flig
 /// Mach number.
 std::vector<std::string> usual_variables(const VariableNaming& family, Quantity role);
 
-/// Usual variables in files of all families.
+/// The names of the usual variables of a role in files of all families.
 std::vector<std::string> usual_variables(Quantity role);
 
 /// All heights, GPS first, then inertial and pressure heights, which suffice to separate climbs from
