@@ -100,8 +100,8 @@ template <class Arch>
 /// (1 + part/whole)^exponent - 1 within a few units in the last place.
 ///
 /// If all lanes are in the range of flight, below Mach 0.847, two polynomials are used, as in
-/// `pcor::power_less_one`; that of the exponential has a wider range here, to include the pressure of a given
-/// airspeed.
+/// `pcor::power_less_one`; the polynomial of the exponential has a wider range here, to include the pressure
+/// of a given airspeed.
 template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> power_less_one(
     const xsimd::batch<double, Arch>& part, const xsimd::batch<double, Arch>& whole,

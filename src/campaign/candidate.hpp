@@ -21,7 +21,7 @@ struct CandidateParameter {
 
 /// Effect that the model, or the model of the reference system, may lack.
 struct Candidate {
-  ModelEffect effect;      ///< with neutral parameters and tested shapes
+  ModelEffect effect;      ///< the effect, with neutral parameters and tested shapes
   std::string id;          ///< id as in a finding
   std::size_t number = 0;  ///< number of the effect in the extended model
   /// Effect on the system of each reference: its number in the extended model of that system, nullopt if

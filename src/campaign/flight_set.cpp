@@ -259,7 +259,7 @@ void FlightSet::require_one_aircraft() const {
     if (known[i].aircraft == known[*first].aircraft) continue;
     throw Error(
         fmt::format("{} is of the aircraft '{}' and {} of '{}', but a model applies to one aircraft; give "
-                    "the flights of one",
+                    "flights of a single aircraft",
                     name(*first), known[*first].aircraft, name(i), known[i].aircraft));
   }
 }

@@ -91,7 +91,8 @@ void low_pass_angles(ModelSamples& samples, double step) {
   }
 }
 
-// What the model would have read at the airspeed without gusts, in the same static pressure and temperature.
+// Pressures that the model would have read at the airspeed without gusts, in the same static pressure and
+// temperature.
 ModelSamples without_gusts(const FlightSamples& samples, const ModelDefinition& file,
                            const double* parameters, const Air& air, const Series& airspeed) {
   ModelSamples calm = samples.model;

@@ -67,13 +67,12 @@ struct GpsRows {
 /// Wind, m/s: ground velocity minus the velocity through the air, V u(heading, pitch, roll, attack,
 /// sideslip), each component. Height, m: GPS height minus height by the hydrostatic equation.
 ///
-/// In the columns of the wind stands in place of the recorded pressures what they would be without gusts: V
-/// low-passed by a Gaussian of 45 s, its direction by one of 15 s; flow angles, and what else an effect
-/// reads, are low-passed by 1 s. In those of the height what changes with the temperature has pressures that
-/// are low-passed by 15 s, and so has the rise: a thousandth of the noise of pressure or GPS in them would be
-/// taken for some tenths of a kelvin.
-/// @param used the samples that take part
-/// @param parameters of the model, all of them; `wanted` are those of which the rows have derivatives
+/// The columns of the wind use pressures without gusts: V low-passed by a Gaussian of 45 s, its direction by
+/// one of 15 s; flow angles and other inputs of effects are low-passed by 1 s. In the columns of the height,
+/// the terms with the temperature and the rise use pressures low-passed by 15 s, because even a thousandth of
+/// the noise of pressure or GPS in them would appear as a temperature error of a few tenths of a kelvin.
+/// @param used samples of the fit @param parameters all parameters of the model; the rows have derivatives by
+/// `wanted`
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
                  const std::vector<std::size_t>& wanted);

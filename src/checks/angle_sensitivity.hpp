@@ -49,7 +49,7 @@ std::vector<double> residual_of(const Flown& flown, AngleReference witness);
 /// Check of all manoeuvres of one kind.
 struct AngleCheck {
   std::string name;   ///< name of the check
-  std::string angle;  ///< for example "angle of attack"
+  std::string angle;  ///< title of the angle, for example "angle of attack"
   Regime regime;
   std::vector<AngleReference> witnesses;  ///< references in order of preference
   bool with_square = false;

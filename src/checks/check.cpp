@@ -179,7 +179,7 @@ std::string_view to_string(CheckVerdict verdict) {
 
 Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& model,
              const CheckOptions& options) {
-  if (flights.empty()) throw Error("nothing to check; give at least one flight");
+  if (flights.empty()) throw Error("give at least one flight to check");
   flights.require_each_once();
   if (options.second && options.second->variables.count(Quantity::static_pressure) == 0) {
     throw Error(Error::Code::model,

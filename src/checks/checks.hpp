@@ -12,7 +12,7 @@ namespace pcor::internal {
 
 /// Pair of measured pressures, hPa, one value for each record.
 struct MeasuredPair {
-  std::string name{};  ///< for example "PSFRD/QCFR"
+  std::string name{};  ///< label, for example "PSFRD/QCFR"
   std::vector<double> static_pressure{};
   std::vector<double> dynamic_pressure{};
 

@@ -545,8 +545,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
 
 Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
                    const CompareOptions& options) {
-  if (flights.empty() || contenders.empty())
-    throw Error("nothing to compare; give at least one flight and one model");
+  if (flights.empty() || contenders.empty()) throw Error("give at least one flight to compare and one model");
   for (const ComparedModel& contender : contenders) first_of(contender.references);
   const std::vector<Field> fields = fields_of(contenders);
   flights.require_one_aircraft();

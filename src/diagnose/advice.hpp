@@ -9,7 +9,7 @@
 namespace pcor::internal {
 
 /// Adds to every finding with aliases the repeated regime that would separate it from them, and the
-/// probability of that.
+/// probability of success.
 void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
             std::vector<Finding>& findings);
 

@@ -18,8 +18,7 @@ namespace pcor::internal {
 namespace {
 
 constexpr int max_rounds = 4;
-/// Candidates removed from the residual before the first noise estimate; this is no claim that they are
-/// effects.
+/// Candidates removed from the residual before the first noise estimate; they need not be effects.
 constexpr double generous_threshold = 9.0;
 constexpr std::size_t generous_effects = 6;
 constexpr double stretch_time = 300.0;  // s

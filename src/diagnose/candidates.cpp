@@ -32,7 +32,7 @@ const VariableNaming& family_of(const ModelDefinition& file, const FlightSet& fl
   return flights.size() == 0 ? aircraft_families().front() : family_named(flights.outlines().front().family);
 }
 
-/// Fills roles that the model leaves open with the usual variables, if every flight records them in a
+/// Fills roles without a variable in the model with the usual variables, if every flight records them in a
 /// suitable unit. Flow angles stay unchanged if the model computes them from the radome.
 void name_usual_variables(ModelDefinition& file, const FlightSet& flights) {
   const VariableNaming& family = family_of(file, flights);
@@ -350,9 +350,9 @@ CandidateSet find_candidates(const ModelDefinition& model, const std::vector<Mod
     if (has_effect(model, info.id)) continue;
     if (trust_reference && is_of_laser(info.location)) continue;
     if (info.location == EffectLocation::ambient_temperature) {
-      set.not_testable.push_back(
-          {std::string(info.id), std::string(info.title),
-           "to the laser it is as temp-offset; the hydrostatic height finds it (pcor temperature)"});
+      set.not_testable.push_back({std::string(info.id), std::string(info.title),
+                                  "not separable from temp-offset with the laser; the hydrostatic height "
+                                  "determines it (pcor temperature)"});
       continue;
     }
     if (info.constants == GasConstants::dry && model.model.moist) {

@@ -246,8 +246,8 @@ Verdict verdict_of(const Diagnosis& diagnosis, double explained, const Unexplain
 void overrule(Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) {
     diagnosis.notes.push_back(fmt::format(
-        "{} explains a part of what is missing, but a line in {} explains more: it is not taken "
-        "for the cause",
+        "{} explains a part of the residual, but a linear term in {} explains more, so {} is not reported as "
+        "the cause",
         finding.id(),
         (diagnosis.unexplained.variables.empty() ? std::string("one variable")
                                                  : diagnosis.unexplained.variables.front().name)));
@@ -296,12 +296,14 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   leave_out_empty(columns);
   add_statistics(columns, options.training_share, diagnosis);
   if (diagnosis.samples < diagnosis.masks[0]) {
-    diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights took no part",
+    diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights were not used",
                                           diagnosis.masks[0] - diagnosis.samples));
   }
   if (diagnosis.samples < min_samples) {
-    throw Error(fmt::format("{} samples are left to diagnose, and {} are the fewest that tell anything: {}",
-                            diagnosis.samples, min_samples, mask_text(diagnosis.masks)));
+    throw Error(
+        fmt::format("{} usable samples, at least {} required: {}; add flights or relax --min-airspeed, "
+                    "--max-flaps, --exclude",
+                    diagnosis.samples, min_samples, mask_text(diagnosis.masks)));
   }
   const FlapsCandidates flaps = find_flaps_candidates(set, columns);
   drop_untestable(set, columns);
@@ -408,7 +410,7 @@ void judge_held_out(Diagnosis& diagnosis) {
 
 Diagnosis diagnose(const FlightSet& flights, const ModelDefinition& model, const References& all_references,
                    const DiagnoseOptions& options) {
-  if (flights.empty()) throw Error("nothing to diagnose; give at least one flight");
+  if (flights.empty()) throw Error("give at least one flight to diagnose");
   flights.require_each_once();
   flights.require_one_aircraft();
   StepDates dates(flights);

@@ -51,12 +51,10 @@ ReportTable variables_table(const Unexplained& unexplained) {
   ReportTable table;
   table.title = "Variables that the unexplained structure varies with";
   table.caption =
-      "Share of the residual's variance that varies with the variable in any way and along a straight line, "
-      "with "
-      "as much drift beside it as is likeliest then; p is the probability that the best of all variables "
-      "does "
-      "as well on these residuals when they are shifted in time, or have signs at random.";
-  table.headers = {"variable", "share", "on a line", "slope", "hPa per", "p", "formula", "what"};
+      "Share of the residual's variance explained by the variable, by any smooth curve and by a straight "
+      "line, with the most likely drift fitted at the same time. p: probability that the best of all "
+      "variables explains as much if the residuals are shifted in time or have random signs.";
+  table.headers = {"variable", "share", "linear share", "slope", "hPa per", "p", "formula", "what"};
   for (const EmpiricalPredictor& variable : unexplained.variables) {
     table.rows.push_back({variable.name, percent(variable.r2), percent(variable.linear_r2),
                           with_error(variable.slope, variable.slope_error), variable.unit,
@@ -185,11 +183,11 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
   panel.title = "What if";
   panel.caption =
       "Switch an effect on, or move its coefficient: residual, table, ladder and figures follow, and the "
-      "coefficients that were not moved by hand are fitted again. The fit takes the derivatives of the "
-      "residual where the model is now, in units of the noise that is left when what was found, and is "
-      "switched on, is taken off. That is what pcor refit finds where the residual is a straight line in the "
-      "coefficients, and nearly so elsewhere, as for a lag. The figures are of all samples; pictures and "
-      "table take the derivatives at no more than some thousand samples, with straight lines between them.";
+      "coefficients that were not moved by hand are fitted again. The fit is linear about the current model "
+      "and weighted by the noise after the findings that are switched on. It equals the result of pcor refit "
+      "if the residual is linear in the coefficients, and nearly equals it otherwise, for example for a lag. "
+      "The numbers use all samples; pictures and tables use derivatives at a few thousand samples, with "
+      "linear interpolation.";
   panel.residual = residual;
   panel.x_choices = choices({residual}, first);
   panel.autocorrelation_time = memory_;
@@ -203,28 +201,26 @@ void DiagnosisPanels::add_responses(const std::vector<std::string>& residuals, b
   if (p == nullptr || m == nullptr || used_.empty()) return;
   CurvePanel coherence{
       "Coherence of model and reference",
-      "How much of what changes in one is in the other, period by period; 1 is all. Low where "
-      "noise is all there is.",
+      "Coherence of model and reference by period; 1 is perfect agreement. Low values indicate noise.",
       {},
       "period",
       "coherence",
       "s",
       "",
       true};
-  CurvePanel delay{
-      "Delay of the model behind the reference",
-      "Of waves of each period, with standard errors. Above zero the model is late. A delay that is "
-      "the same at all periods is that of a clock; one that is less at short periods is that of a "
-      "line or a filter.",
-      {},
-      "period",
-      "delay",
-      "s",
-      "s",
-      true};
+  CurvePanel delay{"Delay of the model behind the reference",
+                   "Delay of waves of each period, with standard errors. Positive if the model lags. An "
+                   "equal delay at all periods indicates a clock error; a smaller delay at short periods "
+                   "indicates a pressure line or a filter.",
+                   {},
+                   "period",
+                   "delay",
+                   "s",
+                   "s",
+                   true};
   CurvePanel step{"Step response",
-                  "What the model shows when the reference steps from 0 to 1 at time zero: a step that is "
-                  "shifted is a delay, one that is approached slowly a lag.",
+                  "Response of the model if the reference steps from 0 to 1 at time zero: a shifted step is "
+                  "a delay, a gradual step a lag.",
                   {},
                   "time",
                   "response",
@@ -337,7 +333,7 @@ void add_info(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelDe
 
 void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
   ReportTable limits;
-  limits.title = "How large what was not found may be";
+  limits.title = "Upper limits of effects that were not found";
   limits.caption =
       "Limits hold with 95 % confidence; the rms is what an effect at its limit would add beyond the model's "
       "coefficients.";
@@ -350,7 +346,7 @@ void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
   panels.add_table(std::move(limits));
   ReportTable absorbed;
   absorbed.title = "Effects that the model's own coefficients imitate";
-  absorbed.caption = "What remains is the part of the effect's variance that the coefficients leave.";
+  absorbed.caption = "Remaining: part of the effect's variance that the coefficients cannot imitate.";
   absorbed.headers = {"effect", "imitated by", "remains", "what"};
   for (const AbsorbedEffect& effect : diagnosis.absorbed) {
     absorbed.rows.push_back({effect.effect, join_list(effect.by), percent(effect.remaining), effect.title});
@@ -367,18 +363,18 @@ void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
 void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const std::string& left) {
   const Unexplained& unexplained = diagnosis.unexplained;
   if (!unexplained.significant) return;
-  ReportText page{"What no effect explains", unexplained_text(unexplained)};
+  ReportText page{"Unexplained residual", unexplained_text(unexplained)};
   for (std::string& text : untested_text(unexplained)) page.paragraphs.push_back(std::move(text));
   panels.add(std::move(page));
   if (panels.add_column("drift", "slow drift", "hPa", diagnosis.flights,
                         [](const FlightDiagnosis& f) { return f.drift; }))
-    panels.add_time("Residual that is left, and its slow drift",
-                    "The drift is what wanders slowly, over many minutes.", {left, "drift"}, "residual");
+    panels.add_time("Remaining residual and its slow drift", "Drift: slow changes over many minutes.",
+                    {left, "drift"}, "residual");
   panels.add_table(variables_table(unexplained));
   if (unexplained.variables.empty()) return;
   const std::string& variable = unexplained.variables.front().name;
   if (panels.meet({variable_column(variable), left}))
-    panels.add_binned("What is left, against " + variable, structure_caption, {left},
+    panels.add_binned("Remaining residual against " + variable, structure_caption, {left},
                       {variable_column(variable)});
 }
 
@@ -404,10 +400,10 @@ void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>
 void add_distribution_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
   if (panels.report().time.empty()) return;
   add_distributions(panels.report(), residuals);
-  add_track(
-      panels.report(), "What is left, on the map",
-      "The track over the ground: one colour over a leg, or with a heading, tells of a place or a direction.",
-      residuals.back(), panels.wind());
+  add_track(panels.report(), "Remaining residual on the map",
+            "The track over the ground: one colour over a leg or a heading indicates an error that depends "
+            "on place or direction.",
+            residuals.back(), panels.wind());
 }
 
 }  // namespace pcor::internal::report

@@ -86,7 +86,7 @@ class DiagnosisPanels {
 
   void add_time(std::string title, std::string caption, std::vector<std::string> columns, std::string axis);
 
-  /// Residuals against the variables; those of `first` that exist come before the others.
+  /// Residuals against the variables; the existing variables of `first` are shown first.
   void add_binned(std::string title, std::string caption, std::vector<std::string> y,
                   const std::vector<std::string>& first);
 

@@ -32,7 +32,7 @@ std::string either(const Finding& finding) {
   } else {
     for (const Alias& alias : finding.aliases) names += " or " + alias.effect;
   }
-  return fmt::format("An effect is missing, {}: these flights cannot tell which", names);
+  return fmt::format("An effect is missing, {}: these flights cannot distinguish them", names);
 }
 
 void summarise(Report& report, const Diagnosis& diagnosis) {
@@ -46,7 +46,7 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) report.summary.push_back(finding_summary(finding));
   if (diagnosis.findings.empty()) {
     report.summary.push_back(
-        fmt::format("None of the {} effects that were tested exceeds the threshold.", diagnosis.candidates));
+        fmt::format("All {} tested effects are below the threshold.", diagnosis.candidates));
   }
   for (std::string& text : unexplained_text(diagnosis.unexplained)) report.summary.push_back(std::move(text));
   std::vector<std::string> limits;
@@ -81,8 +81,7 @@ Info numbers_of(const Diagnosis& diagnosis) {
 BarPanel ranking_bars(const Diagnosis& diagnosis) {
   BarPanel bars;
   bars.title = "Ranking";
-  bars.caption =
-      "By how much chi2 falls with each effect that was found, and with each rival (\"or\") in its place.";
+  bars.caption = "Decrease of chi2 by each effect that was found, and by each rival (\"or\") instead of it.";
   bars.axis = "fall of chi2";
   for (const Finding& finding : diagnosis.findings) {
     bars.bars.push_back({finding.id(), finding.chi2});
@@ -100,9 +99,8 @@ ReportTable ranking_table(const Diagnosis& diagnosis) {
   ReportTable table;
   table.title = "Findings and their rivals";
   table.caption =
-      "A rival (\"or\") explains the flights as well as the effect above it. The correlation is that of what "
-      "the two leave after the model's own coefficients; the size is that of the coefficient over its usual "
-      "size.";
+      "A rival (\"or\") explains the flights as well as the effect above it. Correlation: between the two "
+      "effects after the model's own coefficients. Size / usual: ratio of the coefficient to its usual size.";
   table.headers = {"",    "effect", "coefficients", "rms, hPa", "fall of chi2", "correlation", "size / usual",
                    "what"};
   for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
@@ -150,12 +148,12 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
             name, "added by " + id, "hPa", diagnosis.flights, [i](const F& f) { return one_of(f.added, i); }))
       added.push_back(std::move(name));
   }
-  panels.add_time("What the missing effects add", "To the residual, with the estimated coefficients.", added,
-                  "added");
+  panels.add_time("Contributions of the missing effects",
+                  "Contribution to the residual with the estimated coefficients.", added, "added");
   panels.add_time("Evidence in time", "Fall of chi2 per minute around each sample.", evidence,
                   "fall of chi2");
   panels.add(ranking_bars(diagnosis));
-  panels.add_plane("What is left, over Mach number and pressure",
+  panels.add_plane("Remaining residual over Mach number and pressure",
                    "Residual with all findings: one colour over a region is a bias there.", residuals.back());
   panels.add(ranking_table(diagnosis));
   panels.add_table(evidence_table(findings));
@@ -166,10 +164,10 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
                      findings.size() == 1 ? "The finding: " + id : fmt::format("Finding {}: {}", i + 1, id)));
     std::vector<std::string> inputs = inputs_of(findings[i].effect);
     inputs.push_back(numbered("added", i));
-    panels.add_binned("Residual before and after, against what " + id + " depends on", effect_caption,
-                      residuals, inputs);
+    panels.add_binned("Residual before and after, against the inputs of " + id, effect_caption, residuals,
+                      inputs);
     panels.add_plane("Evidence for " + id + ", over Mach number and pressure",
-                     "Orange speaks for the effect, blue against it.", numbered("evidence", i));
+                     "Orange supports the effect, blue contradicts it.", numbered("evidence", i));
   }
 }
 
@@ -185,17 +183,17 @@ std::string verdict_text(const Diagnosis& diagnosis) {
       return effects;
     case Verdict::ambiguous:
       return ids.size() == 1 ? either(diagnosis.findings.front())
-                             : effects + "; these flights cannot tell all of them from others";
+                             : effects + "; these flights cannot separate all of them from others";
     case Verdict::partial:
-      return effects + "; structure is left that no effect explains";
+      return effects + "; the remaining structure is not explained by any effect";
     case Verdict::unexplained:
       return diagnosis.unexplained.significant
-                 ? "Structure is left that no effect explains"
-                 : "What was held out is off, by what no effect on the fitted flights explains";
+                 ? "The residual has structure that is not explained by any effect"
+                 : "The held-out part has a bias that is not explained by any effect on the fitted flights";
     case Verdict::silent:
       break;
   }
-  return "Nothing is missing that these flights could show";
+  return "No missing effect is detectable on these flights";
 }
 
 std::string estimates_text(const std::vector<Estimate>& estimates) {
@@ -268,7 +266,7 @@ std::string kind_text(const Finding& finding) {
     text += fmt::format(
         "; {:.2g} times its usual size, so look first for a wrong entry in the model, or for another cause",
         finding.times_usual);
-  if (finding.of_reference) text += "; the model itself is not to be changed for it";
+  if (finding.of_reference) text += "; do not change the model for it";
   return text;
 }
 

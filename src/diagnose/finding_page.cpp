@@ -42,7 +42,7 @@ Law law_of(const ModelEffect& effect) {
 std::string times_usual(double ratio) { return ratio_text(ratio) + " times the usual size"; }
 
 std::string what_it_is(const Finding& finding, const Law& law) {
-  std::string text = "What is missing: " + name_with_id(finding.title, finding.id()) + ".";
+  std::string text = "Missing effect: " + name_with_id(finding.title, finding.id()) + ".";
   if (law.formula.empty()) return text;
   const bool defect = law.added_to.rfind("delta-p", 0) == 0;
   return text + fmt::format(" The correction {}{} is added to {}.", law.formula,
@@ -65,8 +65,8 @@ std::string how_large(const Finding& finding, const Law& law) {
 
 std::string how_sure(const Finding& finding, double threshold) {
   std::string text = fmt::format(
-      "The evidence is a fall of chi2 by {:.1f}, where {:.1f} would have been enough; on flights without any "
-      "effect the best of all candidates comes as far with a probability of {}.",
+      "Evidence: chi2 decreases by {:.1f} (threshold {:.1f}); probability that the best candidate reaches "
+      "this on flights without any effect: {}.",
       finding.chi2, threshold, probability(finding.p_value));
   if (finding.events > 0.0) {
     text += finding.events < 1.5 ? " It rests on a single event."
@@ -83,7 +83,7 @@ std::string how_sure(const Finding& finding, double threshold) {
 
 std::string held_out(const Finding& finding) {
   if (!std::isfinite(finding.rms_before) || !std::isfinite(finding.rms_after)) return "";
-  return fmt::format("On stretches that took no part in the fit the rms residual {} from {} to {} hPa.",
+  return fmt::format("On stretches outside the fit the rms residual {} from {} to {} hPa.",
                      finding.rms_after < finding.rms_before ? "falls" : "does not fall: it goes",
                      hpa(finding.rms_before), hpa(finding.rms_after));
 }
@@ -104,7 +104,7 @@ std::string rivals(const Finding& finding, const Law& law) {
     for (const Alias& alias : finding.aliases) {
       if (all.size() < max_in_a_sentence) all.push_back(rival(alias));
     }
-    text = fmt::format("These flights cannot tell it from {}", fmt::join(all, "; "));
+    text = fmt::format("These flights cannot distinguish it from {}", fmt::join(all, "; "));
     if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
       text += fmt::format("; and {} more, which the ranking lists", more);
     text += ".";
@@ -113,7 +113,7 @@ std::string rivals(const Finding& finding, const Law& law) {
     text += " " + sentence(finding.advice.sentence);
   } else if (!law.look_alikes.empty()) {
     text += fmt::format(" In general it is easily mistaken for {}", law.look_alikes);
-    text += law.manoeuvre.empty() ? "." : fmt::format("; what tells them apart: {}.", law.manoeuvre);
+    text += law.manoeuvre.empty() ? "." : fmt::format("; to separate them: {}.", law.manoeuvre);
   }
   return text;
 }
@@ -187,24 +187,23 @@ std::string finding_summary(const Finding& finding) {
   }
   if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
     all.push_back(fmt::format("{} more", more));
-  text += fmt::format(" These flights cannot tell it from {}.", join_list(all));
+  text += fmt::format(" These flights cannot distinguish it from {}.", join_list(all));
   return finding.advice.sentence.empty() ? text : text + " " + sentence(finding.advice.sentence);
 }
 
 std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
   if (!unexplained.significant) return {};
   std::string what =
-      fmt::format("Structure of {} hPa rms is left that no effect explains", hpa(unexplained.rms));
+      fmt::format("Structure of {} hPa rms is not explained by any effect", hpa(unexplained.rms));
   if (!unexplained.regime.empty())
     what += fmt::format("; most of it lies in the regime {}", unexplained.regime);
-  what +=
-      fmt::format(". Chance would leave as much with a probability of {}.", probability(unexplained.p_value));
+  what += fmt::format(". Probability by chance: {}.", probability(unexplained.p_value));
   if (unexplained.drift_rms > 0.0) {
-    what += fmt::format(" Of it {} hPa wanders slowly.", hpa(unexplained.drift_rms));
+    what += fmt::format(" The slow part is {} hPa.", hpa(unexplained.drift_rms));
   }
   std::vector<std::string> all{what};
   if (unexplained.variables.empty()) {
-    all.emplace_back("It varies with none of the tested variables of the files.");
+    all.emplace_back("It is not correlated with any tested variable of the files.");
   } else {
     const EmpiricalPredictor& first = unexplained.variables.front();
     std::string with = fmt::format("It varies with {}, which explains {} of its variance",
@@ -217,7 +216,7 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
     }
     with += ".";
     if (!first.sampling.empty()) with += fmt::format(" Of the variable {} are used.", first.sampling);
-    with += " Where it acts is not known: one residual does not tell places apart.";
+    with += " The location of the error is unknown, since one residual cannot separate locations.";
     if (!first.formula.empty()) {
       with += fmt::format(
           " The formula {} would describe it, added to the static pressure as well as at any other place.",
@@ -227,9 +226,8 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
   }
   for (const FlightOffset& step : unexplained.steps) {
     all.push_back(
-        fmt::format("The mean of {} lies {} hPa {} that of the rest of the flights; chance would do as much "
-                    "with a probability "
-                    "of {}. Ask what was changed on the aircraft between them.",
+        fmt::format("The mean of {} lies {} hPa {} the mean of the other flights (p = {}). Check the "
+                    "maintenance log between these flights.",
                     step.flight, with_error(std::abs(step.size), step.standard_error),
                     step.size < 0.0 ? "below" : "above", probability(step.p_value)));
   }
@@ -240,14 +238,13 @@ std::vector<std::string> untested_text(const Unexplained& unexplained) {
   std::vector<std::string> all;
   if (!unexplained.computed.empty()) {
     all.push_back(
-        fmt::format("Variables that were not tested, because the files say that they are computed from the "
-                    "residual's own sensors: {}.",
+        fmt::format("Variables not tested because, according to the files, they are computed from the "
+                    "sensors of the residual: {}.",
                     join_list(unexplained.computed)));
   }
   if (!unexplained.shares_noise.empty()) {
-    all.push_back(
-        fmt::format("Variables that were not tested, because their noise is that of the residual: {}.",
-                    join_list(unexplained.shares_noise)));
+    all.push_back(fmt::format("Variables not tested because they share the noise of the residual: {}.",
+                              join_list(unexplained.shares_noise)));
   }
   return all;
 }

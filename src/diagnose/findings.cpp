@@ -305,7 +305,7 @@ std::string shape_of(const Candidate& candidate) {
   if (!candidate.is_variant) return "";
   if (std::string beyond = shape_beyond_model(candidate); !beyond.empty()) return beyond;
   if (candidate.memory != 0.0 && memory_of(candidate.effect).of == Quantity::airspeed_rate)
-    return fmt::format("as the mean rate over {:g} s", candidate.memory);
+    return fmt::format("mean rate over {:g} s", candidate.memory);
   const Scaling& scaling = candidate.effect.scaling;
   if (!scaling.is_none())
     return fmt::format("times p^{} q^{}", scaling.static_pressure, scaling.dynamic_pressure);
@@ -515,9 +515,9 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
       limit.limits.push_back(std::min(statistical, largest));
       seen = seen || statistical < largest;
     }
-    if (!seen) limit.note = "these flights could not show it, as large as it can be";
+    if (!seen) limit.note = "not detectable on these flights, even at its largest possible size";
     if (!score.possible) {
-      limit.note = "to explain what is left it would have to be larger, or of the other sign, than it can be";
+      limit.note = "the size needed to explain the residual is outside its physical bounds";
     }
     limits.push_back(std::move(limit));
     groups.push_back(g);

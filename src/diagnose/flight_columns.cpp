@@ -35,8 +35,8 @@ std::string trouble_of(const std::vector<FlightColumns>& flights,
     }
   }
   if (!varies)
-    return "nothing of it reaches the residual in the samples used: what it depends on does not occur there, "
-           "or the reference does not see it";
+    return "no sensitivity in the samples used: its inputs do not vary there, or the reference is "
+           "insensitive to it";
   return "";
 }
 
@@ -67,19 +67,17 @@ References usable_references(const References& references, std::vector<std::stri
     } else if (reference->window() > 0.0) {
       of_windows.push_back(reference);
     } else {
-      notes.push_back(fmt::format(
-          "the reference {} took no part in the diagnosis: it holds many minutes together, of which no part "
-          "tells something for itself; compare shows it, and refit uses it",
-          reference->name()));
+      notes.push_back(
+          fmt::format("the reference {} was not used in the diagnosis: its residual couples samples over "
+                      "many minutes; compare shows it, and refit uses it",
+                      reference->name()));
     }
   }
   // The samples are read once for the first reference; the laser reads the most.
   std::stable_partition(result.begin(), result.end(), [](const auto& each) { return each->reads_laser(); });
   result.insert(result.end(), of_windows.begin(), of_windows.end());
   if (result.empty())
-    throw Error(
-        "nothing to diagnose with: give a reference that tells of each sample, such as --reference lams, or "
-        "height");
+    throw Error("no reference with a residual for each sample; give one, such as --reference lams or height");
   return result;
 }
 

@@ -76,7 +76,7 @@ RegimeSums sums_of(const Eigen::MatrixXd& rows, const FlightInBins& flight) {
     if (own.empty()) continue;
     const Eigen::MatrixXd columns = rows(own, Eigen::seqN(0, rows.cols() - 1));
     RegimeSum part{SymmetricPart(columns.transpose() * columns)};
-    if (flight.columns.reference == 0) {  // an interval counts once, whatever the number of references
+    if (flight.columns.reference == 0) {  // an interval counts once for all references
       part.intervals = 1.0;
       part.duration = (interval.end - interval.begin) * static_cast<double>(own.size()) /
                       static_cast<double>(last - first);

@@ -17,8 +17,8 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double redundant_below = 1e-3;  // of what the base leaves, given others
-/// Of a column's variance the base has to leave more than this: single precision leaves a millionth.
+constexpr double redundant_below = 1e-3;  // share of the variance after the base, given other groups
+/// Minimum share of a column's variance that the base does not explain; single precision has errors of 1e-6.
 constexpr double min_left = 1e-6;
 constexpr double errors_beyond_bounds = 2.0;
 constexpr double enough_blocks = 12.0;
@@ -272,7 +272,7 @@ double Search::threshold_of(const Conditional& conditional, const std::vector<st
 std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
                                                    const std::vector<std::size_t>& others) const {
   const Eigen::Index columns = scores_->columns();
-  Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);  // for the unscaled columns
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);  // weights of the unscaled columns
   const ColumnGroup& own = groups_[group];
   GroupScore found = score(group, others);
   if (found.estimate.isZero()) {
@@ -455,7 +455,7 @@ void Search::improve(std::vector<std::size_t>& chosen, double price) const {
 }
 
 void Search::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
-  constexpr double told = 4.5;  // of the logarithm of the likelihood: chi2 of 9
+  constexpr double told = 4.5;  // change of the log likelihood, chi2 of 9
   for (std::size_t& group : chosen) {
     const auto usual = std::find_if(groups_.begin(), groups_.end(), [&](const ColumnGroup& each) {
       return each.effect == groups_[group].effect;

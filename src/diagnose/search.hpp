@@ -25,7 +25,8 @@ struct ColumnGroup {
   /// effect was chosen.
   Eigen::Index shape_first = 0;
   Eigen::Index shape_count = 0;
-  bool has_uncertain_shape = false;  ///< an effect of the flow; those of instruments have exact shapes
+  bool has_uncertain_shape =
+      false;  ///< true for effects of the flow; effects of instruments have exact shapes
 
   /// Standard deviation of the size of a coefficient in nature; 0 if unknown.
   double deviation(std::size_t column) const {
@@ -48,7 +49,7 @@ struct GroupScore {
   double equivalent = 0.0;  ///< equivalent chi2 of one degree of freedom
   Eigen::VectorXd estimate{};
   Eigen::MatrixXd covariance{};
-  bool possible = true;  ///< within the bounds, given the errors
+  bool possible = true;  ///< the estimate is within its bounds, given the errors
 };
 
 struct SearchResult {
@@ -106,7 +107,7 @@ class Search {
 
  private:
   struct Conditional {
-    Eigen::MatrixXd information;  // of all turned columns, given base and the set
+    Eigen::MatrixXd information;  // all rotated columns, given base and the set
     Eigen::VectorXd score;
     double squares = 0.0;
     double variance = 1.0;
@@ -130,7 +131,7 @@ class Search {
   /// Noise in the score of a group by minutes: the remainder after its effect is subtracted.
   Eigen::VectorXd own_noise(std::size_t group, const std::vector<std::size_t>& others) const;
   double effective_blocks(std::size_t group, const std::vector<std::size_t>& others) const;
-  /// Gives each effect its first shape, that of the catalogue, unless the flights support another.
+  /// Gives each effect its shape of the catalogue (the first), unless the flights support another.
   void prefer_usual_shapes(std::vector<std::size_t>& chosen) const;
   /// Exchanges, joins and drops effects while the set becomes more likely.
   void improve(std::vector<std::size_t>& chosen, double price) const;

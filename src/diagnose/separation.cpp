@@ -83,7 +83,8 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
   if (plan.regime == nullptr) {
     const std::string general = general_advice(id, effect);
     return fmt::format(
-        "none of the regimes flown, repeated up to {} times, would separate {} from {} at the size found{}{}",
+        "repeating any regime of these flights up to {} times would not separate {} from {} at the size "
+        "found{}{}",
         max_repeats, id, names, general.empty() ? "" : "; ", general);
   }
   const bool is_one = plan.repeats == 1;

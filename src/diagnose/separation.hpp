@@ -13,7 +13,7 @@ namespace pcor::internal {
 /// An effect of an estimated size, and its rivals.
 struct SeparationProblem {
   Eigen::MatrixXd information;    ///< base and candidates, from the existing flights
-  double variance = 1.0;          ///< of the whitened residuals
+  double variance = 1.0;          ///< variance of the whitened residuals
   std::vector<Eigen::Index> own;  ///< the columns of the effect
   Eigen::VectorXd size;           ///< its coefficients
   /// Columns that may imitate the effect for each rival, including base and rival.
@@ -25,7 +25,7 @@ struct Plan {
   const FlownRegime* regime = nullptr;
   int repeats = 0;
   double power = 0.0;  ///< probability that it separates the effect from all rivals with 95 % confidence
-  double gain = 0.0;   ///< in D (see `best_plan`) per second of flight
+  double gain = 0.0;   ///< increase of D (see `best_plan`) per second of flight
 
   double duration() const { return repeats * regime->duration; }  ///< s
 };

@@ -10,8 +10,8 @@
 namespace pcor::internal {
 namespace {
 
-/// Coefficients of all columns in a fit of base and groups; with `alone`, those of the base and of earlier
-/// groups are zero.
+/// Coefficients of all columns in a fit of base and groups; with `alone`, the coefficients of the base and of
+/// earlier groups are zero.
 Eigen::VectorXd coefficients_of(const Analysis& analysis, const std::vector<std::size_t>& groups,
                                 bool alone = false) {
   Eigen::VectorXd estimate;

@@ -94,7 +94,7 @@ class StructureTest {
     Eigen::Index freedom = 0;
   };
 
-  /// Of all records used.
+  /// Values of all records used.
   VariableValues values_of(const std::vector<const double*>& values) const;
   bool add(const std::string& name, const std::vector<const double*>& values, const Smooth& smooth);
   std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth,
@@ -122,7 +122,7 @@ class StructureTest {
 
 /// Whether a variable shares the noise of the residual: their record-to-record changes are correlated
 /// everywhere, in and out of manoeuvres. Such a variable was computed from the same noisy measurement, so
-/// structure that varies with it is no evidence.
+/// structure that varies with it is not evidence.
 /// @param residuals and @param values of local flights
 bool shares_noise(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
                   const std::vector<const double*>& values);

@@ -21,8 +21,8 @@ struct TestedVariable {
   bool may_be_cause = false;
   double turn =
       0.0;  ///< full turn of an angle that covers all directions, in its unit; 0 for other variables
-  /// Whether a curve against it may bend many times, as with heights and speeds; for a variable that is
-  /// rarely far from its mean, such a curve describes the noise of a few samples.
+  /// Whether a curve against the variable may have many bends, as with heights and speeds. With a variable
+  /// that is rarely far from its mean, such a curve would describe the noise of a few samples.
   bool fine = false;
   std::string sampling{};  ///< description of the resampling to one value per record; empty if not resampled
   std::vector<std::shared_ptr<const std::vector<double>>> values{};

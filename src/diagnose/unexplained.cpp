@@ -114,7 +114,7 @@ std::string worst_regime(const Analysis& analysis, const std::vector<std::vector
   return name;
 }
 
-/// Of the own flights.
+/// Residuals of the flights of this process after the groups.
 std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
                                                  const std::vector<std::size_t>& groups) {
   Eigen::VectorXd estimate;
@@ -285,7 +285,7 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
   }
 }
 
-/// Whether a variable is the record of a quantity under another name: the two are correlated above 0.95.
+/// Whether a variable is another record of a quantity: the two have a correlation above 0.95.
 bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity quantity) {
   constexpr double image = 0.95;
   using Sums = Eigen::Matrix<double, 6, 1>;

@@ -9,7 +9,7 @@
 namespace pcor::internal {
 namespace {
 
-/// What a flight has of the sums over all.
+/// Contribution of a flight to the sums over all flights.
 struct ValueSums {
   std::size_t count = 0;
   std::size_t missing = 0;

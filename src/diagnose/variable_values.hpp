@@ -21,7 +21,7 @@ class VariableValues {
   double least() const { return least_; }
   double most() const { return most_; }
   double mean() const { return mean_; }
-  double deviation() const { return deviation_; }  ///< from the mean, root mean square
+  double deviation() const { return deviation_; }  ///< standard deviation
 
   /// Distinct values, ascending; if there are more than `most`, an incomplete list of more than `most`.
   std::vector<double> distinct(std::size_t most) const;

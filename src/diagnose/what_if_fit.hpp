@@ -14,15 +14,15 @@
 
 namespace pcor::internal {
 
-/// The residual of every record of a flight, as a refit sees it, at values of all coefficients; empty where
+/// The residual of every record of a flight, as computed in a refit, at values of all coefficients; empty if
 /// only its derivatives are known.
 using ResidualAt = std::function<std::vector<double>(const Eigen::VectorXd& values)>;
 
-/// That of a flight with some groups in the model; none where only its derivatives are known.
+/// Residual function of a flight with some groups in the model; empty if only its derivatives are known.
 using ResidualWith =
     std::function<ResidualAt(const FlightColumns& flight, const std::vector<std::size_t>& groups)>;
 
-/// Products of (columns, residual) with themselves, summed over so many samples.
+/// Products of (columns, residual) with themselves, summed over `count` samples.
 struct SumOfProducts {
   Eigen::MatrixXd products{};
   double count = 0.0;
@@ -35,15 +35,15 @@ struct SumOfProducts {
   }
 };
 
-/// What a what-if fits: columns and residual of some flights in units of the noise, weighted as a refit with
-/// the effects that were found weights them; unless said otherwise with all of these. A member of a team has
-/// the columns of its own flights, and all have the sums.
+/// Least-squares problem of a what-if: columns and residual of some flights in units of the noise, with the
+/// weights of a refit with all effects that were found, unless stated otherwise. A process of a team has the
+/// columns of its flights only; every process has the sums.
 class WhatIfFit {
  public:
-  /// @param others samples that take no part
-  /// @param coefficients of all columns: the residual is taken at their start, those that are fixed have the
-  /// value that is given
-  /// @param found the groups with which the noise is found, and with some of them
+  /// @param others samples that are not fitted
+  /// @param coefficients of all columns: the residual is linearised at their start values; fixed coefficients
+  /// have the given value
+  /// @param found groups with which, and with subsets of which, the noise is estimated
   WhatIfFit(TeamColumns flights, TeamColumns others, const std::vector<WhatIfCoefficient>& coefficients,
             std::vector<ColumnGroup> groups, const std::vector<std::size_t>& found, bool is_robust,
             const ResidualWith& residual_with);
@@ -57,20 +57,21 @@ class WhatIfFit {
   /// The regimes of the flights.
   const std::vector<FlownRegime>& regimes() const { return regimes_; }
 
-  /// Sums of the parts of the flights, as a refit with some of the effects that were found weights them.
+  /// Sums over the parts of the flights with the weights of a refit with some of the effects that were found.
   struct Weights {
     std::vector<std::size_t> found;
     std::vector<SumOfProducts> parts;
-    Eigen::MatrixXd score_covariance;  ///< of the columns' products with the residual, by the noise
+    Eigen::MatrixXd
+        score_covariance;  ///< covariance of the products of columns and residual due to the noise
   };
 
-  /// With none of what was found first, with all of it last.
+  /// The first element is without findings, the last with all findings.
   const std::vector<Weights>& weights() const { return weights_; }
   const std::vector<SumOfProducts>& alike() const { return alike_; }
   const SumOfProducts& outliers() const { return outliers_; }
   const SumOfProducts& held_out() const { return held_out_; }
 
-  /// Of all columns.
+  /// Information matrix of all columns.
   Eigen::MatrixXd information() const;
 
   /// Changes of all coefficients from the start, and their standard errors.
@@ -79,13 +80,14 @@ class WhatIfFit {
     Eigen::VectorXd errors;
   };
 
-  /// The model's own coefficients with those of some groups, fitted; the others as they are given.
+  /// Fits the model's own coefficients with those of some groups; the other coefficients keep the given
+  /// values.
   Fitted fitted(const std::vector<std::size_t>& groups) const;
 
-  /// What is left of the whitened residuals after that, the variance of one row.
+  /// Variance of one row of the whitened residuals after this fit.
   double variance(const std::vector<std::size_t>& groups) const;
 
-  /// Says which coefficients the flights do not tell, and how large the changes of each are.
+  /// Marks coefficients that the flights do not determine, and sets the scale of the changes of each.
   void describe(std::vector<WhatIfCoefficient>& coefficients) const;
 
  private:
@@ -112,12 +114,12 @@ class WhatIfFit {
   Eigen::Index base_ = 0;
   std::vector<Eigen::Index> own_{};
   Eigen::VectorXd start_{};
-  Eigen::VectorXd given_{};  // changes from the start to what is given
+  Eigen::VectorXd given_{};  // given values less the start values
   BinnedFlights binned_{};
   std::vector<FlownRegime> regimes_{};
   std::vector<Weights> weights_{};
-  SumOfProducts whole_{};       // as a refit weighs the rows
-  SumOfProducts with_noise_{};  // in units of the noise and without its memory
+  SumOfProducts whole_{};       // with the weights of a refit
+  SumOfProducts with_noise_{};  // divided by the noise, without its autocorrelation
   std::vector<SumOfProducts> alike_{};
   SumOfProducts outliers_{};
   SumOfProducts held_out_{};

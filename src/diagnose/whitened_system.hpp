@@ -10,24 +10,25 @@
 
 namespace pcor::internal {
 
-/// Whitened columns and residuals of flights, each against each of its references, and the sums over all of
-/// them that a search needs: those of a generalised least-squares problem. A member of a team has the rows of
-/// its own.
+/// Whitened columns and residuals of flights, each against each of its references, and the sums of this
+/// generalised least-squares problem that a search needs. A process of a team has the rows of its flights
+/// only.
 struct WhitenedSystem {
   FlightPartition share = FlightPartition(0);
-  std::vector<Eigen::MatrixXd> rows{};             ///< of each flight, whitened columns and last the residual
-  std::vector<std::vector<Eigen::Index>> block{};  ///< of each flight, the number of the minute of each row
+  std::vector<Eigen::MatrixXd> rows{};             ///< per flight: whitened columns and, last, the residual
+  std::vector<std::vector<Eigen::Index>> block{};  ///< per flight: index of the minute of each row
   Eigen::Index blocks = 0;                         ///< minutes of all flights
-  std::size_t row_count = 0;                       ///< of all flights
+  std::size_t row_count = 0;                       ///< total of all flights
   Eigen::MatrixXd information{};                   ///< columns and residual with columns and residual
   Eigen::MatrixXd plain{};                         ///< the same as if the noise had no slow parts
 
   Eigen::Index columns() const { return information.cols() - 1; }
 
-  /// What is left of the whitened residual of an own flight after the columns with these coefficients.
+  /// Whitened residual of a flight of this process after the columns with these coefficients.
   Eigen::VectorXd left(std::size_t flight, const Eigen::VectorXd& coefficients) const;
 
-  /// The sums over the minutes of all flights of what each row has. @param of_rows gives it for an own flight
+  /// Sums over the minutes of all flights of a value of each row. @param of_rows gives these values for a
+  /// flight of this process
   Eigen::VectorXd by_minutes(const std::function<Eigen::VectorXd(std::size_t flight)>& of_rows) const;
 };
 
@@ -37,17 +38,17 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
                            const std::vector<Eigen::VectorXd>& residuals,
                            const std::vector<NoiseModel>& noise);
 
-/// The same with one noise for all flights, with the levels of the own.
+/// Whitens with one noise model for all flights and the noise level of each flight.
 WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
                            const std::vector<Eigen::MatrixXd>& columns,
                            const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
 
-/// Takes out of the rows of `later` what their noise has in common with that of `earlier`, the same flight
-/// against another reference: both hold the noise of the aircraft's own sensors. What is left of the rows
-/// stays in units of the noise.
+/// Removes from the rows of `later` the noise in common with `earlier`, the same flight against another
+/// reference: both contain the noise of the aircraft's own sensors. The remaining rows stay in units of the
+/// noise.
 ///
-/// @param noise what is left of the whitened residual of each flight when all that was found is taken off; of
-/// the later one without what is common, from here on
+/// @param noise whitened residual of each flight after all findings; on return the residual of `later` has no
+/// common part
 void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier, std::size_t later,
                            std::vector<Eigen::VectorXd>& noise, WhitenedSystem& scores);
 

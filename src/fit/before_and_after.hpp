@@ -13,7 +13,7 @@ struct BeforeAndAfter {
   std::vector<FlightFit> flights{};  ///< the parts that were fitted and those that were held out
   std::vector<FlightFit> further{};  ///< results with each further reference
   std::vector<std::string> notes{};  ///< about fitted flights
-  RegimeSet flown{};                 ///< in flights that took part
+  RegimeSet flown{};                 ///< regimes in the fitted flights
   Statistics flaps_out{};            ///< fitted flights
 
   /// Unit hPa, over all fitted samples.

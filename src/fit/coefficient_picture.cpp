@@ -16,8 +16,9 @@ std::optional<DotPanel> coefficient_picture(const std::vector<FittedParameter>& 
   DotPanel panel;
   panel.title = "Coefficients before and after";
   panel.caption = fmt::format(
-      "By how much each coefficient {} differs from what it was {}, with its standard error. One that moves "
-      "by many of its errors was wrong for these flights, or takes up what the model lacks.",
+      "Change of each coefficient ({} relative to {}), with its standard error. A change of many standard "
+      "errors means that the old value was wrong for these flights, or that the coefficient absorbs a "
+      "missing effect.",
       after_is, before_is);
   panel.series = {""};
   panel.axis = "change";

@@ -78,7 +78,7 @@ class Blocks {
 
 /// Sums over the bins of a block.
 struct BlockSums {
-  Eigen::MatrixXd derivatives;  ///< of the scores by all parameters
+  Eigen::MatrixXd derivatives;  ///< derivatives of the scores by all parameters
   Eigen::VectorXd score;
 
   template <class Archive>

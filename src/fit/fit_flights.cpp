@@ -31,8 +31,8 @@ struct FlightCounts {
   std::size_t bins = 0;
   std::size_t offsets = 0;
   std::array<std::size_t, mask_count> masks{};
-  std::vector<bool> linear{};  ///< for each of the parameters whether the residual is linear in it
-  double begin = 0.0;          ///< of the first bin, s since 1970 UTC
+  std::vector<bool> linear{};  ///< one per parameter: whether the residual is linear in it
+  double begin = 0.0;          ///< start of the first bin, s since 1970 UTC
 
   template <class Archive>
   void serialize(Archive& archive) {

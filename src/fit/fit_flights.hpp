@@ -175,7 +175,7 @@ struct Reduction {
   /// second derivative of the cost to that of the weighted squares.
   double curvature = 1.0;
   std::size_t bins = 0;
-  bool valid = true;  ///< false where some residual is not a number at these parameters
+  bool valid = true;  ///< false if a residual is NaN at these parameters
 
   /// Lengths of the derivatives, including the part absorbed by offsets.
   Eigen::VectorXd lengths() const;

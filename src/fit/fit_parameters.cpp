@@ -71,7 +71,7 @@ std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Ref
   }
   for (const FitParameter& parameter : parameters) {
     if (!(parameter.bounds.lower < parameter.bounds.upper)) {
-      throw Error(fmt::format("{}: its bounds [{}, {}] leave nothing; give them in order", parameter.name,
+      throw Error(fmt::format("{}: its bounds [{}, {}] are empty; give the smaller one first", parameter.name,
                               parameter.bounds.lower, parameter.bounds.upper));
     }
   }

@@ -23,8 +23,8 @@ struct FitParameter {
   bool fixed = false;
 };
 
-/// The parameters of the model, then those of a static system that is the reference, as residuals have them.
-/// @throws Error if the options name one that is not there, or bounds leave nothing.
+/// The parameters of the model, then those of a static system that is the reference, in the order of
+/// `residual`. @throws Error if the options name an unknown parameter, or bounds are empty.
 std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Reference& reference,
                                          const RefitOptions& options);
 

@@ -7,11 +7,10 @@
 
 namespace pcor::internal {
 
-/// `given` with the coefficients of a fit, their standard errors and covariance, a name that says what it was
-/// fitted to, and where it comes from (`descend`). What it knew of parameters that were held, and of the
-/// temperature, stays.
-/// @param first of the fit's parameters that is one of this file
-/// @param flights what the fitted flights are called
+/// `given` with the coefficients of a fit, their standard errors and covariance, a name with the fitted
+/// flights, and its origin (`descend`). Errors of held parameters and of the temperature are kept.
+/// @param first index of the first parameter of this file in the fit
+/// @param flights title of the fitted flights
 ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, const RefitResult& fit,
                              Loss loss, const std::string& flights);
 

@@ -74,8 +74,8 @@ Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values
   Trial trial(flights, values);
   if (trial.searched().empty()) {
     throw Error(
-        "--search: the residual is linear in every free coefficient, so there is one minimum and nothing to "
-        "search; leave the option out");
+        "--search: the residual is linear in every free coefficient, so there is only one minimum; omit the "
+        "option");
   }
   std::vector<double> lower;
   std::vector<double> upper;

@@ -6,12 +6,12 @@
 
 namespace pcor::internal {
 
-/// Looks for starting values without derivatives, between the bounds, over the whole of them (NLopt's
-/// controlled random search CRS2, with a fixed seed). Parameters in which the residual is linear are solved
-/// for in closed form at every trial, so only the others are searched. It minimises the sum of squares.
+/// Searches starting values between the bounds without derivatives (NLopt's controlled random search CRS2,
+/// with a fixed seed). Parameters in which the residual is linear are solved for in closed form at every
+/// trial, so only the others are searched. It minimises the sum of squares.
 ///
-/// @param values of all parameters @return those of the wanted ones
-/// @throws Error if a parameter to be searched has no bounds, or none is to be searched.
+/// @param values of all parameters @return values of the wanted parameters
+/// @throws Error if a parameter to be searched has no bounds, or if there is no such parameter.
 Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values);
 
 }  // namespace pcor::internal

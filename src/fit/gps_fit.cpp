@@ -24,7 +24,7 @@ constexpr double max_error = 1.0;        // error of delta-p in one direction of
 constexpr double min_information = 3.0;  // ratio to the prior information
 constexpr double block_time = 300.0;     // s
 
-/// Products of whitened rows (wanted, nuisances, residual) over some minutes.
+/// Products of whitened rows (wanted, nuisances, residual) over a block of a few minutes.
 struct Products {
   std::int64_t block = 0;
   std::vector<double> values{};
@@ -413,14 +413,14 @@ class GpsSolver {
             : "--reference wind with circles or reverse headings, for the level; a speed run or a pitch "
               "manoeuvre for the rest";
     if (held_.cols() > 0) {
-      fit.warnings.push_back(fmt::format(
-          "the flights do not determine {}: there delta-p is held as near to that of the start as "
-          "the rest allows, with an error of {:.2f} hPa; what would tell: {}",
-          names_of(held_), fit.held, what_tells));
+      fit.warnings.push_back(
+          fmt::format("the flights do not determine {}: delta-p was kept near the starting model, with an "
+                      "error of {:.2f} hPa; to determine it: {}",
+                      names_of(held_), fit.held, what_tells));
     }
     if (weak_.cols() > 0) {
       fit.notes.push_back(
-          fmt::format("the flights hardly determine {}: held near the start; what would tell: {}",
+          fmt::format("the flights hardly determine {}: kept near the starting values; to determine it: {}",
                       names_of(weak_), what_tells));
     }
     if (std::abs(fit.thermometer) > 2.0 * fit.thermometer_error) {

@@ -13,8 +13,8 @@ namespace {
 
 // Flights hold 32-bit floats: columns that agree to better than their rounding, 6e-8, are one column.
 constexpr double hopeless_condition = 1e7;
-// Column-scaled; that of the memo's eq. 20 with an independent Mach number is 1400 on a flight with speed
-// runs.
+// Condition number of scaled columns; eq. 20 of the memo with an independent Mach number has 1400 on a flight
+// with speed runs.
 constexpr double collinear_condition = 300.0;
 // A standard error above this share of an effect's typical size is worth a word.
 constexpr double weak_share = 0.25;
@@ -37,9 +37,9 @@ double condition_number(const Reduction& reduction, const FitTask& task,
   for (Eigen::Index k = 0; k < scaled.cols(); ++k) {
     const double length = scaled.col(k).norm();
     if (!(lengths[k] > 0.0)) {
-      throw Error(fmt::format(
-          "{} changes nothing on these flights, so it cannot be found; leave it as it is: --fix {}",
-          to_string(k), to_string(k)));
+      throw Error(
+          fmt::format("{} has no influence on these flights, so it cannot be fitted; fix it: --fix {}",
+                      to_string(k), to_string(k)));
     }
     if (!(length > lengths[k] / hopeless_condition)) {
       throw Error(
@@ -85,8 +85,8 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
                               task.parameters[fitted[static_cast<std::size_t>(b)]].name, correlation);
     }
     words.push_back(
-        fmt::format("{} is {}: {:.3g} +- {:.2g}, where its typical size is {:.2g}{}{}; hold it with --fix "
-                    "{}; what would tell: {}",
+        fmt::format("{} is {}: {:.3g} +- {:.2g}, with a typical size of {:.2g}{}{}; fix it with --fix {}; to "
+                    "determine it: {}",
                     parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
                     solution.values[as_index(place)], error, parameter.typical,
                     partners.empty() ? "" : ", and it is correlated with ", partners, parameter.name,
@@ -94,8 +94,8 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
   }
   if (condition > collinear_condition) {
     words.push_back(
-        fmt::format("the coefficients are nearly collinear (condition number {:.0f}): their sum is known "
-                    "better than each; do not read meaning into one alone",
+        fmt::format("the coefficients are nearly collinear (condition number {:.0f}): their sum is better "
+                    "determined than each; do not interpret one alone",
                     condition));
   }
   const bool has_manoeuvre = flown[static_cast<std::size_t>(Regime::pitch_manoeuvre)] ||
@@ -103,9 +103,9 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
                              flown[static_cast<std::size_t>(Regime::speed_run)];
   if (flown.any() && !has_manoeuvre) {
     words.emplace_back(
-        "the flights have no pitch manoeuvre, yaw manoeuvre or speed run: the coefficients rest on climbs "
-        "and slow changes, in which angle of attack, Mach number and weight go together, and may carry "
-        "effects that the model does not have");
+        "the flights have no pitch manoeuvre, yaw manoeuvre or speed run: the coefficients depend on climbs "
+        "and slow changes, in which angle of attack, Mach number and weight are correlated, and may absorb "
+        "missing effects");
   }
   return words;
 }
@@ -114,13 +114,13 @@ std::vector<std::string> bound_notes(const FitTask& task, const Solution& soluti
   std::vector<std::string> words;
   for (std::size_t p = 0; p < solution.at_bound.size(); ++p) {
     if (!solution.at_bound[p]) continue;
-    words.push_back(fmt::format(
-        "{} is held at its bound {:.6g}: the flights want it beyond; the errors of the others hold only if "
-        "that bound is true; {}",
-        task.parameters[p].name, solution.values[as_index(p)],
-        condition > collinear_condition
-            ? "the coefficients are hard to tell apart here, so rather hold one of them with --fix"
-            : "if it is not meant, widen it in the model file"));
+    words.push_back(
+        fmt::format("{} is at its bound {:.6g}; the unconstrained optimum lies outside, and the errors of "
+                    "the other coefficients are valid only if the bound is right; {}",
+                    task.parameters[p].name, solution.values[as_index(p)],
+                    condition > collinear_condition
+                        ? "the coefficients are nearly collinear, so fix one of them with --fix"
+                        : "if the bound is too narrow, widen it in the model file"));
   }
   return words;
 }

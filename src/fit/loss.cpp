@@ -16,8 +16,8 @@ struct LossInfo {
   Function (*function)(double deviation);
 };
 
-// The widths are in robust deviations. Those of Tukey's and Cauchy's loss have 95 % efficiency on normal
-// noise; for Huber's see `huber_width`.
+// The widths are in robust deviations. Tukey's and Cauchy's loss have 95 % efficiency on normal noise; for
+// Huber's loss see `huber_width`.
 constexpr std::array<LossInfo, 5> losses{
     {{Loss::tukey, "tukey",
       [](double d) -> Function { return std::make_unique<ceres::TukeyLoss>(internal::tukey_width * d); }},

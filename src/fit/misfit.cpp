@@ -122,7 +122,7 @@ class Heights {
     const Eigen::MatrixXd covariance = size.asDiagonal() * factor.solve(Eigen::MatrixXd(size.asDiagonal()));
     const Eigen::VectorXd right = left_.col(count).head(count);
     const Eigen::VectorXd mean = covariance * right;
-    const double logarithm = factor.matrixLLT().diagonal().array().log().sum();  // of half the determinant
+    const double logarithm = factor.matrixLLT().diagonal().array().log().sum();  // half the log determinant
     return {covariance, mean, 0.5 * right.dot(mean) - logarithm};
   }
 
@@ -143,10 +143,10 @@ double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& var
   return 1.0 / (1.0 + std::exp(parameters - posterior.gain));
 }
 
-/// The variances at which the restricted likelihood is stationary: that of a state is the sum of squares of
-/// its heights over the number of them that the flights determine (MacKay 1992, Neural Computation 4, 415).
-/// Successive substitution ends at the same values from any start nearby, as a search without derivatives
-/// does not.
+/// The variances at which the restricted likelihood is stationary: the variance of a state is the sum of
+/// squares of its heights over the number of them that the flights determine (MacKay 1992, Neural Computation
+/// 4, 415). Successive substitution ends at the same values from any start nearby, unlike a search without
+/// derivatives.
 Eigen::VectorXd variances_of(const Heights& heights, double rms) {
   constexpr int max_rounds = 500;
   constexpr double most = 5.0;  // relative to the rms of the residual

@@ -6,12 +6,12 @@
 
 namespace pcor::internal {
 
-/// What the law lacks as a smooth function of the flight state: a sum of functions of attack ratio, sideslip
-/// ratio, q/p, climb rate, load factor and static pressure, the same on all flights. Each state is
+/// The misfit of the law as a smooth function of the flight state: a sum of functions of attack ratio,
+/// sideslip ratio, q/p, climb rate, load factor and static pressure, the same on all flights. Each state is
 /// standardised over the flights, cut off at +-3 and has seven bumps, exp(-((z - c)/0.75)^2/2) with c = -3
 /// ... 3, whose heights are normal with one variance for each state. The variances are the most likely ones
 /// by restricted likelihood, given the noise (Patterson and Thompson 1971, Biometrika 58, 545). States that
-/// are not recorded are left out. Beside it each flight has a zero of its own.
+/// are not recorded are omitted. In addition each flight has an offset.
 struct Misfit {
   Eigen::VectorXd variance{};    ///< height of each bump, hPa^2; empty if unknown
   Eigen::VectorXd height{};      ///< most likely height of each bump, hPa

@@ -43,7 +43,7 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
   const Eigen::Index size = as_index(wanted.size());
   const PriorRows drawn = prior_rows(task, wanted);
   const Eigen::MatrixXd prior = solution.deviation * drawn.rows;
-  // Rows of derivatives and residual at some coefficients, with what draws these to their start.
+  // Rows of derivatives and residual at some coefficients, with the rows of the prior.
   const auto rows_at = [&](const Eigen::VectorXd& values) {
     Eigen::MatrixXd rows(size + prior.rows(), size + 1);
     rows.topRows(size) = flights.reduce(values, loss).factor.topRows(size);

@@ -11,7 +11,7 @@ namespace pcor::internal {
 /// `FitTask::parameters`; zero if not stated.
 Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference& reference);
 
-/// Rows W of what draws wanted parameters to `centre`: the cost is |W (x - centre)|^2 / 2.
+/// Rows W of the Gaussian prior of wanted parameters around `centre`: the cost is |W (x - centre)|^2 / 2.
 struct PriorRows {
   Eigen::MatrixXd rows{};
   Eigen::VectorXd centre{};
@@ -19,9 +19,9 @@ struct PriorRows {
   Eigen::VectorXd inflation{};
 };
 
-/// Where the fit uses a prior, parameters are drawn to their values in the files, with the covariance that
-/// the files state, else with the typical size of the effect as the standard error; a parameter of which
-/// neither is known is not drawn anywhere. Coefficients of a surface always have the prior of its roughness.
+/// If the fit uses a prior, it is centred on the values in the files, with the covariance stated in the
+/// files, otherwise with the typical size of the effect as the standard error. A parameter without either has
+/// no prior. Coefficients of a surface always have the prior of its roughness.
 PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& wanted);
 
 }  // namespace pcor::internal

@@ -77,10 +77,10 @@ FitTask task_of(const ModelDefinition& model, const References& references, cons
 /// Result of the stages of a fit.
 struct Fitted {
   Solution solution{};
-  std::vector<std::size_t> parameters{};           // in the order of the stages
+  std::vector<std::size_t> parameters{};           // sorted by stage
   std::vector<std::size_t> held{};                 // fixed parameters with an error stated in the files
   std::vector<int> stage_of{};                     // one per parameter
-  std::unique_ptr<FitFlights> flights{};           // with all samples and all parameters that were fitted
+  std::unique_ptr<FitFlights> flights{};           // all samples and all fitted parameters
   std::vector<std::unique_ptr<FitFlights>> own{};  // flights of each stage, if there are several
   std::vector<FitEquations> equations{};
   bool has_converged = true;
@@ -204,8 +204,8 @@ Fitted prepared_for_gps(const FitTask& task) {
   fitted.flights = std::make_unique<FitFlights>(task, FitSetup{task.start, fitted.parameters});
   if (fitted.flights->samples() == 0) {
     throw Error(
-        fmt::format("no sample is left for the fit: {}; see the variables of the model and "
-                    "--min-airspeed, --max-flaps, --exclude",
+        fmt::format("no usable sample for the fit: {}; see the variables of the model and --min-airspeed, "
+                    "--max-flaps, --exclude",
                     mask_text(fitted.flights->masks())));
   }
   return fitted;
@@ -341,9 +341,10 @@ std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task
   add(bound_notes(task, fitted.solution, result.condition_number));
   if (task.uses_prior()) {
     notes.emplace_back(
-        "every coefficient was drawn to its starting value, by the covariance that its file states, else by "
-        "the typical size of its effect; what the flights cannot tell, as what two static systems have in "
-        "common, keeps that value, and the prior is its error");
+        "a Gaussian prior at the starting value was applied to every coefficient, with the covariance from "
+        "the model file, otherwise with the typical size of the effect; combinations that the flights do not "
+        "determine, such as the common error of two static systems, keep the starting value and the prior's "
+        "error");
   }
   return notes;
 }
@@ -436,7 +437,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   // Gusts are in the residual of the wind: a better law need not make it smaller.
   result.worse = why_worse(result, by_gps_alone ? infinity : before.rms_of(before.bulk_squares));
   result.least_squares_rms = gps ? result.rms : sums.rms_of(squares.least());
-  // Gusts and drifts of the wind are no faults of the model.
+  // Gusts and drifts of the wind are not errors of the model.
   if (!by_gps_alone) result.warnings = fit_warnings(flights, result, solution.values);
   if (gps) result.warnings.insert(result.warnings.begin(), gps->warnings.begin(), gps->warnings.end());
   result.notes = notes_of(result, task, fitted, covariance.by_noise, gps, compared);

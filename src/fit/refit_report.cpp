@@ -53,7 +53,7 @@ ReportTable correlation_table(const RefitResult& fit) {
 ReportTable flight_table(const RefitResult& fit) {
   ReportTable table;
   table.title = "Flights before and after";
-  table.caption = "A flight, or a part of it, that is held out took no part in the fit.";
+  table.caption = "Held-out flights or parts were not used in the fit.";
   table.headers = {"flight",
                    "part",
                    "samples",
@@ -105,8 +105,8 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   panels.add_pairs();
   if (fit.omissions.size() > 1) {
     BarPanel bars;
-    bars.title = "What each effect is worth";
-    bars.caption = "The rms residual when an effect is left out and the others are fitted again.";
+    bars.title = "Contribution of each effect";
+    bars.caption = "Rms residual with one effect removed and the others refitted.";
     bars.bars.push_back({"all effects", fit.rms, 0.0});
     for (const Omission& omission : fit.omissions)
       bars.bars.push_back({"without " + omission.effect, omission.rms, 0.0});

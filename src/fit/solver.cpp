@@ -33,7 +33,7 @@ void require_samples(const FitFlights& flights) {
   }
   if (flights.samples() == 0) {
     throw Error(fmt::format(
-        "{}: no sample is left for the fit: {}; see the variables of the model and --min-airspeed, "
+        "{}: no usable sample for the fit: {}; see the variables of the model and --min-airspeed, "
         "--max-flaps, --exclude",
         flights.count() == 1 ? flights.task().flights.name(0) : "the flights", mask_text(flights.masks())));
   }
@@ -44,7 +44,7 @@ void require_samples(const FitFlights& flights) {
                     "coefficients",
                     flights.samples(), unknown, mask_text(flights.masks())));
   }
-  // The noise is found from bins of four seconds; that of a stage is the noise of all samples.
+  // The noise is estimated from bins of four seconds; every stage uses the noise of all samples.
   const std::size_t fewest = unknown + (flights.shares_noise() ? 1 : min_free_bins);
   const std::size_t bins = flights.bins();
   if (bins < fewest) {

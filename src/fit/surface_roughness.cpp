@@ -152,7 +152,7 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
     const double inflation =
         std::max(1.0, now.solve(found.noise).trace() / (unit * now.solve(found.information).trace()));
     changed = changed || std::abs(std::log(inflation / surface.inflation)) > 0.2;
-    // The noise is measured beside the surface of the round before: half steps make it converge.
+    // The noise is measured with the surface of the previous round: half steps make it converge.
     surface.inflation = std::sqrt(inflation * surface.inflation);
     const double weight = 1.0 / (surface.inflation * unit);
     const SurfaceRoughness before = surface;
@@ -172,7 +172,7 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
         surface.degrees_of_freedom = weight * factor.solve(found.information).trace();
       }
     }
-    const auto differ = [](double a, double b) { return std::abs(std::log(a / b)) > 0.6; };  // by a step
+    const auto differ = [](double a, double b) { return std::abs(std::log(a / b)) > 0.6; };  // one step
     changed = changed || differ(surface.size, before.size) || differ(surface.coefficient, before.coefficient);
   }
   return changed;

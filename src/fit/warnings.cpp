@@ -82,8 +82,8 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
   std::vector<std::string> warnings;
   if (result.r_squared < 0.0) {
     warnings.push_back(
-        fmt::format("the residuals vary more than the delta-p that the reference asks for (R2 {:.2f}): a "
-                    "constant would describe it better than this model does",
+        fmt::format("the residuals vary more than the delta-p implied by the reference (R2 {:.2f}): a "
+                    "constant would be better than this model",
                     result.r_squared));
   }
   const std::vector<Run> runs = flights.of_each(
@@ -91,26 +91,25 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
   const Run longest = *std::max_element(
       runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.end - a.begin < b.end - b.begin; });
   if (longest.end - longest.begin >= max_chance) {
-    warnings.push_back(fmt::format(
-        "{}: from {} to {} {} samples in a row are off by {:+.2f} hPa in the mean, each beyond {:.1f} "
-        "deviations of the noise, so they are no outliers: the model lacks what happened there, or a sensor "
-        "failed",
-        longest.flight, utc_text(longest.begin, "%H:%M:%S"), utc_text(longest.end, "%H:%M:%S"),
-        longest.samples, longest.mean, tukey_width));
+    warnings.push_back(
+        fmt::format("{}: {} to {}, {} consecutive samples have a mean residual of {:+.2f} hPa, each above "
+                    "{:.1f} sigma; they are not outliers: an effect is missing or a sensor failed",
+                    longest.flight, utc_text(longest.begin, "%H:%M:%S"), utc_text(longest.end, "%H:%M:%S"),
+                    longest.samples, longest.mean, tukey_width));
   }
   const double share = static_cast<double>(result.outliers) / static_cast<double>(result.samples);
   if (share > many_outliers) {
     warnings.push_back(
-        fmt::format("{:.0f} % of the samples count as outliers, and the fit does not look at them: the loss "
-                    "may hide what the model lacks; --loss none fits all of them",
+        fmt::format("{:.0f} % of the samples were down-weighted as outliers; the robust loss may hide a "
+                    "missing effect; try --loss none",
                     100.0 * share));
   }
   if (result.rms > larger * result.least_squares_rms) {
-    warnings.push_back(fmt::format(
-        "plain least squares of all samples would leave an rms of {:.3f} hPa, the fit leaves {:.3f} hPa: "
-        "outliers count less in the fit, or a bound or a prior holds a coefficient; --loss none counts "
-        "all samples alike",
-        result.least_squares_rms, result.rms));
+    warnings.push_back(
+        fmt::format("the rms residual is {:.3f} hPa with plain least squares of all samples and {:.3f} hPa "
+                    "with this fit: outliers are down-weighted, or a bound or a prior restricts a "
+                    "coefficient; --loss none weights all samples equally",
+                    result.least_squares_rms, result.rms));
   }
   return warnings;
 }
@@ -125,7 +124,7 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   std::vector<std::string> notes;
   if (!has_converged) {
     notes.emplace_back(
-        "the stages of the fit did not come to rest: what one finds moves the other again and again; fit the "
+        "the staged fit did not converge: the stages keep changing each other's coefficients; fit the "
         "coefficients together, without stages");
   }
   std::string apart;
@@ -137,11 +136,10 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
                          parameter.jackknife_error, parameter.noise_error);
   }
   if (!apart.empty()) {
-    notes.push_back(
-        fmt::format("the standard errors by the noise are not borne out by leaving out one {} after another, "
-                    "for {}: the noise is not "
-                    "what the fit takes it for, or a few minutes decide; believe the larger one",
-                    result.jackknife_parts == flights ? "flight" : "part of the flights", apart));
+    notes.push_back(fmt::format(
+        "jackknife errors (without one {} at a time) differ from the errors by the noise model for {}: the "
+        "noise model is wrong, or a few minutes dominate the fit; use the larger error",
+        result.jackknife_parts == flights ? "flight" : "part of the flights", apart));
   }
   return notes;
 }

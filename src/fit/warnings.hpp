@@ -7,16 +7,16 @@
 
 namespace pcor::internal {
 
-/// Why the fitted model should not be used, a sentence without full stop: its residuals are larger than with
-/// the coefficients of the file by more than 2 % on what was fitted (rms and robust deviation both, since a
-/// robust fit may leave outliers more) or by more than 5 % on a part that was held out, or a held-out part is
-/// off by more than the fit expects. Empty otherwise.
+/// Reason not to use the fitted model, a sentence without full stop: its residuals exceed those with the
+/// coefficients of the file by more than 2 % on fitted samples (both rms and robust deviation, since a robust
+/// fit may increase outliers) or by more than 5 % on a held-out part, or the bias of a held-out part exceeds
+/// the expectation of the fit. Empty otherwise.
 /// @param bulk_rms_before robust deviation with the coefficients of the file, hPa
 std::string why_worse(const RefitResult& result, double bulk_rms_before);
 
 /// Reasons not to trust a fit, one sentence each: residuals vary more than delta-p itself; outliers are
-/// consecutive, which indicates a missing effect; outliers are so many that the loss hides a missing effect;
-/// or assumed slow drift may be a missing effect.
+/// consecutive, which indicates a missing effect; the number of outliers suggests that the loss hides a
+/// missing effect; or assumed slow drift may be a missing effect.
 std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& result,
                                       const Eigen::VectorXd& values);
 

@@ -15,7 +15,7 @@
 namespace pcor::internal {
 namespace {
 
-// To UDUNITS an angle is a number like any other, and a count could take its place.
+// UDUNITS treats an angle as a plain number, so a count would convert to it.
 bool is_angle(const std::string& unit) {
   const std::string standard = standard_unit(unit);
   return (standard.rfind("deg", 0) == 0 || standard.rfind("rad", 0) == 0) && is_convertible(unit, "radian");
@@ -26,7 +26,7 @@ bool begins_alike(const std::string& a, const std::string& b) {
   return a.compare(0, letters, b, 0, letters) == 0;
 }
 
-// How many words of a role ("recovery_temperature") are in a text, without regard to case.
+// Number of words of a role ("recovery_temperature") in a text, without regard to case.
 int shared_words(const std::string& role, const std::string& text) {
   const auto is_same_letter = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
@@ -66,7 +66,7 @@ Error missing_variable(const std::string& path, const std::vector<VariableInfo>&
                     absent, wanted, shell_path(path))};
 
   constexpr std::size_t max_named = 6;
-  // What a probe recovers files call total.
+  // Files call the temperature of the recovery probe "total".
   const std::string words = role == "recovery_temperature" ? role + "_total" : role;
   std::stable_sort(fitting.begin(), fitting.end(), [&](const VariableInfo* a, const VariableInfo* b) {
     return shared_words(words, a->long_name) > shared_words(words, b->long_name);

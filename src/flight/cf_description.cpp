@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* degrees = "degree";
 
-/// Whether values in the unit are degrees. What says nothing, or nothing that is known, is believed to be.
+/// Whether values in the unit are degrees. An absent or unknown unit counts as degrees.
 bool is_in_degrees(const std::string& unit) {
   if (!is_known_unit(unit)) return true;
   if (!is_convertible(unit, degrees)) return false;
@@ -97,7 +97,7 @@ class CfDescription {
     output_.put_text(variable, "coordinates", fmt::format("{}", fmt::join(names, " ")));
   }
 
-  /// Of the names in an attribute, those of variables that are there.
+  /// The names in an attribute for which a variable exists.
   void keep_known_names(int variable, const char* attribute) const {
     const std::vector<std::string> names = split_words(output_.text_attribute(variable, attribute));
     std::vector<std::string> known;
@@ -109,7 +109,7 @@ class CfDescription {
     output_.put_text(variable, attribute, fmt::format("{}", fmt::join(known, " ")));
   }
 
-  /// The global attributes that say where the aircraft was are those of this file, not of the input.
+  /// The global attributes of the position belong to this file, not to the input.
   void describe_whole_file() const {
     std::vector<std::string> names;
     for (const Place& place : places) {

@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
 
-// What is too large stays the largest number there is.
+// Saturates: a result that is too large is the largest number of the type.
 std::uint64_t times(std::uint64_t a, std::uint64_t b) { return b != 0 && a > most / b ? most : a * b; }
 std::uint64_t plus(std::uint64_t a, std::uint64_t b) { return a > most - b ? most : a + b; }
 std::uint64_t padded(std::uint64_t bytes) { return bytes > most - 3 ? most : (bytes + 3) / 4 * 4; }
 
-// The header as the netCDF classic format specification lays it out; all numbers are big-endian. What cannot
-// be true makes it not sound, and then every further number is 0.
+// The header as the netCDF classic format specification lays it out; all numbers are big-endian. An
+// impossible number makes the header unsound, and every further number is then 0.
 class Header {
  public:
   explicit Header(const std::filesystem::path& path)
@@ -30,7 +30,8 @@ class Header {
   std::uint64_t count() { return number(version_ == 5 ? 8 : 4); }
   std::uint64_t offset() { return number(version_ == 1 ? 4 : 8); }
 
-  // How many dimensions (tag 10), variables (11) or attributes (12) follow, each of at least so many bytes.
+  // Number of dimensions (tag 10), variables (11) or attributes (12) that follow; each has at least the
+  // stated number of bytes.
   std::uint64_t list_of(std::uint64_t tag, std::uint64_t min_bytes) {
     const std::uint64_t found = number(4), length = count();
     require(found == tag || (found == 0 && length == 0));
@@ -38,7 +39,7 @@ class Header {
     return sound_ ? length : 0;
   }
 
-  // How many bytes an element of the type that follows has.
+  // Size in bytes of an element of the type that follows.
   std::uint64_t element_bytes() {
     constexpr std::uint64_t sizes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
     const std::uint64_t type = number(4);
@@ -93,7 +94,7 @@ class Header {
 
 struct Extent {
   bool record = false;
-  std::uint64_t bytes = 0;  // of the whole variable, or of one record of it
+  std::uint64_t bytes = 0;  // size of the whole variable, or of one record
   std::uint64_t begin = 0;
 };
 
@@ -104,7 +105,7 @@ std::optional<ClassicLayout> layout_of_classic(const std::filesystem::path& path
   const std::uint64_t records = header.count();
 
   constexpr std::uint64_t dimension_tag = 10, min_dimension_bytes = 8;
-  std::vector<std::uint64_t> lengths;  // of the dimensions; 0 is the unlimited one
+  std::vector<std::uint64_t> lengths;  // lengths of the dimensions; 0 is the unlimited dimension
   for (std::uint64_t left = header.list_of(dimension_tag, min_dimension_bytes); left > 0 && header.sound();
        --left) {
     header.skip_name();
@@ -130,7 +131,7 @@ std::optional<ClassicLayout> layout_of_classic(const std::filesystem::path& path
     }
     header.skip_attributes();
     variable.bytes = times(elements, header.element_bytes());
-    header.count();  // the size as stored, which says no more
+    header.count();  // stored size, redundant
     variable.begin = header.offset();
     variables.push_back(variable);
   }

@@ -6,18 +6,19 @@
 
 namespace pcor::internal {
 
-/// What the header of a classic netCDF file promises.
+/// Sizes according to the header of a classic netCDF file.
 struct ClassicLayout {
-  std::uintmax_t size = 0;          ///< the least number of bytes that the file must have
-  std::uint64_t record_bytes = 0;   ///< of all variables over the unlimited dimension; 0: there are none
+  std::uintmax_t size = 0;  ///< the least number of bytes that the file must have
+  std::uint64_t record_bytes =
+      0;  ///< total of all variables over the unlimited dimension; 0 without such variables
   std::uint64_t records_begin = 0;  ///< the byte at which the first record begins
 };
 
-/// Of a classic netCDF file (CDF-1, CDF-2 or CDF-5); nothing if the header cannot be what a writer wrote: it
-/// has no end, or counts more than the file has room for.
+/// Layout of a classic netCDF file (CDF-1, CDF-2 or CDF-5); empty if the header is invalid: it has no end, or
+/// its counts exceed the size of the file.
 ///
-/// To be asked before the netCDF library sees the file: of a damaged header the library believes every count
-/// and takes that much memory, and where a truncated file ends it reads zeros.
+/// To be called before the netCDF library opens the file: the library allocates memory for every count in a
+/// damaged header, and reads zeros behind the end of a truncated file.
 std::optional<ClassicLayout> layout_of_classic(const std::filesystem::path& path);
 
 }  // namespace pcor::internal

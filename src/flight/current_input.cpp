@@ -13,7 +13,7 @@ std::atomic<const char*> in_hand{nullptr};
 std::atomic<clockid_t> readers_clock{CLOCK_PROCESS_CPUTIME_ID};
 std::atomic<double> taken_at{0.0};
 std::atomic<double> begun_at{0.0};
-std::atomic<std::size_t> first_path{0};  // its hash; 0 where there is none
+std::atomic<std::size_t> first_path{0};  // its hash; 0 if no file is being read
 std::atomic<bool> has_others{false};
 static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<clockid_t>::is_always_lock_free &&
               std::atomic<double>::is_always_lock_free);

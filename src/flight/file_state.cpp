@@ -34,9 +34,8 @@ bool FileState::operator==(const FileState& other) const {
 
 void FileState::require(const std::filesystem::path& path) const {
   if (FileState(path) == *this) return;
-  throw Error(Error::Code::file, path.string() +
-                                     " was replaced or changed while it was read; give the command again "
-                                     "when it stays as it is");
+  throw Error(Error::Code::file,
+              path.string() + " was replaced or changed while it was read; retry when the file is complete");
 }
 
 }  // namespace pcor::internal

@@ -7,8 +7,8 @@
 
 namespace pcor::internal {
 
-/// Which file a path names at a moment, and when it was last changed: two of them differ where the file was
-/// replaced or written to between. Of a path that names nothing it is that of no file.
+/// Which file a path names at a moment, and when it was last changed: two states differ if the file was
+/// replaced or written to in between. A path without a file has the default state.
 class FileState {
  public:
   FileState() = default;
@@ -25,7 +25,7 @@ class FileState {
   ino_t inode_ = 0;
   off_t size_ = 0;
   std::int64_t modified_ = 0;  // ns
-  std::int64_t changed_ = 0;   // ns; unlike the time of modification nobody sets it
+  std::int64_t changed_ = 0;   // ns; a program cannot set it, unlike the time of modification
 };
 
 }  // namespace pcor::internal

@@ -32,13 +32,13 @@ namespace {
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double day = 86400;
 constexpr std::size_t max_gaps_listed = 1000;
-// Writers mark what they have no value of with 1e30, 1e35, 1e300, infinity. Nothing that is measured is as
-// much, in whatever unit.
+// Writers mark missing values with 1e30, 1e35, 1e300 or infinity. No measured value is that large in any
+// unit.
 constexpr double no_value = 1e30;
-constexpr double max_samples_a_second = 1000, rounding = 1e-3;  // of the times of records
-constexpr std::size_t min_doubted = 200'000;            // records of which the size of the file tells nothing
-constexpr std::size_t min_samples_doubted = 2'000'000;  // likewise
-constexpr std::size_t max_records = 100'000'000;        // more than a day has thousandths of a second
+constexpr double max_samples_a_second = 1000, rounding = 1e-3;  // s, for times of records
+constexpr std::size_t min_doubted = 200'000;                    // accepted in a file of any size
+constexpr std::size_t min_samples_doubted = 2'000'000;          // likewise
+constexpr std::size_t max_records = 100'000'000;                // more than a day has thousandths of a second
 
 /// Size in bytes; the maximum of the type if it is unknown.
 std::uintmax_t size_of(const std::filesystem::path& path) {
@@ -51,11 +51,11 @@ struct Variable {
   int id = 0;
   VariableInfo info;
   bool rate_dimension = false;         // (Time, spsN), also with N = 1
-  std::vector<double> missing_values;  // as numbers of the stored type
-  std::array<double, 2> valid_range;   // of these
+  std::vector<double> missing_values;  // numbers of the stored type
+  std::array<double, 2> valid_range;   // numbers of the stored type
   UnitConversion unpacking;            // scale_factor and add_offset
-  std::vector<StatusFlags> flags;      // what its file calls unusable
-  std::optional<Error> refusal;        // of one whose numbers cannot be told
+  std::vector<StatusFlags> flags;      // flags of unusable samples
+  std::optional<Error> refusal;        // error for a variable whose numbers are ambiguous
 };
 
 std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
@@ -69,7 +69,7 @@ std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
   return static_cast<int>(length);
 }
 
-/// A number that packed values are turned with. @throws Error if the attribute is there and is none.
+/// Scale factor or offset of packed values. @throws Error if the attribute exists and is not a number.
 double packing_number(const FlightFile& file, int variable, const char* attribute, double otherwise) {
   const std::string text = file.text_attribute(variable, attribute);
   if (text.empty()) return otherwise;
@@ -130,8 +130,8 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
   return variable;
 }
 
-/// The first word of a text that is a registration of civil aircraft: "N677F", "G-LUXE", "D-ADLR". Empty if
-/// none is.
+/// The first word of a text that is a registration of civil aircraft: "N677F", "G-LUXE", "D-ADLR". Empty
+/// without a registration.
 std::string registration_in(const std::string& text) {
   static const std::regex of_usa(R"(\bN[1-9][0-9]{1,4}[A-Z]{0,2}\b)");
   static const std::regex of_others(R"(\b(([CDFGI]|HB|OE|OH|OO|PH|SE|TF|VH)-[A-Z]{3,4})\b)");
@@ -140,7 +140,7 @@ std::string registration_in(const std::string& text) {
   return {};
 }
 
-// Of an even number of values the lower of the middle two. Changes the order of the values.
+// Median; for an even count the lower of the two middle values. Changes the order of the values.
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -190,7 +190,7 @@ struct Flight::Implementation {
   std::uintmax_t bytes;
   TimeAxis axis;
   std::vector<std::string> names;
-  std::vector<std::optional<Variable>> variables;  // in the order of `names`, those that were asked for
+  std::vector<std::optional<Variable>> variables;  // requested names, in the order of `names`
   std::unordered_map<std::string, std::size_t> index;
   std::vector<double> scratch;
   std::vector<double> flags;
@@ -203,8 +203,8 @@ struct Flight::Implementation {
         bytes(size_of(file->path())) {
     if (records > min_doubted && records > bytes)
       throw Error(Error::Code::file,
-                  fmt::format("{} has {} records in {} bytes, and of a flight at most one record a byte is "
-                              "believed: hardly any of them is there; cut it with ncks -d {}",
+                  fmt::format("{} has {} records in {} bytes, more than one record per byte, so most records "
+                              "are empty; cut it with ncks -d {}",
                               path(), records, bytes,
                               shell_quote(file->dimension_name(source.dimension) + ",FIRST,LAST")));
     if (records > max_records)
@@ -217,10 +217,10 @@ struct Flight::Implementation {
     for (int id = 0; id < count; ++id) {
       names.push_back(file->variable_name(id));
       if (!index.emplace(names.back(), names.size() - 1).second)
-        throw Error(Error::Code::file,
-                    fmt::format("{} has two variables {}, and nothing tells which is meant; fetch it again "
-                                "from its source",
-                                path(), names.back()));
+        throw Error(
+            Error::Code::file,
+            fmt::format("{} has two variables {}, which is ambiguous; fetch the file again from its source",
+                        path(), names.back()));
     }
     variables.resize(names.size());
     scan_time();
@@ -347,7 +347,8 @@ struct Flight::Implementation {
     }
   }
 
-  // Records at which seconds of the day began again are known after the scan; until then it adds them itself.
+  // Records at which seconds of the day restart are known after the scan; until then the scan adds the days
+  // itself.
   void read_time(RecordBlock block, double* out) {
     read(variable(static_cast<std::size_t>(source.variable)), block, out);
     for (std::size_t i = 0; i < block.count; ++i) {

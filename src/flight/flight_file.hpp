@@ -12,8 +12,8 @@
 
 namespace pcor::internal {
 
-/// An open file that may hold a flight, whatever its format: variables over dimensions, with attributes. What
-/// a flight is, its time, units and rates, `Flight` finds in it.
+/// An open file of any format that may hold a flight: variables over dimensions, with attributes. `Flight`
+/// finds time, units and rates in it.
 ///
 /// Variables and dimensions have the numbers 0, 1, 2 ...
 class FlightFile {
@@ -50,21 +50,21 @@ class FlightFile {
   /// The greatest number that the type of a numeric variable holds.
   virtual double max_number(int variable) const = 0;
 
-  /// The numbers that stand for missing values of a numeric variable, as `read` gives them.
+  /// Numbers that mark missing values of a numeric variable, in the units of `read`.
   virtual std::vector<double> missing_values(int variable) const = 0;
 
-  /// The least and the greatest number of a numeric variable that is a value, as `read` gives them; infinite
-  /// where the file states none. @throws Error if what it states is no range.
+  /// Smallest and largest valid number of a numeric variable, in the units of `read`; infinite if the file
+  /// states no range. @throws Error if the stated range is invalid.
   virtual std::array<double, 2> valid_range(int variable) const = 0;
 
-  /// What the file states as a range of valid values in words that are none, which `valid_range` ignores:
-  /// "valid_range = \"all\"". Empty where there is nothing of the kind.
+  /// Attributes for a range of valid values that are not numbers, which `valid_range` ignores: "valid_range =
+  /// \"all\"". Empty without such attributes.
   virtual std::string ignored_range(int /*variable*/) const { return {}; }
 
   /// Notes on how the file was read, for its user: sentences without a full stop.
   virtual std::vector<std::string> notes() const { return {}; }
 
-  /// How many records should be read, one variable after the other, before the next are.
+  /// Number of records to read as one block, variable by variable.
   virtual std::size_t records_at_once() const { return records_per_block; }
 
   /// Reads the stored numbers of some records, the first dimension, with all that belongs to them; of a
@@ -72,7 +72,7 @@ class FlightFile {
   virtual void read(int variable, RecordBlock records, double* out) const = 0;
 };
 
-/// Opens a file of any format that is known. @throws Error if it is absent, of none of them, damaged or
+/// Opens a file of any supported format. @throws Error if it is absent, of an unknown format, damaged or
 /// truncated.
 std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path);
 

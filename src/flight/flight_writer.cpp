@@ -74,8 +74,8 @@ struct FlightWriter::Implementation {
   bool whole_seconds;
   AtomicFile replacement;
   std::optional<NetcdfOutput> file;
-  std::optional<NetcdfCopy> copies;  // from an input that is a netCDF file
-  std::vector<Series> series;        // from another one
+  std::optional<NetcdfCopy> copies;  // netCDF input
+  std::vector<Series> series;        // other input
 
   int time_variable = 0;
   std::vector<Written> written;
@@ -150,7 +150,7 @@ struct FlightWriter::Implementation {
     put_text(global, "date_created", utc_text(now, iso_8601));
     put_text(global, "time_coordinate", "Time");
     for (const auto& [name, text] : description.attributes) put_text(global, name, text);
-    // Filled in at the end, with as many letters.
+    // Placeholder that is overwritten at the end by a text of the same length.
     put_text(global, "time_coverage_start", utc_text(0, iso_8601));
     put_text(global, "time_coverage_end", utc_text(0, iso_8601));
     supply("FlightDate", utc_text(midnight, "%m/%d/%Y"));
@@ -177,7 +177,7 @@ struct FlightWriter::Implementation {
     return claimed + (is_cf ? "CF-1.8 ACDD-1.3" : "ACDD-1.3");
   }
 
-  /// What the flight is called: project, flight and date.
+  /// Title of the flight: project, flight and date.
   std::string trajectory() const {
     std::string name;
     for (const std::string& part :
@@ -210,7 +210,7 @@ struct FlightWriter::Implementation {
 
   std::string text_of(const std::string& name) const { return file->text_attribute(global, name); }
 
-  // A global attribute as stated, else as the input has it, else as given.
+  // A global attribute: the stated value, otherwise the value of the input, otherwise the given default.
   void supply(const std::string& name, const std::string& otherwise, const std::string& stated = "") const {
     if (!stated.empty())
       put_text(global, name, stated);
@@ -277,7 +277,7 @@ struct FlightWriter::Implementation {
 
   void copy(const std::string& name) {
     if (!input) throw Error(shown.string() + ": " + name + " cannot be copied, there is no input");
-    input->variable(name);  // or an error that says what there is
+    input->variable(name);  // or an error that lists the existing variables
     if (name == input->time_variable() && name != "time_offset") return;
     check_new(name);
     if (copies) return copies->define(name);

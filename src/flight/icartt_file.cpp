@@ -196,7 +196,7 @@ class IcarttFile::Reader {
       if (fields.size() > 3 && !fields[3].empty()) variable.attributes.emplace_back("long_name", fields[3]);
       variable.scale = scales[static_cast<std::size_t>(i)];
       if (!std::isfinite(variable.scale) || variable.scale == 0.0)
-        fail(fmt::format("the scale factor of {} is no number other than 0", quote(variable.name)));
+        fail(fmt::format("the scale factor of {} is not a number other than 0", quote(variable.name)));
       variable.missing = {missing[static_cast<std::size_t>(i)]};
     }
   }
@@ -213,7 +213,7 @@ class IcarttFile::Reader {
       const std::string value = trimmed(line.substr(colon + 1));
       put(name, value);
       if (name == "LLOD_FLAG" || name == "ULOD_FLAG") {
-        // One number for all, or one for each; "N/A" and the like mean that there is none.
+        // One number for all, or one for each; "N/A" and similar words mean no limit.
         std::stringstream fields(value);
         for (std::string field; std::getline(fields, field, ',');) {
           char* end = nullptr;
@@ -235,7 +235,7 @@ class IcarttFile::Reader {
   }
 
   void read_values() {
-    std::set<std::pair<bool, std::size_t>> formats;  // those of the last fields that have a value
+    std::set<std::pair<bool, std::size_t>> formats;  // last fields that have a value
     for (std::string line; std::getline(stream_, line);) {
       ++line_;
       const char* at = line.c_str();

@@ -34,8 +34,8 @@ class BufferedFile : public netCDF::NcFile {
   NetcdfFormat kind() const;
 };
 
-/// The number of a variable; nothing if there is none of that name. NcGroup::getVar lists all variables to
-/// find one, with names as below.
+/// Id of a variable; empty if the variable does not exist. NcGroup::getVar would list all variables to find
+/// one, with names as below.
 std::optional<int> find_variable(const netCDF::NcGroup& file, const std::string& name);
 
 /// Names of any length. The functions of netcdf-cxx4 have room for NC_MAX_NAME bytes, and the library copies
@@ -57,8 +57,8 @@ struct Attribute : netCDF::NcVarAtt {
   std::size_t length = 0;
 };
 
-/// Nothing if there is no such attribute. NcVar::getAtt lists all attributes to find one, with names as
-/// above, and throws if there is none.
+/// Empty if the attribute does not exist. NcVar::getAtt would list all attributes to find one, with names as
+/// above, and throws if the attribute does not exist.
 std::optional<Attribute> find_attribute(const netCDF::NcVar& variable, const std::string& name);
 
 /// Copies an attribute of any type. netcdf-cxx4 has no function for it.

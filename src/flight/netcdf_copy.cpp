@@ -14,15 +14,15 @@ using netCDF::exceptions::NcException;
 namespace pcor::internal {
 namespace {
 
-/// How the names of attributes begin in which this program says what a file was made of: they are not true
-/// of the next one.
+/// Prefixes of the attributes in which this program records the sources of a file; they do not apply to a
+/// copy.
 constexpr const char* own_attributes = "pcor_";
 
-/// Numbers and letters. Texts are not: what the library calls so may be any text of a fixed length in HDF5,
-/// or a long double, and it writes more bytes of it to where they are read than it says that it has.
+/// Whether the type is a number or a character. Strings are excluded: the library reports HDF5 strings of
+/// fixed length and long doubles as NC_STRING, and writes more bytes on reading than it reports.
 bool is_copied(int type) { return type < NC_STRING; }
 
-/// What a file may hold and netCDF does not write.
+/// Whether an error of the writer is caused by content of the input that netCDF does not allow.
 bool is_of_input(const NcException& error) {
   constexpr int all[] = {NC_EBADNAME, NC_EBADTYPE, NC_ECHAR, NC_EINVAL, NC_ERANGE, NC_ESTRICTNC3};
   return std::find(std::begin(all), std::end(all), error.errorCode()) != std::end(all);
@@ -40,7 +40,7 @@ void NetcdfCopy::copy_attribute(int from, int to, const std::string& name, int t
   const auto attribute = source_.find_attribute(from, name);
   if (!attribute) source_.refuse_attribute(from, name, "has a name that netCDF does not allow");
   const int type = attribute->type;
-  if (type > NC_STRING) return;  // of the file's own making
+  if (type > NC_STRING) return;  // user-defined
   // A marker of missing values must have the type of the variable, which old writers did not know.
   const bool is_marker = name == "_FillValue" || name == "missing_value";
   try {
@@ -78,10 +78,10 @@ void NetcdfCopy::define(const std::string& name) {
   const std::optional<int> from = source_.find_variable(name);
   const int type = from ? source_.type_of(*from) : NC_NAT;
   if (!from || !is_copied(type))
-    throw Error(fmt::format(
-        "{}: {} holds texts or has a type of its own making, or a name that netCDF does not allow, "
-        "which cannot be copied; leave it out",
-        shown, name));
+    throw Error(
+        fmt::format("{}: {} holds strings, has a user-defined type or a name that netCDF does not allow, and "
+                    "cannot be copied; leave it out",
+                    shown, name));
   Copied entry;
   entry.from = *from;
   source_.fit_chunk_cache(entry.from);
@@ -119,7 +119,7 @@ void NetcdfCopy::copy_block(const Copied& variable, RecordBlock block, std::vect
     count.insert(count.begin(), block.count);
   }
   buffer.resize((variable.over_time ? block.count : 1) * variable.record_bytes);
-  void* const values = buffer.data();  // of any type
+  void* const values = buffer.data();  // any type
   {
     const FileInHand in_hand(source_.path());
     source_.attempt("cannot read " + source_.variable_name(variable.from),

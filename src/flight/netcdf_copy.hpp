@@ -18,10 +18,10 @@ class NetcdfCopy {
 
   void copy_global_attributes() const;
 
-  /// Whether the variable of that name, which is there, is one to copy: see FlightWriter.
+  /// Whether the existing variable is copied: see FlightWriter.
   bool can_copy(const std::string& name) const;
 
-  /// Defines the variable of that name in the output. @throws Error if it is not one to copy.
+  /// Defines the variable in the output. @throws Error if it cannot be copied.
   void define(const std::string& name);
 
   /// Copies the values of all variables that were defined.
@@ -30,9 +30,9 @@ class NetcdfCopy {
  private:
   struct Copied {
     int from = 0, to = 0;          // the numbers of the variables
-    std::size_t record_bytes = 0;  // of all of it where it does not lie over time
+    std::size_t record_bytes = 0;  // size of the whole variable if it has no time dimension
     bool over_time = false;
-    std::vector<std::size_t> shape;  // of one record
+    std::vector<std::size_t> shape;  // size of one record
   };
 
   void copy_attribute(int from, int to, const std::string& name, int type_of_variable) const;

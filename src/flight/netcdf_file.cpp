@@ -30,15 +30,15 @@ namespace {
 constexpr std::string_view classic = "CDF", hdf5 = "\211HDF";  // how files begin
 constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
 constexpr std::size_t page = std::size_t{4} << 10;
-// Of records between these only the pages are moved that hold what is wanted. Longer ones hold so much else
-// that bringing all of it into memory would take longer.
+// For record sizes between these limits only the pages with the requested values are read. Longer records
+// contain mostly other values, and reading all of them would take longer.
 constexpr std::size_t large_record = std::size_t{32} << 10, max_brought = std::size_t{1} << 20;
 
 struct NumberType {
   int type = NC_NAT;
-  double span = 0;  // how many integers there are; 0 for other types
+  double span = 0;  // number of distinct integers; 0 for other types
   bool is_signed = false;
-  // What the library writes where nothing was; for bytes it is a value like any other.
+  // Default fill value of the library for values that were not written; for bytes it is a normal value.
   std::optional<double> fill;
 };
 
@@ -70,8 +70,8 @@ constexpr RangeAttribute range_attributes[] = {
 
 bool is_text(const Attribute& attribute) { return attribute.type == NC_CHAR || attribute.type == NC_STRING; }
 
-/// Numbers as lists of them are written: "1, 2", "c(1, 2)" of R, "[1 2]", "1 to 2". Empty
-/// where the text is none.
+/// Parses a list of numbers: "1, 2", "c(1, 2)" of R, "[1 2]", "1 to 2". Empty if the text is not a list of
+/// numbers.
 std::vector<double> numbers_of(std::string text) {
   const std::size_t open = text.find_first_of("([");
   if (open != std::string::npos && (open == 0 || text.substr(0, open) == "c")) text.erase(0, open + 1);
@@ -117,12 +117,12 @@ Error damaged(const std::filesystem::path& path, const std::string& why) {
 }
 
 std::string advice_to_reader(int status) {
-  const char* const first = status == NC_EATTMETA
-                                ? "take away what is neither text nor a list of numbers, as a table, or "
-                            : status == NC_ENOFILTER ? "install the plug-in of HDF5 for the filter that it "
-                                                       "is compressed with, or on a machine that has it "
-                                                       "write the file anew with nccopy -F none, or "
-                                                     : "";
+  const char* const first =
+      status == NC_EATTMETA
+          ? "remove attributes that are neither text nor a list of numbers, for example a table, or "
+      : status == NC_ENOFILTER ? "install the HDF5 plug-in for its compression filter, or rewrite the file "
+                                 "on a machine that has the plug-in with nccopy -F none, or "
+                               : "";
   return fmt::format("; {}fetch the file again from its source", first);
 }
 
@@ -177,7 +177,7 @@ NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(std::move(path)), sta
     throw Error(Error::Code::file, path_.string() + " cannot be read: " + reason +
                                        "; check its disk and the limits of the system");
   }
-  kind_ = attempt("cannot tell its format", [&] { return file_.kind(); });
+  kind_ = attempt("cannot determine its format", [&] { return file_.kind(); });
 }
 
 NetcdfFile::~NetcdfFile() {
@@ -348,12 +348,11 @@ std::vector<double> NetcdfFile::missing_values(int variable) const {
 void NetcdfFile::refuse_attribute(int variable, const std::string& name, const std::string& why) const {
   const bool is_global = variable == whole_file;
   const std::string of = is_global ? "global" : variable_name(variable);
-  throw Error(
-      Error::Code::variable,
-      fmt::format("{}: the attribute {} of {} {}; correct it, or take it away with ncatted -a {} {}, or "
-                  "with h5py where that cannot write the file",
-                  path_.string(), name, is_global ? "the file" : of, why,
-                  shell_quote(fmt::format("{},{},d,,", name, of)), shell_path(path_.string())));
+  throw Error(Error::Code::variable,
+              fmt::format("{}: the attribute {} of {} {}; correct it, or remove it with ncatted -a {} {} "
+                          "(with h5py if ncatted cannot write the file)",
+                          path_.string(), name, is_global ? "the file" : of, why,
+                          shell_quote(fmt::format("{},{},d,,", name, of)), shell_path(path_.string())));
 }
 
 std::string NetcdfFile::ignored_range(int variable) const {
@@ -380,10 +379,9 @@ std::array<double, 2> NetcdfFile::valid_range(int variable) const {
     if (numbers.size() != each.count)
       refuse_attribute(variable, each.name, each.count == 1 ? "is not one number" : "is not two numbers");
     if (is_packed && is_float(attribute->type))
-      refuse_attribute(
-          variable, each.name,
-          "has another type than the packed integers, so that it cannot be told whether it is of "
-          "these or of what they stand for");
+      refuse_attribute(variable, each.name,
+                       "has another type than the packed integers, so it may refer to the packed or to the "
+                       "unpacked values");
     std::copy(numbers.begin(), numbers.end(), range.begin() + each.first);
     if (!(range[0] <= range[1])) refuse_attribute(variable, each.name, "leaves no value");
   }

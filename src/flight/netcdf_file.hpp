@@ -24,7 +24,7 @@ bool is_netcdf(const std::filesystem::path& path);
 class NetcdfFile : public FlightFile {
  public:
   /// Opens for reading. The library opens a file by its name more than once, and another program may replace
-  /// or change it meanwhile: what is read is of the file as it was here, or an error.
+  /// or change it in between; every value is from the file as opened here, otherwise an error is thrown.
   /// @throws Error if the file is damaged or truncated.
   explicit NetcdfFile(std::filesystem::path path);
   ~NetcdfFile() override;
@@ -32,7 +32,7 @@ class NetcdfFile : public FlightFile {
   NetcdfFormat kind() const { return kind_; }
   bool is_hdf5() const { return kind_ == NetcdfFormat::netcdf4 || kind_ == NetcdfFormat::netcdf4_classic; }
 
-  /// A variable by its number. That of `whole_file` has the attributes of the file.
+  /// A variable by its id. `whole_file` has the global attributes.
   netCDF::NcVar variable(int number) const { return {file_, number}; }
   netCDF::NcDim dimension(int number) const { return {file_, number}; }
 
@@ -51,9 +51,9 @@ class NetcdfFile : public FlightFile {
   /// opened.
   void require_unchanged() const;
 
-  /// Has HDF5 hold two chunks of a variable of numbers or letters in memory, so that a compressed one is not
-  /// unpacked for every block of records, and not much more, since it keeps what it read of every variable.
-  /// To be called before the first value is read; a second call does nothing.
+  /// Sets the chunk cache of HDF5 for a variable of numbers or characters to two chunks, so that a compressed
+  /// chunk is not unpacked again for every block of records. A larger cache would need too much memory, since
+  /// HDF5 has one per variable. To be called before the first value is read; a second call has no effect.
   void fit_chunk_cache(int variable) const;
 
   /// An nc_type.
@@ -62,7 +62,7 @@ class NetcdfFile : public FlightFile {
   /// @param variable or `whole_file`. @throws Error "<path>: the attribute <name> of <variable> <why>; ..."
   [[noreturn]] void refuse_attribute(int variable, const std::string& name, const std::string& why) const;
 
-  /// Nothing where there is no such attribute. @throws Error or std::bad_alloc where the library cannot tell
+  /// Empty if the attribute does not exist. @throws Error or std::bad_alloc if the library fails
   std::optional<Attribute> find_attribute(int variable, const std::string& name) const;
 
   const std::filesystem::path& path() const override { return path_; }
@@ -97,41 +97,41 @@ class NetcdfFile : public FlightFile {
  private:
   [[noreturn]] void fail(const netCDF::exceptions::NcException& error, std::string_view doing) const;
 
-  /// Whether the values are unsigned integers: by their type, or because the attribute _Unsigned says so.
+  /// Whether the values are unsigned integers, by their type or by the attribute _Unsigned.
   bool is_unsigned(int variable) const;
 
   /// Reads large records of a classic file once from the first byte to the last, so that the system has them
   /// in its memory: the library reads a piece of each, for every variable again.
   void bring_into_memory(RecordBlock records) const;
 
-  /// Turns stored numbers into those that the attribute says that they are.
+  /// Converts stored numbers to the signedness that the attribute states.
   void make_unsigned(int variable, double* numbers, std::size_t count) const;
 
   /// An attribute that states numbers of a variable, as `read` gives these.
   std::vector<double> stored_numbers(int variable, const std::string& name) const;
 
-  /// A name of what the file holds. @throws Error if it is longer than netCDF allows, as those that HDF5
-  /// allows may be: no function of the library finds what is called so
+  /// Name of an item of the file. @throws Error if it is longer than netCDF allows (HDF5 allows longer
+  /// names), since no function of the library finds such an item
   std::string allowed(const std::string& name, const char* what) const;
 
-  FileState state_;                  // as it was opened for reading
-  ClassicLayout layout_;             // of a classic file
-  mutable std::size_t brought_ = 0;  // behind the last record that was brought into memory
+  FileState state_;                  // state of the file when it was opened for reading
+  ClassicLayout layout_;             // layout of a classic file
+  mutable std::size_t brought_ = 0;  // first record after those in memory
   mutable std::set<int> fitted_;     // variables whose chunk cache is fit
 };
 
 /// The product of some lengths.
 std::size_t elements(const std::vector<std::size_t>& shape);
 
-/// What an error of netcdf-cxx4 means in words.
+/// Text for an error of netcdf-cxx4.
 std::string netcdf_reason(const netCDF::exceptions::NcException& error);
 
-/// How much of a classic file the library keeps in memory, bytes, but where records are large. They lie one
-/// after the other, each with all the variables, and the library moves whole buffers, so that a block of
-/// records is walked through variable after variable while it is in the buffer.
+/// Buffer size of the library for a classic file, bytes, unless records are large. Each record holds all
+/// variables, and the library reads whole buffers, so all variables of a block of records are read while the
+/// block is in the buffer.
 constexpr std::size_t classic_buffer_bytes = std::size_t{1} << 20;
 
-/// Records of so many bytes that are in such a buffer together, or a few where they are larger.
+/// Number of records of the given size, bytes, that fit into such a buffer; a few if records are larger.
 std::size_t records_in_buffer(std::size_t record_bytes);
 
 }  // namespace pcor::internal

@@ -19,11 +19,10 @@ class NetcdfOutput final : public NetcdfFile {
   const netCDF::NcDim& time() const { return time_; }
   bool has(const std::string& name) const { return find_variable(name).has_value(); }
 
-  /// Whether a dimension of this name has another length already.
+  /// Whether the dimension `name` already exists with another length.
   bool has_other_length(const std::string& dimension, std::size_t length) const;
 
-  /// The dimension of this name and length, a new one if there is none. @throws Error if it has another
-  /// length.
+  /// The dimension with this name and length, created if absent. @throws Error if it has another length.
   netCDF::NcDim dimension_of(const std::string& name, std::size_t length);
 
   /// The dimensions of a time series of `rate` samples a record: (Time) or (Time, spsN).

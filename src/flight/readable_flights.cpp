@@ -15,7 +15,7 @@ using namespace internal;
 
 namespace {
 
-/// Why it cannot be opened; empty where it can.
+/// Reason why the file cannot be opened; empty if it can be opened.
 std::string trouble_with(const std::filesystem::path& flight) {
   try {
     const Flight opened(flight);

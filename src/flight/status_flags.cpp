@@ -14,7 +14,7 @@ namespace {
 
 constexpr unsigned long all_bits = 0xFF'FF'FF'FFUL;
 
-/// Whether a meaning, "data_bad_or_missing", says that the sample is none.
+/// Whether a meaning, for example "data_bad_or_missing", marks an unusable sample.
 bool says_unusable(const std::string& meaning) {
   constexpr std::array<std::string_view, 5> unusable{"_bad_", "_missing_", "_invalid_", "_major_",
                                                      "_out_of_range_"};
@@ -25,7 +25,7 @@ bool says_unusable(const std::string& meaning) {
   return !says("_not_") && std::any_of(unusable.begin(), unusable.end(), says);
 }
 
-/// How many numbers the integer type has whose greatest number this is; none of more than 32 bits.
+/// Number of values of the integer type with this maximum; 0 above 32 bits.
 double span_of(double greatest) {
   const double bits = std::log2(greatest + 1.0);
   return bits <= 32.0 ? std::exp2(8.0 * std::ceil(bits / 8.0)) : 0.0;

@@ -7,18 +7,18 @@
 
 namespace pcor::internal {
 
-/// Which samples of a variable its file calls unusable, by a variable of status flags beside it (CF
-/// conventions, 3.5): one that the variable names in `ancillary_variables`, or that has its name with
-/// "_FLAG". It holds integers over the same dimensions, or one for each record, with `flag_meanings` and
-/// `flag_values`, `flag_masks` or both.
+/// Samples of a variable that the file marks as unusable in a variable of status flags (CF conventions, 3.5).
+/// The flag variable is named in `ancillary_variables`, or has the name of the variable with "_FLAG". It
+/// holds integers over the same dimensions, or one for each record, with `flag_meanings` and `flag_values`,
+/// `flag_masks` or both.
 ///
-/// Unusable is what a meaning says in one of these words: bad, missing, invalid, major (as in
-/// "possible_major_issues"), or out_of_range, unless it says "not". Other flags, as "aircraft_on_ground", and
-/// flags that are missing, leave a sample as it is.
+/// A sample is unusable if a meaning contains one of these words: bad, missing, invalid, major (as in
+/// "possible_major_issues"), or out_of_range, unless it also contains "not". Other flags, such as
+/// "aircraft_on_ground", and missing flags do not change a sample.
 class StatusFlags {
  public:
-  /// All that call samples of a variable unusable. The quality bits of results of this library are none: they
-  /// speak of inputs too, and where there is no result it is missing already.
+  /// All status flags of a variable. The quality bits of this library are not status flags: they also refer
+  /// to inputs, and a missing result is already marked as missing.
   static std::vector<StatusFlags> of(const FlightFile& file, int variable);
 
   int variable() const { return variable_; }
@@ -31,7 +31,7 @@ class StatusFlags {
 
  private:
   struct Condition {
-    unsigned long mask;   ///< which bits count
+    unsigned long mask;   ///< mask of the relevant bits
     unsigned long value;  ///< what they are then
   };
 
@@ -39,7 +39,7 @@ class StatusFlags {
 
   int variable_ = 0;
   bool is_of_record_ = false;
-  double span_ = 0.0;  ///< how many numbers the type of the flags has
+  double span_ = 0.0;  ///< number of values of the type of the flags
   std::vector<double> missing_;
   std::vector<Condition> conditions_;
 };

@@ -21,7 +21,8 @@ namespace {
 
 constexpr double day = 86400;
 
-// Research flights in netCDF files: after 1971, so that seconds since midnight are not taken for 1970.
+// Research flights in netCDF files are later than 1971, so seconds since midnight are not mistaken for times
+// in 1970.
 bool is_plausible(double time) { return time >= 31536000. && time < 4102444800.; }
 
 // A date as the midnight it begins with, if there is such a date.
@@ -74,9 +75,9 @@ std::string usual_spelling(std::string units) {
   return units;
 }
 
-// What the units of a time say.
+// Parsed units of a time.
 struct Counting {
-  std::string of;  // for messages: the file and the variable
+  std::string of;  // file and variable, for messages
   std::string how_to_state;
   std::string units;
   std::string calendar;
@@ -98,7 +99,8 @@ std::string unit_before(const std::string& units, std::size_t since) {
   return units.substr(0, last == std::string::npos ? 0 : last + 1);
 }
 
-// Takes a number of two digits at most, less than `limit`, off the text. Nothing where there is none.
+// Removes a number of at most two digits, less than `limit`, from the front of the text. Empty without such a
+// number.
 bool take_number(std::string_view& text, int limit) {
   std::size_t digits = 0;
   int number = 0;
@@ -144,8 +146,8 @@ bool is_time_of_day(std::string_view text) {
 }
 
 // "seconds since 2004-02-18 00:00:00 +0000" as a conversion to seconds since 1970; nothing if there is no
-// such date. @throws Error if the date is followed by what is no time of day in a known zone, or is of a
-// calendar whose years have other days.
+// such date. @throws Error if the date is not followed by a time of day in a known zone, or if the calendar
+// has other years.
 std::optional<UnitConversion> epoch_conversion(const Counting& time) {
   const std::size_t since = time.units.find("since ");
   int year = 0, month = 0, day_of_month = 0, letters = 0;
@@ -172,7 +174,7 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
   try {
     const UnitConversion epoch =
         UnitConversion::between(time.units, "seconds since 1970-01-01 00:00:00 UTC", {});
-    // What a unit is long is not found from the two ends of 41 years.
+    // Duration of the unit over one step, since a difference over 41 years would lose precision.
     const double scale = UnitConversion::between(unit_before(time.units, since), "s", {}).scale();
     return UnitConversion(scale, epoch.offset());
   } catch (const Error& error) {
@@ -197,7 +199,7 @@ std::optional<double> interval_start(const FlightFile& file) {
   return hour * 3600. + minute * 60. + second;
 }
 
-// Plain seconds count from midnight or from the first record; the known start of the flight tells which.
+// Plain seconds count from midnight or from the first record; the known start of the flight decides.
 std::optional<double> offset_of_seconds(double first_raw, double start) {
   const double midnight = midnight_before(start);
   if (std::abs(first_raw - (start - midnight)) < 1.5) return midnight;
@@ -270,8 +272,8 @@ TimeSource find_time(const FlightFile& file) {
                             *raw, utc_text(first), counting.how_to_state));
   if (max_seconds(file, source.variable, epoch) < day)
     throw Error(
-        fmt::format("{} is stored in integers that go up to {}, too few for the seconds of a day: who "
-                    "wrote it may have begun again there; have it written in 32 bits",
+        fmt::format("{} is stored in integers up to {}, less than the seconds of a day, so times may have "
+                    "wrapped; store time as 32-bit integers or doubles",
                     counting.of, file.max_number(source.variable)));
   if (units_hold) {
     constexpr double week = 7 * day;
@@ -299,10 +301,9 @@ TimeSource find_time(const FlightFile& file) {
       return source;
     }
   }
-  throw Error(
-      fmt::format("{} does not tell the time: its units are \"{}\" and there is no base_time or "
-                  "FlightDate that fits; {}",
-                  counting.of, units, counting.how_to_state));
+  throw Error(fmt::format(
+      "{} is not a valid time: its units are \"{}\" and there is no matching base_time or FlightDate; {}",
+      counting.of, units, counting.how_to_state));
 }
 
 }  // namespace pcor::internal

@@ -6,8 +6,7 @@
 
 namespace pcor::internal {
 
-/// How a file tells the time: seconds since 1970 UTC are `raw * scale + offset` of a variable over
-/// `dimension`.
+/// Time variable of a file: seconds since 1970 UTC are `raw * scale + offset` of a variable over `dimension`.
 struct TimeSource {
   int variable = 0;
   int dimension = 0;
@@ -19,7 +18,7 @@ struct TimeSource {
 /// Whether a time, seconds since 1970 UTC, is of the years 1900 to 2199. No other flight is known.
 bool is_of_aviation(double time);
 
-/// Finds it, see Flight. @throws Error if the file has no records or does not tell the time.
+/// Finds the time variable, see Flight. @throws Error if the file has no records or no valid time.
 TimeSource find_time(const FlightFile& file);
 
 }  // namespace pcor::internal

@@ -6,8 +6,8 @@
 
 namespace pcor::internal {
 
-/// Why a variable that a flight has is no series with a value; empty where it is one.
-/// @throws Error if the file is damaged
+/// Reason why an existing variable is not a time series with values; empty if it is. @throws Error if the
+/// file is damaged
 std::string value_problem(const Flight& flight, const std::string& variable);
 
 }  // namespace pcor::internal

@@ -77,7 +77,7 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
     candidate.caution = "; significant structure remains, so this effect may not be the cause";
   } else if (!candidate.aliases.empty()) {
     candidate.caution =
-        fmt::format("; these flights cannot tell it from {}{}{}", fmt::join(candidate.aliases, ", "),
+        fmt::format("; these flights cannot distinguish it from {}{}{}", fmt::join(candidate.aliases, ", "),
                     finding.advice.sentence.empty() ? "" : ": ", finding.advice.sentence);
   }
   return candidate;
@@ -164,8 +164,7 @@ class Climb {
     measure(first, fit, {});
     if (std::isnan(first.rms_holdout)) {
       throw Error(
-          "no sample of what is held out can be used, so no step can be tested; give another flight with "
-          "--holdout");
+          "no held-out sample is usable, so no step can be tested; give another flight with --holdout");
     }
     first.learnt = fmt::format("the coefficients fitted again: rms {} before, {} after",
                                shown(fit.rms_before), shown(fit.rms));
@@ -284,8 +283,8 @@ class Climb {
     return tested[*choice.rival];
   }
 
-  /// Where structure is left, or what goes with attack in a shape that is not determined: a smooth surface,
-  /// if it takes more than chance off what took no part in its fit.
+  /// If structure remains, or an effect of attack with an undetermined shape: adds a smooth surface if it
+  /// reduces the residual of samples outside its fit by more than chance.
   void add_surface() {
     const Diagnosis& now = diagnosis();
     const bool has_attack = std::any_of(now.findings.begin(), now.findings.end(),
@@ -296,7 +295,7 @@ class Climb {
     std::optional<SurfaceOffer> offer;
     try {
       offer = loop_.offer_surface(before);
-    } catch (const Error& error) {  // the model without a surface stands
+    } catch (const Error& error) {  // keeps the model without a surface
       if (error.code() == Error::Code::file) throw;
       result_.why_stopped += fmt::format("; a surface was not tested: {}", error.what());
     }
@@ -326,7 +325,7 @@ class Climb {
     take(std::move(step), std::move(offer->fit), {}, before.alike);
   }
 
-  /// What the whole ladder came to.
+  /// Compares the delivered model with the given one.
   void compare_with_the_given() {
     std::vector<TrialFlight> tried =
         loop_.try_models({given_, {refitted_}, {result_.model, delivered_.alike}, top()});
@@ -356,9 +355,9 @@ class Climb {
     const double growth = whole.rms_after / whole.rms_before;
     if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";
     return fmt::format(
-        "{} the rms of the best model is {:.4f} times that of the model as it was given (its squared "
-        "residuals are larger by {:.0f} +- {:.0f} in units of the noise)",
-        loop_.has_holdout ? "on what was held out" : "on these flights", growth, -whole.gain,
+        "{} the rms of the best model is {:.4f} times the rms of the given model (its squared residuals are "
+        "larger by {:.0f} +- {:.0f} in units of the noise)",
+        loop_.has_holdout ? "on held-out samples" : "on these flights", growth, -whole.gain,
         whole.gain_error);
   }
 
@@ -413,8 +412,8 @@ class Climb {
         if (part.is_off()) off.push_back(part.text());
       }
       return fmt::format(
-          "nothing is missing that {} flights could show: {} effects were tested, and the rms of {} is "
-          "left at a noise of {}{}{}",
+          "no missing effect is detectable on {} flights: {} effects were tested; the rms residual is {} "
+          "with a noise of {}{}{}",
           off.empty() ? "these" : "the fitted", now.candidates, shown(now.rms_given), shown(now.noise_rms),
           off.empty() ? "" : "; but ", fmt::join(off, "; "));
     }
@@ -427,16 +426,16 @@ class Climb {
             finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence);
       }
     }
-    if (!now.findings.empty()) return "what the diagnosis names is in the model already";
+    if (!now.findings.empty()) return "the effects named by the diagnosis are already in the model";
     const Unexplained& left = now.unexplained;
     const std::string what =
-        fmt::format("{} of structure are left that no effect of the catalogue explains{}{}", shown(left.rms),
+        fmt::format("structure of {} is not explained by any effect of the catalogue{}{}", shown(left.rms),
                     left.regime.empty() ? "" : ", most of it in ", left.regime);
-    if (left.variables.empty()) return what + "; it varies with no variable of the files";
-    return fmt::format("{}; it varies with {}, {}", what, left.variables.front().name,
+    if (left.variables.empty()) return what + "; it is not correlated with any variable of the files";
+    return fmt::format("{}; it is correlated with {}, {}", what, left.variables.front().name,
                        loop_.trace_variables
-                           ? "of which no further formula can be added"
-                           : "of which --trace-variables would add a formula, wherever its cause lies");
+                           ? "but no further formula of it can be added"
+                           : "and --trace-variables would add a formula of it, regardless of the cause");
   }
 
   /// Adds the candidate and keeps it if it helps; otherwise records the reason.
@@ -459,7 +458,7 @@ class Climb {
     const Comparison fitted = comparison_of(tried, 0, 1, false);
     const Comparison held_out = comparison_of(tried, 0, 1, true);
     if (fitted.rms_after > fit_limit * fitted.rms_before && !fitted.is_better()) {
-      return fmt::format("{} was tried and dropped: with it the rms of the fit is {}, without it {}", id,
+      return fmt::format("{} was tried and dropped: rms of the fit {} with it, {} without it", id,
                          shown(fitted.rms_after), shown(fitted.rms_before));
     }
     measure(step, fit, model.alike);
@@ -473,24 +472,24 @@ class Climb {
     const bool better = in_turn ? after <= before && candidate.is_sure : judged.is_better();
     const bool worse = in_turn ? after > before : judged.is_worse();
     const std::string figures =
-        fmt::format("with it the held-out rms is {}, without it {}", shown(after), shown(before));
+        fmt::format("held-out rms {} with it, {} without it", shown(after), shown(before));
     const std::string gain =
         in_turn ? ""
                 : fmt::format(" (its squared residuals fall by {:.0f} +- {:.0f} in units of the noise)",
                               judged.gain, judged.gain_error);
     if (worse || !(better || (candidate.is_named && candidate.is_sure && fitted.is_better()))) {
       return fmt::format("{} was tried and dropped: {}{}{}", id, figures, gain,
-                         worse ? "" : ", which is no more than chance");
+                         worse ? "" : ", not more than expected by chance");
     }
     if (!candidate.is_named && !(after <= unnamed_limit * before)) {
       return fmt::format(
-          "{} was tried and dropped: {}; a term whose cause is not known has to take {:.0f} % off it", id,
+          "{} was tried and dropped: {}; a term with an unknown cause must reduce it by {:.0f} %", id,
           figures, 100.0 * (1.0 - unnamed_limit));
     }
-    step.learnt = fmt::format("{}: {}; held-out rms {} before, {} after{}{}", id, coefficients_of(fit, id),
-                              shown(before), shown(after),
-                              better ? "" : ", which tells nothing: the fitted flights speak for it",
-                              candidate.caution);
+    step.learnt =
+        fmt::format("{}: {}; held-out rms {} before, {} after{}{}", id, coefficients_of(fit, id),
+                    shown(before), shown(after),
+                    better ? "" : ", not significant: kept because of the fitted flights", candidate.caution);
     take(std::move(step), std::move(fit), candidate.choices, std::move(model.alike));
     return "";
   }
@@ -510,7 +509,7 @@ class Climb {
     }
   }
 
-  /// A rung that was measured is part of the ladder, with what is still missing there.
+  /// Adds a measured rung to the ladder, with a diagnosis of the remaining residual.
   void take(ImproveStep step, RefitResult fit, std::vector<Choice> choices, std::vector<std::string> alike) {
     if (result_.steps.empty())
       refitted_ = fit.model;
@@ -574,10 +573,10 @@ std::string rivals_text(const ImproveStep& step) {
                                rival.probability, rival.static_change));
   }
   return fmt::format(
-      "which of its rivals is there matters for the corrected static pressure: {}; {}, and the expected "
-      "error of that choice, {:.3f} hPa, is part of the stated error",
+      "its rivals imply different corrected static pressures: {}; {}, and the expected error of this choice, "
+      "{:.3f} hPa, is included in the stated error",
       fmt::join(each, ", "),
-      step.delivered.empty() ? "the model has none of them, since one of them calls each of the others a harm"
+      step.delivered.empty() ? "no rival was added, since each would increase the error under another"
                              : "the model has " + step.delivered,
       step.rival_error);
 }
@@ -594,7 +593,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     if (options.progress) options.progress(what);
   };
   const auto last_of = [&model](const ModelDefinition& file) {
-    return file.model.effects.size() == model.model.effects.size() ? std::string("the model as it is")
+    return file.model.effects.size() == model.model.effects.size() ? std::string("the given model")
                                                                    : file.model.effects.back().id;
   };
   // References of single samples come first, as in the diagnosis: figures refer to the first.
@@ -616,7 +615,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     return refit(flights, trial.file, ordered, refit_with);
   };
   loop.diagnose = [&](const TrialModel& trial) {
-    tell("looking for what is missing beside " + last_of(trial.file));
+    tell("diagnosing with " + last_of(trial.file));
     diagnose_with.added.clear();
     for (std::size_t e = model.model.effects.size(); e < trial.file.model.effects.size(); ++e)
       diagnose_with.added.push_back(trial.file.model.effects[e].id);
@@ -635,7 +634,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     return try_models(flights, models, ordered, options.refit);
   };
   loop.offer_surface = [&](const TrialModel& trial) {
-    tell("testing a surface beside " + last_of(trial.file));
+    tell("testing a surface with " + last_of(trial.file));
     return offer_surface(flights, trial, ordered, options.refit);
   };
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;

@@ -10,7 +10,7 @@ namespace pcor::internal {
 
 /// Effect to add to a model.
 struct AddedEffect {
-  ModelEffect effect;               ///< with the starting coefficients
+  ModelEffect effect;               ///< the model with the starting coefficients
   std::vector<std::string> held{};  ///< parameters that the flights do not determine
   bool is_alike = false;            ///< the reference systems have the same effect
 };
@@ -23,8 +23,8 @@ struct ImproveLoop {
   std::function<std::vector<TrialFlight>(const std::vector<TrialModel>& models)> try_models;
   /// May be empty: then no surface is offered.
   std::function<std::optional<SurfaceOffer>(const TrialModel& model)> offer_surface;
-  bool has_holdout = false;     ///< the refit tells of samples that are held out
-  bool trace_variables = true;  ///< as in `ImproveOptions`
+  bool has_holdout = false;     ///< the refit reports on held-out samples
+  bool trace_variables = true;  ///< see `ImproveOptions`
   std::size_t max_steps = 8;    ///< maximum number of added effects
   std::string flights{};        ///< description for the source of a traced formula
 

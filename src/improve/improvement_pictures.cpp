@@ -91,16 +91,16 @@ DotPanel ladder_picture(const Improvement& improvement) {
                           {dot(in_fit, fitted), dot(held_out, apart)},
                           fmt::format("{} and {}", text(in_fit), text(held_out))});
   };
-  add("as it came", improvement.given_rms_train, improvement.given_rms_holdout);
+  add("given model", improvement.given_rms_train, improvement.given_rms_holdout);
   for (const ImproveStep& step : improvement.steps) add(rung_name(step), step.rms_train, step.rms_holdout);
-  if (delivers_rivals(improvement)) add("as it is written", improvement.rms_train, improvement.rms_holdout);
+  if (delivers_rivals(improvement)) add("written model", improvement.rms_train, improvement.rms_holdout);
   return panel;
 }
 
 std::optional<DotPanel> coefficients_picture(const Improvement& improvement, const ModelDefinition& start) {
   std::vector<FittedParameter> parameters = improvement.fit.parameters;
   for (FittedParameter& parameter : parameters) parameter.start = value_in(start, parameter.name);
-  return coefficient_picture(parameters, "as it came", "in the best model");
+  return coefficient_picture(parameters, "given model", "best model");
 }
 
 void name_held_out(Report& report, const Improvement& improvement) {

@@ -53,9 +53,9 @@ void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement)
     if (panels.add_column(name, title, "hPa", with_residual(improvement, residual), before))
       columns.emplace_back(name);
   };
-  add("ladder-given", "residual, as it came", &ImprovedFlight::given);
+  add("ladder-given", "residual, given model", &ImprovedFlight::given);
   add("ladder-refitted", "residual, refitted", &ImprovedFlight::refitted);
-  add("ladder-best", "residual, as delivered", &ImprovedFlight::best);
+  add("ladder-best", "residual, best model", &ImprovedFlight::best);
   if (columns.empty()) return;
   std::string held_out = "Nothing was held out.";
   const std::vector<std::string> names = held_out_names(improvement);
@@ -85,16 +85,16 @@ void summarise(Report& report, const Improvement& improvement) {
   add_held_out(report, improvement.fit.flights);
   const ImproveStep& first = improvement.steps.front();
   const ImproveStep& last = improvement.steps.back();
-  report.summary.push_back(fmt::format(
-      "On {} the rms residual goes from {} to {} hPa; the noise is {} hPa.",
-      improvement.holdout_is_flights ? "what was held out" : "stretches that took no part in the fit",
-      hpa(first.rms_holdout), hpa(last.rms_holdout), hpa(last.noise_rms)));
+  report.summary.push_back(
+      fmt::format("On {} the rms residual changes from {} to {} hPa; the noise is {} hPa.",
+                  improvement.holdout_is_flights ? "held-out samples" : "stretches outside the fit",
+                  hpa(first.rms_holdout), hpa(last.rms_holdout), hpa(last.noise_rms)));
   for (const ImproveStep& step : improvement.steps) {
     if (step.added.empty()) continue;
-    std::string text = fmt::format("Added: {}; the rms residual goes to {} hPa.",
+    std::string text = fmt::format("Added: {}; the rms residual becomes {} hPa.",
                                    name_with_id(step.title, step.added), hpa(step.rms_holdout));
     if (!step.aliases.empty())
-      text += fmt::format(" These flights cannot tell it from {}.", join_list(step.aliases));
+      text += fmt::format(" These flights cannot distinguish it from {}.", join_list(step.aliases));
     report.summary.push_back(std::move(text));
     if (const std::string rivals = rivals_text(step); !rivals.empty())
       report.summary.push_back(sentence("Of " + step.added + ": " + rivals));
@@ -148,13 +148,13 @@ void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size
   }
   if (const std::vector<Estimate> fitted = fitted_of(improvement.fit, step.added); !fitted.empty())
     page.paragraphs.push_back(
-        fmt::format("{} {}.", step.rivals.empty() ? "In the best model" : "Fitted as if it alone were there",
+        fmt::format("{} {}.", step.rivals.empty() ? "In the best model" : "Fitted as the only added effect",
                     estimates_text(fitted)));
   panels.add(std::move(page));
-  panels.add_binned("Residual without and with " + step.added + ", against what it depends on",
-                    effect_caption, {numbered("rung", rung - 1), numbered("rung", rung)}, inputs);
+  panels.add_binned("Residual without and with " + step.added + ", against its inputs", effect_caption,
+                    {numbered("rung", rung - 1), numbered("rung", rung)}, inputs);
   panels.add_plane("Evidence for " + step.added + ", over Mach number and pressure",
-                   "Orange speaks for the effect, blue against it.", evidence);
+                   "Orange supports the effect, blue contradicts it.", evidence);
 }
 
 }  // namespace
@@ -187,7 +187,7 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
   panels.add(ladder_picture(improvement));
   if (auto coefficients = coefficients_picture(improvement, start)) panels.add(std::move(*coefficients));
   if (!rungs.empty())
-    panels.add_plane("What is left, over Mach number and pressure",
+    panels.add_plane("Remaining residual over Mach number and pressure",
                      "Residual at the top of the ladder: one colour over a region is a bias there.",
                      rungs.back());
   panels.add_table(ladder_table(improvement));

@@ -42,7 +42,7 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
   for (std::size_t rung = 1; rung < improvement.steps.size(); ++rung) {
     const ImproveStep& step = improvement.steps[rung];
     const std::optional<ModelEffect> effect = effect_of(improvement, step);
-    if (effect && effect->is_surface()) continue;  // it is no single term to be tried by hand
+    if (effect && effect->is_surface()) continue;  // a surface has no single coefficient to move
     const Finding* const finding = finding_of(improvement, rung);
     candidates.push_back({step.added, fmt::format("rung {}", rung), effect,
                           finding != nullptr && finding->is_alike, step.added});

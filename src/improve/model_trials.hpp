@@ -38,7 +38,7 @@ struct TrialFlight {
   }
 };
 
-/// Compares models on the same samples: those of the fitted and held-out flights that a model with the
+/// Compares models on the same samples of the fitted and held-out flights: the samples that a model with the
 /// effects of all of them would use. Common effects may differ only in their coefficients.
 /// @throws Error as `refit`.
 std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<TrialModel>& models,

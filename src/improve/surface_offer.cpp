@@ -97,7 +97,7 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
     if (surface.effect == id) offer.degrees_of_freedom = surface.degrees_of_freedom;
   }
   if (!options.holdout.empty() || options.training_share < 1.0) {
-    offer.held_out = "on what was held out";
+    offer.held_out = "on held-out samples";
     models.with.file = offer.fit.model;
     offer.out_of_fit =
         comparison_of(try_models(flights, {models.without, models.with}, references, options), 0, 1, true);

@@ -86,7 +86,7 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
       information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
   const Eigen::RowVectorXd mean = defects.colwise().mean();
   design.level = std::sqrt(mean * covariance.topLeftCorner(count, count) * mean.transpose());
-  // What is hardly better known than before the flight, or varies too little to be seen, is open.
+  // A direction is undetermined if the flight hardly reduces its prior error, or if it varies too little.
   constexpr double learnt = 0.5;
   Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index k = 0; k < count; ++k) prior(k, k) = std::pow(deviations[static_cast<std::size_t>(k)], 2);

@@ -27,7 +27,7 @@ using namespace internal;
 
 namespace {
 
-/// What cannot be done without a series, beside the effects that need it.
+/// Consequence of a missing series, in addition to the effects that need it.
 struct Cost {
   std::string_view series;
   std::string_view text;
@@ -37,7 +37,7 @@ constexpr std::array<Cost, 14> costs{{
     {"recovery_temperature",
      "no airspeed and no delta-p from LAMS, unless the temperature of the air is recorded"},
     {"dew_point", "the air is taken as dry, unless the vapour pressure is recorded"},
-    {"lams_airspeed", "delta-p cannot be measured; a second system, heights or winds have to stand in"},
+    {"lams_airspeed", "delta-p cannot be measured; use a second system, heights or winds as the reference"},
     {"attack", "the angle of the laser's beam to the wind is not known, and pitch manoeuvres need the pitch"},
     {"altitude",
      "climbs, layers and the hydrostatic temperature fit are left out, unless another height is recorded"},
@@ -59,7 +59,7 @@ std::string cost_of(std::string_view series) {
   return found == costs.end() ? std::string() : std::string(found->text);
 }
 
-/// What a quantity is found from where it is not recorded.
+/// Quantities from which a quantity is computed if it is not recorded.
 std::vector<Quantity> sources_of(Quantity quantity) {
   using Q = Quantity;
   for (const Rate& each : rates) {
@@ -156,10 +156,10 @@ class Look {
     }
   }
 
-  /// Of a doubtful flight the first family stands.
+  /// Uses the first family if several match.
   void find_model() {
     ModelDefinition model;
-    // A file of the user's is found from wherever the model stands.
+    // The path to a file of the user is absolute, so that the model may be moved.
     model.roles_from =
         roles_.empty() || roles_ == family_.name ? family_.name : std::filesystem::absolute(roles_).string();
     model.model.aircraft = result_.aircraft;
@@ -276,7 +276,8 @@ class Look {
     return found != evidence_.end() && is_sure(found->second) ? &found->second.front() : nullptr;
   }
 
-  /// The pair of a file that no aircraft's names fit. What is named is this flight's own.
+  /// Finds the pressure pair of a file that matches no aircraft family. The names then apply to this flight
+  /// only.
   bool take_pressures_by_evidence(ModelDefinition& model) {
     if (!roles_.empty()) return false;
     const auto best = [this](const std::string& series) {
@@ -376,8 +377,8 @@ class Look {
     return {};
   }
 
-  /// Roles that the aircraft's names leave open. A Mach number of the recording system is made of the
-  /// pressures.
+  /// Adds roles that the aircraft's names do not determine. A recorded Mach number is computed from the
+  /// pressures, so it is not used.
   void add_roles_by_evidence(ModelDefinition& model) {
     const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
     const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
@@ -402,7 +403,7 @@ class Look {
         has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point);
   }
 
-  /// Of a pair that the flight's own processing made, by the aircraft's names.
+  /// Whether a variable belongs to a pair from the flight's own processing, by the aircraft's names.
   bool is_processed(const std::string& variable) const {
     return std::any_of(family_.processed.begin(), family_.processed.end(), [&](const PressurePair& pair) {
       return variable == pair.static_pressure || variable == pair.dynamic_pressure;
@@ -420,7 +421,7 @@ class Look {
                        [&](const auto& each) { return each.second == variable; });
   }
 
-  /// Nothing vanishes: what has no role and is a candidate for none is listed too.
+  /// Lists every variable without a role that is not a candidate for one either.
   void find_unused() {
     std::set<std::string> used{flight_.time_variable()};
     for (const InspectedRole& role : result_.roles) {
@@ -438,12 +439,12 @@ class Look {
     }
     if (!ignored.empty()) {
       result_.notes.push_back(
-          fmt::format("the file states what is valid in words that are no numbers, which are ignored: of {}",
+          fmt::format("the valid ranges of these variables in the file are not numbers and were ignored: {}",
                       fmt::join(ignored, ", ")));
     }
   }
 
-  /// Of coarse pressures rounding is what is known of their noise.
+  /// States rounding as the noise of coarse pressures.
   void state_rounding() {
     if (!result_.model) return;
     for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
@@ -453,8 +454,8 @@ class Look {
     }
   }
 
-  /// What a fit can be held against: the laser, what the avionics say, what the operator made of other
-  /// sensors, heights. A pressure that was made of the model's own says nothing.
+  /// Finds the reference for a fit: laser, avionics, pressures that the operator derived from other sensors,
+  /// heights. A pressure derived from the model's own pressures is not a reference.
   void find_reference() {
     if (!result_.model) return;
     const ModelDefinition& model = *result_.model;

@@ -49,13 +49,13 @@ std::string percent(double part) { return fmt::format("{:.1f} %", 100.0 * part);
 ReportTable roles_of(const Inspection& flight) {
   ReportTable table;
   table.title = "Roles of " + std::filesystem::path(flight.path).filename().string();
-  table.caption = "Which variable plays which role, by the names of " + flight.family_title + ".";
+  table.caption = "Variable of each role, by the names of " + flight.family_title + ".";
   table.headers = {"role", "variable", "unit", "sign", "samples in a record", "present", "remarks"};
   for (const InspectedRole& role : flight.roles) {
     std::string remarks = role.trap;
     if (!role.is_verified)
       remarks += std::string(remarks.empty() ? "" : "; ") + "no public document has the name";
-    table.rows.push_back({role.role, role.variable, role.unit, role.is_turned ? "turned" : "as in the file",
+    table.rows.push_back({role.role, role.variable, role.unit, role.is_turned ? "reversed" : "unchanged",
                           std::to_string(role.rate), percent(role.present), remarks});
   }
   return table;
@@ -63,9 +63,9 @@ ReportTable roles_of(const Inspection& flight) {
 
 ReportTable missing_of(const Inspection& flight) {
   ReportTable table;
-  table.title = "What is missing in " + std::filesystem::path(flight.path).filename().string();
-  table.caption = "Roles that no variable plays, and what cannot be done without them.";
-  table.headers = {"role", "what it is", "names looked for", "what cannot be done", "effects that need it"};
+  table.title = "Missing from " + std::filesystem::path(flight.path).filename().string();
+  table.caption = "Roles without a variable, and the consequences.";
+  table.headers = {"role", "description", "names searched", "consequence", "effects that need it"};
   for (const MissingRole& role : flight.missing) {
     table.rows.push_back({role.role, role.description, fmt::format("{}", fmt::join(role.looked_for, ", ")),
                           role.cost, fmt::format("{}", fmt::join(role.effects, ", "))});
@@ -77,12 +77,13 @@ ReportTable missing_of(const Inspection& flight) {
 
 Report inspection_report(const std::vector<Inspection>& flights) {
   Report report;
-  report.title = flights.size() == 1 ? "What the flight holds" : "What the flights hold";
+  report.title =
+      flights.size() == 1 ? "Variables and roles of the flight" : "Variables and roles of the flights";
   for (const Inspection& flight : flights) {
     report.info.emplace_back("Flight", fmt::format("{}, {} to {} UTC, {} records, {} gaps", flight.path,
                                                    utc_text(flight.time.first), utc_text(flight.time.last),
                                                    flight.records, flight.time.gap_count));
-    report.info.emplace_back("Aircraft", flight.aircraft.empty() ? "not said" : flight.aircraft);
+    report.info.emplace_back("Aircraft", flight.aircraft.empty() ? "not stated" : flight.aircraft);
     report.info.emplace_back("Names of", flight.family_title);
     for (const std::string& note : flight.notes) report.info.emplace_back("Note", note);
     if (!flight.samples) continue;

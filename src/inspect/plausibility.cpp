@@ -92,7 +92,7 @@ class Plausibility {
                                     [](double t, double h) { return t - standard_temperature(h); });
     if (std::abs(excess) > most)
       add(temperature.variable, "temperature against height", excess, "K",
-          "taken as it is; state its unit in the [units] of the model");
+          "used unchanged; state its unit in the [units] of the model");
   }
 
   void dynamic_against_airspeed() {
@@ -113,7 +113,7 @@ class Plausibility {
     constexpr double most = 0.1;
     if (std::abs(ratio - 1.0) > most)
       add(q.variable, "airspeed by the pressures over " + airspeed.variable, ratio, "1",
-          "taken as it is; name another dynamic pressure in the [variables] of the model, or its unit in "
+          "used unchanged; name another dynamic pressure in the [variables] of the model, or its unit in "
           "[units]");
   }
 
@@ -124,12 +124,12 @@ class Plausibility {
       double most = 0.0;
       for (const double each : angle.values)
         most = std::isfinite(each) ? std::max(most, std::abs(each)) : most;
-      // A heading of radians goes to 6.28, and one of degrees to 360, unless the flight is one leg.
+      // The maximum heading is 6.28 in radians and 360 in degrees, unless the flight is one leg.
       const bool is_turn = role == Q::heading || role == Q::ground_track;
       const bool looks_like_radians = is_turn && most > 3.0 && most < 6.3;
       if (looks_like_radians)
-        add(angle.variable, "angle that goes as far as radians do", most, "degree",
-            fmt::format("taken as it is; if it is in radians, {} = \"radian\" in the [units] of the model",
+        add(angle.variable, "angle with a maximum typical of radians", most, "degree",
+            fmt::format("used unchanged; if it is in radians, {} = \"radian\" in the [units] of the model",
                         info_of(role).name));
     }
   }
@@ -153,7 +153,7 @@ class Plausibility {
     constexpr double most = 0.05;
     if (std::abs(ratio - 1.0) > most)
       add(speed.variable, "speed by the positions over it", ratio, "1",
-          "taken as it is; state its unit in the [units] of the model");
+          "used unchanged; state its unit in the [units] of the model");
   }
 
   void add_jumps(const std::string& variable, const char* kind, const std::vector<Jump>& jumps,
@@ -186,7 +186,7 @@ class Plausibility {
       const double step = resolution_of(series.values);
       if (step >= 0.999 * coarse)
         add(series.variable, "recorded in steps", step, std::string(info_of(role).unit),
-            fmt::format("taken as it is; rounding alone is {:.2g} {} rms", rounding_of(step),
+            fmt::format("used unchanged; rounding alone is {:.2g} {} rms", rounding_of(step),
                         info_of(role).unit));
     }
   }

@@ -8,9 +8,9 @@
 
 namespace pcor::internal {
 
-/// What cannot be right of the series of a model on a flight: pressures against height, airspeed and each
-/// other, the temperature against height, angles in other units, ground speeds against positions, jumps, and
-/// values in coarse steps.
+/// Implausible series of a model on a flight: pressures against height, airspeed and each other, the
+/// temperature against height, angles in other units, ground speeds against positions, jumps, and values in
+/// coarse steps.
 std::vector<Problem> find_problems(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

@@ -86,7 +86,7 @@ class EffectReader final : TomlReader {
            fmt::format("surface {} lacks its knots or coefficients; give {}", quote(id), wanted));
     if (effect_named(id) != catalogue_size)
       fail(given.axes->place, fmt::format("effect {} has its formula in the catalogue; remove 'axes' and "
-                                          "'coefficients', or give an id of your own",
+                                          "'coefficients', or choose another id",
                                           quote(id)));
     for (const std::optional<Entry>* entry :
          {&given.location, &given.unit, &given.source, &given.formula, &given.parameters, &given.scaling}) {

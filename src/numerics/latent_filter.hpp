@@ -10,10 +10,10 @@ namespace pcor::internal {
 /// Rows that are read and written one after another.
 using RowByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Rows that were made white: what is new in each row after those before it, in units of its deviation.
+/// Whitened rows: the innovation of each row, divided by its standard deviation.
 struct WhiteRows {
   RowByRow rows;             ///< zero where the row has no value
-  Eigen::VectorXd variance;  ///< of what is new; zero where the row has no value
+  Eigen::VectorXd variance;  ///< variance of the innovation; zero if the row has no value
   double log_determinant = 0.0;
 };
 

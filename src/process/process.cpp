@@ -354,7 +354,7 @@ void Processing::note_archive() {
         "{}; pcor refit finds coefficients where the flight determines them",
         static_pressure, dynamic_pressure, is_corrected ? "as the archive corrected them" : "as recorded");
   } else if (is_corrected) {
-    note("{} and {} were corrected by the archive; the model corrects what that left", static_pressure,
+    note("{} and {} were corrected by the archive; the model corrects the remaining error", static_pressure,
          dynamic_pressure);
   }
 }

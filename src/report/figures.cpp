@@ -201,7 +201,7 @@ std::vector<std::string> write_figures(const Report& report, const fs::path& fol
   if (files.empty()) throw Error(fmt::format("figures: {} shows no pictures of this report", program));
   std::vector<std::string> names;
   for (const auto& [name, bytes] : files) {
-    if (bytes.empty()) throw Error(fmt::format("figures: {} drew nothing for {}", program, name));
+    if (bytes.empty()) throw Error(fmt::format("figures: {} wrote no picture for {}", program, name));
     names.push_back(name);
   }
   OutputTransaction together;

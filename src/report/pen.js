@@ -95,7 +95,7 @@ class CanvasPen {
 }
 
 function escapeXml(words) {
-  return words.replace(/[&<>"']/g, (letter) => `&#${letter.charCodeAt(0)};`)
+  return words.replace(/[&<>"']/g, (character) => `&#${character.charCodeAt(0)};`)
       .replace(/[\u0000-\u0008\u000b\u000c\u000e-\u001f]/g, '\ufffd');
 }
 

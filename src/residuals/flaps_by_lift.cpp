@@ -62,7 +62,7 @@ struct Piece {
   double time = 0.0;  ///< s
   double lift = 0.0;  ///< n/q, 1/hPa
   double mach = 0.0;
-  double angle = 0.0;     ///< as recorded
+  double angle = 0.0;     ///< recorded angle of attack
   double airspeed = 0.0;  ///< indicated airspeed, m/s
 };
 

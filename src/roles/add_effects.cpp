@@ -34,7 +34,7 @@ std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
   return std::nullopt;
 }
 
-/// Parameters that only shape an effect are held until someone frees them.
+/// Parameters that only shape an effect are fixed by default.
 EffectFit fit_of(const ModelEffect& effect) {
   EffectFit fit(effect.parameters.size());
   if (effect.is_formula()) return fit;
@@ -53,7 +53,7 @@ void add(ModelDefinition& file, ModelEffect effect) {
   }
   if (effect.is_formula()) {
     if (effect_named(effect.id) != catalogue_size) {
-      throw Error(fmt::format("effect {} has its formula in the catalogue; give the formula an id of its own",
+      throw Error(fmt::format("effect {} has its formula in the catalogue; give the new formula another id",
                               quote(effect.id)));
     }
   } else {
@@ -85,9 +85,10 @@ ModelDefinition add_effects(const ModelDefinition& model, const std::vector<Mode
     const std::optional<std::string> variable = usual_variable(usual, variables);
     if (!variable) {
       throw Error(Error::Code::model,
-                  why + (usual.empty() ? fmt::format(" as {} = \"...\"", info_of(error.quantity).name)
-                                       : fmt::format("; the flight has none of its usual names {}",
-                                                     fmt::join(usual, ", "))));
+                  why + (usual.empty()
+                             ? fmt::format(" as {} = \"...\"", info_of(error.quantity).name)
+                             : fmt::format("; the flight records no variable with one of its usual names {}",
+                                           fmt::join(usual, ", "))));
     }
     file.variables[error.quantity] = *variable;
   }

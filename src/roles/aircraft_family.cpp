@@ -106,7 +106,8 @@ class Reader final : TomlReader {
            {{"variable", [&](const Entry& entry) { thermometer.variable = text(entry); }},
             {"recovery_factor", [&](const Entry& entry) {
                const PublishedRecoveryFactor* const known = published_recovery_factor(text(entry));
-               if (known == nullptr) fail(entry, "there is no published recovery factor of that name");
+               if (known == nullptr)
+                 fail(entry, "this recovery factor is not in the table of published values");
                thermometer.recovery = known->name;
              }}});
       if (thermometer.variable.empty() || thermometer.recovery.empty())
@@ -126,7 +127,7 @@ bool contains_word(std::string text, std::string word) {
   return text.find(word) != std::string::npos;
 }
 
-/// How much a flight is like those of a family: 2 for an attribute, 1 for the variables.
+/// Similarity of a flight to a family: 2 if an attribute matches, 1 if the variables match.
 int likeness(const VariableNaming& family, const Flight& flight) {
   const bool by_attribute =
       std::any_of(family.attributes.begin(), family.attributes.end(), [&](const auto& attribute) {
@@ -194,7 +195,7 @@ const VariableNaming& family_named(const std::string& name) {
                                                         fmt::join(known, ", "))
                                           : meant));
   }
-  // Those of the user stay for the run of the program, since flights refer to them.
+  // Families from files of the user are kept until the program ends, since flights refer to them.
   static std::mutex reading;
   static std::deque<std::pair<std::string, VariableNaming>> read;
   const std::lock_guard lock(reading);

@@ -26,46 +26,46 @@ struct Thermometer {
   std::string_view recovery;  ///< one of `published_recovery_factors`
 };
 
-/// What files of some aircraft call things: data/aircraft/*.toml, which the library holds.
+/// Names of variables in the files of some aircraft: data/aircraft/*.toml, embedded in the library.
 struct VariableNaming {
   std::string name;   ///< "faam-core"
   std::string title;  ///< "FAAM BAe-146, core data"
   std::string source;
-  std::vector<std::string> unverified{};  ///< names that no public document was found of
+  std::vector<std::string> unverified{};  ///< names without a public document
 
   /// A global attribute of a file and a word in it, without regard to case.
   std::vector<std::pair<std::string, std::string>> attributes{};
-  std::vector<std::string> variables{};  ///< that its files have, all of them
+  std::vector<std::string> variables{};  ///< variables that all files of the family have
 
-  std::vector<PressurePair> measured{};   ///< pairs as measured, the likeliest first
+  std::vector<PressurePair> measured{};   ///< pairs as measured, sorted by decreasing likelihood
   std::vector<PressurePair> processed{};  ///< pairs that the flight's own processing chose or corrected
-  std::map<std::string, std::vector<std::string>, std::less<>> series{};  ///< names, the likeliest first
-  std::vector<Thermometer> thermometers{};                                ///< the likeliest first
+  std::map<std::string, std::vector<std::string>, std::less<>>
+      series{};                             ///< names, sorted by decreasing likelihood
+  std::vector<Thermometer> thermometers{};  ///< sorted by decreasing likelihood
   std::map<std::string, std::string>
-      units{};  ///< of variables whose files do not say it, or whose sign turns
-  std::map<std::string, std::string> traps{};  ///< what a user of a variable should know, a sentence
+      units{};  ///< units of variables whose files state no unit, or whose sign is reversed
+  std::map<std::string, std::string> traps{};  ///< one-sentence caution about a variable
 
-  /// The variables that hold a series, the likeliest first; empty where there is none. @param of the name of
-  /// a role, or of a series that no model reads (`series_named`)
+  /// The variables that may hold a series, sorted by decreasing likelihood; empty for an unknown series.
+  /// @param of name of a role, or of a series that no model reads (`series_named`)
   std::vector<std::string> names_of(std::string_view of) const;
 
-  /// The unit of a variable where its files do not say it; empty where they do.
+  /// The unit of a variable whose files state no unit; empty otherwise.
   std::string unit_of(const std::string& variable) const;
 };
 
-/// All families, that of NCAR first, whose names also stand for a file that none knows.
+/// All families. The NCAR family is first; its names are also used for a file of an unknown family.
 const std::vector<VariableNaming>& aircraft_families();
 
-/// The families whose files are like this one: those of which it has a word in an attribute, and the
-/// variables, rather than those of which it has less. More than one where it is like several; none where it
-/// is like none.
+/// The families that match a flight best, by a word in an attribute and by the variables. Several families if
+/// they match equally well; empty without a match.
 std::vector<const VariableNaming*> families_like(const Flight& flight);
 
-/// The family whose names hold for a flight: the first that it is like, else NCAR's.
+/// The family whose names apply to a flight: the first that matches, otherwise NCAR.
 const VariableNaming& family_of(const Flight& flight);
 
-/// The family of that name, or in the file whose name ends in ".toml". @throws Error with what may have been
-/// meant if there is none.
+/// The named family, or the family in a file if the name ends in ".toml". @throws Error with similar names if
+/// the family does not exist.
 const VariableNaming& family_named(const std::string& name);
 
 /// Reads the text of a family. @throws Error "name:line:column: what is wrong; what to do"

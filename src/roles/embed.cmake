@@ -1,4 +1,4 @@
-# What files of known aircraft call things, embedded in the library.
+# Embeds the names of variables of known aircraft in the library.
 pcor_embed(pcor_offline ${CMAKE_CURRENT_BINARY_DIR}/aircraft_data.cpp pcor::internal::aircraft
   ncar ${PROJECT_SOURCE_DIR}/data/aircraft/ncar.toml
   faam_core ${PROJECT_SOURCE_DIR}/data/aircraft/faam-core.toml

@@ -62,7 +62,7 @@ SignalBand signal_band_of(const FastSeries& series, const std::vector<double>& t
   const double rate = static_cast<double>(series.in_record) / step;
   std::vector<double> periods;
   std::vector<double> variance;
-  std::vector<double> gain;  // of white noise
+  std::vector<double> gain;  // white noise
   for (double period = 2.0 / rate; period < longest; period *= half_octave) {
     const RateFilter filter(rate, 0.0, period);
     std::vector<double> rates;

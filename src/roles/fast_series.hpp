@@ -8,24 +8,24 @@
 
 namespace pcor::internal {
 
-/// What is recorded of a quantity, at `rate` samples in a record, in the unit of the quantity.
+/// The recorded values of a quantity, `rate` samples per record, in the unit of the quantity.
 FastSeries read_fast(const Flight& flight, const ModelInput& input, int rate);
 
-/// How far the rates of change of a series are signal.
+/// Periods in which the rate of change of a series is mainly signal.
 struct SignalBand {
-  double min_period = 0.0;     ///< s, at which it is rather more signal than noise
-  double rate_variance = 0.0;  ///< of its rates of change down to that period, per second squared
-  double rate_noise = 0.0;     ///< what of that is noise
+  double min_period = 0.0;     ///< s, shortest period with more signal than noise
+  double rate_variance = 0.0;  ///< variance of the rate of change down to that period, per second squared
+  double rate_noise = 0.0;     ///< contribution of noise to this variance
 };
 
-/// The band in which a series is rather more signal than noise: to cut its rate of change off there leaves
-/// least error (Wiener), and one that can be fitted to. Noise is where the spectrum is flat.
+/// The band in which a series has more signal than noise: a cut-off there minimises the error of the rate of
+/// change (Wiener). The flat part of the spectrum is taken as noise.
 /// @param time of the records @param step s, from record to record
 SignalBand signal_band_of(const FastSeries& series, const std::vector<double>& time, double step);
 
-/// The mean rate of change of a series over `seconds`, per second, as `RateFilter` has it, in the mean over
-/// each record: with 0 s the derivative. Gaps in time are bridged by nothing: the rates beside them are of
-/// what is on one side. NaN where more than half of a record has none.
+/// Mean rate of change of a series over `seconds` by `RateFilter`, per second, averaged over each record; the
+/// derivative for 0 s. Gaps in time are not bridged: rates next to a gap use one side only. NaN if more than
+/// half of the samples of a record have no rate.
 std::vector<double> rate_of(const FastSeries& series, const std::vector<double>& time, double step,
                             double min_period, double seconds = 0.0);
 

@@ -15,7 +15,7 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::size_t min_samples = 20;
-constexpr std::size_t min_values = 50;  // with fewer a series tells nothing of its noise
+constexpr std::size_t min_values = 50;  // minimum number of samples to estimate the noise
 constexpr std::size_t neighbours = 20;
 constexpr std::size_t left_out = 2;
 constexpr double more_than_near = 20.0;
@@ -50,7 +50,7 @@ double resolution_of(const std::vector<double>& values) {
   return resolution;
 }
 
-/// Whether the noise from one sample to another is larger than the resolution; true where nothing tells.
+/// Whether the noise from sample to sample exceeds the resolution; true if there are too few samples.
 bool is_noisy(const std::vector<double>& values, std::size_t first, std::size_t end, double resolution) {
   std::vector<double> bends;
   for (std::size_t i = first + 2; i < end; ++i) {
@@ -86,7 +86,7 @@ double usual_length(const std::vector<Segment>& runs, double part) {
   return 0.0;
 }
 
-/// The mean length of the runs around one, but for those that last longest.
+/// Mean length of the neighbouring runs, without the longest ones.
 double near_length(const std::vector<Segment>& runs, std::size_t run) {
   std::vector<std::size_t> lengths;
   const std::size_t end = std::min(run + neighbours + 1, runs.size());

@@ -16,7 +16,7 @@ constexpr double longest = 60.0;  // s from a jump to the jump back
 constexpr double deviations = 8.0;
 constexpr std::size_t around = 7;  // samples on either side
 
-/// How much the rate at each sample, since the one before, departs from the median of those around.
+/// Difference of the rate at each sample (since the previous one) from the median rate of its neighbours.
 std::vector<double> departures(const std::vector<double>& values, const std::vector<double>& time) {
   std::vector<double> rates(values.size(), nan);
   for (std::size_t i = 1; i < values.size(); ++i)

@@ -21,7 +21,7 @@ namespace {
 
 std::string day_of(const Flight& flight) { return utc_text(flight.time().first, "%Y-%m-%d"); }
 
-/// Where a model's pressures stand among those of its aircraft, as measured.
+/// Index of the model's pressures among the measured pairs of its aircraft.
 std::size_t place_of_pressures(const ModelDefinition& model, const VariableNaming& family) {
   const auto variable = [&model](Quantity role) {
     const auto found = model.variables.find(role);
@@ -35,13 +35,13 @@ std::size_t place_of_pressures(const ModelDefinition& model, const VariableNamin
   return static_cast<std::size_t>(found - family.measured.begin());
 }
 
-/// What stands first has the least.
+/// The candidate with the smallest rank is first.
 auto rank_of(const ModelCandidate& law, const VariableNaming& family) {
   return std::make_tuple(!law.fits(), -static_cast<int>(law.lacks.empty()) - static_cast<int>(law.is_in_time),
                          !law.model.law.in_processing, place_of_pressures(law.model, family));
 }
 
-/// Why a flight cannot be corrected by a model whose variables it has; empty where it can.
+/// Reason why a model cannot correct a flight that has its variables; empty if it can.
 std::string why_not(const Flight& flight, const ModelDefinition& model) {
   try {
     std::vector<std::string> notes;
@@ -115,12 +115,12 @@ ModelCandidate model_candidate(const Flight& flight, const std::vector<std::file
   if (!unread.empty()) throw Error(unread.front());
   if (flight.aircraft().empty())
     throw Error(
-        fmt::format("{}: it does not say its aircraft; name its model with --model", flight.path().string()));
+        fmt::format("{}: the aircraft is not stated; name the model with --model", flight.path().string()));
   const std::string who =
       fmt::format("{}, '{}' of {}", flight.path().string(), flight.aircraft(), day_of(flight));
   if (laws.empty()) {
-    throw Error(fmt::format("{}: none of the {} models is of this aircraft; name one with --model", who,
-                            models.size()));
+    throw Error(
+        fmt::format("{}: the {} models are for other aircraft; name one with --model", who, models.size()));
   }
   const ModelCandidate& first = laws.front();
   if (!first.fits())

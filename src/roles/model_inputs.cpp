@@ -23,7 +23,7 @@ bool is_same(const UnitConversion& a, const UnitConversion& b) {
          std::abs(a.offset() - b.offset()) <= rounding * std::abs(a.offset());
 }
 
-/// The unit that a model states takes the place of the file's, which may be wrong; but so may be the model's.
+/// The unit in the model replaces the unit in the file. Either may be wrong.
 void note_other_unit(const VariableInfo& variable, const QuantityInfo& role, const std::string& stated,
                      std::vector<std::string>& notes) {
   const std::string unit(role.unit);
@@ -32,9 +32,9 @@ void note_other_unit(const VariableInfo& variable, const QuantityInfo& role, con
       is_convertible(variable.units, unit) &&
       is_same(UnitConversion::between(variable.units, unit, {}), UnitConversion::between(stated, unit, {}));
   if (!same) {
-    notes.push_back(
-        fmt::format("{} is taken as {}, as the model or the aircraft's data state; the file says {}",
-                    variable.name, quote(stated), quote(variable.units)));
+    notes.push_back(fmt::format(
+        "{} is taken as {}, as stated by the model or the aircraft's data; the unit in the file is {}",
+        variable.name, quote(stated), quote(variable.units)));
   }
 }
 
@@ -104,12 +104,12 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
     if (!flight.variable(input.variable).flags.empty()) flagged.push_back(input.variable);
   }
   if (!flagged.empty()) {
-    notes.push_back(fmt::format("samples that flags of the file call bad or missing count as missing: of {}",
+    notes.push_back(fmt::format("samples flagged as bad or missing in the file are treated as missing: {}",
                                 fmt::join(flagged, ", ")));
   }
   if (!without_range.empty()) {
     notes.push_back(
-        fmt::format("the file states what is valid in words that are no numbers, which are ignored: of {}",
+        fmt::format("the valid ranges of these variables in the file are not numbers and were ignored: {}",
                     fmt::join(without_range, ", ")));
   }
   return inputs;
@@ -127,7 +127,7 @@ void note_left_out(const ModelInput& input, const RejectedCounts& left_out, std:
   note(left_out.impossible, fmt::format("outside {:g} to {:g}{}, which is impossible",
                                         input.conversion.least(), input.conversion.greatest(), unit));
   note(left_out.invalid, "outside the range that the file states as valid");
-  note(left_out.enormous, "beyond 1e30, which marks no value");
+  note(left_out.enormous, "beyond 1e30, which marks missing values");
 }
 
 std::vector<std::string> notes_on_law(const Flight& flight, const ModelDefinition& file) {

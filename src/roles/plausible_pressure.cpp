@@ -18,15 +18,15 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t fewest = 20;  // values that tell
+constexpr std::size_t fewest = 20;  // minimum number of values
 
 std::string stated_unit(const Flight& flight, const VariableNaming& family, const std::string& variable) {
   const std::string stated = family.unit_of(variable);
   return stated.empty() ? flight.variable(variable).units : stated;
 }
 
-/// Some thousand values from the begin, the middle and the end, in the unit of the role; empty where it
-/// cannot be read.
+/// A few thousand values from the beginning, the middle and the end, in the unit of the role; empty if the
+/// variable cannot be read.
 std::vector<double> some_values(const Flight& flight, const VariableNaming& family,
                                 const std::string& variable, Quantity role, const std::string& stated = {}) {
   std::vector<double> values;
@@ -42,8 +42,8 @@ std::vector<double> some_values(const Flight& flight, const VariableNaming& fami
   return values;
 }
 
-/// The median of what is recorded over what is expected; NaN where too little tells, or where it is not about
-/// the same all the time, so that a wrong unit is not the reason.
+/// Median ratio of recorded to expected values; NaN if there are too few values, or if the ratio varies, so
+/// that a wrong unit is not the reason.
 double ratio_of(const std::vector<double>& pressure, const std::vector<double>& expected) {
   constexpr double steady = 0.05;
   std::vector<double> ratios;
@@ -79,7 +79,7 @@ std::string unit_that_fits(const std::string& own, double ratio) {
   return {};
 }
 
-/// A height of GPS; that of the pressure says what the pressure does.
+/// A GPS height; the pressure height would always agree with the pressure.
 std::string height_of(const Flight& flight, const ModelDefinition& model, const VariableNaming& family) {
   const auto named = model.variables.find(Quantity::altitude);
   if (named != model.variables.end()) return named->second;
@@ -215,12 +215,12 @@ void require_possible_pressure(const Flight& flight, const ModelDefinition& mode
   const std::string unit = flight.variable(variable).units;
   throw Error(
       Error::Code::unit,
-      fmt::format("{}: {} in {} is {:.3g} times what {} says{}; state the right unit in the [units] of the "
-                  "model, {} = {}, or name another variable there; the unit that a model states is believed",
-                  flight.path().string(), variable, quote(unit), wrong->ratio, wrong->against,
-                  wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
-                  info_of(wrong->role).name,
-                  wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
+      fmt::format(
+          "{}: {} in {} is {:.3g} times the value expected from {}{}; state the right unit in the [units] of "
+          "the model, {} = {}, or name another variable; a unit stated in the model is not checked",
+          flight.path().string(), variable, quote(unit), wrong->ratio, wrong->against,
+          wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
+          info_of(wrong->role).name, wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
 }
 
 }  // namespace pcor::internal

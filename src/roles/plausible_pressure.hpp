@@ -11,9 +11,9 @@ namespace pcor::internal {
 /// A static or dynamic pressure that cannot be right.
 struct ImpossiblePressure {
   Quantity role = Quantity::static_pressure;
-  double ratio = 1.0;   ///< of the recorded pressure to the one that is expected, the median
+  double ratio = 1.0;   ///< median ratio of recorded to expected pressure
   std::string against;  ///< "the height GGALT"
-  std::string unit;     ///< in which it would be right; empty where none makes it so
+  std::string unit;     ///< the unit in which it would be plausible; empty without such a unit
 };
 
 /// Holds the static pressure of a model against the height, within 10 % of the standard atmosphere, more
@@ -24,7 +24,8 @@ struct ImpossiblePressure {
 /// accepted.
 std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model);
 
-/// @throws Error that names the variable, its unit, what speaks against it, and what to write into the model
+/// @throws Error that names the variable, its unit, the contradicting evidence and the correction of the
+/// model
 void require_possible_pressure(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

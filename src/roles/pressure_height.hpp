@@ -16,7 +16,7 @@ struct HeightEvidence {
     pressure_altitude,  ///< it is the height of one of them in the standard atmosphere
   };
   Kind kind = Kind::gps;
-  std::string pressure{};  ///< the static pressure that it is closest to; empty without any
+  std::string pressure{};  ///< the closest static pressure; empty without a static pressure
   double bias = 0.0;       ///< hPa, the median of the pressure of the height less that pressure
   double scatter = 0.0;    ///< hPa, about the median, robust
 };

@@ -12,7 +12,7 @@ bool has_role(const Flight& flight, const std::string& variable, Quantity role) 
   return has_values(flight, variable, std::string(info_of(role).unit));
 }
 
-/// Gives the model the first of the usual variables that has values; false where none has.
+/// Gives the model the first of the usual variables that has values; false if no variable has values.
 bool add_usual(const Flight& flight, Quantity role, ModelDefinition& model) {
   const std::vector<std::string> names = family_of(flight).names_of(info_of(role).name);
   const auto found = std::find_if(names.begin(), names.end(),

@@ -9,17 +9,17 @@
 
 namespace pcor::internal {
 
-/// The pairs of pressures as measured that the flight has, the likeliest first.
+/// The measured pairs of pressures in the flight, sorted by decreasing likelihood.
 std::vector<PressurePair> measured_pairs(const Flight& flight);
 
-/// The model that stands in where none is given: the pressures that the flight's own processing corrected
-/// (PSXC, QCXC), else its reference (PSX, QCX), else the first of the pairs as measured, with its ambient
-/// temperature (ATX), else a recovery temperature with the recovery factor of its thermometer (see
-/// `VariableNaming::thermometers`). Nothing is added to them. Absent where the flight has no pair with
+/// Default model without corrections if no model is given. Pressures: the first available of the pair
+/// corrected by the flight's own processing (PSXC, QCXC), its reference pair (PSX, QCX) and the measured
+/// pairs. Temperature: the ambient temperature (ATX), otherwise a recovery temperature with the recovery
+/// factor of its thermometer (see `VariableNaming::thermometers`). Empty if the flight has no pair with
 /// values.
 std::optional<ModelDefinition> recorded_model(const Flight& flight);
 
-/// A model of a pair as it is measured: nothing is added.
+/// A model of a measured pair without corrections.
 ModelDefinition model_of(const PressurePair& pair);
 
 }  // namespace pcor::internal

@@ -10,7 +10,7 @@
 namespace pcor::internal {
 namespace {
 
-/// Makes `variable` the series if none is so far, and it is there, has values and a unit that fits.
+/// Uses `variable` for an empty series if the variable exists, has values and a convertible unit.
 /// @param stated the unit that the model states
 void try_variable(const Flight& flight, const std::string& variable, const std::string& stated,
                   const QuantityInfo& info, RecordedSeries& series) {
@@ -26,7 +26,7 @@ void try_variable(const Flight& flight, const std::string& variable, const std::
     series.values = std::move(values);
   } catch (const Error& error) {
     if (error.code() == Error::Code::file) throw;
-    return;  // a variable of that name with another unit is not the one that is meant
+    return;  // a variable with this name and another unit is a different quantity
   }
 }
 

@@ -11,15 +11,15 @@
 
 namespace pcor::internal {
 
-/// A series of a flight at one sample for each record; without values where the flight has none.
+/// A series of a flight with one sample per record; empty if the flight does not record it.
 struct RecordedSeries {
   std::string variable{};
   std::vector<double> values{};  ///< NaN where missing
   std::string without_unit{};  ///< the first variable that was passed over because the file gives it no unit
 };
 
-/// The conversion of which nothing comes out that is beyond the limits of a series: the mark of a missing
-/// value that the file does not name, a dead sensor, or another unit.
+/// Conversion that gives NaN beyond the limits of a series: undeclared marks of missing values, a dead
+/// sensor, or another unit.
 inline UnitConversion believed(const UnitConversion& conversion, const QuantityInfo& info) {
   return conversion.within(info.least, info.most);
 }
@@ -44,14 +44,16 @@ RecordedSeries read_usual(const Flight& flight, const VariableNaming& family, st
 /// The longitude, which no model names: the usual one, or the variable that is sure by the evidence.
 RecordedSeries read_longitude(const Flight& flight, const ModelDefinition& model);
 
-/// The series of a role: the model's variable in the unit that the model states, else the usual one.
+/// The series of a role: the model's variable in the unit that the model states, otherwise the usual
+/// variable.
 RecordedSeries read_role(const Flight& flight, const ModelDefinition& model, Quantity role);
 
-/// Whether a flight has values of a variable whose unit, the one stated or else its own, fits.
+/// Whether a flight has values of a variable with a convertible unit (the stated unit, otherwise the unit in
+/// the file).
 bool has_values(const Flight& flight, const std::string& variable, const std::string& unit,
                 const std::string& stated = "");
 
-/// The variable of the static pressure that the flight's own processing corrected; empty where it has none.
+/// Name of the static pressure corrected by the flight's own processing; empty if not recorded.
 std::string processed_static_pressure(const Flight& flight, const VariableNaming& family);
 
 }  // namespace pcor::internal

@@ -15,7 +15,8 @@ double resolution_of(const std::vector<double>& values) {
                [](double x) { return std::isfinite(x); });
   if (sorted.empty()) return 0.0;
   std::sort(sorted.begin(), sorted.end());
-  const double rounding = 4e-7 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));  // of 32 bits
+  const double rounding = 4e-7 * std::max(std::abs(sorted.front()),
+                                          std::abs(sorted.back()));  // relative rounding of 32-bit floats
   const double range = sorted.back() - sorted.front();
   sorted.erase(
       std::unique(sorted.begin(), sorted.end(), [&](double a, double b) { return b - a <= rounding; }),

@@ -94,19 +94,18 @@ class Completion {
     if (has(Quantity::static_pressure) && has(Quantity::dynamic_pressure)) return;
     if (take_pair(family_.measured)) return;
     if (take_pair(family_.processed)) {
-      traps_.push_back(fmt::format("{} and {} are corrected already by the archive: a fit finds what is left",
-                                   file_.variables.at(Quantity::static_pressure),
-                                   file_.variables.at(Quantity::dynamic_pressure)));
+      traps_.push_back(fmt::format(
+          "{} and {} are already corrected by the archive: a fit finds the remaining error",
+          file_.variables.at(Quantity::static_pressure), file_.variables.at(Quantity::dynamic_pressure)));
       return;
     }
     std::vector<std::string> looked_for;
     for (const PressurePair& pair : family_.measured) looked_for.push_back(pair.name());
-    throw Error(fmt::format(
-        "{}: it has no pair of static and dynamic pressure of the names that {} has ({}); name them as "
-        "static_pressure and dynamic_pressure in the [variables] of the model, or another aircraft by roles "
-        "= "
-        "\"...\"; 'pcor inspect' tells what the flight holds",
-        flight_.path().string(), family_.title, fmt::join(looked_for, ", ")));
+    throw Error(
+        fmt::format("{}: no pair of static and dynamic pressure with the names of {} was found ({}); set "
+                    "static_pressure and dynamic_pressure in the [variables] of the model, or another "
+                    "aircraft with roles = \"...\"; 'pcor inspect' lists the variables of the flight",
+                    flight_.path().string(), family_.title, fmt::join(looked_for, ", ")));
   }
 
   void take_temperature() {
@@ -159,8 +158,9 @@ ModelDefinition resolve_variables(const ModelDefinition& model, const Flight& fl
     if (like.size() > 1) {
       std::vector<std::string> names;
       for (const VariableNaming* family : like) names.push_back(family->name);
-      throw Error(fmt::format("{}: it is like the files of {}; say which in the model, roles = \"{}\"",
-                              flight.path().string(), fmt::join(names, " and of "), names.front()));
+      throw Error(
+          fmt::format("{}: the file resembles the files of {}; choose one in the model, roles = \"{}\"",
+                      flight.path().string(), fmt::join(names, " and of "), names.front()));
     }
   }
   return Completion(model, flight, family_of(model, flight)).complete(notes);

@@ -18,14 +18,14 @@
 namespace pcor::internal {
 namespace {
 
-/// What speaks for a series. Phrases are separated by semicolons, the likeliest first; any order of words
-/// does.
+/// Evidence for a series. Phrases are separated by semicolons and sorted by decreasing likelihood; the order
+/// of words is free.
 struct Signs {
   std::string_view series;
   std::string_view phrases;
-  std::string_view not_words;       ///< of the name and the long_name
-  std::string_view standard_names;  ///< of CF
-  double least, most;               ///< of the median in flight, in the unit of the series
+  std::string_view not_words;       ///< words that exclude a name or long_name
+  std::string_view standard_names;  ///< CF standard names
+  double least, most;               ///< limits of the median in flight, in the unit of the series
 };
 
 constexpr std::string_view no_pressure = "dynamic total cabin differential vapor altitude bay error";
@@ -89,7 +89,7 @@ constexpr std::array<Signs, 32> signs{{
     {"cabin_pressure", "cabin pressure", "", "", 400, 1100},
 }};
 
-/// What a word is short for.
+/// Abbreviations and the full words.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 24> written_out{{
     {"mag", "magnetic"},
     {"temp", "temperature"},
@@ -131,8 +131,7 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// How well words say a phrase: 0.45 where all of a short text is the likeliest phrase, 0 where none is in
-/// it.
+/// Agreement of words with phrases: 0.45 if a short text equals the most likely phrase, 0 without agreement.
 double likeness(const std::vector<std::string>& words, std::string_view phrases) {
   constexpr double full = 0.45, later_phrase = 0.03, other_word = 0.02;
   double best = 0.0;
@@ -149,7 +148,7 @@ double likeness(const std::vector<std::string>& words, std::string_view phrases)
   return best;
 }
 
-/// The values of some thousand records from the begin, the middle and the end.
+/// The values of a few thousand records from the beginning, the middle and the end.
 std::vector<double> some_values(const Flight& flight, const std::string& variable,
                                 const UnitConversion& conversion) {
   std::vector<double> values;
@@ -163,7 +162,7 @@ std::vector<double> some_values(const Flight& flight, const std::string& variabl
   return values;
 }
 
-/// What the file says of a variable, in words.
+/// Evidence in the file for a variable, as text.
 struct Described {
   const VariableInfo& info;
   std::vector<std::string> name{};
@@ -187,7 +186,7 @@ std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described&
     if (has(all, word)) return std::nullopt;
   }
   const std::string unit(info.unit);
-  // Of an angle everything converts that has no dimension.
+  // Any dimensionless unit converts to an angle.
   const bool states_unit = !variable.info.units.empty() && is_known_unit(variable.info.units);
   if (states_unit && !is_convertible(variable.info.units, unit)) return std::nullopt;
   const double by_name = likeness(variable.name, sign.phrases);

@@ -9,22 +9,21 @@
 
 namespace pcor::internal {
 
-/// A variable that may play a role, by what its file says of it.
+/// A variable that may have a role, by the evidence in its file.
 struct RoleCandidate {
   std::string variable{};
-  double score = 0.0;  ///< 0 to 1: the more speaks for it, the more
+  double score = 0.0;  ///< 0 to 1, increasing with the evidence
   std::string why{};   ///< "its name is 'static pressure', in hPa, with 560 to 960"
 };
 
-/// From here on a candidate is taken where no other comes near.
+/// Minimum score at which a candidate is accepted if no other has a similar score.
 inline constexpr double sure_score = 0.85;
-/// How much the second has to stay behind, so that the first is no guess between two.
+/// Minimum difference to the score of the second candidate.
 inline constexpr double clear_lead = 0.015;
 
-/// For each role, and each series that no model reads, the variables of a flight that may play it, the
-/// likeliest first: by CF's standard_name, by words of the name and of the long_name, by a unit that fits,
-/// and by values that are those of such a series. What has a unit that does not fit, or values out of range,
-/// is none.
+/// For each role, and each series that no model reads, the candidate variables of a flight, sorted by
+/// decreasing score: by CF's standard_name, by words of the name and of the long_name, by a convertible unit
+/// and by typical values. Variables with another unit or with values out of range are not candidates.
 std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& flight);
 
 /// The candidates for one series; reads only variables with words of that series.

@@ -20,7 +20,7 @@ using namespace internal;
 namespace {
 
 constexpr double min_mach = 0.18;
-constexpr double share_outside = 0.01;  // at either end of an axis
+constexpr double share_outside = 0.01;  // share beyond either end of an axis
 constexpr std::size_t min_samples = 300;
 
 std::vector<double> series_of(const Flight& flight, const ModelDefinition& model, Quantity role) {
@@ -78,8 +78,8 @@ ModelEffect surface_over(std::size_t flights, const std::function<const Flight&(
   for (const SurfaceAxis& axis : axes) {
     if (axis.is_valid()) continue;
     throw Error(
-        fmt::format("surface {}: {} splines over {} from {:.4g} to {:.4g} are no axis ({} to {} splines "
-                    "expected); give a flight with more of its range",
+        fmt::format("surface {}: {} splines over {} from {:.4g} to {:.4g} are not a valid axis ({} to {} "
+                    "splines expected); give a flight with a larger range",
                     id, axis.count, info_of(axis.quantity).name, axis.lower, axis.upper,
                     SurfaceAxis::min_count, SurfaceAxis::max_count));
   }

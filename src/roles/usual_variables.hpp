@@ -11,14 +11,14 @@
 
 namespace pcor::internal {
 
-/// The facts of a series that flights usually record: of a role, or of one of those that no model reads,
-/// "other_altitude", "longitude", "ground_speed_east" and "ground_speed_north". Null where there is none.
+/// Description of a series that flights usually record: a role, or one of the series that no model reads
+/// ("other_altitude", "longitude", "ground_speed_east", "ground_speed_north"). nullptr for an unknown name.
 const QuantityInfo* series_named(std::string_view name);
 
 /// The names of all series.
 std::vector<std::string> names_of_series();
 
-/// The family whose names complete those of a model on a flight: the model's own, else that of the flight.
+/// The family whose names complete a model on a flight: the family of the model, otherwise of the flight.
 const VariableNaming& family_of(const ModelDefinition& model, const Flight& flight);
 
 /// The names of the usual variables of a role in files of a family. Empty for the roles that a model must
@@ -26,11 +26,11 @@ const VariableNaming& family_of(const ModelDefinition& model, const Flight& flig
 /// Mach number.
 std::vector<std::string> usual_variables(const VariableNaming& family, Quantity role);
 
-/// The same in files of all families.
+/// The names of the usual variables of a role in files of all families.
 std::vector<std::string> usual_variables(Quantity role);
 
-/// All heights, that of GPS before those of inertial systems and of the pressure, which do to tell a climb
-/// from a descent.
+/// All heights, GPS first, then inertial and pressure heights, which suffice to separate climbs from
+/// descents.
 std::vector<std::string> usual_heights(const VariableNaming& family);
 
 }  // namespace pcor::internal

@@ -565,8 +565,8 @@ class TemperatureCalibration {
     }
     if (std::abs(at.correction) < told * at.standard_error) {
       result_.worse = fmt::format(
-          "the correction is not significant: at {:.0f} C, where it is best determined, it is {} K "
-          "(threshold {:g} standard errors, p = 0.01)",
+          "the correction is not significant: at {:.0f} C, its best determined temperature, the correction "
+          "is {} K (threshold {:g} standard errors, p = 0.01)",
           at.temperature, with_error(at.correction, at.standard_error), told);
       return;
     }

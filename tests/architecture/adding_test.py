@@ -126,5 +126,5 @@ part, source, scratch, *compiler = sys.argv[1:]
 copy = copied(pathlib.Path(source), pathlib.Path(scratch))
 said, expected = {"effect": add_effect, "command": add_command}[part](copy, *compiler)
 files = touched(pathlib.Path(source), copy)
-print(f"{part}: {' and '.join(files)} touched; it says {said.strip()}")
+print(f"{part}: {' and '.join(files)} touched; output: {said.strip()}")
 sys.exit(0 if said == expected and len(files) <= 2 else 1)

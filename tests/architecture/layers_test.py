@@ -50,7 +50,7 @@ for folder in ("include/pcor", "src", "tests"):
     for child in sorted((root / folder).iterdir()):
         known = set(layer_of) | (workshops if folder == "tests" else set())
         if child.is_dir() and child.name not in known:
-            trouble.append(f"{folder}/{child.name} is no module of tests/architecture/layers.txt")
+            trouble.append(f"{folder}/{child.name} is not a module in tests/architecture/layers.txt")
 
 described, layer = {}, -1
 for number, module in re.findall(r"^\| (\d*) *\| `(\w+)` \|", (root / "docs/architecture.md").read_text(), flags=re.MULTILINE):
@@ -76,7 +76,7 @@ for folder in ("include/pcor", "src"):
             other = target.relative_to(area).parts[0]
             if other != module and layer_of.get(other, 99) >= layer_of.get(module, -1):
                 trouble.append(f"{where}:{number}: the module {module} includes {target.relative_to(root)}, "
-                               f"of the module {other}, which is not below it")
+                               f"includes the module {other}, which is not below it")
             if folder == "include/pcor" and area == root / "src":
                 trouble.append(f"{where}:{number}: an installed header includes one that is not installed")
 

@@ -12,7 +12,7 @@ TEST(OneLine, ShowsWhatATerminalWouldObey) {
   EXPECT_EQ(one_line("\xc2\x9b"
                      "31m"),
             "\\xc2\\x9b31m")
-      << "an escape sequence of one letter";
+      << "an escape sequence of one character";
   EXPECT_EQ(one_line(std::string("a\0b", 3)), "a\\x00b");
   EXPECT_EQ(one_line("\u2028a\u202eb\u2066c\u200f"),
             "\\xe2\\x80\\xa8a\\xe2\\x80\\xaeb\\xe2\\x81\\xa6c\\xe2\\x80\\x8f");
@@ -21,7 +21,7 @@ TEST(OneLine, ShowsWhatATerminalWouldObey) {
 
 TEST(OneLine, KeepsLettersWhole) {
   EXPECT_EQ(one_line("\u00b5m\u00b3 \u20ac \U0001f6e9"), "\u00b5m\u00b3 \u20ac \U0001f6e9");
-  EXPECT_EQ(one_line("\xe2\x82"), "\\xe2\\x82") << "a letter that is cut off";
+  EXPECT_EQ(one_line("\xe2\x82"), "\\xe2\\x82") << "a truncated character";
   EXPECT_EQ(one_line("\xc0\x80\xff"), "\\xc0\\x80\\xff");
 }
 

@@ -123,7 +123,7 @@ double rounding(Quantity quantity, double value, double mach) {
     case Quantity::lams_static_defect:
       return 2e-12;
     case Quantity::lams_dynamic_pressure:
-      // p ((1 + x)^y - 1) of p up to 1000 hPa, where one lane beyond Mach 0.847 sends all through powers.
+      // p ((1 + x)^y - 1) of p up to 1000 hPa, if one lane beyond Mach 0.847 makes all lanes use powers.
       return 1e-12 + std::abs(value) * 1e-13;
     case Quantity::corrected_mach:
     case Quantity::corrected_airspeed:

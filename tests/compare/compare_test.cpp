@@ -267,7 +267,7 @@ TEST(Compare, KeepsRecordsOfChosenFlightsOnly) {
     EXPECT_THAT(pcor::comparison_report(some).summary, testing::Contains(HasSubstr("2 of the 5 flights")));
   };
   expect_the_same(pcor::compare(flights, contenders, options));
-  testing::internal::CaptureStderr();  // in further threads HDF5 prints errors of failed netCDF queries
+  testing::internal::CaptureStderr();  // HDF5 prints errors of failed netCDF queries in further threads
   pcor::test::run_with_communicator(
       3,
       [&](pcor::Communicator& comm) {
@@ -289,8 +289,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   };
   CompareOptions fast;
   fast.mask.min_airspeed = 500.0;
-  EXPECT_THAT(message_of({flight_file()}, laser_contender(), fast),
-              testing::AllOf(HasSubstr("--min-airspeed"), HasSubstr("on the ground")));
+  EXPECT_THAT(message_of({flight_file()}, laser_contender(), fast), HasSubstr("--min-airspeed"));
   ComparedModel absent = laser_contender();
   absent.references = {pcor::pressure_reference("PS_B")};
   EXPECT_THAT(message_of({flight_file()}, absent), testing::AllOf(HasSubstr("PS_B"), HasSubstr("PS_A")));

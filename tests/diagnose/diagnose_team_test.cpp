@@ -180,7 +180,7 @@ void expect_same(const Diagnosis& one, const Diagnosis& other) {
 
 /// Runs a team and returns its exchanges.
 void run(std::size_t size, const std::function<void(Communicator&)>& work) {
-  testing::internal::CaptureStderr();  // in further threads HDF5 prints errors of failed netCDF queries
+  testing::internal::CaptureStderr();  // HDF5 prints errors of failed netCDF queries in further threads
   const auto sent = run_with_communicator(size, work, true);
   testing::internal::GetCapturedStderr();
   std::size_t bytes = 0;

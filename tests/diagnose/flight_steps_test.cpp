@@ -50,7 +50,7 @@ TEST(MeanSteps, DifferingFlightIsFoundWithItsStep) {
   EXPECT_NEAR(steps[2].error, 0.2 * std::sqrt(1.0 / 300.0 + 1.0 / 900.0), 0.002);
   EXPECT_NEAR(steps[2].size, 0.15, 3.0 * steps[2].error);
   EXPECT_LT(steps[2].chance, 1e-6);
-  // The differing flight increases the scatter of the others, so none of the others is significant.
+  // The differing flight increases the scatter of the others, so the others are not significant.
   for (const std::size_t other : {0U, 1U, 3U}) EXPECT_GT(steps[other].chance, 0.05);
 }
 
@@ -58,7 +58,7 @@ TEST(MeanSteps, CompareTwoFlights) {
   const std::vector<MeanOffset> steps = Flights({0.1, -0.1}, 2).steps();
   EXPECT_NEAR(steps[1].size, -0.2, 4.0 * steps[1].error);
   EXPECT_LT(steps[1].chance, 1e-6);
-  EXPECT_EQ(steps[0].chance, 1.0) << "that the first lies above the second is the same once more";
+  EXPECT_EQ(steps[0].chance, 1.0) << "the first above the second is the same difference";
 }
 
 // A model with a column that is 1 in the second flight and those after it, as that of a step on a date is.

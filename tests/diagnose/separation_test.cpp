@@ -145,7 +145,7 @@ TEST(Separation, IsWhatTheCatalogueSaysWhereNoRegimeHelps) {
   EXPECT_FALSE(is_separated(rivalry));
 }
 
-// More of the same regimes is no advice to flights that separate the effect nearly, or surely, without it.
+// More of the same regimes is not advised if the flights already separate the effect nearly or fully.
 TEST(Separation, NeedsARegimeThatHalvesTheDoubt) {
   const Eigen::MatrixXd rows = rows_of(300, 0.9);
   const std::vector<FlownRegime> nothing{regime_of(Regime::turn, 1e-3 * rows_of(10, 0.5, 9))};

@@ -363,7 +363,7 @@ TEST_P(EveryEffect, ReproducesItsWorkedExample) {
     given.insert(input.quantity);
   }
   const std::set<Quantity> needed(info.needs.begin(), info.needs.begin() + info.need_count());
-  EXPECT_EQ(given, needed) << "the example shows every input, and nothing else";
+  EXPECT_EQ(given, needed) << "the example shows exactly the inputs";
   const Parameters parameters(info.example.parameters.begin(),
                               info.example.parameters.begin() + info.parameter_count());
   EXPECT_NE(info.example.value, 0.0);

@@ -143,7 +143,7 @@ TEST(GpsFit, NamesACoefficientAtItsBound) {
   EXPECT_TRUE(result.parameters[1].at_bound);
   EXPECT_DOUBLE_EQ(result.parameters[1].value, 0.014);
   EXPECT_FALSE(result.parameters[0].at_bound);
-  EXPECT_THAT(result.notes, Contains(HasSubstr("static-alpha.a1 is held at its bound")));
+  EXPECT_THAT(result.notes, Contains(HasSubstr("static-alpha.a1 is at its bound")));
   // The others make up for it: delta-p changes by less than the attack term that is missing.
   EXPECT_LT(std::abs(error_of(result)), 0.9 * pressure * -ratio * (0.021279816 - 0.014));
 }

@@ -152,7 +152,7 @@ TEST(Refit, DoesNotMindOutliers) {
 }
 
 TEST(Refit, AddsFlightsUp) {
-  // Two halves of a flight, and the whole, with the weights of one: equal least squares.
+  // Two halves of a flight, and the whole flight, with equal weights: equal least squares.
   made::Plan plan = plan_18(4);
   plan.noise = 0.0;
   plan.defect = [](double p, double q, double ratio, double time) {
@@ -201,7 +201,7 @@ TEST(Refit, StopsAtABoundAndSaysSo) {
   EXPECT_NEAR(found.at("static-constant.a0").value, 0.002, 1e-9);
   EXPECT_TRUE(found.at("static-constant.a0").at_bound);
   EXPECT_TRUE(std::isnan(found.at("static-constant.a0").standard_error));
-  EXPECT_THAT(result.notes, testing::Contains(HasSubstr("static-constant.a0 is held at its bound")));
+  EXPECT_THAT(result.notes, testing::Contains(HasSubstr("static-constant.a0 is at its bound")));
 }
 
 TEST(Refit, StopsAtABoundWithNothingElseFree) {

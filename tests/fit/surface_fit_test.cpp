@@ -1,4 +1,4 @@
-// A surface beside a law: its penalty, its columns, and what a refit finds of it.
+// A surface added to a law: its penalty, its columns, and its refit.
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
@@ -31,7 +31,7 @@ ModelDefinition law_with_surface() {
   return file;
 }
 
-/// Beside the law a bump in attack of 0.008 q, 0.5 hPa at 65 hPa.
+/// In addition to the law a bump in attack of 0.008 q, 0.5 hPa at 65 hPa.
 double with_bump(double p, double q, double ratio, double time) {
   const double from = (ratio + 0.2) / 0.06;
   return made::equation_18(p, q, ratio, time) + 0.008 * q * std::exp(-0.5 * from * from);
@@ -44,7 +44,7 @@ made::Plan plan(unsigned seed, double (*defect)(double, double, double, double))
   return plan;
 }
 
-/// Of the model of a fit against the truth of a flight, hPa rms.
+/// Rms difference between the fitted model and the truth of a flight, hPa.
 double true_error(const RefitResult& fit, const made::Plan& of) {
   made::Plan quiet = of;
   quiet.noise = 0.0;
@@ -92,7 +92,7 @@ TEST(SurfaceColumns, AreDerivativesOfTheResidual) {
     parameters[coefficient] = 0.01;
     const std::vector<double> moved = residuals.values(parameters.data());
     parameters[coefficient] = 0.0;
-    // Of 0.01 q the residual of some 5 hPa in 700 hPa loses three digits of sixteen.
+    // With 0.01 q the residual of about 5 hPa in 700 hPa loses three of sixteen digits.
     for (std::size_t i = 0; i < all.size(); ++i)
       EXPECT_NEAR(column[i], (moved[i] - residual[i]) / 0.01, 1e-9);
   }
@@ -105,15 +105,15 @@ TEST(SurfaceFit, FindsABumpThatTheLawLacks) {
   ASSERT_EQ(surface.surfaces.size(), 1U);
   EXPECT_EQ(surface.surfaces.front().effect, "static-surface");
   EXPECT_GT(surface.surfaces.front().degrees_of_freedom, 3.0);
-  // On a flight of other heights, whose noise took no part.
+  // On a flight at other heights, whose noise was not in the fit.
   EXPECT_LT(true_error(surface, plan(12, with_bump)), 0.5 * true_error(law, plan(12, with_bump)));
 }
 
 TEST(SurfaceFit, StaysAwayWhereTheLawIsRight) {
   const made::Plan first = plan(21, made::equation_18);
   const RefitResult surface = fit(law_with_surface(), first);
-  // Noise of 0.3 hPa that remembers itself: an independent sample every 6 s, so each degree of freedom brings
-  // 0.3/sqrt(600) = 0.012 hPa; three terms of the law bring 0.02 hPa.
+  // Autocorrelated noise of 0.3 hPa: an independent sample every 6 s, so each degree of freedom adds
+  // 0.3/sqrt(600) = 0.012 hPa; three terms of the law add 0.02 hPa.
   EXPECT_LT(surface.surfaces.front().degrees_of_freedom, 8.0);
   EXPECT_LT(true_error(surface, plan(22, made::equation_18)), 0.05);
 }

@@ -141,7 +141,7 @@ TEST(TwoSystems, WrongDifferenceCorrectsDifferenceOnly) {
   const pcor::test::TemporaryDirectory directory;
   Pair pair = c130();
   pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");
-  constexpr double off = 0.0005;  // of the pressure: 0.3 to 0.5 hPa
+  constexpr double off = 0.0005;  // relative to the pressure: 0.3 to 0.5 hPa
   pair.own.model.effects[0].parameters[0] += off;
   pair.other.model.effects[0].parameters[0] -= off;
   const pcor::RefitResult fit = fit_both(pair, directory / "flight.nc");

@@ -294,8 +294,8 @@ TEST_F(FlightTest, MonthsAndYearsAreInvalidTimeUnits) {
 
 TEST_F(FlightTest, AmbiguousTimeStatesHowToDefineIt) {
   { NetcdfMaker(path()).time({51720, 51721}, "seconds since 1141-01-00 00:00:00 +0000"); }
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("does not tell the time"), HasSubstr("1141-01-00"),
-                               HasSubstr("ncatted -a units,Time")));
+  EXPECT_THAT(refusal(),
+              AllOf(HasSubstr("Time"), HasSubstr("1141-01-00"), HasSubstr("ncatted -a units,Time")));
 }
 
 TEST_F(FlightTest, ACalendarWhoseYearsHaveOtherDaysIsRefused) {
@@ -340,7 +340,7 @@ TEST_F(FlightTest, AZoneIsAnOffsetOrThatOfUtc) {
 TEST_F(FlightTest, ADateThatDoesNotExistTellsNoTime) {
   for (const char* date : {"2011-13-45", "2011-02-30", "2011-00-10", "2004-049", "0000-01-01"}) {
     { NetcdfMaker(path()).time({51720, 51721}, std::string("seconds since ") + date); }
-    EXPECT_THAT(refusal(), AllOf(HasSubstr("does not tell the time"), HasSubstr(date)));
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("Time"), HasSubstr(date)));
   }
   { NetcdfMaker(path()).time({51720, 51721}, "seconds since 2004-02-29"); }
   EXPECT_EQ(utc_text(Flight(path()).time().first), "2004-02-29 14:22:00");
@@ -364,7 +364,7 @@ TEST_F(FlightTest, AYearBeforeOrAfterAllFlightsIsRefused) {
 TEST_F(FlightTest, ATimeInTooFewBitsForADayIsRefused) {
   for (const int type : {NC_SHORT, NC_USHORT, NC_BYTE}) {
     make_with_times({100, 101}, type);
-    EXPECT_THAT(refusal(), HasSubstr("too few for the seconds of a day"));
+    EXPECT_THAT(refusal(), HasSubstr("32-bit integers"));
   }
 }
 
@@ -1006,7 +1006,7 @@ TEST_F(FlightTest, RatesSideBySideAreReadAtEither) {
     return values;
   };
   EXPECT_THAT(at(4, "SLOW"), ElementsAre(1, 1, 1, 1, 2, 2, 2, 2)) << "held constant within its record";
-  EXPECT_THAT(at(1, "FAST"), ElementsAre(3, IsNan())) << "the mean of what is there";
+  EXPECT_THAT(at(1, "FAST"), ElementsAre(3, IsNan())) << "the mean of the existing samples";
   EXPECT_THAT(at(2, "FAST"), ElementsAre(1.5, 6, IsNan(), IsNan()));
   EXPECT_THAT(at(4, "FAST"), ElementsAre(1, 2, IsNan(), 6, IsNan(), IsNan(), IsNan(), IsNan()));
   EXPECT_THAT(pcor::test::message_of<Error>([&] { at(3, "FAST"); }),

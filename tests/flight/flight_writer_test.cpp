@@ -265,7 +265,8 @@ TEST_F(FlightWriterTest, TheFileSaysWhatItIs) {
   writer.finish();
 
   const Written file(output);
-  EXPECT_EQ(file.text("", "Conventions"), "CF-1.8 ACDD-1.3") << "the input claims none of NCAR";
+  EXPECT_EQ(file.text("", "Conventions"), "CF-1.8 ACDD-1.3")
+      << "the input does not claim the NCAR convention";
   EXPECT_THAT(file.text("", "history"), MatchesRegex("20..-..-..T..:..:..Z: pcor process in.nc\n2004: made"));
   EXPECT_THAT(file.text("", "date_created"), MatchesRegex("20..-..-..T..:..:..Z"));
   EXPECT_EQ(file.text("", "title"), "GOTEX rf06 N130AR");
@@ -408,7 +409,7 @@ TEST_F(FlightWriterTest, AVariableThatWasNotWrittenInFullIsAnError) {
     EXPECT_THAT(message_of<Error>([&] { writer.finish(); }),
                 HasSubstr("PSXC was written for 2 of 3 records"));
   }
-  EXPECT_EQ(directory.entries(), 1) << "only the input is left";
+  EXPECT_EQ(directory.entries(), 1) << "only the input remains";
 }
 
 TEST_F(FlightWriterTest, UncopyableVariablesAreReportedInAdvance) {
@@ -455,7 +456,7 @@ TEST_F(FlightWriterTest, Hdf5OnlyFeatureIsReportedWithRemedy) {
   EXPECT_THAT(message_of<Error>([&] {
                 flight.read_at_rate(1, "PACKED", {0, flight.records()}, {}, values.data());
               }),
-              AllOf(HasSubstr("cannot read PACKED"), HasSubstr("install the plug-in of HDF5")));
+              AllOf(HasSubstr("cannot read PACKED"), HasSubstr("nccopy -F none")));
 }
 
 TEST_F(FlightWriterTest, AttributeOutsideVariableTypeIsNamed) {
@@ -520,7 +521,7 @@ TEST_F(FlightWriterTest, NothingIsThereBeforeTheEnd) {
     writer.write_time_stamps({0, 1}, &midnight);
     EXPECT_FALSE(std::filesystem::exists(output));
   }
-  EXPECT_EQ(directory.entries(), 0) << "a writer that did not finish leaves nothing";
+  EXPECT_EQ(directory.entries(), 0) << "an unfinished writer writes no file";
   FlightWriter writer(output, NewFlight{midnight}, {});
   writer.write_time_stamps({0, 1}, &midnight);
   writer.finish();

@@ -55,7 +55,7 @@ def judged(tool, simulator, folder, salt, share="0/1", jobs=2):
 
 
 def groups(cases):
-    """Cases by what is asked of them, the wanted rate, and the question."""
+    """Cases by requirement: question, required rate, and selection."""
     hard = [case for case in cases if case["id"].startswith(OUTSIDE)]
     known = [case for case in cases if case["effects"] and not case["id"].startswith(("poor", *OUTSIDE))
              and min(case["snr"]) >= VISIBLE]
@@ -79,7 +79,7 @@ def groups(cases):
 
 
 def most_failures(count, rate, chance=CHANCE):
-    """The largest number of failures among `count` cases that is no surprise at a rate of success: P(more) < chance."""
+    """The largest number of failures among `count` cases compatible with a rate of success: P(more) < chance."""
     more = 1.0
     for failures in range(count + 1):
         more -= math.comb(count, failures) * (1 - rate) ** failures * rate ** (count - failures)
@@ -106,7 +106,7 @@ def error_ratio(cases):
 
 
 def tables(tool, folder, salts, jobs=2):
-    """Markdown of all flights of some salts; None without the simulator."""
+    """Markdown of all flights of the given salts; None if the simulator is absent."""
     simulator = folder_of_simulator()
     if simulator is None:
         return None

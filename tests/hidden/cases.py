@@ -1,4 +1,4 @@
-"""One case: flights with a secret, the tool on them as a user would run it, and what came out."""
+"""One case: flights with a secret, a run of the tool as by a user, and the results."""
 
 import resource
 import shutil
@@ -46,7 +46,7 @@ class Case:
 
 @dataclass
 class Setting:
-    """What all cases of a run share."""
+    """Settings shared by all cases of a run."""
 
     tool: object
     folder: Path
@@ -56,7 +56,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Question:
-    """The user's side of a case: what the model lacks, what the tool is told beside it."""
+    """The user's side of a case: missing terms of the model, further inputs of the tool."""
 
     without: tuple = ()
     moist: bool = True
@@ -95,7 +95,7 @@ def simulate(setting, folder, case, part, without, hidden=()):
 
 
 def record(case, part, flight, truth=None):
-    """Real instruments on the flight; what only the simulator knows goes to `truth`."""
+    """Real instruments on the flight; values known only to the simulator are written to `truth`."""
     pair = (plans.STATIC[case.plan.aircraft], "QCF")
     instruments.record(flight, pair, case.noise, {case.trouble}, [case.seed, part])
     without_truth(flight, truth)
@@ -154,7 +154,7 @@ def static_error(setting, folder, flight, truth, model, used):
 
 
 def visible(setting, folder, case, question, twin, hidden):
-    """What the user's fitted model leaves of the secrets, and all that they do, hPa rms."""
+    """Part of the secrets that the user's fitted model does not absorb, and their full size, hPa rms."""
     model, arguments = question.model(folder, case.plan.aircraft), question.arguments(folder)
     flights = [simulate(setting, folder, case, part, question.without, hidden) for part in (0, 1)]
     residual = numpy.concatenate([strength.residual_of(setting.tool, flight, model, folder, arguments)
@@ -163,7 +163,7 @@ def visible(setting, folder, case, question, twin, hidden):
 
 
 def hide(setting, folder, case, question, twin):
-    """Secrets with their sizes, and what is told of each; effects are nearly linear in their size."""
+    """Secrets with their sizes, and a description of each; effects are nearly linear in their size."""
     hidden, told = [], []
     for number, name in enumerate(case.secrets):
         secret = secret_effects.BY_NAME[name]
@@ -197,7 +197,7 @@ def run_case(setting, case):
 
 
 def processor_seconds():
-    """Of this process and of the runs of the tool that it waited for."""
+    """Processor time of this process and of its runs of the tool."""
     usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return sum(usage.ru_utime + usage.ru_stime for usage in usages)
 

@@ -69,7 +69,7 @@ def stretches(rng, count, number, shortest, longest):
 
 
 def trouble(rng, recorded, pair, kinds):
-    """Changes what was recorded; the words for what was done."""
+    """Changes the recorded series; returns a description of the change."""
     told = []
     count = len(recorded["QCF"])
     for kind, name in (("drift of p", pair[0]), ("drift of q", pair[1])):
@@ -101,7 +101,7 @@ def trouble(rng, recorded, pair, kinds):
 
 
 def record(path, pair, noise, kinds, seed):
-    """Puts the instruments upon the noiseless flight in `path`; the words for what was done."""
+    """Applies the instruments to the noiseless flight in `path`; returns a description."""
     rng = numpy.random.default_rng(seed)
     with netCDF4.Dataset(path, "a") as file:
         recorded = {name: numpy.ma.filled(file[name][:].astype(float), numpy.nan)

@@ -55,7 +55,7 @@ def null_case(seed, number):
 
 
 def run_case(tool, case, references=(), kept=None):
-    """What the tool claims, as a dictionary."""
+    """Claims of the tool, as a dictionary."""
     folder = Path(tempfile.mkdtemp(prefix="null-"))
     draw = random.Random(f"{case} {case.seed}")
     pair = (plans.STATIC[case.plan.aircraft], "QCF")

@@ -9,7 +9,7 @@ import numpy
 
 
 class Records:
-    """The recorded series of a flight that was simulated without noise, and the truth beside them."""
+    """The recorded series of a flight that was simulated without noise, and the truth."""
 
     def __init__(self, path, part):
         self.part = part  # the number of the flight
@@ -54,7 +54,7 @@ class Records:
 
 
 def without_truth(flight, kept):
-    """What the aircraft recorded, and nothing that only a simulator knows. The truth goes to `kept`."""
+    """The series that an aircraft records, without simulator-only variables. The truth is written to `kept`."""
     with netCDF4.Dataset(flight) as file:
         file.set_auto_maskandscale(False)
         recorded = flight.with_name("recorded.nc")

@@ -1,4 +1,4 @@
-"""The results as Markdown: against what is to be reached, by effect, and beside those of an earlier program."""
+"""The results as Markdown: compared with the aims, by effect, and compared with an earlier program."""
 
 import statistics
 
@@ -100,7 +100,7 @@ def of_kind(cases, kind):
 
 
 def targets(cases):
-    """Rows of what is to be reached and what was: words, number of cases, aim, reached."""
+    """Rows of aims and results: description, number of cases, aim, result."""
     null = [case for case in of_kind(cases, "null") if case["claim"] != "error"]
     singles, pairs, outside = (of_kind(cases, kind) for kind in ("single", "pair", "outside"))
     seen = [case for case in singles if is_visible(case)]
@@ -123,7 +123,7 @@ def targets(cases):
 
     return [
         ("one effect, SNR 0.1 and more: truth in a named set", len(seen), "99 %", percent(scored(seen, "in_set"))),
-        ("the same: nothing else named", len(seen), "97 %", percent(scored(seen, "nothing_else"))),
+        ("same cases: no other effect named", len(seen), "97 %", percent(scored(seen, "nothing_else"))),
         ("the same: both", len(seen), "96 %", percent(scored(seen, "both"))),
         ("the same, mean size of the set", len(seen), "1.6", mean(scored(seen, "size"))),
         ("the same: silence", len(seen), "-", percent(scored(seen, "silent"))),
@@ -136,8 +136,8 @@ def targets(cases):
         ("the same: another name, not called partial", len(unseen), "-", percent(scored(unseen, "wrong"))),
         ("two effects, SNR 0.1 and more: both in sets", len(seen_pairs), "100 %",
          percent(scored(seen_pairs, "in_set"))),
-        ("the same: and nothing else", len(seen_pairs), "90 %", percent(scored(seen_pairs, "both"))),
-        ("fault of the other system beside a laser: the own one blamed", len(beside), "0 %",
+        ("same cases: no other effect named", len(seen_pairs), "90 %", percent(scored(seen_pairs, "both"))),
+        ("fault of the other system, with a laser: own system blamed", len(beside), "0 %",
          percent(scored(beside, "own_blamed"))),
         ("two systems only, fault of the own: truth in a named set", len(own), "-", percent(scored(own, "in_set"))),
         ("the same: the other system is admitted", len(own), "100 %", percent(scored(own, "twin_told"))),
@@ -182,14 +182,14 @@ def target_table(cases, before):
 
 def page(cases, told, before=None, foreign=None):
     lines = ["# Hidden effects: what the tool finds of them", "",
-             "Written by `tests/hidden/hidden_effects`, not by hand. What is hidden, and what counts as right: "
+             "Written by `tests/hidden/hidden_effects`, not by hand. Hidden effects and definition of correct: "
              "`secret_effects.py`; instruments: `instruments.py`; SNR: `strength.py`; scores: `scoring.py`.", ""]
     lines += [f"- {key}: {value}" for key, value in told.items()]
-    lines += ["", "## Against what is to be reached", "", target_table(cases, before)]
+    lines += ["", "## Comparison with the aims", "", target_table(cases, before)]
     if foreign:
         lines += ["", "## Flights of another simulator", "", foreign]
     for title, kind, table in (("One effect", "single", effect_table), ("Two effects", "pair", effect_table),
-                               ("A fault of the other static system, beside a laser", "other", effect_table),
+                               ("A fault of the other static system, with a laser", "other", effect_table),
                                ("Two static systems and no laser", "two systems", effect_table),
                                ("Outside the catalogue", "outside", outside_table)):
         if some := of_kind(cases, kind):

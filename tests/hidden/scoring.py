@@ -1,8 +1,8 @@
-"""What a diagnosis is worth, from its JSON, when the truth is known."""
+"""Scores a diagnosis from its JSON, given the truth."""
 
 
 def names_in(finding):
-    """The effect that a finding names and those that the data cannot tell from it."""
+    """The effect that a finding names and the effects that the data cannot separate from it."""
     aliases = [alias if isinstance(alias, str) else alias["effect"] for alias in finding.get("aliases", [])]
     return [finding["effect"], *aliases]
 
@@ -12,7 +12,7 @@ def traced_in(diagnosis):
 
 
 def verdict_of(diagnosis):
-    """As the tool says; from the findings where it does not."""
+    """The verdict of the tool; from the findings if it is absent."""
     if "verdict" in diagnosis:
         return diagnosis["verdict"]
     if diagnosis["findings"]:

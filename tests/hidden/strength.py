@@ -24,7 +24,7 @@ def residual_of(tool, flight, model, folder, arguments=()):
 
 
 def columns_of(flight, aircraft, without):
-    """What the coefficients of the user's model multiply, hPa."""
+    """Columns of the coefficients of the user's model, hPa."""
     p, q, a, qr, attack = read(flight, plans.STATIC[aircraft], "QCF", "ADIFR", "QCR", "ATTACK")
     with numpy.errstate(all="ignore"):
         mach = numpy.sqrt(5.0 * numpy.expm1(numpy.log1p(q / p) * 2.0 / 7.0))
@@ -34,7 +34,7 @@ def columns_of(flight, aircraft, without):
 
 
 def left_over(difference, columns):
-    """The rms of what the columns do not explain of a difference of residuals, and of all of it."""
+    """Rms of the part of a difference of residuals that the columns do not explain, and of the whole difference."""
     used = numpy.isfinite(difference) & numpy.isfinite(columns).all(axis=1)
     x, y = columns[used], difference[used]
     scale = numpy.sqrt((x**2).mean(axis=0))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 class ToolError(Exception):
-    """A run of the tool that failed, with what it said."""
+    """A failed run of the tool, with its message."""
 
 
 class Tool:

@@ -62,13 +62,13 @@ def damaged_heaps(content):
 
 
 def processor_time():
-    """Of all commands so far, s: what they take does not depend on what else the machine does."""
+    """Processor time of all commands so far, s; independent of other load on the machine."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 
 
 def what_is_wrong(command, output):
-    """Runs a command; nothing where it ends as it should."""
+    """Runs a command; None if it ends as it should."""
     begin = processor_time()
     try:
         done = subprocess.run(command, capture_output=True, timeout=10 * LONGEST)
@@ -79,7 +79,7 @@ def what_is_wrong(command, output):
     if processor_time() - begin > LONGEST:
         return f"it takes {processor_time() - begin:.1f} s"
     if len(done.stderr) > MOST_CHARACTERS:
-        return f"it says {len(done.stderr)} characters"
+        return f"its message has {len(done.stderr)} characters"
     if done.returncode == 1 and done.stderr.count(b"\n") != 1:
         return f"it refuses in other than a line: {done.stderr.decode(errors='replace')}"
     if done.returncode == 1 and output.read_bytes() != EARLIER:

@@ -2,10 +2,9 @@
 ///
 ///     LD_PRELOAD=libfailing_calls.so FAILING_CALL=write FAILING_NUMBER=3 FAILING_REPORT=report PROGRAM ...
 ///
-/// The third call of that kind since `main` began fails as it would on a full disk; the kinds stand below. Of
-/// the kind "stop" none fails: the program gets SIGTERM just before its third rename.
-/// All other calls are done. What failed is written into the report, which is not there where the program
-/// made fewer calls.
+/// The third call of that kind since `main` began fails as on a full disk; the kinds are listed below. With
+/// the kind "stop" no call fails: the program gets SIGTERM just before its third rename. All other calls
+/// succeed. The failed call is written into the report, which is absent if the program made fewer calls.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/syscall.h>

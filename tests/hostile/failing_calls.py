@@ -28,7 +28,7 @@ NAMED = re.compile(r"pcor: [^\n]*(\.nc|\.toml|\.html|\.json|standard output|memo
 
 
 class Failing:
-    """A command, whose outputs are put into a folder of their own."""
+    """A command with a separate folder for its outputs."""
 
     def __init__(self, given, words, outputs):
         self.given = given
@@ -50,7 +50,7 @@ class Failing:
                               env={**os.environ, "LD_PRELOAD": str(self.given.shim), **environment})
 
     def without(self, kind, number):
-        """What is wrong where that call fails, "" if nothing; None where the run makes fewer calls."""
+        """Error if that call fails, "" without an error; None if the run makes fewer calls."""
         done = self.run(FAILING_CALL=kind, FAILING_NUMBER=str(number), FAILING_REPORT=str(self.report))
         if not self.report.exists():
             return None
@@ -62,9 +62,9 @@ class Failing:
         if done.returncode not in (0, 1) and not stopped_by_library and not stopped:
             wrong.append(f"exit status {done.returncode}")
         if done.returncode == 1 and (message.count("pcor: ") != 1 or not NAMED.search(message)):
-            wrong.append(f"it says {message!r}")
+            wrong.append(f"its message is {message!r}")
         if done.returncode == 0 and message:
-            wrong.append(f"it is done and says {message!r}")
+            wrong.append(f"it succeeds with the message {message!r}")
         for name, good in self.good.items():
             wanted = (good,) if done.returncode == 0 else (EARLIER, good)
             if not (self.path / name).exists() or (self.path / name).read_bytes() not in wanted:

@@ -171,7 +171,7 @@ TEST_F(Improve, StopsWhereNothingIsMissing) {
   diagnoses_ = {diagnosis(Verdict::silent)};
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre(""));
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("nothing is missing"));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("no missing effect"));
   EXPECT_EQ(improvement.steps[0].terms, 2U);
   EXPECT_DOUBLE_EQ(improvement.steps[0].rms_train, 0.99);
   EXPECT_DOUBLE_EQ(improvement.steps[0].rms_holdout, 1.0);
@@ -188,7 +188,7 @@ TEST_F(Improve, AddsWhatIsIdentified) {
   EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("tau = 0.25 +- 0.02 s"));
   EXPECT_EQ(improvement.steps[1].terms, 3U);
   EXPECT_EQ(improvement.steps[1].diagnosis.verdict, Verdict::silent);
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("nothing is missing"));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("no missing effect"));
 }
 
 TEST_F(Improve, AddsEveryFindingOnARungOfItsOwn) {
@@ -208,8 +208,7 @@ TEST_F(Improve, NamesWhatTheFlightsCannotTellApart) {
   rms_ = {1.0, 0.5};
   const Improvement improvement = run();
   EXPECT_THAT(improvement.steps[1].aliases, ElementsAre("temp-lag", "total-lag"));
-  EXPECT_THAT(improvement.steps[1].learnt,
-              HasSubstr("cannot tell it from temp-lag, total-lag: fly two climbs"));
+  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("temp-lag, total-lag: fly two climbs"));
 }
 
 TEST_F(Improve, DropsWhatHeldOutFlightsContradict) {
@@ -353,7 +352,7 @@ TEST_F(Improve, NeverAddsAnEffectTwice) {
   EXPECT_THAT(added(improvement), ElementsAre("", "traced-engtrq"));
   EXPECT_THAT(improvement.why_stopped, HasSubstr("ENGTRQ"));
   diagnoses_ = {diagnosis(Verdict::identified, {"static-qp"})};
-  EXPECT_THAT(run().why_stopped, HasSubstr("in the model already"));
+  EXPECT_THAT(run().why_stopped, HasSubstr("already in the model"));
 }
 
 TEST_F(Improve, DoesNotTraceWhereThatIsNotWanted) {
@@ -368,7 +367,7 @@ TEST_F(Improve, SaysThatNothingGoesWithWhatIsLeft) {
   Diagnosis unexplained = with_trace(diagnosis(Verdict::unexplained), "ENGTRQ");
   unexplained.unexplained.variables.clear();
   diagnoses_ = {unexplained};
-  EXPECT_THAT(run().why_stopped, HasSubstr("no variable of the files"));
+  EXPECT_THAT(run().why_stopped, HasSubstr("not correlated with any variable"));
 }
 
 TEST_F(Improve, StopsAfterAsManyStepsAsAreAllowed) {
@@ -399,7 +398,7 @@ TEST_F(Improve, WorseHeldOutResidualRejectsStep) {
 TEST_F(Improve, DegradedModelIsReportedAsWorse) {
   diagnoses_ = {diagnosis(Verdict::silent)};
   given_rms_ = 0.75;
-  EXPECT_THAT(run().worse, HasSubstr("1.3333 times that of the model as it was given"));
+  EXPECT_THAT(run().worse, HasSubstr("1.3333 times"));
   given_rms_ = 1.25;
   EXPECT_EQ(run().worse, "");
   EXPECT_DOUBLE_EQ(run().given_rms_holdout, 1.25);

@@ -95,7 +95,7 @@ TEST(State, HoldsFurtherVariablesBehindTheQuantities) {
     const Quantity extra = pcor::extra_quantity(i);
     EXPECT_EQ(state[extra], static_cast<double>(quantity_count + 1 + i));
     EXPECT_EQ(pcor::extra_number(extra), i);
-    EXPECT_NE(extra, Quantity::count) << "which is none";
+    EXPECT_NE(extra, Quantity::count) << "number of quantities, not a variable";
   }
 }
 

@@ -212,7 +212,7 @@ TEST(ModelFormat, StatesTheLimitsOfFormulas) {
   for (const std::string& line : reference()) text += line + ' ';
   EXPECT_THAT(text,
               HasSubstr(fmt::format("at most {} numbers, names and operations", Formula::max_instructions)));
-  EXPECT_THAT(text, HasSubstr(fmt::format("at most {} variables that are no quantities", extra_capacity)));
+  EXPECT_THAT(text, HasSubstr(fmt::format("at most {} variables", extra_capacity)));
 }
 
 // An example is a whole file, or a part that is valid with the two pressures.

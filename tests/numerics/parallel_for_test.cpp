@@ -15,7 +15,7 @@ TEST(InParallel, EachIsCalledOnceWhateverTheNumberOfThreads) {
     parallel_for(calls.size(), threads, [&](std::size_t i) { ++calls[i]; });
     EXPECT_EQ(calls, std::vector<int>(100, 1)) << threads << " threads";
   }
-  parallel_for(0, 4, [](std::size_t) { FAIL() << "there is nothing to call"; });
+  parallel_for(0, 4, [](std::size_t) { FAIL() << "no function is called"; });
 }
 
 TEST(InParallel, ExceptionIsRethrownAfterAllThreadsEnd) {

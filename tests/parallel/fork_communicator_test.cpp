@@ -17,10 +17,10 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// Lets processes work as a team. @return what the first of them comes to, as text
+/// Runs processes as a team. @return result of the first process, as text
 ///
-/// All of the team hold the end of a pipe, so that the text has its end when all have ended: else the test
-/// would wait until its time is over.
+/// Every process holds the end of a pipe, so the text ends when all have ended; otherwise the test would wait
+/// until its time limit.
 std::string by_team(std::size_t size, const std::function<std::string(Communicator&)>& work) {
   int ends[2];
   if (::pipe(ends) != 0) return "no pipe";

@@ -45,7 +45,7 @@ def on_processes(count, *words, **options):
 
 
 def with_one_name(text):
-    """What is to be copied begins with the program as it was called."""
+    """The text to copy begins with the program as it was called."""
     return text.replace(str(TOOL_ON_PROCESSES), "pcor").replace(str(TOOL), "pcor")
 
 
@@ -69,7 +69,7 @@ class Processes(unittest.TestCase):
             shutil.copy(self.flights_folder / flight, self.path)
 
     def outputs(self, run, words, outputs):
-        """What a run prints and writes."""
+        """Output and written files of a run."""
         for output in outputs:
             (self.path / output).unlink(missing_ok=True)
         result = run(*words)

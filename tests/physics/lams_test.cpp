@@ -230,7 +230,7 @@ TEST(Approach3, FindsTheDefectFromTheTrueTemperature) {
 
 TEST(Approach4, ReturnsWhateverWasAssumed) {
   // That is why it does not exist: a temperature from eq. 12, of any assumed delta-p, makes eq. 11 return
-  // this delta-p. 122 values, true for none of them. Each takes the difference of pressures near 700 hPa.
+  // this delta-p. Checked with 122 values. Each takes the difference of pressures near 700 hPa.
   double largest = 0.0;
   for (const double humidity : {0.0, 0.02}) {
     const Flight f(700.0, 120.0, humidity, 2.0, constant_recovery);

@@ -181,7 +181,7 @@ TEST(Coverage, SharesWithinOneAndTwoSigmaAreNormal) {
     return static_cast<double>(part) / static_cast<double>(of);
   };
   // Four standard errors of a share if only flights are independent, which 200 of them satisfy: with four
-  // results and six samples each the errors of the shares are less than half of that.
+  // results and six samples each the errors of the shares are less than half as large.
   const auto tolerance = [flights](double probability, double wanted) {
     if (flights >= 200) return wanted;
     return 4.0 * std::sqrt(probability * (1.0 - probability) / static_cast<double>(flights));

@@ -194,13 +194,13 @@ TEST_F(Process, TakesWhatIsImpossibleAsMissing) {
   }
   EXPECT_TRUE(std::isnan(temperature[7]));
   EXPECT_TRUE(has(7, Quality::temperature_missing));
-  EXPECT_NEAR(p[8], 700.0, 3e-4) << "and nothing else is hurt";
+  EXPECT_NEAR(p[8], 700.0, 3e-4) << "and no other variable is affected";
   EXPECT_NEAR(temperature[8], 270.0, 1e-4);
   EXPECT_THAT(summary.notes,
               testing::IsSupersetOf(
                   {"2 samples of PSFD lie outside -2000 to 2000 hPa, which is impossible, and "
                    "are taken as missing",
-                   "a sample of PSFD lies beyond 1e30, which marks no value, and is taken as missing",
+                   "a sample of PSFD lies beyond 1e30, which marks missing values, and is taken as missing",
                    "a sample of QCF lies outside the range that the file states as valid, and "
                    "is taken as missing",
                    "a sample of TTRR lies outside 100 to 1000 K, which is impossible, and is "
@@ -586,7 +586,7 @@ TEST_F(Process, TellsTheRampFromFlight) {
     if (i >= ramp) sum += defect[i] / (samples - ramp);
   }
   EXPECT_EQ(summary.in_flight, samples - ramp);
-  EXPECT_NEAR(summary.mean_defect, sum, 1e-6) << "32-bit floats of some hPa";
+  EXPECT_NEAR(summary.mean_defect, sum, 1e-6) << "32-bit floats of about 1 to 10 hPa";
   // Half of 1.225 kg/m3 times the square of 60 m/s, and 0.8 % for the compression: M^2/4.
   EXPECT_NEAR(summary.flying_dynamic_pressure, 22.05 * 1.008, 0.02);
 }

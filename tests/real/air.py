@@ -70,7 +70,7 @@ class Air:
         self.covariance_root = root_of(self.static_noise)
 
     def surrogate(self, noise, how, draw):
-        """Noise with the memory of the recorded one, that goes with nothing of the flight."""
+        """Noise with the autocorrelation of the recorded noise, not correlated with the flight."""
         ramp = numpy.linspace(noise[0], noise[-1], len(noise))
         noise = noise - ramp + ramp.mean()  # its end meets its beginning
         if how == "shift":
@@ -97,7 +97,7 @@ class Air:
         return whole
 
     def series(self, noise=None, total=None):
-        """What a flight records whose second system follows its law but for the noise (hPa)."""
+        """Records of a flight whose second system follows its law except for the noise (hPa)."""
         made, zero = dict(self.raw), numpy.zeros(self.size)
         noise, total = (zero if x is None else x for x in (noise, total))
         whole = self.p + self.q + total
@@ -107,7 +107,7 @@ class Air:
         return made
 
     def oracle_z(self, column):
-        """Of the known column, whose size is fitted beside the law under the recorded noise."""
+        """z of the known column, whose size is fitted together with the law under the recorded noise."""
         rest = numpy.linalg.solve(self.covariance_root, numpy.column_stack([self.law, column[self.run]]))
         return float(numpy.linalg.norm(least_squares_rest(rest[:, 3], rest[:, :3])))
 
@@ -142,7 +142,7 @@ def root_of(noise, longest=400):
 
 
 def with_memory(kind, size, draw):
-    """Noise of scatter 1: an OU process of so many seconds, or 1/f."""
+    """Noise with standard deviation 1: an OU process with the given time in seconds, or 1/f."""
     if kind == "1/f":
         spectrum = numpy.fft.rfft(draw.standard_normal(size))
         return standard(numpy.fft.irfft(spectrum / numpy.sqrt(numpy.maximum(numpy.arange(len(spectrum)), 1)), size))

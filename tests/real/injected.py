@@ -80,7 +80,7 @@ def turn_rate(air):
 
 
 def inertial_attack(air):
-    """By pitch and climb, without the radome: it goes along with the angle of attack."""
+    """By pitch and climb, without the radome: it is correlated with the angle of attack."""
     return air.raw["PITCH"] - numpy.degrees(air.raw["VSPD"] / numpy.maximum(air.raw["TASX"], 40))
 
 
@@ -142,7 +142,7 @@ CAUSES = (("SWT", "line"), ("RSTT", "line"), ("XUCIT1", "line"), ("GGTRK", "wave
 
 
 def like(air, cause):
-    """Recorded variables that go along with a cause so closely that they are as right."""
+    """Recorded variables so closely correlated with a cause that they count as correct."""
     base = cause[air.run]
     with numpy.errstate(all="ignore"):
         return tuple(name for name, values in air.raw.items() if abs(numpy.corrcoef(base, values[air.run])[0, 1]) > 0.85)

@@ -1,4 +1,4 @@
-"""One case: a flight with a secret, the tool on it as a user would run it, and what came out."""
+"""One case: a flight with a secret, a run of the tool as by a user, and the results."""
 
 import json
 import tempfile
@@ -36,7 +36,7 @@ class Case:
 
 
 class Stage:
-    """A folder with the models of a user who has one flight."""
+    """A folder with the models of a user with one flight."""
 
     def __init__(self, tool, air, parent):
         self.tool, self.air = tool, air

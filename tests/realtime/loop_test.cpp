@@ -437,7 +437,7 @@ TEST(LoopGap, StartsAnewAtGapsAndWhereTimeDoesNotAdvance) {
     EXPECT_EQ(std::isnan(loop.state()[Quantity::corrected_static_pressure]), gap);
     if (std::isnan(time)) continue;
     for (int i = 0; i <= delay; ++i) run(loop, recorded, 2000.0 + i / rate);
-    EXPECT_EQ(loop.state()[Quantity::corrected_static_pressure], 700.0) << "and goes on";
+    EXPECT_EQ(loop.state()[Quantity::corrected_static_pressure], 700.0) << "and continues";
     EXPECT_EQ(loop.state()[Quantity::time], 2000.0);
     EXPECT_FALSE(loop.quality().has(Quality::after_gap));
   }
@@ -1005,7 +1005,7 @@ TEST(Loop, CalibratesARecordedTemperatureOnce) {
   Model model = c130();
   model.lams.approach = pcor::LamsApproach::with_temperature;
   model.effects.push_back({"temp-calibration", {0.55, 0.01, 0.0}});
-  model.effects.push_back({"clock-skew", {0.5}});  // which uses the rate of the temperature as recorded
+  model.effects.push_back({"clock-skew", {0.5}});  // needs the rate of the recorded temperature
   Sample sample = level;
   sample.erase(Quantity::recovery_temperature);
   for (const CorrectWith correct_with : {CorrectWith::model, CorrectWith::lams}) {

@@ -156,7 +156,8 @@ TEST(LowPass, PassesALineWhateverIsMissing) {
       const std::vector<Result> results = filtered(rate, series);
       std::size_t passed = 0;
       for (std::size_t i = 0; i < series.size(); ++i) {
-        EXPECT_TRUE(!std::isnan(series[i]) || std::isnan(results[i].value)) << "none without its own sample";
+        EXPECT_TRUE(!std::isnan(series[i]) || std::isnan(results[i].value))
+            << "no result without its own sample";
         EXPECT_EQ(results[i].window_incomplete, std::isnan(results[i].value) && !std::isnan(series[i]));
         if (std::isnan(results[i].value)) continue;
         EXPECT_NEAR(results[i].value, 250.0 + 0.02 * static_cast<double>(i), 1e-11);

@@ -165,8 +165,8 @@ Chain chain_of(const Model& model) {
 // found, which never reaches saturation in these rows. On the C-130 nimbus pairs PSFC from the right static
 // ports with QCFC from the left ones, so the test does.
 //
-// The pressures have the float of nimbus. The rest is computed from the pressures of the table, which have
-// nine digits: 1e-8 of Mach number, 1e-6 K, 1e-5 m/s where q is smallest.
+// The pressures have the float of nimbus. Other results are computed from the pressures of the table, which
+// have nine digits: 1e-8 of Mach number, 1e-6 K, 1e-5 m/s where q is smallest.
 TEST(NimbusReference, WholeChain) {
   const Chain right = chain_of(c130_right_pair());
   const Chain left = chain_of(c130_left_pair());

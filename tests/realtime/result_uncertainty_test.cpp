@@ -256,7 +256,7 @@ TEST(ResultUncertainty, CountsCorrelations) {
     EXPECT_NEAR(s[Quantity::corrected_dynamic_pressure_uncertainty], of_law, 1e-9);
     EXPECT_NEAR(s[Quantity::corrected_static_pressure_uncertainty],
                 std::sqrt(of_law * of_law + b * b - 2.0 * correlation * of_law * b), 1e-9)
-        << "a bias is taken away";
+        << "a bias is removed";
   }
 }
 

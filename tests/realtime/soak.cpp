@@ -1,12 +1,12 @@
-/// Feeds the sample loop what no aircraft sends, mixed with what one does, for as long as asked:
+/// Feeds the sample loop impossible inputs mixed with plausible ones, for a given time:
 ///
 ///     soak SAMPLES
 ///
 /// Gaps, other rates, missing and infinite values, denormals, absurd and plausible ones, each at random in
 /// every role, through models that use all stages. It counts the samples that break one of the laws of the
-/// loop: a result is finite and one that a flight has, or missing with a bit that says why; and after a gap
-/// it is, to the last bit, what a new loop makes of the same samples. It prints how long the runs took and
-/// how often they took memory, and ends with status 1 where a law was broken.
+/// loop: a result is finite and plausible, or missing with a bit for the reason; and after a gap it is
+/// bit-identical to the result of a new loop on the same samples. It prints the duration of the runs and the
+/// number of allocations, and ends with status 1 if a law was broken.
 #include <algorithm>
 #include <chrono>
 #include <cinttypes>

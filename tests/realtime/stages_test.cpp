@@ -89,10 +89,10 @@ void expect_true_words(const Correction& correction) {
       if (is_in(writes, i)) {
         EXPECT_FALSE(is_missing(after[quantity])) << info_of(quantity).name;
         EXPECT_THAT(other[quantity], testing::NanSensitiveDoubleEq(after[quantity]))
-            << info_of(quantity).name << " depends on what is not said to be read";
+            << info_of(quantity).name << " depends on an undeclared input";
       } else {
         EXPECT_THAT(other[quantity], testing::NanSensitiveDoubleEq(other_before[quantity]))
-            << "place " << i << " is written, which is not said";
+            << "place " << i << " is written but not declared";
       }
     }
     before = after;

@@ -95,7 +95,7 @@ TEST(Surface, CurvatureIsContinuousAcrossKnots) {
             value(coefficients, x - step, 0.3)) /
            (step * step);
   };
-  // A knot at 0.1: the second difference over 1e-4 of either side differs by the third derivative, of some
+  // A knot at 0.1: the second difference over 1e-4 of either side differs by the third derivative, about
   // 0.1/0.2^3 = 12, times 4e-4, and by rounding of 1e-17/1e-8.
   EXPECT_NEAR(curvature(0.1 - 2e-4), curvature(0.1 + 2e-4), 0.02);
   EXPECT_GT(std::abs(curvature(0.0)), 0.05);

@@ -627,7 +627,7 @@ TEST(Regimes, OfALongFlightTakeLittleTime) {
   find_regimes(pilot.motion());
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - before;
   RecordProperty("seconds", std::to_string(taken.count()));
-  EXPECT_LT(taken.count(), 5.0) << "generous: other work may run beside, and sanitizers";
+  EXPECT_LT(taken.count(), 5.0) << "generous, for a busy machine and sanitizers";
 }
 
 std::vector<double> read_all(const Flight& flight, const std::string& name, const std::string& unit) {

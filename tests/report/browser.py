@@ -70,7 +70,7 @@ class Browser:
                 return found["result"]
 
     def open(self, address):
-        """A page of its own, also where only what stands behind # differs from the last."""
+        """A new page, also if only the part after # differs from the last."""
         self.ask("Page.navigate", url="about:blank")
         self.ask("Page.navigate", url=address)
         self.wait("Boolean(window.pcorReport && window.pcorReport.ready)")
@@ -83,13 +83,13 @@ class Browser:
         return base64.b64decode(self.ask("Page.captureScreenshot", format="png", **more)["data"])
 
     def self_test(self, address):
-        """What a page finds that tests itself."""
+        """Results of a page with built-in tests."""
         self.errors.clear()
         self.open(f"{address}#selftest" if "#" not in address else f"{address}+selftest")
         return json.loads(self.value("document.getElementById('selftest').textContent"))
 
     def wait(self, condition, seconds=60):
-        """Until a condition holds; what the page does by itself takes its time on a busy machine."""
+        """Waits for a condition; automatic changes of the page take time on a busy machine."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             try:

@@ -67,7 +67,7 @@ def tearDownModule():
 
 
 def axe_core():
-    """The text of axe-core; empty where it cannot be had."""
+    """The text of axe-core; empty if it is not available."""
     folder = BUILD / "axe"
     script = folder / "node_modules/axe-core/axe.min.js"
     if not script.exists() and shutil.which("npm"):

@@ -43,7 +43,7 @@ def pixels(path):
 
 
 def coloured(picture):
-    """How many pixels are clearly not grey, in every fourth row."""
+    """Number of clearly coloured pixels in every fourth row."""
     return (picture[::4].max(axis=2) - picture[::4].min(axis=2) > 40).sum()
 
 
@@ -167,7 +167,7 @@ class ReportInBrowser(unittest.TestCase):
 
 
 class ReportUnderTheHand(unittest.TestCase):
-    """What a reader does with mouse and keyboard, and what the page shows then, against the data of the page."""
+    """Actions of a reader with mouse and keyboard, and the response of the page, compared with its data."""
 
     @classmethod
     def setUpClass(cls):

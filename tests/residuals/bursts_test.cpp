@@ -73,13 +73,13 @@ TEST(Bursts, MayBeNoise) {
 TEST(Bursts, AreNotAnEffectThatAppears) {
   Flight flight;
   for (std::size_t i = 1000; i < 1015; ++i) flight.residual[i] += 8.0;
-  EXPECT_THAT(flight.bursts(), IsEmpty()) << "the pressure goes on as it was";
+  EXPECT_THAT(flight.bursts(), IsEmpty()) << "the pressure returns to its old level";
 }
 
 TEST(Bursts, AreShort) {
   Flight flight;
   flight.disturb(1000, 120, 0.0, 6.0);
-  EXPECT_THAT(flight.bursts(), IsEmpty()) << "a sensor that has become noisy is no burst";
+  EXPECT_THAT(flight.bursts(), IsEmpty()) << "a sensor that has become noisy is not a burst";
 }
 
 }  // namespace

@@ -243,7 +243,7 @@ TEST(Chain, StaticDefectHasItsDerivativeUnderThePolicy) {
   chain = build(model);
   defect = chain.static_defect(state, dual(chain.parameters()).data(), none);
   EXPECT_EQ(defect.a, 20);
-  EXPECT_EQ(defect.v[0], 0) << "on the floor nothing moves";
+  EXPECT_EQ(defect.v[0], 0) << "no change at the lower limit";
 }
 
 TEST(Chain, EveryStageHasItsDerivative) {

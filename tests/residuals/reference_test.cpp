@@ -56,7 +56,7 @@ TEST(Reference, SaysWhatItReadsForItself) {
   EXPECT_TRUE(lams_reference()->variables().empty());
   EXPECT_EQ(lams_reference()->model(), nullptr);
   const auto system = static_system_reference(with_laser());
-  EXPECT_FALSE(system->reads_laser()) << "the laser is one of the model that is held against it";
+  EXPECT_FALSE(system->reads_laser()) << "the laser belongs to the model that is compared with it";
   EXPECT_THAT(system->variables(), testing::IsSupersetOf({"PSFD", "QCF", "ADIFR", "QCR"}));
 }
 

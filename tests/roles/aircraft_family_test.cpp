@@ -49,7 +49,8 @@ TEST(VariableNaming, DataAreWhole) {
       EXPECT_TRUE(is_known_unit(unit)) << unit;
     }
   }
-  EXPECT_EQ(aircraft_families().front().name, "ncar") << "whose names stand for a file that none knows";
+  EXPECT_EQ(aircraft_families().front().name, "ncar")
+      << "whose names are used for a file of an unknown family";
 }
 
 TEST(VariableNaming, RefusesWhatHasNoMeaning) {
@@ -67,7 +68,7 @@ TEST(VariableNaming, RefusesWhatHasNoMeaning) {
 
 TEST(VariableNaming, IsNamed) {
   EXPECT_EQ(family_named("faam-core").unit_of("VELD_GIN"), "-1 m s-1");
-  EXPECT_EQ(family_named("faam-core").unit_of("ALT_GIN"), "") << "as the file says";
+  EXPECT_EQ(family_named("faam-core").unit_of("ALT_GIN"), "") << "unit of the file";
   EXPECT_THAT(test::message_of<Error>([] { family_named("fam-core"); }),
               HasSubstr("did you mean faam-core?"));
   EXPECT_THAT(test::message_of<Error>([] { family_named("/nowhere/mine.toml"); }),

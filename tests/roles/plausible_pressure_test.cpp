@@ -68,7 +68,7 @@ TEST_F(PlausiblePressure, HectopascalsLabelledPascalsAreRefused) {
                     HasSubstr("static_pressure = \"hPa\"")));
   ModelDefinition stated = model();
   stated.units[Quantity::static_pressure] = "Pa";
-  EXPECT_FALSE(impossible_pressure(wrong, stated)) << "what a model states is believed";
+  EXPECT_FALSE(impossible_pressure(wrong, stated)) << "a unit stated in the model is not checked";
 }
 
 TEST_F(PlausiblePressure, WeatherIsNoError) {
@@ -79,7 +79,7 @@ TEST_F(PlausiblePressure, WeatherIsNoError) {
 TEST_F(PlausiblePressure, AnotherSystemContradictsAboveFivePercent) {
   EXPECT_TRUE(impossible_pressure(flight("hPa", 700.0, "PSFRD", 760.0), model()));
   EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0, "PSFRD", 710.0), model()));
-  EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0), model())) << "nothing to hold it against";
+  EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0), model())) << "no variable for a comparison";
 }
 
 TEST_F(PlausiblePressure, OtherSystemThatHeightContradictsIsNoError) {

@@ -26,7 +26,7 @@ TEST(Resolution, IsTheStepOfAllValues) {
 TEST(Resolution, OfFloatsIsNone) {
   EXPECT_LT(resolution_of(rounded_to(0.0)), 0.01);
   EXPECT_EQ(resolution_of({}), 0.0);
-  EXPECT_EQ(resolution_of({1, 1, 1, 2}), 0.0) << "too few to tell";
+  EXPECT_EQ(resolution_of({1, 1, 1, 2}), 0.0) << "too few values";
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-/// Scalars that can do what `pcor/physics/scalar.hpp` asks of a scalar and nothing else. A formula that
-/// compiles for them holds no hidden `double`, no `std::sqrt` by name, and no `if` on a comparison.
+/// Scalars with exactly the operations that `pcor/physics/scalar.hpp` requires. A formula that compiles for
+/// them contains no hidden `double`, no `std::sqrt` by name, and no `if` on a comparison.
 namespace archetype {
 
 /// The truth of one comparison. Like the mask of a vector pack it is not a `bool`.

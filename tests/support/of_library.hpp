@@ -4,8 +4,8 @@
 
 namespace pcor::test {
 
-/// The function of that name in a shared library before which one of the test itself stands, `this_one`: so
-/// that what is tested meets a library that fails.
+/// The function `name` of a shared library that a function of the test, `this_one`, replaces, so that the
+/// tested code meets a failing library.
 template <class Function>
 Function* of_library(Function* /*this_one*/, const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));

@@ -26,7 +26,7 @@ namespace pcor::test {
 inline std::vector<std::vector<std::size_t>> run_with_communicator(
     std::size_t size, const std::function<void(Communicator&)>& work, bool one_at_a_time = false) {
   struct Table {
-    std::mutex working{};  // of the one that works, where one does at a time
+    std::mutex working{};  // index of the working member, if one works at a time
     std::mutex mutex{};
     std::condition_variable changed{};
     std::vector<std::string> laid{};

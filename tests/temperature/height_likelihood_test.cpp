@@ -47,7 +47,7 @@ Eigen::MatrixXd dense_covariance(const HeightRecord& record, const HeightNoise& 
   };
   const double start = at(0).time;
   // The drift is a sum over steps of slope times way; the slope is a start and a sum of changes.
-  Eigen::MatrixXd slope_to_height = Eigen::MatrixXd::Zero(n, n);  // of changes at step k, to block i, east
+  Eigen::MatrixXd slope_to_height = Eigen::MatrixXd::Zero(n, n);  // changes at step k, to block i, east
   Eigen::MatrixXd slope_to_height_north = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     for (Eigen::Index i = k + 1; i < n; ++i) {
@@ -268,7 +268,7 @@ TEST(HeightLikelihood, ErrorsKnowThatTheNoiseIsFoundToo) {
     }
   }
   // The noise adds 5 % to the errors of two hours. Over some flights the points are within 3 % of the walk,
-  // of which 1 % is what 8000 steps, some 200 of them independent, leave open.
+  // of which 1 % is the sampling error of 8000 steps, about 200 of them independent.
   for (const double part : apart) EXPECT_NEAR(part, 0.0, 0.03);
 }
 

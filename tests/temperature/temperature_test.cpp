@@ -198,7 +198,7 @@ TEST_F(TemperatureRecovery, OfOffsetAndSlopeOverIsobarsThatSlope) {
   for (std::uint64_t seed = 6000; seed < 6000 + seeds; ++seed) {
     const fs::path flight = fly(climbs(), seed);
     const std::array<double, 2> true_value = truth(flight);
-    // As the simulator is told, to what the recovery temperature makes of it.
+    // From the simulated error to the error of the recovery temperature.
     EXPECT_NEAR(true_value[0], -0.55, 0.03);
     EXPECT_NEAR(true_value[1], -0.01, 0.001);
     const TemperatureResult result = fit_temperature({flight}, model(), of_degree(1));
@@ -224,14 +224,14 @@ TEST_F(TemperatureRecovery, OfOffsetAndSlopeOverIsobarsThatSlope) {
     EXPECT_GE(likelihood[k].within(2.0), test::least_within(seeds, test::within_two)) << name;
     EXPECT_GE(likelihood[k].within(3.0), test::least_within(seeds, test::within_three)) << name;
     EXPECT_NEAR(likelihood[k].spread_over_stated(), 1.0, test::tolerance_of_spread(seeds)) << name;
-    // The mean of n is known to 1/sqrt(n) of the error; the truth is a line through a curve that is no line,
-    // with its samples and not the likelihood's weights, for another three tenths.
+    // The mean of n is known to 1/sqrt(n) of the error; the truth is a line through a curve, weighted by its
+    // samples and not by the likelihood, for another three tenths.
     const double bias_is_known_to = 1.0 / std::sqrt(static_cast<double>(seeds));
     EXPECT_LT(std::abs(likelihood[k].bias()), (0.3 + 4.0 * bias_is_known_to) * likelihood[k].spread())
         << name;
     // Heights with a correlation time of 60 s give one independent sample in two minutes, so least squares
-    // states errors that are sqrt(120), 11 times, too small: half of that, because the height is not the
-    // only source.
+    // states errors that are sqrt(120), 11 times, too small; the limit is half this factor, because the
+    // height is not the only source.
     EXPECT_GT(least_squares[k].spread_over_stated(), 5.0) << name;
     EXPECT_LT(least_squares[k].within(2.0), seeds / 2) << name;
   }
@@ -291,8 +291,7 @@ TEST_F(Temperature, HumidityErrorIsNotAssignedToThermometer) {
     const fs::path flight = fly(scenario, seed);
     const TemperatureResult result = fit_temperature({flight}, model());
     EXPECT_THAT(result.worse, Not(IsEmpty())) << seed;
-    // The truth is 25 % of what is measured, of which the 10 % known beforehand leave a part; three
-    // deviations.
+    // The truth is 25 % of the measured value, reduced by the prior of 10 %; three standard deviations.
     const double left = 1.0 - std::pow(result.humidity_error / 0.1, 2);
     EXPECT_NEAR(result.humidity_change, 0.25 * left, 3.0 * result.humidity_error) << seed;
     EXPECT_LT(result.humidity_error, 0.1) << seed;
@@ -387,8 +386,8 @@ TEST_F(Temperature, ArchivedFlightsGiveTheSame) {
     for (const ModelDefinition& with : {model(), curved}) {
       const fs::path archive = processed(flight, with, "archived.nc");
       const TemperatureResult archived = fit_temperature({archive}, model(), options);
-      // They have no angle of attack, so that an error of the law with it is not taken off. That makes errors
-      // 4 % smaller here, and coefficients move by sqrt(1.04^2 - 1), 0.3 of the error.
+      // They have no angle of attack, so an error of the law with it is not removed. Errors become 4 %
+      // smaller here, and coefficients change by sqrt(1.04^2 - 1), 0.3 of the error.
       EXPECT_LT(apart(raw.likelihood, archived.likelihood), 0.3) << rate << " Hz";
       EXPECT_NEAR(raw.flights[0].rms_after, archived.flights[0].rms_after, 0.01) << rate << " Hz";
       EXPECT_NEAR(static_cast<double>(archived.samples), static_cast<double>(raw.samples), 2.0);
@@ -414,8 +413,8 @@ TEST_F(Temperature, SecondsWithoutPressureAreCrossed) {
   for (const TemperatureResult& result : {raw, archived}) {
     EXPECT_NEAR(static_cast<double>(result.samples + missing), static_cast<double>(whole.samples), 1.0);
     EXPECT_EQ(result.flights[0].segments, 1U);
-    // 2 % fewer samples of noise that remembers itself for a minute are hardly less; the steps across two
-    // seconds are exact to (dp/p)^2/12, some 1e-7.
+    // 2 % fewer samples matter little if the noise is correlated over a minute; the steps across two seconds
+    // are exact to (dp/p)^2/12, about 1e-7.
     EXPECT_LT(apart(whole.likelihood, result.likelihood), 0.3);
   }
 }
@@ -429,9 +428,9 @@ TEST_F(Temperature, AFlightCutInTwoGivesNearlyTheSame) {
       {without_records(flight, middle, records, "first.nc"), without_records(flight, 0, middle, "second.nc")},
       model(), of_degree(1));
   EXPECT_EQ(parts.samples, whole.samples);
-  // The height and the slope of isobars are not known to go on. With the same noise that makes errors 5 %
-  // larger, so coefficients move by sqrt(1.05^2 - 1), a third of the error: three times that. The noise that
-  // is found anew moves the stated errors by more.
+  // The continuity of the height and of the slope of isobars is not known. With the same noise errors become
+  // 5 % larger, so coefficients change by sqrt(1.05^2 - 1), a third of the error; the limit is three times
+  // this. The noise is estimated again, which changes the stated errors by more.
   EXPECT_LT(apart(whole.likelihood, parts.likelihood), 1.0);
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_NEAR(parts.likelihood.standard_errors[k] / whole.likelihood.standard_errors[k], 1.0, 0.3);
@@ -447,9 +446,10 @@ TEST_F(Temperature, TwiceTheDataHalveTheVariance) {
   const TemperatureResult once = fit_temperature(flights, model(), of_degree(1));
   const TemperatureResult all = fit_temperature(twice, model(), of_degree(1));
   EXPECT_EQ(all.samples, 2 * once.samples);
-  // The same data twice have the same likeliest noise but for the restriction of the likelihood, in which the
-  // two coefficients count half as much: errors move by as much as the search stops. What is not known of the
-  // noise is in the errors too, a sixth of the variance here, of which twice the data leave a quarter: 4 %.
+  // Duplicated data have the same most likely noise except for the restriction of the likelihood, in which
+  // the two coefficients count half: errors change by the tolerance of the search. The uncertainty of the
+  // noise is included in the errors, a sixth of the variance here, of which a quarter remains with twice the
+  // data: 4 %.
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_NEAR(once.likelihood.standard_errors[k] / all.likelihood.standard_errors[k], std::sqrt(2.0), 0.1);
     EXPECT_NEAR(once.least_squares.coefficients[k], all.least_squares.coefficients[k],
@@ -457,8 +457,8 @@ TEST_F(Temperature, TwiceTheDataHalveTheVariance) {
     EXPECT_NEAR(once.least_squares.standard_errors[k] / all.least_squares.standard_errors[k], std::sqrt(2.0),
                 1e-9);
   }
-  // What is known beforehand of humidity and law counts half as much beside twice the data: where it is a
-  // tenth of the information, coefficients move by a twentieth of what it had moved them, some errors.
+  // The prior of humidity and law has half the relative weight with twice the data: if it is a tenth of the
+  // information, coefficients change by a twentieth of its shift, which is a few errors.
   EXPECT_LT(apart(once.likelihood, all.likelihood), search_stops + 0.15);
 }
 
@@ -513,7 +513,7 @@ TEST_F(Temperature, HeldOutFlightsChooseTheDegree) {
 
 TEST_F(Temperature, ASmallGainIsNoReasonForACoefficient) {
   // Three flights each in which one more coefficient gains by chance, over flights held out, more than its
-  // standard error: 0.1 of -2 ln L for a curve, 4.0 for a slope. Of 12 sets of three one each does so.
+  // standard error: 0.1 of -2 ln L for a curve, 4.0 for a slope. One of 12 sets of three exceeds each limit.
   EXPECT_THAT(fit_temperature(fly_several(one_climb(), 921, 3), model()).likelihood.coefficients, SizeIs(2));
   EXPECT_THAT(
       fit_temperature(fly_several(one_climb_without_slope(), 900, 3), model()).likelihood.coefficients,
@@ -546,14 +546,14 @@ TEST_F(Temperature, StatedErrorsIncludeSlopeEstimateRemainder) {
 TEST_F(Temperature, AlternatingFitConverges) {
   const std::vector<fs::path> flights = fly_several(one_climb(), 1, 2);
   ModelDefinition start = model();
-  start.model.effects[0].parameters = {0.006};  // by 0.0019 of the pressure too much
+  start.model.effects[0].parameters = {0.006};  // too large by 0.0019 times the pressure
   const IterativeCalibration found =
       calibrate_iteratively(flights, start, {pcor::lams_reference()}, {}, of_degree(1));
   ASSERT_TRUE(found.converged);
   ASSERT_GT(found.rounds.size(), 1U);
   for (std::size_t i = 1; i < found.rounds.size(); ++i) {
-    // Below what counts as rest, 1e-3 hPa and 1e-3 K, the noise that each round finds anew moves them to and
-    // fro.
+    // Below the limits of convergence, 1e-3 hPa and 1e-3 K, they fluctuate because each round estimates the
+    // noise again.
     EXPECT_LT(found.rounds[i].defect_change, std::max(found.rounds[i - 1].defect_change, 1e-3));
     EXPECT_LT(found.rounds[i].temperature_change, std::max(found.rounds[i - 1].temperature_change, 1e-3));
   }
@@ -563,7 +563,8 @@ TEST_F(Temperature, AlternatingFitConverges) {
     const std::vector<double>& first = found.rounds.front().coefficients;
     whole = std::max(whole, std::abs(first[0] + first[1] * at.temperature));
   }
-  // The range of temperatures moves by less than 1 K with the pressures, and the correction by 1 % of that.
+  // The range of temperatures changes by less than 1 K with the pressures, and the correction by 1 % of this
+  // change.
   EXPECT_NEAR(found.rounds.front().temperature_change, whole, 0.01);
   EXPECT_EQ(found.rounds.back().coefficients, found.temperature.likelihood.coefficients);
 

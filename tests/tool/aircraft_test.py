@@ -152,7 +152,7 @@ class OtherAircraft(unittest.TestCase):
                 self.assertLess(numpy.sqrt(numpy.mean(error ** 2)), 0.35, family)
 
     def test_a_model_without_variables_runs(self):
-        """compare, refit and check on all families, with the roles told by the flight; the same numbers on all."""
+        """compare, refit and check on all families, with roles from the flight; the same numbers for all."""
         rms = {}
         for family, (*_, reference, _) in FAMILIES.items():
             compared = self.json("compare", f"{family}.nc", "-m", "bare.toml", "--reference", reference)
@@ -180,7 +180,7 @@ class OtherAircraft(unittest.TestCase):
             self.assertEqual(here[name]["begin"][:16], there[name]["begin"][:16])
 
     def test_series_that_disagree_in_sign_are_told(self):
-        """Against what each of them moves with, on a flight with turns and climbs; all agree where none is turned."""
+        """Each against a correlated variable, on a flight with turns and climbs; all agree if no sign is reversed."""
         flight, turned = self.path / "turns.nc", self.path / "turned.nc"
         self.run_tool("simulate", SOURCE / "data/scenarios/c130-eq18.toml", "-o", flight, "--quiet")
 
@@ -204,7 +204,7 @@ class OtherAircraft(unittest.TestCase):
                                                     "pressure:TRUE_PS").stdout)
 
     def test_names_that_differ_by_case_are_two(self):
-        """The exact name is taken; another case is no variable, and the message says what is there."""
+        """The exact name is used; another case is not a variable, and the message lists the existing names."""
         flight = self.path / "case.nc"
         flight.write_bytes((self.path / "ncar.nc").read_bytes())
         with netCDF4.Dataset(flight, "a") as file:
@@ -258,7 +258,7 @@ class OtherAircraft(unittest.TestCase):
         self.assertTrue("VELD_GIN: the vertical speed is positive downward" in (self.path / "choices.html").read_text())
 
     def test_an_aircraft_of_the_user(self):
-        """A file of names beside the model."""
+        """A file of names next to the model."""
         (self.path / "mine.toml").write_text('format = "pcor-aircraft/1"\nname = "mine"\ntitle = "my aircraft"\n'
                                              '[pressures]\nmeasured = [["PS", "QC"]]\n'
                                              '[series]\naltitude = ["IRS_ALT"]\n')
@@ -281,7 +281,7 @@ class OtherAircraft(unittest.TestCase):
         self.assertIn("it is like the files of halo-bahamas and of noaa-wp-3d; say which in the model, roles =", result.stderr)
 
     def test_a_stated_unit_wins(self):
-        """A wrong attribute of a file is mended by the model, and that is told."""
+        """The model corrects a wrong attribute of a file, with a note."""
         write(self.path / "wrong.nc", "ncar", self.simulated)
         with netCDF4.Dataset(self.path / "wrong.nc", "a") as file:
             file["PSFD"].units = "kPa"
@@ -292,7 +292,7 @@ class OtherAircraft(unittest.TestCase):
         (self.path / "plain.toml").write_text(model.format(""))
         right = self.json("compare", "ncar.nc", "-m", "plain.toml", "--reference", "pressure:PSXC")
         self.assertEqual(stated["models"][0]["rms_hpa"], right["models"][0]["rms_hpa"])
-        self.assertIn("PSFD is taken as 'hPa', as the model or the aircraft's data state; the file says 'kPa'",
+        self.assertIn("PSFD is taken as 'hPa'",
                       " ".join(stated["notes"] if "notes" in stated else []) +
                       self.run_tool("process", "wrong.nc", "-m", "stated.toml", "-o", "w.nc").stdout)
 
@@ -314,7 +314,7 @@ class OtherAircraft(unittest.TestCase):
     def test_report(self):
         self.run_tool("inspect", "faam-core.nc", "ncar.nc", "--report", "page.html")
         page = (self.path / "page.html").read_text()
-        for title in ("What the flights hold", "Height", "Roles of faam-core.nc", "What is missing in ncar.nc"):
+        for title in ("Variables and roles of the flights", "Height", "Roles of faam-core.nc", "Missing from ncar.nc"):
             self.assertIn(title, page)
 
 

@@ -23,7 +23,7 @@ TOOL = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 PAGE = (SOURCE / "docs/campaigns.md").read_text()
 MODEL = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
-# Two projects have a flight of one name, and a name has a blank.
+# Two projects have a flight with the same name, and a name has a blank.
 NAMES = [f"{project}/rf{number:02} {project}.nc" for project in ("first", "second") for number in range(1, 6)] + \
         ["first/rf06.nc", "second/rf06.nc"]
 BAD = "second/rf06.nc"
@@ -48,7 +48,7 @@ def command_of_the_page(begin):
 
 
 class Campaign(unittest.TestCase):
-    """A folder of the campaign, with its files edited as the page says; one flight is cut in half."""
+    """A folder of the campaign, with its files edited as described on the page; one flight is cut in half."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

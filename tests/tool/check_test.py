@@ -53,7 +53,7 @@ class CheckTest(ComparisonTest):
         return path
 
     def without(self, *variables):
-        """A flight in which these variables have other names, which nobody looks for."""
+        """A flight in which these variables have other, unknown names."""
         def change(file):
             for variable in variables:
                 file.renameVariable(variable, "NO_" + variable)

@@ -36,7 +36,7 @@ def tearDownModule():
 
 
 class Lists(ComparisonTest):
-    """An option of several values takes one each time: what stands behind it is a flight."""
+    """A repeatable option takes one value each time: the next argument is a flight."""
 
     def test_held_out_flights_swallow_no_flight(self):
         fit = self.json_of("refit", "--holdout", THREE, ONE, TWO, "-m", self.model(), "-o", self.path / "out.toml")
@@ -80,7 +80,7 @@ class Outputs(ComparisonTest):
                 self.assert_no_file_called_dash()
 
     def test_a_calibrated_model_goes_to_standard_output(self):
-        """Twenty minutes tell too little of a thermometer: the model is written by force, and says so."""
+        """Twenty minutes are too short for a thermometer: --force writes the model with a note."""
         model = self.model(lambda toml: toml)
         result = self.done("temperature", ONE, "-m", model, "-o", "-", "--force", cwd=self.path)
         self.assertIn("forced", tomllib.loads(result.stdout)["provenance"])
@@ -101,7 +101,7 @@ class Outputs(ComparisonTest):
                 self.assert_no_file_called_dash()
 
     def test_every_file_is_announced(self):
-        """Of each command: the words of its line, and that all that it wrote and nothing else is in it."""
+        """For each command: its summary line lists exactly the files that it wrote."""
         model = self.model()
         before = set(os.listdir(self.path))
         report, result = ("--report", "r.html"), ("--json", "r.json")
@@ -206,7 +206,7 @@ class Help(ComparisonTest):
 
 
 class Terminal(ComparisonTest):
-    """What a terminal of a stated width shows: a pseudo-terminal stands in for it."""
+    """Output on a terminal of a given width, simulated by a pseudo-terminal."""
 
     def shown(self, width, *arguments, stated="", **more):
         master, slave = pty.openpty()
@@ -266,7 +266,7 @@ class Terminal(ComparisonTest):
 
 class Shell(ComparisonTest):
     def completed(self, *words, end="printf '%s\\n' \"${COMPREPLY[@]}\""):
-        """What bash offers for the last of the words of a command line; or what `end` prints of it."""
+        """Completions by bash of the last word of a command line; or the output of `end`."""
         script = self.write("pcor.bash", self.done("completion", "bash").stdout)
         subprocess.run(["bash", "-n", script], check=True)
         line = " ".join(f"'{word}'" for word in ("pcor", *words))
@@ -307,7 +307,7 @@ class Shell(ComparisonTest):
         self.assertEqual(self.completed("process", "one.nc", "--models", ""), ["flights"])
 
     def test_a_colon_is_not_quoted(self):
-        """Readline quotes what it takes for file names, as it should where they hold blanks."""
+        """Readline quotes file names, as needed for names with blanks."""
         for words, quotes in (("check", "--reference", "st"), False), (("refit", "--exclude", "pit"), True):
             told = self.completed(*words, end='compopt() { echo "$*"; }; _pcor')
             self.assertEqual("filenames" in told, quotes, words)

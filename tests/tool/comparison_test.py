@@ -156,7 +156,7 @@ def errors_of(refit):
 
 
 def addresses_in(html):
-    """But for the name of the SVG language, which is no address that a browser asks."""
+    """Except the name of the SVG language, which a browser does not request."""
     return set(re.findall(r"https?://[^\s\"'<>]+", html)) - {"http://www.w3.org/2000/svg"}
 
 
@@ -342,7 +342,7 @@ class ResidualFile(ComparisonTest):
                 self.assertEqual(numpy.count_nonzero(flagged & used), counts[name], name)
 
     def test_two_deltas_make_the_residual(self):
-        """Of one pressure, so their difference is the residual, to the rounding of floats of 10 hPa (1e-6)."""
+        """Both are of one pressure, so their difference is the residual, to the rounding of floats of 10 hPa (1e-6)."""
         path, _ = self.residuals()
         with xarray.open_dataset(path) as file:
             residual = file["RESIDUAL_1"].values
@@ -383,7 +383,7 @@ class References(ComparisonTest):
         self.assertIn("residual = total pressure of 'PSFRD+QCFR'", text)
 
     def test_a_reference_of_one_model_is_shown_for_that_alone(self):
-        """Of two pairs each is the second one of the other."""
+        """Each of the two pairs is the second pair of the other."""
         laser = replace(r"^attack_differential_pressure.*$", r"\g<0>\n" + LASER)
         other = self.write("other.toml", laser(OTHER_SYSTEM.read_text()))
         given = ("-m", self.model(), "-m", other)
@@ -403,13 +403,13 @@ class References(ComparisonTest):
         self.assertIsNone(result["models"][0]["r2"])
 
     def test_static_system(self):
-        """Both laws are true, so what is left is the noise of two transducers, each about 0.01 hPa."""
+        """Both laws are true, so the residual is the noise of two transducers, each about 0.01 hPa."""
         result = self.compare("--reference", f"static:{OTHER_SYSTEM}")
         self.assertIn("PSFRD/QCFR", result["reference"])
         self.assertLess(result["models"][0]["rms_hpa"], 0.03)
 
     def test_true_pressure(self):
-        """The law is true, so what is left is the noise of the transducer, about 0.01 hPa."""
+        """The law is true, so the residual is the noise of the transducer, about 0.01 hPa."""
         result = self.compare("--reference", "pressure:TRUE_PS")
         self.assertIn("TRUE_PS", result["reference"])
         self.assertLess(result["models"][0]["rms_hpa"], 0.02)
@@ -488,7 +488,7 @@ class Refit(ComparisonTest):
         self.assert_true_law(self.refit("--reference", f"static:{OTHER_SYSTEM}", model=self.model(with_a0(0.01))))
 
     def test_the_written_file_restores_the_model(self):
-        """The same samples through the same formulas, so equal but for the order of a sum."""
+        """The same samples through the same formulas, so equal except for the order of a sum."""
         fit = self.refit(model=self.model(with_a0(0.007)))
         model = self.compare(model=self.path / "out.toml")["models"][0]
         self.assertEqual(model["samples"], fit["samples"])
@@ -686,7 +686,7 @@ class Refit(ComparisonTest):
         fit = self.refit(model=model)
         self.assertEqual(fit["effects"][0]["at_bound"], ["a0"])
         self.assertEqual(fit["effects"][0]["parameters"]["a0"], 0.01)
-        self.assertIn("static-constant.a0 is held at its bound 0.01", "\n".join(fit["notes"]))
+        self.assertIn("static-constant.a0 is at its bound 0.01", "\n".join(fit["notes"]))
 
     def test_an_effect_that_the_flight_does_not_show_is_told(self):
         """Without a yaw manoeuvre nothing is known of the square of the sideslip; the rest is still found."""
@@ -699,7 +699,7 @@ class Refit(ComparisonTest):
         self.assert_true_law(fit)
 
     def test_correlated_coefficients_are_told(self):
-        """Steady legs hardly tell q/p from the Mach number. Their correlation is beyond 0.99 whatever the noise."""
+        """Steady legs hardly separate q/p and the Mach number. Their correlation exceeds 0.99 for any noise."""
         model = self.model(with_effect('id = "static-mach"\n'))
         text = self.done("refit", STEADY, "-m", model, "-o", self.path / "out.toml", "--trust-reference").stdout
         self.assertRegex(text, r"correlations above 0\.9\n(.*\n)* *static-qp\.a2 and static-mach\.m1: -(0\.99|1\.00)")

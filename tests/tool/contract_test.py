@@ -104,7 +104,7 @@ class ContractTest(unittest.TestCase):
             for result in FOUND_FROM[name]:
                 self.assertTrue(np.isnan(self.spoilt[result][record]),
                                 f"{result} is {self.spoilt[result][record]} where {name} is {kind}")
-            self.assertNotEqual(self.bits[record] & ~self.good_bits[record], 0, f"no bit says that {name} is {kind}")
+            self.assertNotEqual(self.bits[record] & ~self.good_bits[record], 0, f"no bit marks {name} as {kind}")
 
     def test_what_is_not_found_from_it_stays(self):
         for record, (name, kind) in self.cases.items():
@@ -123,7 +123,7 @@ class ContractTest(unittest.TestCase):
         np.testing.assert_array_equal(self.bits[untouched] & other, self.good_bits[untouched] & other)
 
     def test_a_good_flight_has_its_results(self):
-        """Else the other tests would hold of nothing."""
+        """Otherwise the other tests would be empty."""
         for name in RESULTS:
             self.assertTrue(np.all(np.isfinite(self.good[name][list(self.cases)])), name)
 

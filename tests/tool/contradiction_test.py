@@ -48,7 +48,7 @@ class Changed(ComparisonTest):
 
 
 class Pasting(Changed):
-    """Every command that is advised does what it says and nothing else when it is pasted into a shell."""
+    """Every advised command has exactly the stated effect when it is pasted into a shell."""
 
     def setUp(self):
         super().setUp()

@@ -36,7 +36,7 @@ class HostileTest(unittest.TestCase):
         return subprocess.run([TOOL, *arguments], capture_output=True, timeout=60, **options)
 
     def assert_refused(self, result, *words):
-        """Status 1 and one line of no more than 2000 letters, which no terminal obeys."""
+        """Status 1 and one line of at most 2000 characters without control sequences."""
         message = result.stderr.decode()
         self.assertEqual(result.returncode, 1, message[:300])
         self.assertRegex(message, r"\Apcor: [^\x00-\x1f\x7f-\x9f]*\n\Z")

@@ -61,7 +61,7 @@ class ManyFlights(unittest.TestCase):
         return self.run_tool("process", *flights, "-m", model, "-o", output or self.out, *more)
 
     def states(self, flights, *more, **options):
-        """What was done to each flight, by its name."""
+        """Result of each flight, by its name."""
         result = self.process(flights, "--json", "-", *more, **options)
         self.assertEqual(result.returncode, 0, result.stderr)
         return {Path(flight["input"]).name: flight["state"] for flight in json.loads(result.stdout)["flights"]}
@@ -177,7 +177,7 @@ class Unreadable(ManyFlights):
         subprocess.run(["ncrename", "-v", "QCR,QCX", b], check=True, capture_output=True)
         self.assertEqual(self.states([b, a], "--skip-unreadable"), {"b.nc": "unreadable", "a.nc": "processed"})
 
-    @unittest.skipIf(os.environ.get("PCOR_SANITIZED"), "a sanitizer tells what HDF5 reads beyond its memory")
+    @unittest.skipIf(os.environ.get("PCOR_SANITIZED"), "a sanitizer reports invalid reads in HDF5")
     def test_one_on_which_hdf5_crashes_is_a_bad_flight(self):
         model = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
         a, b, whole = (self.path / name for name in ("a.nc", "b.nc", "whole.nc"))
@@ -370,7 +370,7 @@ class ModelNames(ManyFlights):
                                env={**os.environ, "PCOR_MODELS": str(own)})
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
         self.assertRegex(result.stderr, "did you mean .*c130-psfd-eq18")
-        self.assertEqual(result.stderr.count("c130-psfd-eq18"), 1, "a name is told once")
+        self.assertEqual(result.stderr.count("c130-psfd-eq18"), 1, "a name is reported once")
 
 
 class ModelsByDate(ManyFlights):

@@ -118,7 +118,7 @@ class Outputs(unittest.TestCase):
         self.assertEqual(again.pcor_input, "first.nc")
 
     def test_results_are_not_missing_where_only_an_input_is(self):
-        """PCORFLAG has bits whose meanings speak of missing inputs; read back, the results beside them are there."""
+        """PCORFLAG has bits for missing inputs; the results of these samples are still read back."""
         self.edit(lambda flight: flight["TTRR"].__setitem__(slice(100, 200), -32767.0))
         output = self.output()
         self.assertEqual(output["PSXC"][:].count(), len(output["PSXC"]))

@@ -87,7 +87,7 @@ def in_feet(test):
 
 
 def truth(flight=ONE, processed=PROCESSED):
-    """What has to be added to the measured temperature, as a0 (K) and a1, by regression: the simulator knows the air."""
+    """True correction of the measured temperature, a0 (K) and a1, by regression on the simulated air."""
     measured, air = series(processed, "ATX"), series(flight, "TRUE_AT")
     flying = (series(flight, "TRUE_TAS") > 80.0) & ~numpy.isnan(measured)
     slope, constant = numpy.polyfit(measured[flying], (air - measured)[flying], 1)
@@ -126,7 +126,7 @@ class TemperatureTest(ComparisonTest):
         return path
 
     def temperature(self, *arguments, flights=(ONE,), model=PUBLISHED, output=None):
-        """The numbers, whatever they say of themselves: without need --force changes nothing."""
+        """--force does not change the numbers if it is not needed."""
         output = output or self.path / "out.toml"
         return self.json_of("temperature", *flights, "-m", model, "-o", output, "--force", *arguments)
 
@@ -153,7 +153,7 @@ class TemperatureTest(ComparisonTest):
             self.assertAlmostEqual(result["coefficients"][name], value, delta=errors * result["stderr"][name])
 
     def assert_correction_is_truth(self, result, errors=3.0):
-        """As `assert_is_truth`, of the correction at each temperature, for any degree."""
+        """Like `assert_is_truth` for the correction at each temperature, for any degree."""
         true = truth()
         for at in result["corrections"]:
             value = true["a0"] + true["a1"] * at["temperature_degc"]
@@ -206,7 +206,7 @@ class Fit(TemperatureTest):
             self.assertAlmostEqual(at["stderr_k"], (powers @ covariance @ powers) ** 0.5, delta=1e-9)
 
     def test_more_flights_make_smaller_errors(self):
-        """As one over the square root of their number, to a quarter: the noise is found anew."""
+        """Proportional to one over the square root of their number, to a quarter: the noise is estimated again."""
         one, three = (self.temperature("--pressure-error", "0", flights=flights)
                       for flights in ((ONE,), (ONE, TWO, THREE)))
         ratio = one["stderr"]["a0"] / three["stderr"]["a0"]
@@ -240,7 +240,7 @@ class Fit(TemperatureTest):
             self.assertIn(words, text)
 
     def test_says_what_errors_leave_out(self):
-        """An error of the static pressure that lasts is many times the noise: 0.3 hPa are some 0.1 K."""
+        """A constant error of the static pressure is many times the noise: 0.3 hPa are about 0.1 K."""
         text = self.text_of("--pressure-error", "0")
         self.assertIn("std. error, noise only", text)
         per_hpa = self.temperature()["per_hpa"]["a0"]
@@ -265,7 +265,7 @@ class Fit(TemperatureTest):
         self.assertNotIn("To apply it", text)
 
     def test_a_correction_that_makes_it_worse(self):
-        """With isobars taken for level their slope goes into the correction of a good thermometer."""
+        """If isobars are assumed level, their slope appears in the correction of a good thermometer."""
         flight = self.simulated(GOOD_THERMOMETER)
         arguments = ("--slope", "none", "--pressure-error", "0")
         one = self.temperature(*arguments, flights=(flight,))["flights"][0]
@@ -308,7 +308,7 @@ class Fit(TemperatureTest):
 
 
 class Refusal(TemperatureTest):
-    """What the numbers of a calibration call no better than none is not written."""
+    """A calibration that is not significant is not written."""
 
     @classmethod
     def setUpClass(cls):
@@ -323,7 +323,7 @@ class Refusal(TemperatureTest):
         cls.folder.cleanup()
 
     def law(self, name, coefficient, hpa, per_hpa):
-        """The law of the flights, wrong by so many hPa in one term."""
+        """The law of the flights, wrong by the given hPa in one term."""
         value = float(re.search(rf"{coefficient} = (\S+) ", PUBLISHED.read_text()).group(1)) + hpa * per_hpa
         return self.write(f"{name}.toml",
                           replace(rf"{coefficient} = \S+ ", f"{coefficient} = {value} ")(PUBLISHED.read_text()))
@@ -343,8 +343,8 @@ class Refusal(TemperatureTest):
                 for at in json.loads(numbers.read_text())["corrections"]:
                     if written:
                         self.assertLess(abs(at["correction_k"]), max(0.1, 2.0 * at["stderr_k"]))
-                    # The joint fit knows an error with q or the attack from that of the thermometer; one in
-                    # proportion to the pressure moves the temperature, by 0.11 K for 1 hPa.
+                    # The joint fit separates an error with q or the attack from the thermometer's error; an
+                    # error proportional to the pressure changes the temperature, by 0.11 K for 1 hPa.
                     self.assertLess(abs(at["correction_k"]), 0.15)
                 output.unlink(missing_ok=True)
 
@@ -552,8 +552,8 @@ class Archived(TemperatureTest):
     def test_many(self):
         flights = [self.process(flight, PUBLISHED, "--hydrostatic", name=flight.name) for flight in (ONE, TWO, THREE)]
         raw = self.temperature(flights=(ONE, TWO, THREE))
-        # They have no angle of attack, so that an error of the law with it is not taken off: errors of the noise are
-        # 4 % smaller, and coefficients move by sqrt(1.04^2 - 1), 0.3 of them.
+        # They have no angle of attack, so an error of the law with it is not removed: errors of the noise are
+        # 4 % smaller, and coefficients change by sqrt(1.04^2 - 1), 0.3 of them.
         self.assert_agree(raw, self.temperature("--archived", flights=flights), share=0.3)
 
     def test_ground_velocity_in_components(self):
@@ -645,7 +645,7 @@ class Options(TemperatureTest):
                     self.assertLess(result["stderr"]["a0"], 0.035)  # K: the wind of 10 m in 100 km, at 0.031 by the geostrophic slope
 
     def test_a_wind_out_of_balance(self):
-        """The wind of the scenario does not belong to its isobars: errors know it, and a note says so."""
+        """The wind of the scenario does not match its isobars: the errors include it, with a note."""
         result = self.temperature("--slope", "geostrophic", "--degree", "1")
         self.assert_is_truth(result)
         self.assertIn("balance", " ".join(result["notes"]))
@@ -743,7 +743,7 @@ class BadHeight(TemperatureTest):
         self.assert_agree(self.temperature(), self.temperature(flights=(flight,), model=in_feet(self)), share=0.1)
 
     def test_feet_that_are_called_feet(self):
-        """Values are floats of up to 32768 ft, to 1e-3 ft each, which is nothing beside the noise of 0.3 m."""
+        """Values are floats of up to 32768 ft, rounded to 1e-3 ft, far below the noise of 0.3 m."""
         flight = self.edited(changed("GGALT", lambda height: height / 0.3048),
                              lambda file: file["GGALT"].setncattr("units", "ft"))
         self.assert_agree(self.temperature(), self.temperature(flights=(flight,)), share=0.1)
@@ -841,7 +841,7 @@ class BadInput(TemperatureTest):
                                        delta=3.0 * middle["stderr_k"])
 
     def test_a_correction_that_no_thermometer_needs(self):
-        """Five minutes do not tell a curve: what comes out is beyond the bounds of the catalogue."""
+        """Five minutes do not determine a curve: the result exceeds the bounds of the catalogue."""
         self.refuse("--degree", "2", flights=(self.part(CLIMB),), words=["a2", "--degree"])
 
     def test_a_bad_flight_is_left_out_and_listed(self):

@@ -63,7 +63,7 @@ class ToolTest(unittest.TestCase):
             self.assertIn(word, result.stderr)
         self.assertFalse((self.path / "out.nc").exists())
         left = {p.name for p in self.path.iterdir()} - {"flight.nc", "model.toml", "readonly"}
-        self.assertEqual(left, set(), "temporary files are left")
+        self.assertEqual(left, set(), "temporary files remain")
 
 
 def replace(pattern, text, count=0):

@@ -94,7 +94,7 @@ class WhatIfTest(ComparisonTest):
         return f"[...document.querySelectorAll('button')].find((each) => each.textContent.trim() === {json.dumps(words)})"
 
     def told(self):
-        """What the page computes: by name every coefficient with its error, the rms, and that of what was left out."""
+        """Results of the page: every coefficient by name with its error, the rms, and the rms of the held-out part."""
         return self.value("""(() => {
           const {item, now, fit} = pcorReport.whatIf;
           const told = {rms: now.rms, heldOut: fit.heldOutRms(now), coefficients: {}};
@@ -106,7 +106,7 @@ class WhatIfTest(ComparisonTest):
         })()""")
 
     def as_copied(self):
-        """What the tool finds by the command that the page gives."""
+        """Results of the tool with the command from the page."""
         command = self.value("pcorReport.whatIf.commandText") + " --json refit.json --quiet"
         environment = os.environ | {"PATH": f"{TOOL.parent}:{os.environ['PATH']}"}
         done = subprocess.run(command, shell=True, cwd=self.path, env=environment, capture_output=True, text=True)
@@ -114,7 +114,7 @@ class WhatIfTest(ComparisonTest):
         return json.loads((self.path / "refit.json").read_text())
 
     def assert_same(self, page, refit, added):
-        """To 1 %, of what was added; the others, which may be near zero, to a tenth of their errors."""
+        """Added coefficients to 1 %; the others, which may be near zero, to a tenth of their errors."""
         self.assertAlmostEqual(page["rms"], refit["rms_hpa"], delta=0.01 * refit["rms_hpa"])
         for effect in refit["effects"]:
             for name, expected in effect["parameters"].items():

@@ -24,8 +24,8 @@ std::string value_name(const CLI::Option& option);
 /// Completions of the value of an option.
 struct Offer {
   std::vector<std::string> words{};  ///< complete list of words
-  std::string files{};  ///< otherwise files of this pattern, such as "*.nc", "*/" for folders; empty if there
-                        ///< are none
+  std::string
+      files{};  ///< otherwise files of this pattern, such as "*.nc", "*/" for folders; empty without files
 };
 
 Offer offer_of(const CLI::Option& option);

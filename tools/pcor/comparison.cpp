@@ -48,7 +48,7 @@ void leave_out_unreadable(std::vector<std::string>& flights) {
   for (const UnreadableFlight& unreadable : readable.unreadable)
     tell_choices({fmt::format("skipped: {}", unreadable.why)}, false);
   if (readable.flights.empty())
-    throw Error(fmt::format("none of the {} flights is readable; check the files", flights.size()));
+    throw Error(fmt::format("all {} flights are unreadable; check the files", flights.size()));
   flights.clear();
   for (const std::filesystem::path& flight : readable.flights) flights.push_back(flight.string());
 }

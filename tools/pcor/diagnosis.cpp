@@ -134,11 +134,10 @@ std::string plain_stem(const std::string& model) {
 }  // namespace
 
 void add_candidate_options(CLI::App& command, CandidateOptions& options) {
-  add_list_option(
-      command, "--try", options.formulas,
-      "test an effect of your own too: its formula, hPa at the static ports, with a coefficient k and "
-      "variables by netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, try-2 ... "
-      "in alphabetical order")
+  add_list_option(command, "--try", options.formulas,
+                  "test a user-defined effect too: its formula, hPa at the static ports, with a coefficient "
+                  "k and variables by netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, "
+                  "try-2 ... in alphabetical order")
       ->type_name("FORMULA");
   command
       .add_option("--candidates", options.file,

@@ -91,9 +91,9 @@ std::string_view text_of(GasConstants constants) {
 
 void print_surface(const EffectInfo& info) {
   say("\nCp is a tensor product of uniform cubic B-splines, by default 6 x 6. A refit penalises its second "
-      "differences; how much is found by marginal likelihood. Outside the envelope of the knots Cp keeps the "
-      "value "
-      "of the edge, the sample has the quality bit outside_domain, and the stated error of delta-p grows.\n\n"
+      "differences, with a weight found by marginal likelihood. Outside the envelope of the knots Cp keeps "
+      "the value of the edge, the sample has the quality bit outside_domain, and the stated error of delta-p "
+      "grows.\n\n"
       "To add it: {} add {} -m MODEL.toml --flight IN.nc -o NEW.toml\n",
       program(), info.id);
 }

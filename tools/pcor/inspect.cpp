@@ -330,7 +330,7 @@ std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordere
     if (text) print(all.back());
   }
   if (all.empty())
-    throw Error(fmt::format("none of the {} flights is readable; check the files", options.flights.size()));
+    throw Error(fmt::format("all {} flights are unreadable; check the files", options.flights.size()));
   return all;
 }
 

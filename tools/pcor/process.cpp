@@ -148,8 +148,7 @@ void print(const ProcessedFlight& of) {
         summary.flying_dynamic_pressure, summary.in_flight, summary.mean_defect, summary.min_defect,
         summary.max_defect);
   } else if (summary.corrected > 0) {
-    say("; none of them in flight (dynamic pressure of {:.0f} hPa and more)",
-        summary.flying_dynamic_pressure);
+    say("; all of them on the ground (dynamic pressure below {:.0f} hPa)", summary.flying_dynamic_pressure);
   }
   say("\n");
   if (summary.gaps > 0) say("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");
@@ -351,7 +350,7 @@ void run(const Options& options) {
   if (together) together->appear();
   if (table) Table::end(flights, options.output);
   if (none) {
-    throw Error(many ? fmt::format("none of the {} flights could be processed", flights.size())
+    throw Error(many ? fmt::format("processing failed for all {} flights", flights.size())
                      : flights.front().reason);
   }
   if (!text) return;

@@ -7,8 +7,7 @@
 namespace pcor::tool {
 
 /// Progress bar on standard error. It appears on a terminal only, after half a second of work, so that logs
-/// and short runs stay clean. A program that asks for events gets the
-/// numbers instead, the first at once.
+/// and short runs stay clean. A program that requests events gets the numbers instead, the first at once.
 class Progress {
  public:
   Progress(std::string task, bool wanted);

@@ -16,8 +16,8 @@ std::string argument_of(const ModelEffect& effect);
 /// Effect named by such an argument, neutral except for its shape. @throws Error if there is no such effect.
 ModelEffect shaped_effect(const std::string& argument);
 
-/// The surface that such an argument names, as "static-surface:splines=8", over what a flight flew; nothing
-/// where it names none. @param flight may be null @throws Error if the flight is missing or does not tell the
+/// The surface named by an argument such as "static-surface:splines=8", over the range of a flight; empty for
+/// other effects. @param flight may be null @throws Error if the flight is missing or does not determine the
 /// axes.
 std::optional<ModelEffect> surface_argument(const std::string& argument, const Flight* flight,
                                             const ModelDefinition& model);

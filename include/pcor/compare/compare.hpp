@@ -56,7 +56,7 @@ struct ModelComparison {
 };
 
 /// Residuals of one flight, one value for each record. A quantity with one value for all models belongs to
-/// the first model by name, whatever the order on the command line.
+/// the first model by name, regardless of the order on the command line.
 struct FlightResiduals {
   std::shared_ptr<const FlightSamples> samples;
   /// Mask of the first model; used samples are common to all models.

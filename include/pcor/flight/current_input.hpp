@@ -16,8 +16,8 @@ bool had_previous_input() noexcept;
 /// or reading a few thousand records.
 inline constexpr int max_seconds_per_input = 4;
 
-/// Processor time of the reading thread since its last read began, s: the list of variables, or a few
-/// thousand records of one. 0 if no flight is being read.
+/// Processor time of the reading thread since its last read began, s: a read is the list of variables, or a
+/// few thousand records of a variable. 0 if no flight is being read.
 double current_input_seconds() noexcept;
 
 /// Maximum waiting time without processor activity, s: a file may link to a pipe, which never responds.

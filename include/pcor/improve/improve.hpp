@@ -67,7 +67,7 @@ struct Improvement {
   ModelDefinition refitted;  ///< input model, refitted
   /// Rms residual of the input model, hPa, on the training samples.
   double given_rms_train = std::numeric_limits<double>::quiet_NaN();
-  /// Rms residual on held-out flights or parts; NaN if there are none.
+  /// Rms residual on held-out flights or parts; NaN without held-out samples.
   double given_rms_holdout = std::numeric_limits<double>::quiet_NaN();
   /// Rms residual of the final model, hPa.
   double rms_train = std::numeric_limits<double>::quiet_NaN();
@@ -82,7 +82,7 @@ struct Improvement {
   std::string worse{};
 };
 
-/// Text on the alternatives of a step between which the choice matters; empty if there are none.
+/// Text on the alternatives of a step between which the choice matters; empty without such alternatives.
 std::string rivals_text(const ImproveStep& step);
 
 /// Refits the model, diagnoses it, adds the missing effect and iterates until no effect is missing, the

@@ -15,7 +15,7 @@ struct Limits {
   double most = std::numeric_limits<double>::max();
 };
 
-/// Limits of every element of a state: those of the quantities, and any finite number for other variables.
+/// Limits of every element of a state: the limits of the quantity, or any finite number for other variables.
 inline constexpr std::array<Limits, state_capacity> limits_of_places = [] {
   std::array<Limits, state_capacity> limits{};
   for (std::size_t i = 0; i < quantity_count; ++i) {

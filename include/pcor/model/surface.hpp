@@ -33,7 +33,7 @@ struct SurfaceAxis {
 ///
 /// B are uniform cubic B-splines (Eilers and Marx 1996, Statistical Science 11, 89). Outside the envelope of
 /// the knots the coefficient keeps its value at the edge. The coefficients are the parameters of the effect,
-/// those of one x after another.
+/// with the index of x varying slowest.
 struct Surface {
   std::array<SurfaceAxis, 2> axes{};
 

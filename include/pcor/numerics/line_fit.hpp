@@ -36,8 +36,8 @@ LineFit ordinary_fit(const PairMoments& pairs);
 LineFit ordinary_fit(const std::vector<double>& x, const std::vector<double>& y);
 
 /// Least-squares line with respect to perpendicular distances: x and y have equal noise (Deming regression
-/// with a ratio of one, as in figure 2 of the memo). The error of the slope is that of Deming's estimator for
-/// normal noise, slope sqrt((1 - r^2)/(n - 2))/r with the correlation r.
+/// with a variance ratio of 1, as in figure 2 of the memo). The error of the slope is that of Deming's
+/// estimator for normal noise, slope sqrt((1 - r^2)/(n - 2))/r with the correlation r.
 LineFit orthogonal_fit(const PairMoments& pairs);
 LineFit orthogonal_fit(const std::vector<double>& x, const std::vector<double>& y);
 

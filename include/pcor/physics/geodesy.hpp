@@ -28,9 +28,9 @@ inline constexpr double earth_rotation_rate = 7.292115e-5;
 ///
 ///     gamma = 9.7803253359 (1 + k sin^2) / (1 - e^2 sin^2)^(1/2),   k = 0.00193185265241
 ///
-/// Domain: -90 to 90 degrees; NaN gives NaN. Accuracy: that of the normal field; real gravity differs from it
-/// by about 3e-4 m/s2, over high mountains and ocean trenches by ten times this value. Source: Somigliana's
-/// formula, WGS 84, NIMA TR8350.2 eq. 4-1.
+/// Domain: -90 to 90 degrees; NaN gives NaN. Accuracy: real gravity differs from the normal field by about
+/// 3e-4 m/s2, over high mountains and ocean trenches by ten times this value. Source: Somigliana's formula,
+/// WGS 84, NIMA TR8350.2 eq. 4-1.
 template <class S>
 S normal_gravity(const S& latitude) {
   using std::sin;

@@ -50,8 +50,8 @@ struct ProcessSummary {
   std::size_t gaps = 0;
   double first_time = 0.0;  ///< seconds since 1970 UTC
   double last_time = 0.0;
-  /// Minimum measured dynamic pressure of samples in flight, hPa: that of `RegimeCriteria::flying_speed` at
-  /// sea level in the standard atmosphere.
+  /// Minimum measured dynamic pressure of samples in flight, hPa: its value at `RegimeCriteria::flying_speed`
+  /// at sea level in the standard atmosphere.
   double flying_dynamic_pressure = 0.0;
   std::size_t in_flight = 0;  ///< corrected samples in flight
   double mean_defect = 0.0;   ///< mean delta-p applied in flight, hPa; NaN if no sample was corrected
@@ -65,10 +65,10 @@ struct ProcessSummary {
 
 /// Runs every sample of the flight `input` through the real-time loop of `model` and writes the derived
 /// variables to `output`: delta-p (`PCOR`, `PCOR_LAMS`), corrected pressures (`PSXC`, `QCXC`), `MACHX`,
-/// `ATX`, `TASX`, `ATLAMS`, `ATLAMSF`, `QCLAMS` and the quality bits `PCORFLAG`, under the names of the
-/// model's `[output]` table, with their coordinates and inputs. Pressures in hPa, temperatures in degC,
-/// speeds in m/s. TASX requires a temperature; the LAMS variables require LAMS. ATX is written if it is
-/// computed from a recovery temperature or if a recorded temperature is calibrated.
+/// `ATX`, `TASX`, `ATLAMS`, `ATLAMSF`, `QCLAMS` and the quality bits `PCORFLAG`, named by the model's
+/// `[output]` table, with their coordinates and inputs. Pressures in hPa, temperatures in degC, speeds in
+/// m/s. TASX requires a temperature; the LAMS variables require LAMS. ATX is written if it is computed from a
+/// recovery temperature or if a recorded temperature is calibrated.
 ///
 /// ATLAMSF is ATLAMS without periods under 3 s (`LowPass`), each value at the time of its sample: the delay
 /// of the loop is compensated, also for the bit `filter_window_incomplete`. The filter does not extend across

@@ -19,9 +19,9 @@ using ShortestPeriods = std::vector<std::pair<Quantity, double>>;
 /// Delays samples until the later samples required for their rates of change are available (`RateFilter`): a
 /// causal rate would be late, or noisy.
 ///
-/// Belongs to a chain that reads rates. Rates of recorded quantities are derivatives. That of the airspeed is
-/// computed along the laser beam, if there is a laser, from the corrected pressures, as the mean over the
-/// delay of the laser's clock, if the model has one, without the contributions of lag effects to the
+/// Belongs to a chain that reads rates. Rates of recorded quantities are derivatives. The rate of the
+/// airspeed is computed along the laser beam, if there is a laser, from the corrected pressures, as the mean
+/// over the delay of the laser's clock, if the model has one, without the contributions of lag effects to the
 /// pressures. Does not allocate after the first use.
 class LookAhead {
  public:

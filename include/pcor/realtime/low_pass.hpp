@@ -22,8 +22,8 @@ namespace pcor {
 ///     at 1 Hz     1.005   1.001   1.002   1.007   0.957  0.503  0.094  -0.001  0.001   -      -
 ///     at 25 Hz    1.005   1.003   1.003   0.998   0.927  0.500  0.132  0.012   -0.003  0.001  0.000
 ///
-/// Periods of 6 s and above keep their amplitude within 0.6 %; those of 2.2 s and below are reduced to 1.2 %
-/// or less. At 1 Hz the shortest period is 2 s; shorter ones are aliased, and no filter can remove them. A
+/// Periods of 6 s and above keep their amplitude within 0.6 %; periods of 2.2 s and below are reduced to 1.2
+/// % or less. At 1 Hz the shortest period is 2 s; shorter ones are aliased, and no filter can remove them. A
 /// window of 4 s on either side would leave 2 % at 2 s and remove 2 % at 6 s; a window of 8 s would be
 /// steeper, with 2 s more delay.
 ///

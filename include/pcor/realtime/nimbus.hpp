@@ -28,10 +28,10 @@ struct HasTime<Host, std::void_t<decltype(Host::time())>> : std::true_type {};
 /// One pressure system in a host like NCAR nimbus: a table of derived variables, each with one output and a
 /// callback `void compute(Entry*)` that has no context pointer and runs at a low and at a high rate.
 ///
-/// One entry is the leader, say PCOR. Its dependency line lists all inputs, in the order given to `install`;
-/// its callback `compute` runs the loop of the current rate and puts delta-p (hPa). Every other entry (PSXC,
-/// QCXC, MACHX, ATX, TASX, PCORFLAG ...) lists the leader in its dependency line, so that the host runs it
-/// later; its callback `fetch` puts one further result of the same run.
+/// One entry is the leader, for example PCOR. Its dependency line lists all inputs, in the order given to
+/// `install`; its callback `compute` runs the loop of the current rate and puts delta-p (hPa). Every other
+/// entry (PSXC, QCXC, MACHX, ATX, TASX, PCORFLAG ...) lists the leader in its dependency line, so that the
+/// host runs it later; its callback `fetch` puts one further result of the same run.
 ///
 ///     using Fuselage = pcor::NimbusSystem<Host, struct FuselageTag>;
 ///     pcor::check_defaults(model, "PCOR", names, pcor::Overrides::some, &error);  // optional overrides,

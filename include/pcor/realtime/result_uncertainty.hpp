@@ -186,7 +186,8 @@ class ResultUncertainty final : public Functor {
     Results by_amount{};  // sensitivity for this sample
   };
 
-  /// A surface, which is flat outside its envelope where the truth may go on as inside.
+  /// Error of a surface outside its envelope, where the surface is constant but the true coefficient may vary
+  /// as inside.
   struct FlatOutside {
     Surface surface;
     double slope;  // rms difference of neighbouring coefficients
@@ -302,7 +303,7 @@ class ResultUncertainty final : public Functor {
     }
   }
 
-  // The squares of the differences of neighbouring coefficients, with what these may err by.
+  // Squared differences of neighbouring coefficients, including their errors.
   void add_surfaces(const std::vector<double>& covariance) {
     const std::size_t count = chain_->parameters().size();
     for (std::size_t effect = 0; effect < chain_->effect_count(); ++effect) {

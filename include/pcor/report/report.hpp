@@ -258,8 +258,8 @@ struct WhatIfCommands {
 struct WhatIfPanel {
   std::string title;
   std::string caption;
-  std::string residual;            ///< column of the initial residual
-  std::string start = "as given";  ///< label of the initial model
+  std::string residual;               ///< column of the initial residual
+  std::string start = "given model";  ///< label of the initial model
   /// Coefficients of the model, followed by those of the effects.
   std::vector<WhatIfCoefficient> coefficients;
   std::size_t own = 0;  ///< number of coefficients of the model

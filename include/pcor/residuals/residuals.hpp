@@ -44,8 +44,8 @@ class Residuals {
   /// Parameters in the model files.
   const std::vector<double>& parameters() const;
 
-  /// True for each parameter in which the residual is exactly linear: if it is a static pressure, those of
-  /// effects of the catalogue at the static ports, unless delta-p has a lower limit.
+  /// True for each parameter in which the residual is exactly linear: for a static-pressure residual the
+  /// parameters of catalogue effects at the static ports, unless delta-p has a lower limit.
   const std::vector<bool>& is_linear() const;
 
   /// Mask of every sample, at the parameters of the files unless `set_mask` replaced it.
