@@ -10,6 +10,7 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/model/formula.hpp>
 #include "diagnose/advice.hpp"
 #include "diagnose/analysis.hpp"
 #include "diagnose/candidates.hpp"
@@ -48,9 +49,15 @@ EffectInputs inputs_of(const std::vector<Finding>& findings, const ModelDefiniti
     if (variable != model.variables.end()) inputs.variables.insert(variable->second);
   };
   for (const Finding& finding : findings) {
-    const std::size_t known = effect_named(finding.effect.id);
-    if (known == catalogue_size) continue;
-    for (const Quantity need : effect_info[known].needs) {
+    if (finding.effect.is_formula()) {
+      const auto formula = Formula::parse(finding.effect.formula, finding.effect.parameter_names, nullptr);
+      for (const std::string& name : formula ? formula->variables() : std::vector<std::string>()) {
+        inputs.variables.insert(name);
+        if (quantity_named(name) != Quantity::count) read(quantity_named(name));
+      }
+      continue;
+    }
+    for (const Quantity need : effect_info[effect_named(finding.effect.id)].needs) {
       if (need == Quantity::count) continue;
       read(need);
       const bool is_attack = need == Quantity::attack || need == Quantity::attack_ratio;
@@ -246,8 +253,9 @@ Verdict verdict_of(const Diagnosis& diagnosis, double explained, const Unexplain
 void overrule(Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) {
     diagnosis.notes.push_back(fmt::format(
-        "{} explains a part of the residual, but a linear term in {} explains more, so {} is not reported as "
-        "the cause",
+        "{} explains a part of the residual, but a straight line in {} is more likely (probability above 95 "
+        "%): "
+        "the effect is not reported as the cause",
         finding.id(),
         (diagnosis.unexplained.variables.empty() ? std::string("one variable")
                                                  : diagnosis.unexplained.variables.front().name)));

@@ -314,7 +314,8 @@ class Climb {
     step.added = step.delivered = id;
     step.title = std::string(surface_named(id)->title);
     measure(step, offer->fit, before.alike);
-    step.rms_holdout = out.rms_after;
+    // Other parts than those of the steps before: their ratio continues the ladder.
+    step.rms_holdout = result_.steps.back().rms_holdout * out.rms_after / out.rms_before;
     step.learnt =
         fmt::format("{}: {:.1f} degrees of freedom; {}; it describes the residual and identifies no cause",
                     id, offer->degrees_of_freedom, figures);

@@ -38,7 +38,9 @@ struct ImproveStep {
   std::string title{};                 ///< title of the effect
   std::vector<std::string> aliases{};  ///< effects not separable from it on these flights
   double rms_train = 0.0;              ///< hPa, on the training samples
-  /// On the held-out flights or parts, hPa; cross-validated (five folds) if there are no held-out data.
+  /// On the held-out flights or parts, hPa; cross-validated (five folds) if there are no held-out data. A
+  /// surface is tested on five other blocks: its value is that of the step before times the ratio on these
+  /// blocks.
   double rms_holdout = 0.0;
   double noise_rms = 0.0;  ///< noise of the residual in this step, hPa
   std::size_t terms = 0;   ///< free coefficients
