@@ -127,11 +127,17 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
         "the staged fit did not converge: the stages keep changing each other's coefficients; fit the "
         "coefficients together, without stages");
   }
+  // Uncertainty of a prior or of fixed parameters is not noise, so a jackknife cannot see it.
+  const auto has_prior = [&](const FittedParameter& parameter) {
+    return with_doubt ||
+           std::any_of(result.surfaces.begin(), result.surfaces.end(), [&](const SurfaceFit& each) {
+             return parameter.name.rfind(each.effect + ".", 0) == 0;
+           });
+  };
   std::string apart;
   for (const FittedParameter& parameter : result.parameters) {
     const double ratio = parameter.jackknife_error / parameter.noise_error;
-    // Uncertainty of a prior or of fixed parameters is not noise, so a jackknife cannot see it.
-    if (!(ratio > too_small || (ratio < too_large && !with_doubt))) continue;
+    if (!(ratio > too_small || (ratio < too_large && !has_prior(parameter)))) continue;
     apart += fmt::format("{}{} ({:.2g} against {:.2g})", apart.empty() ? "" : ", ", parameter.name,
                          parameter.jackknife_error, parameter.noise_error);
   }
