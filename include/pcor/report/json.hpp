@@ -101,7 +101,7 @@ class JsonWriter {
   /// Writes a value without a key.
   template <class Value>
   void write(const Value& value) {
-    if constexpr (is_described<Value>::value) {
+    if constexpr (IsDescribed<Value>::value) {
       write_object([&] { describe(value, *this); });
     } else if constexpr (std::is_convertible_v<Value, std::string_view>) {
       write_scalar("text", quoted(value));
@@ -116,7 +116,7 @@ class JsonWriter {
       write_scalar("number", digits(value));
     } else if constexpr (std::is_arithmetic_v<Value>) {
       write_scalar("number", std::to_string(value));
-    } else if constexpr (is_named<Value>::value) {
+    } else if constexpr (IsNamed<Value>::value) {
       begin('{');
       if (lists_keys_) {
         (*this)("NAME", typename Value::value_type::second_type{}, meaning_, unit_);
@@ -144,15 +144,15 @@ class JsonWriter {
   }
 
   template <class Value, class = void>
-  struct is_described : std::false_type {};
+  struct IsDescribed : std::false_type {};
   template <class Value>
-  struct is_described<
+  struct IsDescribed<
       Value, std::void_t<decltype(describe(std::declval<const Value&>(), std::declval<JsonWriter&>()))>>
       : std::true_type {};
   template <class Value, class = void>
-  struct is_named : std::false_type {};
+  struct IsNamed : std::false_type {};
   template <class Value>
-  struct is_named<Value, std::void_t<typename Value::value_type::second_type>> : std::true_type {};
+  struct IsNamed<Value, std::void_t<typename Value::value_type::second_type>> : std::true_type {};
 
   template <class Function>
   void write_object(const Function& describe_it) {
