@@ -275,6 +275,7 @@ SimulationSummary simulate_flight(const Scenario& scenario, const std::filesyste
   const std::vector<std::size_t> kept =
       kept_records(scenario, plan.truth.size() / static_cast<std::size_t>(internal_rate));
   SimulationSummary summary;
+  summary.output = output.string();
   const AircraftInfo& aircraft = info_of(scenario.aircraft);
   summary.name = scenario.name;
   summary.aircraft = fmt::format("{} {}", aircraft.type, aircraft.registration);

@@ -103,16 +103,30 @@ void print(const ModelDefinition& model, const ModelDefinition& extended, const 
       options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output));
 }
 
-nlohmann::ordered_json as_json(const ModelDefinition& model, const ModelDefinition& extended,
-                               const Options& options) {
-  nlohmann::ordered_json json{{"added", nlohmann::ordered_json::array()},
-                              {"variables", nlohmann::ordered_json::object()}};
-  for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i)
-    json["added"].push_back(tool::as_json(extended.model.effects[i]));
+/// JSON result of the command.
+struct Extension {
+  std::vector<ModelEffect> added{};
+  Named<std::string> variables{};
+  std::string model{};
+};
+
+template <class Field>
+void describe(const Extension& self, Field& field) {
+  field.list("added", self.added, "added effects", [](const ModelEffect& effect, Field& added) {
+    added("effect", effect.id, "id of the effect");
+    describe(effect, added);
+  });
+  field("variables", self.variables, "variable selected for each new role");
+  field("model", self.model, "file of the extended model");
+}
+
+Extension extension_of(const ModelDefinition& model, const ModelDefinition& extended,
+                       const std::string& output) {
+  const std::vector<ModelEffect>& effects = extended.model.effects;
+  Extension result{{effects.begin() + model.model.effects.size(), effects.end()}, {}, output};
   for (const Quantity role : new_roles(model, extended))
-    json["variables"][std::string(info_of(role).name)] = extended.variables.at(role);
-  json["model"] = options.output;
-  return json;
+    result.variables.emplace_back(info_of(role).name, extended.variables.at(role));
+  return result;
 }
 
 void run(const Options& options) {
@@ -131,7 +145,7 @@ void run(const Options& options) {
   const ModelDefinition extended = add_effects(model, wanted_effects(options, flights, model), variables);
   OutputTransaction together;
   deliver(extended, options.output, inputs);
-  json.write(as_json(model, extended, options));
+  json.write(extension_of(model, extended, options.output));
   together.appear();
   if (wants_text(options.common, {options.output})) print(model, extended, options);
 }
@@ -182,7 +196,7 @@ std::function<void()> add_add(CLI::App& program) {
           "choose the variables that the effects need among those of this flight, and span the knots of "
           "a surface over what it flew")
       ->type_name("IN.nc");
-  add_common_options(*command, options->common, false);
+  add_common_options<Extension>(*command, options->common, false);
   add_examples(*command,
                {"add static-lag -m fitted.toml --flight first.nc -o extended.toml",
                 "add static-surface -m fitted.toml --flight first.nc -o extended.toml",

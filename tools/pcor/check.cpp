@@ -60,44 +60,6 @@ ModelDefinition read_second(const Options& options) {
   return is_pair(text) ? *read_reference(text, {})->model() : read_model(second_model(options));
 }
 
-nlohmann::ordered_json as_json(const ReportTable& table) {
-  return {{"title", table.title}, {"headers", table.headers}, {"rows", table.rows}};
-}
-
-nlohmann::ordered_json as_json(const TestStatistic& number) {
-  return {{"value", number.value},     {"stderr", number.standard_error},
-          {"matters", number.matters}, {"unit", number.unit},
-          {"what", number.what},       {"verdict", std::string(to_string(number.verdict))}};
-}
-
-nlohmann::ordered_json as_json(const CheckResult& result) {
-  nlohmann::ordered_json numbers = nlohmann::ordered_json::object();
-  for (const auto& [name, value] : result.numbers) numbers[name] = value;
-  nlohmann::ordered_json tables = nlohmann::ordered_json::array();
-  for (const ReportTable& table : result.tables) tables.push_back(as_json(table));
-  nlohmann::ordered_json entry{{"name", result.name}, {"ran", result.ran}, {"reason", result.reason}};
-  entry["verdict"] =
-      result.ran ? nlohmann::ordered_json(std::string(to_string(result.verdict))) : nlohmann::ordered_json();
-  entry["key"] = result.ran ? as_json(result.key) : nlohmann::ordered_json();
-  entry["judged"] = nlohmann::ordered_json::array();
-  for (const TestStatistic& number : result.judged) entry["judged"].push_back(as_json(number));
-  entry["decided"] = result.decided;
-  entry["numbers"] = std::move(numbers);
-  entry["finding"] = result.finding;
-  entry["cannot_see"] = result.cannot_see;
-  entry["tables"] = std::move(tables);
-  entry["notes"] = result.notes;
-  return entry;
-}
-
-nlohmann::ordered_json as_json(const Checks& checks) {
-  nlohmann::ordered_json result{{"model", checks.model}, {"flights", checks.flights}};
-  result["checks"] = nlohmann::ordered_json::array();
-  for (const CheckResult& each : checks.results) result["checks"].push_back(as_json(each));
-  result["notes"] = checks.notes;
-  return result;
-}
-
 /// Text like "-0.154 +- 0.024 hPa between the systems; tolerance 0.3".
 std::string key_number(const CheckResult& result) {
   const TestStatistic& key = result.key;
@@ -264,7 +226,7 @@ void run(const Options& options) {
     write_report_of_run(check_report(checks), {models_of(options), options.flights.flights, {}},
                         options.common);
   if (table) table->write(options.table);
-  json.write(as_json(checks));
+  json.write(checks);
   together.appear();
   const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
   if (wants_text(options.common)) print(checks, options, has_laser);
@@ -296,7 +258,7 @@ std::function<void()> add_check(CLI::App& program) {
                    "write one row per check and flight to FILE.csv, each flight checked separately")
       ->check(is_file_name())
       ->type_name("FILE.csv");
-  add_common_options(*command, options->common);
+  add_common_options<Checks>(*command, options->common);
   add_examples(*command,
                {"check first.nc second.nc third.nc -m best.toml --report check.html",
                 "check first.nc -m model.toml --reference static:data/models/c130-psfrd-eq18.toml"});

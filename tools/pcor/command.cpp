@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <set>
 
 #include <pcor/base/error.hpp>
 #include "choices.hpp"
@@ -27,6 +28,24 @@ bool same_place(const fs::path& a, const fs::path& b) {
   std::error_code code;
   if (fs::equivalent(a, b, code)) return true;
   return fs::weakly_canonical(fs::absolute(a), code) == fs::weakly_canonical(fs::absolute(b), code);
+}
+
+/// Table of keys, each path once.
+std::string key_table(const KeyLists& lists) {
+  std::vector<JsonKey> keys{{"key", "type", "unit", "meaning"}};
+  std::set<std::string> paths;
+  std::size_t width = 0;
+  for (const std::vector<JsonKey>& list : lists) {
+    for (const JsonKey& key : list) {
+      if (paths.insert(key.path).second) keys.push_back(key);
+      width = std::max(width, key.path.size());
+    }
+  }
+  std::string text;
+  for (const JsonKey& key : keys)
+    text += fmt::format("{:<{}}  {:<13} {:<24} {}\n", key.path, width, key.type, key.unit, key.meaning);
+  text.pop_back();
+  return text;
 }
 
 }  // namespace
@@ -56,9 +75,12 @@ void add_examples(CLI::App& command, const std::vector<std::string>& examples) {
   command.footer("");
 }
 
-void add_common_options(CLI::App& command, CommonOptions& options, bool has_report) {
+void add_common_options(CLI::App& command, CommonOptions& options, bool has_report, KeyLists (*keys)()) {
   command.add_option("--json", options.json, "write the result as JSON to FILE, - for stdout")
       ->type_name("FILE");
+  command.add_flag_callback(
+      "--json-keys", [keys] { throw CLI::CallForVersion(key_table(keys()), 0); },
+      "print the keys of the JSON result, with type, unit and meaning");
   if (has_report) {
     command
         .add_option("--report", options.report, "write a self-contained report with pictures to FILE.html")
@@ -107,10 +129,7 @@ JsonResult::JsonResult(const CommonOptions& options) : place_(is_speaker() ? opt
   if (is_file(place_)) file_.emplace(place_);
 }
 
-void JsonResult::write(nlohmann::ordered_json result) {
-  if (place_.empty()) return;
-  if (!choices_of_this_run().empty()) result["choices"] = choices_of_this_run();
-  const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+void JsonResult::write_text(const std::string& text) {
   if (!file_) {
     std::fwrite(text.data(), 1, text.size(), stdout);
     return;

@@ -3,19 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/model_io/model_definition.hpp>
+#include <pcor/report/json.hpp>
+#include "choices.hpp"
 #include "text.hpp"
 
 namespace pcor::tool {
-
-/// Time format of JSON results: the pattern for `utc_text`.
-inline constexpr const char* iso_time = "%Y-%m-%dT%H:%M:%SZ";
 
 /// Common options of all sub-commands.
 struct CommonOptions {
@@ -43,8 +41,34 @@ void add_examples(CLI::App& command, const std::vector<std::string>& examples);
 /// Heading of the examples in a help text.
 inline constexpr const char* examples_heading = "Examples:\n";
 
+/// Result as the program writes it: with the automatic choices of variables and models.
+template <class Result>
+struct WithChoices {
+  const Result& result;
+  const std::vector<std::string>& choices;
+};
+
+template <class Result, class Field>
+void describe(const WithChoices<Result>& self, Field& field) {
+  describe(self.result, field);
+  if (field.has(!self.choices.empty()))
+    field("choices", self.choices, "variables and models that the program selected, and skipped flights");
+}
+
+/// Keys of each type of result.
+using KeyLists = std::vector<std::vector<JsonKey>>;
+
 /// Adds the common options to a sub-command; the report only if the sub-command has one.
-void add_common_options(CLI::App& command, CommonOptions& options, bool has_report = true);
+/// @param keys function that lists the keys of its JSON, for --json-keys
+void add_common_options(CLI::App& command, CommonOptions& options, bool has_report, KeyLists (*keys)());
+
+/// Adds the common options to a sub-command whose JSON is one of the types `Results`.
+template <class... Results>
+void add_common_options(CLI::App& command, CommonOptions& options, bool has_report = true) {
+  add_common_options(command, options, has_report, [] {
+    return KeyLists{json_keys(WithChoices<Results>{Results{}, {}})...};
+  });
+}
 
 /// True if text for people is printed on standard output: not if a result is written there.
 /// @param models outputs of models
@@ -67,9 +91,14 @@ class JsonResult {
 
   /// Writes `result` to the destination, if any, with the automatic choices of variables and models as
   /// "choices". NaN becomes null. @throws Error if it cannot be written.
-  void write(nlohmann::ordered_json result);
+  template <class Result>
+  void write(const Result& result) {
+    if (!place_.empty()) write_text(to_json(WithChoices<Result>{result, choices_of_this_run()}));
+  }
 
  private:
+  void write_text(const std::string& text);
+
   std::string place_;
   std::optional<AtomicFile> file_{};
 };

@@ -30,75 +30,6 @@ struct Options {
   std::string table;
 };
 
-using tool::as_json;
-
-nlohmann::ordered_json as_json(const std::vector<PartStatistics>& parts) {
-  nlohmann::ordered_json result = nlohmann::ordered_json::array();
-  for (const PartStatistics& part : parts) {
-    nlohmann::ordered_json entry{{"name", part.name}};
-    entry.update(as_json(part.statistics));
-    result.push_back(std::move(entry));
-  }
-  return result;
-}
-
-nlohmann::ordered_json as_json(const LineFit& fit) {
-  return {{"slope", fit.slope},
-          {"slope_stderr", fit.slope_error},
-          {"offset_hpa", fit.offset},
-          {"rms_hpa", fit.rms},
-          {"mean_difference_hpa", fit.mean_difference},
-          {"samples", fit.samples}};
-}
-
-nlohmann::ordered_json as_json(const ModelComparison& model) {
-  nlohmann::ordered_json result{{"name", model.name}, {"reference", model.reference}};
-  result.update(as_json(model.all));
-  result["rms_over_noise"] = model.all.rms_over_noise();
-  result["r2"] = model.r_squared;
-  if (model.static_pressure.samples > 0) result["static_pressure"] = as_json(model.static_pressure);
-  result["flaps_out"] = as_json(model.flaps_out);
-  result["samples_per_independent"] = model.autocorrelation_time;
-  result["reference_stderr_hpa"] = model.reference_error;
-  result["regimes"] = as_json(model.regimes);
-  result["bands"] = as_json(model.bands);
-  result["flights"] = as_json(model.flights);
-  nlohmann::ordered_json worst = nlohmann::ordered_json::array();
-  for (const WorstInterval& interval : model.worst) {
-    nlohmann::ordered_json entry{{"flight", interval.flight},
-                                 {"begin", utc_text(interval.begin, iso_time)},
-                                 {"end", utc_text(interval.end, iso_time)},
-                                 {"regimes", interval.regimes}};
-    entry.update(as_json(interval.statistics));
-    worst.push_back(std::move(entry));
-  }
-  result["worst"] = std::move(worst);
-  return result;
-}
-
-nlohmann::ordered_json as_json(const Comparison& comparison) {
-  nlohmann::ordered_json result{{"reference", comparison.reference}};
-  result["models"] = nlohmann::ordered_json::array();
-  for (const ModelComparison& model : comparison.models) result["models"].push_back(as_json(model));
-  for (const Comparison& further : comparison.further) {
-    for (const ModelComparison& model : further.models) result["models"].push_back(as_json(model));
-  }
-  if (comparison.total_pressure) result["total_pressure"] = as_json(*comparison.total_pressure);
-  result["masks"] = masks_as_json(comparison.masks);
-  nlohmann::ordered_json intervals = nlohmann::ordered_json::array();
-  for (const auto& [flight, interval] : comparison.intervals) {
-    intervals.push_back({{"flight", flight},
-                         {"regime", std::string(info_of(interval.regime).name)},
-                         {"begin", utc_text(interval.begin, iso_time)},
-                         {"end", utc_text(interval.end, iso_time)},
-                         {"pair", interval.pair},
-                         {"note", interval.note}});
-  }
-  result["intervals"] = std::move(intervals);
-  result["notes"] = comparison.notes;
-  return result;
-}
-
 void print_row(const std::string& name, const Statistics& s) {
   const auto known = [](double value, int digits) {
     return std::isnan(value) ? std::string("unknown") : fmt::format("{:.{}f}", value, digits);
@@ -247,6 +178,24 @@ void write_flight_table(const Comparison& comparison, const std::string& path) {
 
 using Levels = std::vector<std::optional<LevelByGps>>;
 
+/// JSON result of the command.
+struct ComparisonWithGps {
+  Comparison comparison{};
+  std::vector<std::pair<std::string, LevelByGps>> levels{};
+};
+
+template <class Field>
+void describe(const ComparisonWithGps& self, Field& field) {
+  describe(self.comparison, field);
+  if (!field.has(!self.levels.empty())) return;
+  field.list("by_gps", self.levels, "error of delta-p by GPS; absent if not requested",
+             [](const auto& each, Field& level) {
+               level("model", each.first, "name of the model");
+               level("missing_hpa", each.second.missing, "mean correction of delta-p");
+               level("stderr_hpa", each.second.standard_error, "standard error of the correction");
+             });
+}
+
 /// Mean error of delta-p of each model by GPS, if requested.
 Levels levels_by_gps(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
                      const Options& options) {
@@ -309,7 +258,8 @@ void run(const Options& options) {
     compare_options.max_series = options.comparison.flights.size();
   else if (!wants_report(options.common))
     compare_options.max_series = 0;  // other results are numbers
-  Comparison comparison;
+  ComparisonWithGps result;
+  Comparison& comparison = result.comparison;
   {
     Progress bar("comparing", !options.common.quiet);
     compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
@@ -335,12 +285,8 @@ void run(const Options& options) {
     write_report_of_run(comparison_report(comparison), {options.models, options.comparison.flights, {}},
                         options.common);
   if (!options.table.empty()) write_flight_table(comparison, options.table);
-  nlohmann::ordered_json result = as_json(comparison);
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    if (levels[i])
-      result["by_gps"].push_back({{"model", contenders[i].name},
-                                  {"missing_hpa", levels[i]->missing},
-                                  {"stderr_hpa", levels[i]->standard_error}});
+    if (levels[i]) result.levels.emplace_back(contenders[i].name, *levels[i]);
   }
   json.write(result);
   together.appear();
@@ -371,7 +317,7 @@ std::function<void()> add_compare(CLI::App& program) {
                    "each, OUT-FLIGHT.nc")
       ->check(is_file_name())
       ->type_name("OUT.nc");
-  add_common_options(*command, options->common);
+  add_common_options<ComparisonWithGps>(*command, options->common);
   add_examples(*command, {"compare first.nc second.nc -m model.toml --report compare.html",
                           "compare first.nc -m model.toml -m fitted.toml --reference lams",
                           "compare first.nc -m model.toml --exclude turn --residuals residuals.nc"});

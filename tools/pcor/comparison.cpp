@@ -183,23 +183,8 @@ void print_references(const ChosenReferences& references) {
   for (const std::string& why_not : references.not_used) say("not used as a reference: {}\n", why_not);
 }
 
-nlohmann::ordered_json as_json(const Statistics& statistics) {
-  return {{"samples", statistics.samples},
-          {"bias_hpa", statistics.bias},
-          {"bias_stderr_hpa", statistics.bias_error},
-          {"rms_hpa", statistics.rms},
-          {"scatter_hpa", statistics.scatter()},
-          {"noise_rms_hpa", statistics.noise_rms}};
-}
-
 void print_flaps_out(const Statistics& flaps_out, const std::string& of_what) {
   if (flaps_out.samples > 0) say("{}\n", flaps_out_text(flaps_out, of_what));
-}
-
-nlohmann::ordered_json masks_as_json(const std::array<std::size_t, mask_count>& masks) {
-  nlohmann::ordered_json result = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < mask_count; ++i) result[std::string(mask_info[i].name)] = masks[i];
-  return result;
 }
 
 }  // namespace pcor::tool

@@ -73,10 +73,7 @@ ChosenReferences references_to_fit(const ComparisonOptions& options, const Model
 /// Prints the used and unused references of a model, if there are several.
 void print_references(const ChosenReferences& references);
 
-nlohmann::ordered_json as_json(const Statistics& statistics);
-
 /// Prints the residual with flaps out, on a separate line; prints no line if there are no such samples.
 void print_flaps_out(const Statistics& flaps_out, const std::string& of_what);
-nlohmann::ordered_json masks_as_json(const std::array<std::size_t, mask_count>& masks);
 
 }  // namespace pcor::tool

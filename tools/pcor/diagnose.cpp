@@ -221,7 +221,7 @@ void run(const Options& options) {
   if (wants_report(options.common))
     write_report_of_run(diagnosis_report(diagnosis, model, &tried),
                         {{options.model}, options.comparison.flights, {}}, options.common);
-  json.write(as_json(diagnosis));
+  json.write(diagnosis);
   together.appear();
   if (wants_text(options.common)) print(diagnosis, references, options);
 }
@@ -253,7 +253,7 @@ std::function<void()> add_diagnose(CLI::App& program) {
   const char* const full = "print the lists of effects that were not found in full";
   command->add_flag("--full", options->full, full);
   keep_old_name(*command->add_flag("--all", options->full, full), "--full");
-  add_common_options(*command, options->common);
+  add_common_options<Diagnosis>(*command, options->common);
   add_examples(*command, {"diagnose first.nc second.nc -m fitted.toml --report diagnose.html",
                           "diagnose first.nc -m fitted.toml --try 'k * (ENGTRQ - 50) / 100'"});
   return [options] { run(*options); };

@@ -9,7 +9,6 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
-#include <pcor/base/utc.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/model/formula.hpp>
 #include "comparison.hpp"
@@ -17,106 +16,6 @@
 
 namespace pcor::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// List of the results of `as_one` for each element.
-template <class Items, class Function>
-Json list_of(const Items& items, const Function& as_one) {
-  Json list = Json::array();
-  for (const auto& item : items) list.push_back(as_one(item));
-  return list;
-}
-
-Json estimates_as_json(const std::vector<Estimate>& estimates) {
-  return list_of(estimates, [](const Estimate& estimate) {
-    return Json{{"name", estimate.name},
-                {"unit", estimate.unit},
-                {"value", estimate.value},
-                {"stderr", estimate.standard_error},
-                {"typical", estimate.typical}};
-  });
-}
-
-Json alias_as_json(const Alias& alias) {
-  return {{"effect", alias.effect},
-          {"title", alias.title},
-          {"correlation", alias.correlation},
-          {"chi2_less", alias.chi2_less},
-          {"size_to_usual", alias.size_to_usual},
-          {"estimates", estimates_as_json(alias.estimates)}};
-}
-
-Json evidence_as_json(const Evidence& evidence) {
-  return {{"flight", evidence.flight},
-          {"begin", utc_text(evidence.begin, iso_time)},
-          {"end", utc_text(evidence.end, iso_time)},
-          {"regimes", evidence.regimes},
-          {"share", evidence.share}};
-}
-
-Json finding_as_json(const Finding& finding) {
-  Json json = as_json(finding.effect);
-  json["title"] = finding.title;
-  json["stderr"] = Json::object();
-  json["units"] = Json::object();
-  for (const Estimate& estimate : finding.estimates) {
-    json["stderr"][estimate.name] = estimate.standard_error;
-    json["units"][estimate.name] = estimate.unit;
-  }
-  json["estimates"] = estimates_as_json(finding.estimates);
-  json["rms_hpa"] = finding.rms;
-  json["worst_hpa"] = finding.worst;
-  json["worst_flight"] = finding.worst_flight;
-  json["worst_time"] = utc_text(finding.worst_time, iso_time);
-  json["chi2"] = finding.chi2;
-  json["p_value"] = finding.p_value;
-  json["rms_before_hpa"] = finding.rms_before;
-  json["rms_after_hpa"] = finding.rms_after;
-  json["events"] = finding.events;
-  json["evidence"] = list_of(finding.evidence, evidence_as_json);
-  json["aliases"] = list_of(finding.aliases, [](const Alias& alias) { return Json(alias.effect); });
-  json["alias_details"] = list_of(finding.aliases, alias_as_json);
-  json["effect"] = finding.id();
-  json["family"] = finding.family;
-  json["shape"] = finding.shape;
-  json["variants"] = finding.variants;
-  json["places"] = finding.places;
-  json["times_usual"] = finding.times_usual;
-  json["probability"] = finding.probability;
-  json["advice"] = finding.advice.sentence;
-  json["advice_details"] = {{"manoeuvre", finding.advice.manoeuvre},
-                            {"duration_s", finding.advice.duration},
-                            {"power", finding.advice.power}};
-  return json;
-}
-
-Json limit_as_json(const UpperLimit& limit) {
-  return {{"effect", limit.effect}, {"title", limit.title}, {"estimates", estimates_as_json(limit.estimates)},
-          {"limits", limit.limits}, {"rms_hpa", limit.rms}, {"note", limit.note}};
-}
-
-Json variable_as_json(const EmpiricalPredictor& variable) {
-  return {{"name", variable.name},
-          {"unit", variable.unit},
-          {"description", variable.description},
-          {"r2", variable.r2},
-          {"p_value", variable.p_value},
-          {"linear_r2", variable.linear_r2},
-          {"slope", variable.slope},
-          {"slope_stderr", variable.slope_error},
-          {"centre", variable.centre},
-          {"formula", variable.formula},
-          {"places", variable.places},
-          {"sampling", variable.sampling}};
-}
-
-Json step_as_json(const FlightOffset& step) {
-  return {{"flight", step.flight},
-          {"size_hpa", step.size},
-          {"stderr_hpa", step.standard_error},
-          {"p_value", step.p_value}};
-}
 
 std::string option(const char* name, const std::string& value) { return " " + shell_option(name, value); }
 
@@ -265,68 +164,6 @@ void print_unexplained(const Unexplained& unexplained) {
         "--report name them\n",
         untested);
   }
-}
-
-Json as_json(const ModelEffect& effect) {
-  Json json{{"effect", effect.id}, {"parameters", Json::object()}};
-  const std::vector<std::string> names = parameter_names(effect);
-  for (std::size_t i = 0; i < names.size(); ++i) json["parameters"][names[i]] = effect.parameters[i];
-  if (!effect.scaling.is_none()) {
-    json["scaling"] = {{"static_pressure", effect.scaling.static_pressure},
-                       {"dynamic_pressure", effect.scaling.dynamic_pressure}};
-  }
-  if (effect.is_formula()) {
-    json["where"] = info_of(effect.location).name;
-    json["formula"] = effect.formula;
-    json["unit"] = effect.unit;
-    json["source"] = effect.source;
-  }
-  return json;
-}
-
-Json as_json(const Unexplained& unexplained) {
-  return {{"significant", unexplained.significant},
-          {"rms_hpa", unexplained.rms},
-          {"drift_rms_hpa", unexplained.drift_rms},
-          {"p_value", unexplained.p_value},
-          {"regime", unexplained.regime},
-          {"variables", list_of(unexplained.variables, variable_as_json)},
-          {"steps", list_of(unexplained.steps, step_as_json)},
-          {"shares_noise", unexplained.shares_noise},
-          {"computed", unexplained.computed}};
-}
-
-Json as_json(const Diagnosis& diagnosis) {
-  Json json{{"verdict", to_string(diagnosis.verdict)}, {"reference", diagnosis.reference}};
-  json["findings"] = list_of(diagnosis.findings, finding_as_json);
-  json["unexplained"] = as_json(diagnosis.unexplained);
-  json["absorbed"] = list_of(diagnosis.absorbed, [](const AbsorbedEffect& effect) {
-    return Json{{"effect", effect.effect},
-                {"title", effect.title},
-                {"by", effect.by},
-                {"remaining", effect.remaining}};
-  });
-  json["limits"] = list_of(diagnosis.limits, limit_as_json);
-  json["not_testable"] = list_of(diagnosis.not_testable, [](const NotTestable& effect) {
-    return Json{{"effect", effect.effect}, {"title", effect.title}, {"reason", effect.reason}};
-  });
-  json["candidates"] = diagnosis.candidates;
-  json["threshold"] = diagnosis.threshold;
-  json["rms_given_hpa"] = diagnosis.rms_given;
-  json["residual_rms_hpa"] = diagnosis.residual_rms;
-  json["residual_rms_held_out_hpa"] = diagnosis.residual_rms_held_out;
-  json["noise_rms_hpa"] = diagnosis.noise_rms;
-  json["noise_rms_with_findings_hpa"] = diagnosis.noise_rms_with_findings;
-  json["samples"] = diagnosis.samples;
-  json["flaps_out"] = as_json(diagnosis.flaps_out);
-  json["held_out"] = list_of(diagnosis.held_out, [](const HeldOutPart& part) {
-    Json entry{{"name", part.flight}, {"is_off", part.is_off()}, {"expected_bias_hpa", part.expected}};
-    entry.update(as_json(part.statistics));
-    return entry;
-  });
-  json["masks"] = masks_as_json(diagnosis.masks);
-  json["notes"] = diagnosis.notes;
-  return json;
 }
 
 }  // namespace pcor::tool

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -46,9 +45,5 @@ std::string probability(double p);
 
 /// Prints the unexplained residual, and correlated variables; prints no text if it is not significant.
 void print_unexplained(const Unexplained& unexplained);
-
-nlohmann::ordered_json as_json(const ModelEffect& effect);
-nlohmann::ordered_json as_json(const Unexplained& unexplained);
-nlohmann::ordered_json as_json(const Diagnosis& diagnosis);
 
 }  // namespace pcor::tool

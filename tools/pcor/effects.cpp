@@ -48,41 +48,55 @@ std::string names_of_needs(const EffectInfo& info) {
   return names.empty() ? "nothing" : names;
 }
 
-nlohmann::ordered_json as_json(const EffectInfo& info) {
-  nlohmann::ordered_json effect;
-  effect["id"] = info.id;
-  effect["title"] = info.title;
-  effect["family"] = info.family;
-  effect["place"] = place_of(info);
-  effect["where"] = info_of(info.location).name;
-  effect["unit"] = info_of(info.location).unit;
-  effect["formula"] = info.formula;
-  effect["parameters"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
-    const ParameterInfo& parameter = info.parameters[i];
-    effect["parameters"].push_back({{"name", parameter.name},
-                                    {"unit", parameter.unit},
-                                    {"neutral", parameter.neutral},
-                                    {"bounds", {parameter.lower, parameter.upper}},
-                                    {"typical", parameter.typical},
-                                    {"shape", parameter.shape}});
-  }
-  effect["scalings"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < info.scaling_count(); ++i) {
-    effect["scalings"].push_back({{"static_pressure", info.scalings[i].static_pressure},
-                                  {"dynamic_pressure", info.scalings[i].dynamic_pressure}});
-  }
-  effect["needs"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < info.need_count(); ++i) effect["needs"].push_back(info_of(info.needs[i]).name);
-  effect["size"] = info.size;
-  effect["look_alikes"] = info.look_alikes;
-  effect["manoeuvre"] = info.manoeuvre;
-  effect["source"] = info.source;
-  return effect;
+/// Effect of the catalogue in JSON.
+struct CatalogueEntry {
+  EffectInfo info{};
+};
+
+template <class Field>
+void describe(const CatalogueEntry& self, Field& field) {
+  const EffectInfo& info = self.info;
+  const auto& parameters = info.parameters;
+  field("id", info.id, "id of the effect");
+  field("title", info.title, "title of the effect");
+  field("family", info.family, "group of its alternative shapes and locations");
+  field("place", place_of(info), "instrument component");
+  field("where", info_of(info.location).name, "stage of the measurement");
+  field("unit", info_of(info.location).unit, "unit of the effect");
+  field("formula", info.formula, "formula of the effect");
+  field.list("parameters", std::vector(parameters.begin(), parameters.begin() + info.parameter_count()),
+             "coefficients", [](const ParameterInfo& parameter, Field& of_one) {
+               of_one("name", parameter.name, "name of the coefficient");
+               of_one("unit", parameter.unit, "unit of the coefficient");
+               of_one("neutral", parameter.neutral, "value without an effect", "see unit");
+               of_one("bounds", std::vector<double>{parameter.lower, parameter.upper}, "physical bounds",
+                      "see unit");
+               of_one("typical", parameter.typical, "typical size", "see unit");
+               of_one("shape", parameter.shape, "whether the coefficient only shapes the effect");
+             });
+  field.list("scalings", std::vector(info.scalings.begin(), info.scalings.begin() + info.scaling_count()),
+             "alternative scalings", [](const Scaling& scaling, Field& of_one) {
+               of_one("static_pressure", scaling.static_pressure, "power of p/700 hPa");
+               of_one("dynamic_pressure", scaling.dynamic_pressure, "power of q/70 hPa");
+             });
+  std::vector<std::string_view> needs;
+  for (std::size_t i = 0; i < info.need_count(); ++i) needs.push_back(info_of(info.needs[i]).name);
+  field("needs", needs, "roles and derived quantities that the effect reads");
+  field("size", info.size, "typical size");
+  field("look_alikes", info.look_alikes, "confounded effects");
+  field("manoeuvre", info.manoeuvre, "manoeuvre that separates the effect from them");
+  field("source", info.source, "source of formula and size");
 }
 
-nlohmann::ordered_json as_json(const EffectWithoutTrace& effect) {
-  return {{"id", effect.id}, {"title", effect.title}, {"reason", effect.reason}};
+/// JSON result without an id.
+struct Catalogue {};
+
+template <class Field>
+void describe(const Catalogue& /*self*/, Field& field) {
+  const auto entry = [](const EffectInfo& info, Field& of_one) { describe(CatalogueEntry{info}, of_one); };
+  field.list("effects", effect_info, "effects of the catalogue", entry);
+  field.list("surfaces", surface_info, "surfaces", entry);
+  field("without_trace", effects_without_trace, "known effects that no term of a model describes");
 }
 
 std::string_view text_of(GasConstants constants) {
@@ -155,7 +169,7 @@ void print_all() {
 void run(const Options& options) {
   JsonResult json(options.common);
   if (const EffectWithoutTrace* const effect = find_without_trace(options.id)) {
-    json.write(as_json(*effect));
+    json.write(*effect);
     if (wants_text(options.common)) {
       say("{}: {}\n\nNo term of a model describes it: {}.\n", effect->id, effect->title, effect->reason);
       say_written({options.common.json});
@@ -164,20 +178,14 @@ void run(const Options& options) {
   }
   if (!options.id.empty()) {
     const EffectInfo& info = find(options.id);
-    json.write(as_json(info));
+    json.write(CatalogueEntry{info});
     if (wants_text(options.common)) {
       print_one(info);
       say_written({options.common.json});
     }
     return;
   }
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const EffectInfo& info : effect_info) all.push_back(as_json(info));
-  nlohmann::ordered_json without_trace = nlohmann::ordered_json::array();
-  for (const EffectWithoutTrace& effect : effects_without_trace) without_trace.push_back(as_json(effect));
-  nlohmann::ordered_json surfaces = nlohmann::ordered_json::array();
-  for (const EffectInfo& info : surface_info) surfaces.push_back(as_json(info));
-  json.write({{"effects", all}, {"surfaces", surfaces}, {"without_trace", without_trace}});
+  json.write(Catalogue());
   if (!wants_text(options.common)) return;
   print_all();
   say_written({options.common.json});
@@ -191,7 +199,7 @@ std::function<void()> add_effects(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("effects", "List the catalogue of effects, or describe one of them");
   command->add_option("id", options->id, "an effect, e.g. static-lag")->type_name("ID");
-  add_common_options(*command, options->common, false);
+  add_common_options<CatalogueEntry, EffectWithoutTrace, Catalogue>(*command, options->common, false);
   add_examples(*command, {"effects", "effects static-qp"});
   return [options] { run(*options); };
 }

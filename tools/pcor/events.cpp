@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "communicator.hpp"
@@ -23,14 +24,22 @@ int descriptor() {
   return number;
 }
 
+void send(const nlohmann::ordered_json& event) {
+  if (!wants_events()) return;
+  const std::string line = event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  [[maybe_unused]] const auto written = write(descriptor(), line.data(), line.size());
+}
+
 }  // namespace
 
 bool wants_events() { return descriptor() > STDERR_FILENO && is_speaker(); }
 
-void send_event(const nlohmann::ordered_json& event) {
-  if (!wants_events()) return;
-  const std::string line = event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  [[maybe_unused]] const auto written = write(descriptor(), line.data(), line.size());
+void send_progress(const std::string& task, std::size_t done, std::size_t total) {
+  send({{"task", task}, {"done", done}, {"total", total}});
+}
+
+void send_error(const std::string& message, std::string_view code) {
+  send({{"error", message}, {"code", code}});
 }
 
 }  // namespace pcor::tool

@@ -1,6 +1,8 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <cstddef>
+#include <string>
+#include <string_view>
 
 namespace pcor::tool {
 
@@ -8,8 +10,11 @@ namespace pcor::tool {
 /// number of an open file descriptor.
 bool wants_events();
 
-/// Writes `event` there as one line of JSON: progress of the work, `{"task", "done", "total"}`, and an error,
-/// `{"error", "code"}`. The first member of a team writes, for all.
-void send_event(const nlohmann::ordered_json& event);
+/// Writes there one line of JSON on the progress of the work: `{"task", "done", "total"}`. The first member
+/// of a team writes, for all.
+void send_progress(const std::string& task, std::size_t done, std::size_t total);
+
+/// Writes there one line of JSON on an error: `{"error", "code"}`.
+void send_error(const std::string& message, std::string_view code);
 
 }  // namespace pcor::tool

@@ -1,7 +1,6 @@
 #include "fit_summary.hpp"
 
 #include <optional>
-#include <string>
 
 #include "command.hpp"
 
@@ -20,20 +19,6 @@ void print_fit_summary(const RefitResult& fit) {
   if (fit.left > 0.0)
     say("Model error varying with the flight state: {:.2f} hPa (rms); slow drift of the noise: {:.2f} hPa.\n",
         fit.left, fit.drift_rms);
-}
-
-void add_fit_summary(nlohmann::ordered_json& json, const RefitResult& fit) {
-  json["estimator"] = std::string(fit.estimator);
-  json["left_hpa"] = fit.left;
-  json["drift_hpa"] = fit.drift_rms;
-  json["least_squares_rms_hpa"] = fit.least_squares_rms;
-  if (const std::optional<HeldOutPart> part = worst_held_out(fit.flights)) {
-    json["holdout"] = {{"name", part->flight},
-                       {"rms_hpa", part->statistics.rms},
-                       {"bias_hpa", part->statistics.bias},
-                       {"expected_hpa", part->expected},
-                       {"is_off", part->is_off()}};
-  }
 }
 
 }  // namespace pcor::tool

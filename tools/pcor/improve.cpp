@@ -38,49 +38,6 @@ struct Options {
   bool trust_reference = false;
 };
 
-using tool::as_json;
-
-nlohmann::ordered_json as_json(const ImproveStep& step) {
-  nlohmann::ordered_json json;
-  json["added"] = nullptr;
-  if (!step.added.empty()) json["added"] = step.added;
-  json["title"] = step.title;
-  json["aliases"] = step.aliases;
-  json["rms_train_hpa"] = step.rms_train;
-  json["rms_holdout_hpa"] = step.rms_holdout;
-  json["noise_rms_hpa"] = step.noise_rms;
-  json["terms"] = step.terms;
-  json["learnt"] = step.learnt;
-  json["delivered"] = step.delivered;
-  json["rival_error_hpa"] = step.rival_error;
-  json["rivals"] = nlohmann::ordered_json::array();
-  for (const RungRival& rival : step.rivals) {
-    json["rivals"].push_back({{"effect", rival.effect},
-                              {"probability", rival.probability},
-                              {"static_change_hpa", rival.static_change}});
-  }
-  json["diagnosis"] = as_json(step.diagnosis);
-  return json;
-}
-
-nlohmann::ordered_json as_json(const Improvement& improvement, const Options& options) {
-  nlohmann::ordered_json json{{"steps", nlohmann::ordered_json::array()}};
-  for (const ImproveStep& step : improvement.steps) json["steps"].push_back(as_json(step));
-  json["as_it_came"] = {{"rms_train_hpa", improvement.given_rms_train},
-                        {"rms_holdout_hpa", improvement.given_rms_holdout}};
-  json["delivered"] = {{"rms_train_hpa", improvement.rms_train},
-                       {"rms_holdout_hpa", improvement.rms_holdout}};
-  json["unexplained"] = as_json(improvement.steps.back().diagnosis.unexplained);
-  json["why_stopped"] = improvement.why_stopped;
-  json["holdout_is_flights"] = improvement.holdout_is_flights;
-  json["worse"] = improvement.worse;
-  json["flaps_out"] = as_json(improvement.fit.flaps_out);
-  json["notes"] = improvement.fit.notes;
-  add_fit_summary(json, improvement.fit);
-  json["model"] = options.output;
-  return json;
-}
-
 void print(const Improvement& improvement, const ChosenReferences& references, const Options& options) {
   print_fit_summary(improvement.fit);
   print_references(references);
@@ -181,7 +138,8 @@ void run(const Options& options) {
     write_report_of_run(improvement_report(improvement, model, &tried),
                         {{options.model, options.output}, options.comparison.flights, options.holdout},
                         options.common);
-  json.write(as_json(improvement, options));
+  improvement.output = options.output;
+  json.write(improvement);
   together.appear();
   if (wants_text(options.common, {options.output})) print(improvement, references, options);
 }
@@ -217,7 +175,7 @@ std::function<void()> add_improve(CLI::App& program) {
       ->capture_default_str();
   add_trust_option(*command, options->trust_reference);
   add_force_option(*command, options->force);
-  add_common_options(*command, options->common);
+  add_common_options<Improvement>(*command, options->common);
   add_examples(
       *command,
       {"improve first.nc second.nc -m model.toml --holdout third.nc --trace-variables -o best.toml"});

@@ -31,10 +31,6 @@ struct Options {
   std::string timestamp_alignment = "begin";
 };
 
-double rate_of(const Inspection& flight) {
-  return flight.rates.empty() ? 0.0 : flight.rates.rbegin()->first / flight.time.step;
-}
-
 /// Command of this program for the flight.
 std::string command(const std::string& name, const Inspection& flight, const std::string& options) {
   return fmt::format("{} {} {}{}", program(), name, shell_path(flight.path), options);
@@ -84,85 +80,14 @@ std::vector<std::string> next_commands(const Options& options, const Inspection&
   return commands;
 }
 
-nlohmann::ordered_json as_json(const Options& options, const Inspection& flight) {
-  nlohmann::ordered_json result;
-  result["path"] = flight.path;
-  result["aircraft"] = flight.aircraft;
-  result["project"] = flight.project;
-  result["flight"] = flight.flight;
-  result["institution"] = flight.institution;
-  result["names_of"] = flight.family;
-  result["alike"] = flight.alike;
-  result["rate_hz"] = rate_of(flight);
-  result["records"] = flight.records;
-  result["begin"] = utc_text(flight.time.first, iso_time);
-  result["end"] = utc_text(flight.time.last, iso_time);
-  result["gaps"] = flight.time.gap_count;
-  nlohmann::ordered_json roles = nlohmann::ordered_json::object();
-  for (const InspectedRole& role : flight.roles) {
-    roles[role.role] = {{"variable", role.variable},
-                        {"unit", role.unit},
-                        {"sign", role.is_turned ? "-" : "+"},
-                        {"rate", role.rate},
-                        {"present", role.present},
-                        {"trap", role.trap},
-                        {"verified", role.is_verified},
-                        {"others", role.others},
-                        {"why", role.why}};
-  }
-  result["roles"] = roles;
-  result["missing"] = nlohmann::ordered_json::array();
-  for (const MissingRole& role : flight.missing) {
-    result["missing"].push_back({{"role", role.role},
-                                 {"looked_for", role.looked_for},
-                                 {"cost", role.cost},
-                                 {"effects", role.effects}});
-  }
-  result["frozen"] = nlohmann::ordered_json::array();
-  for (const FrozenSpan& span : flight.frozen) {
-    const std::vector<double>& time = flight.samples->time;
-    result["frozen"].push_back({{"role", std::string(info_of(span.quantity).name)},
-                                {"begin", utc_text(time[span.first], iso_time)},
-                                {"end", utc_text(time[span.first + span.count - 1], iso_time)}});
-  }
-  result["regimes"] = nlohmann::ordered_json::array();
-  for (const Interval& interval : flight.intervals) {
-    result["regimes"].push_back({{"name", std::string(info_of(interval.regime).name)},
-                                 {"begin", utc_text(interval.begin, iso_time)},
-                                 {"end", utc_text(interval.end, iso_time)}});
-  }
-  if (flight.by_gps) {
-    const GpsDesign& gps = *flight.by_gps;
-    result["determines"] = {{"level", gps.level}, {"slope", gps.slope}, {"attack", gps.attack}};
-  }
-  result["laws"] = nlohmann::ordered_json::array();
-  for (const ModelCandidate& law : flight.laws) {
-    result["laws"].push_back({{"name", law.model.model.name},
-                              {"model", law.path.string()},
-                              {"lacks", law.lacks},
-                              {"is_in_time", law.is_in_time},
-                              {"why_not", law.why_not}});
-  }
-  nlohmann::ordered_json candidates = nlohmann::ordered_json::object();
-  for (const auto& [role, all] : flight.candidates) {
-    for (const InspectedCandidate& each : all)
-      candidates[role].push_back({{"variable", each.variable}, {"score", each.score}, {"why", each.why}});
-  }
-  result["candidates"] = candidates;
-  result["not_used"] = flight.not_used;
-  result["problems"] = nlohmann::ordered_json::array();
-  for (const Problem& problem : flight.problems) {
-    result["problems"].push_back({{"variable", problem.variable},
-                                  {"kind", problem.kind},
-                                  {"times", problem.times},
-                                  {"number", problem.number},
-                                  {"unit", problem.unit},
-                                  {"action", problem.action}});
-  }
-  result["why_no_model"] = flight.why_no_model;
-  result["next"] = next_commands(options, flight);
-  result["notes"] = flight.notes;
-  return result;
+/// JSON result of the command.
+struct Inspections {
+  std::vector<Inspection> flights{};
+};
+
+template <class Field>
+void describe(const Inspections& self, Field& field) {
+  field("flights", self.flights, "content of each flight");
 }
 
 void print_head(const Inspection& flight) {
@@ -299,37 +224,39 @@ void print(const Inspection& flight) {
   for (const std::string& note : flight.notes) say("\nNote: {}.\n", note);
 }
 
-void print_next(const Options& options, const Inspection& flight) {
-  const std::vector<std::string> commands = next_commands(options, flight);
-  if (commands.empty()) {
+void print_next(const Inspection& flight) {
+  if (flight.next.empty()) {
     say("This file allows no correction: {}.\n", flight.why_no_model);
     return;
   }
-  say("{}\n", commands.size() == 1 ? "Next:" : "Next, in this order:");
-  for (const std::string& each : commands) say("  {}\n", each);
+  say("{}\n", flight.next.size() == 1 ? "Next:" : "Next, in this order:");
+  for (const std::string& each : flight.next) say("  {}\n", each);
 }
+
+bool is_readable(const Inspection& flight) { return flight.unreadable.empty(); }
 
 /// Inspects the flights one after the other. With several flights, an unreadable one does not stop the
 /// others.
-std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordered_json& result) {
+std::vector<Inspection> look(const Options& options, bool text) {
   const std::vector<std::filesystem::path> laws = named_models();
   const TimestampAlignment timestamp_alignment =
       options.timestamp_alignment == "middle" ? TimestampAlignment::middle : TimestampAlignment::begin;
   std::vector<Inspection> all;
   for (const std::string& flight : options.flights) {
-    if (text && !result.empty()) say("\n");
+    if (text && !all.empty()) say("\n");
     try {
       all.push_back(inspect_flight(flight, laws, timestamp_alignment, options.roles));
     } catch (const Error& error) {
       if (options.flights.size() == 1 || error.code() == Error::Code::model) throw;
-      result.push_back({{"path", flight}, {"unreadable", error.what()}});
+      all.push_back({flight});
+      all.back().unreadable = error.what();
       tell(error.what());
       continue;
     }
-    result.push_back(as_json(options, all.back()));
+    all.back().next = next_commands(options, all.back());
     if (text) print(all.back());
   }
-  if (all.empty())
+  if (std::none_of(all.begin(), all.end(), is_readable))
     throw Error(fmt::format("all {} flights are unreadable; check the files", options.flights.size()));
   return all;
 }
@@ -379,10 +306,10 @@ void run(const Options& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const bool text = wants_text(options.common, {options.model});
-  nlohmann::ordered_json result;
-  result["flights"] = nlohmann::ordered_json::array();
-  const std::vector<Inspection> all = look(options, text, result["flights"]);
-  const Inspection& first = all.front();
+  const Inspections result{look(options, text)};
+  std::vector<Inspection> readable;
+  std::copy_if(result.flights.begin(), result.flights.end(), std::back_inserter(readable), is_readable);
+  const Inspection& first = readable.front();
   OutputTransaction together;
   if (!options.model.empty()) {
     if (first.path != options.flights.front())
@@ -393,14 +320,14 @@ void run(const Options& options) {
     deliver_with_candidates(first, options.model);
   }
   if (wants_report(options.common)) {
-    write_report_of_run(inspection_report(all), {{}, options.flights, {}}, options.common);
+    write_report_of_run(inspection_report(readable), {{}, options.flights, {}}, options.common);
   }
   json.write(result);
   together.appear();
   if (!text) return;
   say("\n");
   say_written({options.model, options.common.report, options.common.figures, options.common.json});
-  print_next(options, first);
+  print_next(first);
 }
 
 }  // namespace
@@ -424,7 +351,7 @@ std::function<void()> add_inspect(CLI::App& program) {
                    "position of the time of a record in its averaging interval")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
-  add_common_options(*command, options->common);
+  add_common_options<Inspections>(*command, options->common);
   add_examples(*command,
                {"inspect first.nc --report inspect.html", "inspect first.nc --write-model mine.toml"});
   return [options] { run(*options); };

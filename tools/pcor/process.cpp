@@ -62,54 +62,28 @@ std::string command_line(const ProcessTask& task, const Options& options) {
   return line;
 }
 
-nlohmann::ordered_json as_json(const ProcessedFlight& flight, const Options& options) {
-  nlohmann::ordered_json result;
-  result["input"] = flight.input.string();
-  result["output"] = flight.output.string();
-  result["model"] = options.models.empty() ? options.model : flight.model.model.name;
-  result["state"] = to_string(flight.state);
-  if (flight.state == FlightState::unreadable) result["reason"] = flight.reason;
-  if (flight.state != FlightState::processed) return result;
-  const ProcessSummary& summary = flight.summary;
-  result["aircraft"] = summary.aircraft;
-  result["project"] = summary.project;
-  result["flight"] = summary.flight;
-  result["start"] = utc_text(summary.first_time, iso_time);
-  result["end"] = utc_text(summary.last_time, iso_time);
-  result["records"] = summary.records;
-  result["rate"] = summary.rate;
-  result["samples"] = summary.samples;
-  result["corrected"] = summary.corrected;
-  result["flying_dynamic_pressure_hpa"] = summary.flying_dynamic_pressure;
-  result["in_flight"] = summary.in_flight;
-  result["gaps"] = summary.gaps;
-  result["delta_p_hpa"] = {
-      {"mean", summary.mean_defect}, {"least", summary.min_defect}, {"greatest", summary.max_defect}};
-  nlohmann::ordered_json flags;
-  for (std::size_t i = 0; i < quality_info.size(); ++i)
-    flags[std::string(quality_info[i].name)] = summary.flagged[i];
-  result["flags"] = flags;
-  result["variables"] = summary.outputs;
-  result["notes"] = summary.notes;
-  return result;
-}
-
 std::size_t count_of(const std::vector<ProcessedFlight>& flights, FlightState state) {
   return static_cast<std::size_t>(std::count_if(
       flights.begin(), flights.end(), [state](const ProcessedFlight& each) { return each.state == state; }));
 }
 
-nlohmann::ordered_json as_json(const std::vector<ProcessedFlight>& flights, const Options& options) {
-  nlohmann::ordered_json result;
-  result["model"] = options.model;
-  result["models"] = options.models;
-  result["output"] = options.output;
-  result["processed"] = count_of(flights, FlightState::processed);
-  result["up_to_date"] = count_of(flights, FlightState::up_to_date);
-  result["unreadable"] = count_of(flights, FlightState::unreadable);
-  result["flights"] = nlohmann::ordered_json::array();
-  for (const ProcessedFlight& flight : flights) result["flights"].push_back(as_json(flight, options));
-  return result;
+/// JSON result of several flights.
+struct ProcessedFlights {
+  std::string model{};
+  std::string models{};
+  std::string output{};
+  std::vector<ProcessedFlight> flights{};
+};
+
+template <class Field>
+void describe(const ProcessedFlights& self, Field& field) {
+  field("model", self.model, "model of all flights");
+  field("models", self.models, "folder of models");
+  field("output", self.output, "folder of the results");
+  field("processed", count_of(self.flights, FlightState::processed), "number processed");
+  field("up_to_date", count_of(self.flights, FlightState::up_to_date), "number up to date");
+  field("unreadable", count_of(self.flights, FlightState::unreadable), "number unreadable");
+  field("flights", self.flights, "result of each flight, if there are several");
 }
 
 using Flags = decltype(ProcessSummary::flagged);
@@ -340,13 +314,19 @@ void run(const Options& options) {
   };
   std::optional<OutputTransaction> together;
   if (!many) together.emplace();  // each of many outputs appears when it is done
-  const std::vector<ProcessedFlight> flights = process_all(tasks, model_of, process);
+  ProcessedFlights result{options.model, options.models, options.output,
+                          process_all(tasks, model_of, process)};
+  for (ProcessedFlight& flight : result.flights) flight.model_label = options.model;
+  const std::vector<ProcessedFlight>& flights = result.flights;
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
   if (wants_report(options.common) && !none) {
     write_report_of_run(process_report(flights, options.suffix),
                         {{options.model + options.models}, options.inputs, {}}, options.common);
   }
-  json.write(many ? as_json(flights, options) : as_json(flights.front(), options));
+  if (many)
+    json.write(result);
+  else
+    json.write(flights.front());
   if (together) together->appear();
   if (table) Table::end(flights, options.output);
   if (none) {
@@ -421,7 +401,7 @@ std::function<void()> add_process(CLI::App& program) {
                     "write HYDSTEP, the change of hydrostatic height per kelvin from sample to sample");
   command->add_flag("--keep-frozen", options->keep_frozen,
                     "correct the readings of frozen sensors as well (default: missing)");
-  add_common_options(*command, options->common);
+  add_common_options<ProcessedFlight, ProcessedFlights>(*command, options->common);
   add_examples(*command, {"process third.nc -m best.toml -o corrected.nc",
                           "process third.nc -m best.toml --all --suffix _NEW -o everything.nc"});
   return [options] { run(*options); };

@@ -144,7 +144,7 @@ Ending failed(const Error& error, bool at_once) {
   std::fflush(stdout);
   const Error of_all = comm().leave(error).value_or(error);
   if (*of_all.what() != '\0') tell(fmt::format("pcor: {}", of_all.what()));
-  send_event({{"error", sanitize_line(of_all.what())}, {"code", to_string(of_all.code())}});
+  send_error(sanitize_line(of_all.what()), to_string(of_all.code()));
   // HDF5 may keep unwritten data after any error, and would try to write it at exit.
   return {work_not_done, at_once || is_final(of_all) || comm().size() == 1};
 }

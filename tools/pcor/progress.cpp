@@ -29,7 +29,7 @@ void Progress::show(std::size_t done, std::size_t total) {
   if (now - last_ < min_wait) return;
   last_ = now;
   if (wants_events()) {
-    send_event({{"task", task_}, {"done", done}, {"total", total}});
+    send_progress(task_, done, total);
     return;
   }
   shown_ = true;

@@ -93,83 +93,6 @@ RefitOptions refit_options(const Options& options, const FlightSet& holdout) {
   return refit;
 }
 
-nlohmann::ordered_json effects_as_json(const std::vector<FittedParameter>& parameters) {
-  nlohmann::ordered_json effects = nlohmann::ordered_json::array();
-  for (const FittedParameter& parameter : parameters) {
-    const std::size_t dot = parameter.name.rfind('.');
-    const std::string id = parameter.name.substr(0, dot);
-    const std::string name = parameter.name.substr(dot + 1);
-    if (effects.empty() || effects.back()["id"] != id) {
-      effects.push_back({{"id", id},
-                         {"parameters", nlohmann::ordered_json::object()},
-                         {"stderr", nlohmann::ordered_json::object()},
-                         {"stderr_noise", nlohmann::ordered_json::object()},
-                         {"stderr_jackknife", nlohmann::ordered_json::object()},
-                         {"start", nlohmann::ordered_json::object()}});
-    }
-    effects.back()["parameters"][name] = parameter.value;
-    effects.back()["stderr"][name] = parameter.standard_error;
-    effects.back()["stderr_noise"][name] = parameter.noise_error;
-    effects.back()["stderr_jackknife"][name] = parameter.jackknife_error;
-    effects.back()["start"][name] = parameter.start;
-    if (parameter.at_bound) effects.back()["at_bound"].push_back(name);
-    if (!parameter.fitted) effects.back()["fixed"].push_back(name);
-  }
-  return effects;
-}
-
-using tool::as_json;
-
-nlohmann::ordered_json as_json(const std::vector<FlightFit>& flights) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const FlightFit& flight : flights) {
-    json.push_back({{"name", flight.flight},
-                    {"reference", flight.reference},
-                    {"holdout", flight.holdout},
-                    {"before", as_json(flight.before)},
-                    {"after", as_json(flight.after)}});
-  }
-  return json;
-}
-
-nlohmann::ordered_json as_json(const RefitResult& result) {
-  nlohmann::ordered_json json;
-  json["effects"] = effects_as_json(result.parameters);
-  json["rms_hpa"] = result.rms;
-  json["rms_before_hpa"] = result.rms_before;
-  json["rms_over_pressure"] = result.rms_over_pressure;
-  json["bulk_rms_hpa"] = result.bulk_rms;
-  json["noise_rms_hpa"] = result.noise_rms;
-  json["drift_rms_hpa"] = result.drift_rms;
-  add_fit_summary(json, result);
-  if (result.defect_error > 0.0) json["delta_p_stderr_hpa"] = result.defect_error;
-  json["r2"] = result.r_squared;
-  json["samples"] = result.samples;
-  json["outliers"] = result.outliers;
-  json["samples_per_independent"] = result.autocorrelation_time;
-  json["condition_number"] = result.condition_number;
-  json["reference"] = result.reference_text;
-  json["surfaces"] = nlohmann::ordered_json::array();
-  for (const SurfaceFit& surface : result.surfaces) {
-    json["surfaces"].push_back({{"effect", surface.effect},
-                                {"roughness", surface.roughness},
-                                {"degrees_of_freedom", surface.degrees_of_freedom}});
-  }
-  json["covariance"] = {{"parameters", result.covariance_names}, {"matrix", result.covariance}};
-  json["omissions"] = nlohmann::ordered_json::array();
-  for (const Omission& omission : result.omissions)
-    json["omissions"].push_back(
-        {{"effect", omission.effect}, {"rms_hpa", omission.rms}, {"r2", omission.r_squared}});
-  json["flights"] = as_json(result.flights);
-  json["further"] = as_json(result.further);
-  json["masks"] = masks_as_json(result.masks);
-  if (!result.worse.empty()) json["worse"] = result.worse;
-  json["warnings"] = result.warnings;
-  json["flaps_out"] = as_json(result.flaps_out);
-  json["notes"] = result.notes;
-  return json;
-}
-
 void print_flights(const std::vector<FlightFit>& flights) {
   say("\n{:<32} {:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "flight, hPa", "samples", "rms before",
       "rms after", "bias after", "scatter", "noise");
@@ -399,7 +322,7 @@ void run(const Options& options) {
                         options.common);
   }
   if (table) table->write(options.table);
-  json.write(as_json(result));
+  json.write(result);
   if (!is_refused) deliver_models(result, inputs, options);
   together.appear();
   const bool with_text = wants_text(options.common, {options.output, options.reference_output});
@@ -462,7 +385,7 @@ std::function<void()> add_refit(CLI::App& program) {
       ->capture_default_str();
   add_trust_option(*command, options->trust_reference);
   add_force_option(*command, options->force);
-  add_common_options(*command, options->common);
+  add_common_options<RefitResult>(*command, options->common);
   add_examples(
       *command,
       {"refit first.nc second.nc -m model.toml -o fitted.toml --report refit.html",

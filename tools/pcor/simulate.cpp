@@ -28,33 +28,6 @@ std::string command_line(const Options& options, std::uint64_t seed) {
                      shell_path(options.output), seed);
 }
 
-nlohmann::ordered_json as_json(const SimulationSummary& summary, const Options& options) {
-  nlohmann::ordered_json result;
-  result["scenario"] = options.scenario;
-  result["output"] = options.output;
-  result["name"] = summary.name;
-  result["aircraft"] = summary.aircraft;
-  result["seed"] = summary.seed;
-  result["start"] = utc_text(summary.first_time, iso_time);
-  result["end"] = utc_text(summary.last_time, iso_time);
-  result["records"] = summary.records;
-  result["rate"] = summary.rate;
-  result["effects"] = summary.effects;
-  result["variables"] = summary.variables;
-  result["truth"] = summary.truth;
-  result["legs"] = nlohmann::ordered_json::array();
-  for (const LegFlown& leg : summary.legs) {
-    result["legs"].push_back({{"kind", leg.kind},
-                              {"start", utc_text(leg.first_time, iso_time)},
-                              {"end", utc_text(leg.last_time, iso_time)},
-                              {"altitude_m", leg.altitude},
-                              {"pressure_hpa", leg.pressure},
-                              {"airspeed_m_s", {leg.min_speed, leg.max_speed}},
-                              {"attack_deg", {leg.min_attack, leg.max_attack}}});
-  }
-  return result;
-}
-
 void print(const SimulationSummary& summary, const Options& options) {
   say("{}, {}, {} to {} UTC: {} records, seed {}\n\n", summary.name, summary.aircraft,
       utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.seed);
@@ -88,7 +61,8 @@ void run(const Options& options) {
     simulate.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     summary = simulate_flight(scenario, options.output, simulate);
   }
-  json.write(as_json(summary, options));
+  summary.scenario = options.scenario;
+  json.write(summary);
   together.appear();
   if (wants_text(options.common)) print(summary, options);
 }
@@ -110,7 +84,7 @@ std::function<void()> add_simulate(CLI::App& program) {
   command->add_option("--seed", options->seed, "seed of the random numbers, overrides the scenario's")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
       ->type_name("N");
-  add_common_options(*command, options->common, false);
+  add_common_options<SimulationSummary>(*command, options->common, false);
   add_examples(*command, {"simulate data/scenarios/c130-hidden.toml -o first.nc",
                           "simulate data/scenarios/c130-hidden.toml --seed 102 -o second.nc"});
   return [options] { run(*options); };

@@ -49,100 +49,6 @@ TemperatureOptions temperature_options(const Options& options) {
   return result;
 }
 
-nlohmann::ordered_json by_name(const std::vector<double>& values) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (std::size_t k = 0; k < values.size(); ++k) json[fmt::format("a{}", k)] = values[k];
-  return json;
-}
-
-nlohmann::ordered_json as_json(const std::vector<PartCorrection>& parts) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const PartCorrection& part : parts)
-    json.push_back({{"part", part.part},
-                    {"temperature_degc", part.temperature},
-                    {"correction_k", part.correction},
-                    {"stderr_k", part.standard_error},
-                    {"common_k", part.common}});
-  return json;
-}
-
-nlohmann::ordered_json as_json(const TemperatureResult& result) {
-  nlohmann::ordered_json json;
-  json["coefficients"] = by_name(result.likelihood.coefficients);
-  json["stderr"] = by_name(result.likelihood.standard_errors);
-  json["covariance"] = result.covariance;
-  json["profile"] = nlohmann::ordered_json::object();
-  for (std::size_t k = 0; k < result.profile.size(); ++k)
-    json["profile"][fmt::format("a{}", k)] = result.profile[k];
-  json["sigma_m"] = result.likelihood.sigma;
-  json["samples"] = result.samples;
-  json["flights"] = nlohmann::ordered_json::array();
-  for (const FlightHeights& flight : result.flights) {
-    nlohmann::ordered_json one{{"name", flight.flight}, {"used", flight.left_out.empty()}};
-    if (!flight.left_out.empty()) {
-      one["left_out"] = flight.left_out;
-    } else {
-      one["samples"] = flight.samples;
-      one["stretches"] = flight.segments;
-      one["rms_before_m"] = flight.rms_before;
-      one["rms_after_m"] = flight.rms_after;
-    }
-    json["flights"].push_back(std::move(one));
-  }
-  json["least_squares"] = {{"coefficients", by_name(result.least_squares.coefficients)},
-                           {"stderr", by_name(result.least_squares.standard_errors)},
-                           {"sigma_m", result.least_squares.sigma},
-                           {"would_add_k", result.least_squares_add},
-                           {"would_add_stderr_k", result.least_squares_add_error}};
-  json["corrections"] = nlohmann::ordered_json::array();
-  for (const TemperatureCorrection& at : result.corrections)
-    json["corrections"].push_back({{"temperature_degc", at.temperature},
-                                   {"correction_k", at.correction},
-                                   {"stderr_k", at.standard_error}});
-  json["degrees"] = nlohmann::ordered_json::array();
-  for (const DegreeChoice& choice : result.degrees)
-    json["degrees"].push_back({{"degree", choice.degree},
-                               {"deviance", choice.deviance},
-                               {"held_out", choice.held_out},
-                               {"held_out_stderr", choice.held_out_error}});
-  json["per_hpa"] = by_name(result.per_hpa);
-  json["pressure_error_hpa"] = result.pressure_error;
-  json["law_error_hpa"] = result.law_error;
-  json["noise"] = {{"gps_m", result.gps_noise},
-                   {"gps_slow_m", result.gps_wander},
-                   {"gps_memory_s", result.gps_wander_time},
-                   {"drift_m_per_minute", result.drift},
-                   {"innovation_variance", result.innovation_variance},
-                   {"innovation_correlation", result.innovation_correlation}};
-  json["law_errors"] = nlohmann::ordered_json::array();
-  for (const LawError& error : result.law_errors)
-    json["law_errors"].push_back({{"effect", error.effect},
-                                  {"parameter", error.parameter},
-                                  {"change", error.change},
-                                  {"stderr", error.standard_error},
-                                  {"size", error.size},
-                                  {"range_hpa", error.range}});
-  json["humidity"] = {{"change", result.humidity_change}, {"stderr", result.humidity_error}};
-  json["parts"] = {{"flights", as_json(result.parts_by_flight)},
-                   {"climbs_and_descents", as_json(result.parts_by_climb)},
-                   {"spread_of_flights_k", result.spread_of_flights},
-                   {"spread_of_climbs_k", result.spread_of_climbs}};
-  json["worse"] = result.worse;
-  json["warnings"] = result.warnings;
-  json["notes"] = result.notes;
-  return json;
-}
-
-nlohmann::ordered_json as_json(const IterativeCalibration& result) {
-  nlohmann::ordered_json rounds = nlohmann::ordered_json::array();
-  for (const CalibrationRound& round : result.rounds)
-    rounds.push_back({{"rms_hpa", round.rms_hpa},
-                      {"coefficients", by_name(round.coefficients)},
-                      {"defect_change_hpa", round.defect_change},
-                      {"temperature_change_k", round.temperature_change}});
-  return rounds;
-}
-
 void print_flights(const TemperatureResult& result) {
   say("{:<28} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10}\n", "flight", "samples", "stretches", "coldest",
       "warmest", "rms before", "rms after");
@@ -246,8 +152,8 @@ void run(const Options& options) {
   const FlightSet flights = CommandFlights(options.comparison).flights;
   const ModelDefinition model = read_model_for(options.model, flights, options.common);
   TemperatureOptions with = temperature_options(options);
-  TemperatureResult result;
   IterativeCalibration in_turn;
+  TemperatureResult& result = in_turn.temperature;
   {
     Progress bar(options.iterate ? "fitting and calibrating iteratively" : "reading", !options.common.quiet);
     with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
@@ -257,7 +163,6 @@ void run(const Options& options) {
       refit_with.progress = with.progress;
       const References references = references_to_fit(options.comparison, model, flights).used;
       in_turn = calibrate_iteratively(flights, model, references, refit_with, with);
-      result = in_turn.temperature;
     } else {
       result = fit_temperature(flights, model, with);
     }
@@ -268,12 +173,7 @@ void run(const Options& options) {
   if (wants_report(options.common))
     write_report_of_run(temperature_report(result),
                         {{options.model, options.output}, options.comparison.flights, {}}, options.common);
-  nlohmann::ordered_json all = as_json(result);
-  if (options.iterate) {
-    all["rounds"] = as_json(in_turn);
-    all["converged"] = in_turn.converged;
-  }
-  json.write(all);
+  json.write(in_turn);
   if (!is_refused) {
     refuse_worse(result.worse, options.force, result.model);
     deliver(result.model, options.output, inputs);
@@ -342,7 +242,7 @@ std::function<void()> add_temperature(CLI::App& program) {
   command->add_flag("--iterate", options->iterate,
                     "refit the pressures and calibrate the temperature alternately to convergence");
   add_force_option(*command, options->force);
-  add_common_options(*command, options->common);
+  add_common_options<IterativeCalibration>(*command, options->common);
   add_examples(*command,
                {"temperature climbs.nc -m data/scenarios/models/c130-psfd-eq18.toml -o calibrated.toml"});
   return [options] { run(*options); };

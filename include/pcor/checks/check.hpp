@@ -34,6 +34,16 @@ struct TestStatistic {
   CheckVerdict verdict = CheckVerdict::inconclusive;
 };
 
+template <class Field>
+void describe(const TestStatistic& self, Field& field) {
+  field("value", self.value, "test statistic, expected to be zero", "see unit");
+  field("stderr", self.standard_error, "standard error of the value", "see unit");
+  field("matters", self.matters, "tolerance: smallest value that matters", "see unit");
+  field("unit", self.unit, "unit of the value");
+  field("what", self.what, "description of the value");
+  field("verdict", self.verdict, "verdict on this value alone");
+}
+
 /// Independent test of the correction, on all flights together.
 struct CheckResult {
   std::string name{};    ///< e.g. "reverse-heading"
@@ -56,6 +66,26 @@ struct CheckResult {
   std::vector<ReportItem> pictures{};
 };
 
+template <class Field>
+void describe(const CheckResult& self, Field& field) {
+  field("name", self.name, "name of the check");
+  field("ran", self.ran, "whether the flights permit the check");
+  field("reason", self.reason, "reason for which the check did not run, and its requirements");
+  field("verdict", self.ran ? &self.verdict : nullptr, "consistent, inconsistent, cannot tell; null");
+  field("key", self.ran ? &self.key : nullptr, "deciding test statistic; null if it did not run");
+  field("judged", self.judged, "all test statistics");
+  field("decided", self.decided, "explanation of the verdict: value, standard error and tolerance");
+  field("numbers", self.numbers, "further results", "see the name");
+  field("finding", self.finding, "verdict as a sentence");
+  field("cannot_see", self.cannot_see, "errors to which the check is insensitive");
+  field.list("tables", self.tables, "tables of the report", [](const ReportTable& table, Field& of_table) {
+    of_table("title", table.title, "title of the table");
+    of_table("headers", table.headers, "names of the columns");
+    of_table("rows", table.rows, "cells of each row");
+  });
+  field("notes", self.notes, "notes on the check");
+}
+
 struct CheckOptions {
   MaskOptions mask;
   /// Model of a second static system of the aircraft, for the checks of redundant systems. Default: the
@@ -73,6 +103,14 @@ struct Checks {
   std::vector<std::string> notes;
   Report pictures;  ///< time, flights, intervals and columns of the figures
 };
+
+template <class Field>
+void describe(const Checks& self, Field& field) {
+  field("model", self.model, "name of the model, or \"as recorded\"");
+  field("flights", self.flights, "files of the flights");
+  field("checks", self.results, "results of the checks");
+  field("notes", self.notes, "notes on the flights");
+}
 
 /// Tests the corrections of `model` with independent measurements (the memo's Supporting Evidence for
 /// Accuracy of p_t, Tests Using Flight Maneuvers and Determining the Air Temperature): the total pressure and

@@ -23,6 +23,12 @@ struct PartStatistics {
   Statistics statistics;
 };
 
+template <class Field>
+void describe(const PartStatistics& self, Field& field) {
+  field("name", self.name, "name of the part");
+  describe(self.statistics, field);
+}
+
 /// Time range of a flight with the largest residuals.
 struct WorstInterval {
   std::string flight;
@@ -31,6 +37,26 @@ struct WorstInterval {
   Statistics statistics;
   std::string regimes;  ///< e.g. "climb, turn"
 };
+
+template <class Field>
+void describe(const WorstInterval& self, Field& field) {
+  field("flight", self.flight, "file of the flight");
+  field.time("begin", self.begin, "begin of the interval");
+  field.time("end", self.end, "end of the interval");
+  field("regimes", self.regimes, "regimes in the interval");
+  describe(self.statistics, field);
+}
+
+/// Line through pressures.
+template <class Field>
+void describe(const LineFit& self, Field& field) {
+  field("slope", self.slope, "slope of the line");
+  field("slope_stderr", self.slope_error, "standard error of the slope");
+  field("offset_hpa", self.offset, "offset of the line");
+  field("rms_hpa", self.rms, "rms distance from the line");
+  field("mean_difference_hpa", self.mean_difference, "mean difference of the pressures");
+  field("samples", self.samples, "number of samples");
+}
 
 /// Comparison of one model with one reference over all flights.
 struct ModelComparison {
@@ -54,6 +80,24 @@ struct ModelComparison {
   std::vector<WorstInterval> worst;  ///< up to five, sorted by decreasing size
   Statistics flaps_out;              ///< samples excluded because of flaps
 };
+
+template <class Field>
+void describe(const ModelComparison& self, Field& field) {
+  field("name", self.name, "name of the model");
+  field("reference", self.reference, "reference");
+  describe(self.all, field);
+  field("rms_over_noise", self.all.rms_over_noise(), "rms residual divided by the rms noise");
+  field("r2", self.r_squared, "fraction of the variance of delta-p of the reference that the model explains");
+  if (field.has(self.static_pressure.samples > 0))
+    field("static_pressure", self.static_pressure, "static pressure, reference against model");
+  field("flaps_out", self.flaps_out, "residual of samples excluded because of flaps");
+  field("samples_per_independent", self.autocorrelation_time, "autocorrelation time", "samples");
+  field("reference_stderr_hpa", self.reference_error, "standard error of the bias due to calibrations");
+  field("regimes", self.regimes, "residual in each regime");
+  field("bands", self.bands, "residual in bands of altitude, Mach number, attack and sideslip");
+  field("flights", self.flights, "residual of each flight");
+  field("worst", self.worst, "intervals with the largest residuals");
+}
 
 /// Residuals of one flight, one value for each record. A quantity with one value for all models belongs to
 /// the first model by name, regardless of the order on the command line.
@@ -91,6 +135,27 @@ struct Comparison {
   /// Comparisons with further references of the models.
   std::vector<Comparison> further{};
 };
+
+template <class Field>
+void describe(const Comparison& self, Field& field) {
+  field("reference", self.reference, "first reference");
+  std::vector<ModelComparison> models = self.models;
+  for (const Comparison& further : self.further)
+    models.insert(models.end(), further.models.begin(), further.models.end());
+  field("models", models, "residual of each model with each reference");
+  field("total_pressure", self.total_pressure, "total pressure, reference against model");
+  field("masks", field.named(mask_info, self.masks), "samples with each mask");
+  field.list("intervals", self.intervals, "regimes of all flights", [](const auto& each, Field& of_one) {
+    const auto& [flight, interval] = each;
+    of_one("flight", flight, "file of the flight");
+    of_one("regime", interval.regime == Regime::count ? "" : info_of(interval.regime).name, "regime");
+    of_one.time("begin", interval.begin, "begin of the interval");
+    of_one.time("end", interval.end, "end of the interval");
+    of_one("pair", interval.pair, "number of the reverse-heading pair; otherwise 0");
+    of_one("note", interval.note, "description of the interval");
+  });
+  field("notes", self.notes, "notes on the comparison");
+}
 
 struct CompareOptions {
   MaskOptions mask;

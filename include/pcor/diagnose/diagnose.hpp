@@ -59,6 +59,15 @@ struct Estimate {
   double typical = 0.0;         ///< typical size; 0 if unknown
 };
 
+template <class Field>
+void describe(const Estimate& self, Field& field) {
+  field("name", self.name, "name of the coefficient");
+  field("unit", self.unit, "unit of the coefficient");
+  field("value", self.value, "estimate", "see unit");
+  field("stderr", self.standard_error, "standard error", "see unit");
+  field("typical", self.typical, "typical size; 0 if unknown", "see unit");
+}
+
 /// Time range of a flight that supports an effect.
 struct Evidence {
   std::string flight;
@@ -67,6 +76,15 @@ struct Evidence {
   std::string regimes;  ///< e.g. "level, yaw manoeuvre"
   double share = 0.0;   ///< fraction of all evidence for the effect, 0 to 1
 };
+
+template <class Field>
+void describe(const Evidence& self, Field& field) {
+  field("flight", self.flight, "file of the flight");
+  field.time("begin", self.begin, "begin of the interval");
+  field.time("end", self.end, "end of the interval");
+  field("regimes", self.regimes, "regimes in the interval");
+  field("share", self.share, "fraction of all evidence");
+}
 
 /// Effect that explains the data as well as the named one within the uncertainty.
 struct Alias {
@@ -86,6 +104,16 @@ struct Alias {
   bool is_alike = false;            ///< see `Finding::is_alike`
 };
 
+template <class Field>
+void describe(const Alias& self, Field& field) {
+  field("effect", self.effect, "id of the effect");
+  field("title", self.title, "title of the effect");
+  field("correlation", self.correlation, "correlation with the named effect after projection onto the model");
+  field("chi2_less", self.chi2_less, "chi2 of the named effect minus chi2 of this one");
+  field("size_to_usual", self.size_to_usual, "size divided by the typical size; 0 if unknown");
+  field("estimates", self.estimates, "estimated coefficients");
+}
+
 /// Regime whose repetition would separate confounded effects.
 struct Advice {
   /// Recommended manoeuvre, its duration and its power; if no flown regime helps, a method that separates the
@@ -95,6 +123,32 @@ struct Advice {
   double duration = 0.0;    ///< total of all repeats, s
   double power = 0.0;       ///< probability that it separates the effect from all rivals with 95 % confidence
 };
+
+template <class Field>
+void describe(const Advice& self, Field& field) {
+  field("manoeuvre", self.manoeuvre, "recommended regime; empty if no regime helps");
+  field("duration_s", self.duration, "total duration of all repeats");
+  field("power", self.power, "probability that it separates the effect from all rivals with 95 % confidence");
+}
+
+/// Coefficients of an effect, and its formula if it has one.
+template <class Field>
+void describe(const ModelEffect& self, Field& field) {
+  field("parameters",
+        field.named(self.id.empty() ? std::vector<std::string>() : parameter_names(self), self.parameters),
+        "coefficients", "unit of the coefficient");
+  if (field.has(!self.scaling.is_none())) {
+    field.object("scaling", "scaling of the effect, if any", [&self](Field& scaling) {
+      scaling("static_pressure", self.scaling.static_pressure, "power of p/700 hPa");
+      scaling("dynamic_pressure", self.scaling.dynamic_pressure, "power of q/70 hPa");
+    });
+  }
+  if (!field.has(self.is_formula())) return;
+  field("where", info_of(self.location).name, "stage at which a formula acts; absent for others");
+  field("formula", self.formula, "formula; absent for effects of the catalogue");
+  field("unit", self.unit, "unit of the formula; absent for effects of the catalogue");
+  field("source", self.source, "source of the formula; absent for effects of the catalogue");
+}
 
 /// Id "reference:NAME" of an effect or coefficient of a system that the model is compared with.
 /// @param system needed if there are several systems: "reference:PSFRD+QCFR:NAME"; otherwise empty
@@ -148,6 +202,39 @@ struct Finding {
   std::string id() const;
 };
 
+template <class Field>
+void describe(const Finding& self, Field& field) {
+  std::vector<std::string> aliases;
+  for (const Alias& alias : self.aliases) aliases.push_back(alias.effect);
+  field("effect", self.id(), "id of the missing effect");
+  describe(self.effect, field);
+  field("title", self.title, "title of the effect");
+  field("stderr", field.named(self.estimates, &Estimate::standard_error), "standard errors",
+        "unit of the coefficient");
+  field("units", field.named(self.estimates, &Estimate::unit), "units of the coefficients");
+  field("estimates", self.estimates, "estimated coefficients");
+  field("rms_hpa", self.rms, "contribution to the residual, rms");
+  field("worst_hpa", self.worst, "largest contribution, with sign");
+  field("worst_flight", self.worst_flight, "flight of the largest contribution");
+  field.time("worst_time", self.worst_time, "time of the largest contribution");
+  field("chi2", self.chi2, "evidence: decrease of chi2");
+  field("p_value", self.p_value, "probability of this chi2 if no effect is present");
+  field("rms_before_hpa", self.rms_before, "rms residual without the effect, cross-validated");
+  field("rms_after_hpa", self.rms_after, "rms residual with the effect, cross-validated");
+  field("events", self.events, "number of separate events that support the effect");
+  field("evidence", self.evidence, "intervals with the most evidence");
+  field("aliases", aliases, "effects that these flights do not separate from this one");
+  field("alias_details", self.aliases, "the same effects with their estimates");
+  field("family", self.family, "group of alternative shapes and locations");
+  field("shape", self.shape, "detected shape; empty: the shape of the catalogue");
+  field("variants", self.variants, "shapes that fit as well");
+  field("places", self.places, "possible instrument components");
+  field("times_usual", self.times_usual, "size divided by the typical size; 0 if unknown");
+  field("probability", self.probability, "posterior probability among the effect and its aliases");
+  field("advice", self.advice.sentence, "manoeuvre that would separate the effect from its aliases");
+  field("advice_details", self.advice, "the same advice in numbers");
+}
+
 /// Effect absorbed by the model's coefficients.
 struct AbsorbedEffect {
   std::string effect;
@@ -155,6 +242,14 @@ struct AbsorbedEffect {
   std::vector<std::string> by{};  ///< coefficients like "static-qp.a2"
   double remaining = 0.0;         ///< fraction of its variance not absorbed, 0 to 1
 };
+
+template <class Field>
+void describe(const AbsorbedEffect& self, Field& field) {
+  field("effect", self.effect, "id of the effect");
+  field("title", self.title, "title of the effect");
+  field("by", self.by, "coefficients of the model that absorb the effect");
+  field("remaining", self.remaining, "fraction of its variance not absorbed");
+}
 
 /// Upper limit of an effect that was tested and not found.
 struct UpperLimit {
@@ -166,11 +261,28 @@ struct UpperLimit {
   std::string note{};  ///< e.g. "size needed to explain the residual is outside physical bounds"
 };
 
+template <class Field>
+void describe(const UpperLimit& self, Field& field) {
+  field("effect", self.effect, "id of the effect");
+  field("title", self.title, "title of the effect");
+  field("estimates", self.estimates, "estimated coefficients");
+  field("limits", self.limits, "95 % limit of the size of each coefficient", "unit of the coefficient");
+  field("rms_hpa", self.rms, "contribution at the limit that the model does not absorb, rms");
+  field("note", self.note, "note on the limit");
+}
+
 struct NotTestable {
   std::string effect;
   std::string title;
   std::string reason;  ///< e.g. "needs the role 'cabin_pressure'"
 };
+
+template <class Field>
+void describe(const NotTestable& self, Field& field) {
+  field("effect", self.effect, "id of the effect");
+  field("title", self.title, "title of the effect");
+  field("reason", self.reason, "reason for which it cannot be tested");
+}
 
 /// Variable of the files that correlates with unexplained structure.
 struct EmpiricalPredictor {
@@ -192,6 +304,22 @@ struct EmpiricalPredictor {
   EffectLocation location = EffectLocation::static_defect;
 };
 
+template <class Field>
+void describe(const EmpiricalPredictor& self, Field& field) {
+  field("name", self.name, "variable of the flights");
+  field("unit", self.unit, "unit of the variable");
+  field("description", self.description, "description of the variable");
+  field("r2", self.r2, "fraction of the residual variance that the variable explains");
+  field("p_value", self.p_value, "probability that the best variable does as well by chance");
+  field("linear_r2", self.linear_r2, "fraction that a straight line explains");
+  field("slope", self.slope, "slope of that line", "hPa per unit");
+  field("slope_stderr", self.slope_error, "standard error of the slope", "hPa per unit");
+  field("centre", self.centre, "mean of the variable", "see unit");
+  field("formula", self.formula, "formula of a corresponding effect");
+  field("places", self.places, "possible instrument components; empty if undetermined");
+  field("sampling", self.sampling, "reduction to one value per record");
+}
+
 /// Clause on the location of the cause, without full stop.
 std::string places_text(const EmpiricalPredictor& variable);
 
@@ -202,6 +330,14 @@ struct FlightOffset {
   double standard_error = 0.0;
   double p_value = 1.0;  ///< corrected for the number of flights
 };
+
+template <class Field>
+void describe(const FlightOffset& self, Field& field) {
+  field("flight", self.flight, "file of the flight");
+  field("size_hpa", self.size, "bias of the flight relative to the others");
+  field("stderr_hpa", self.standard_error, "standard error of the bias");
+  field("p_value", self.p_value, "probability of the bias by chance, corrected for the number of flights");
+}
 
 /// Structure not explained by any effect.
 struct Unexplained {
@@ -217,6 +353,19 @@ struct Unexplained {
   /// Variables excluded because, by attributes of the files, they derive from inputs of the residual.
   std::vector<std::string> computed{};
 };
+
+template <class Field>
+void describe(const Unexplained& self, Field& field) {
+  field("significant", self.significant, "whether the structure is significant");
+  field("rms_hpa", self.rms, "rms of the structure");
+  field("drift_rms_hpa", self.drift_rms, "part due to slow drift, rms");
+  field("p_value", self.p_value, "probability of the structure by chance");
+  field("regime", self.regime, "regime with most of the structure");
+  field("variables", self.variables, "variables that correlate with the structure");
+  field("steps", self.steps, "flights with significant biases relative to the others");
+  field("shares_noise", self.shares_noise, "variables excluded because they share noise with the residual");
+  field("computed", self.computed, "variables excluded because they derive from inputs of the residual");
+}
 
 /// Diagnosed flight, for figures. All arrays have one value per record.
 struct FlightDiagnosis {
@@ -268,6 +417,35 @@ struct Diagnosis {
   /// Numbers of the flights whose records are kept.
   std::vector<std::size_t> flights_with_records() const;
 };
+
+template <class Field>
+void describe(const Diagnosis& self, Field& field) {
+  field("verdict", self.verdict, "silent, identified, cannot be told apart, partial or unexplained");
+  field("reference", self.reference, "description of the references");
+  field("findings", self.findings, "missing effects, strongest first");
+  field("unexplained", self.unexplained, "structure that no effect explains");
+  field("absorbed", self.absorbed, "effects absorbed by coefficients of the model");
+  field("limits", self.limits, "effects that were tested and not found");
+  field("not_testable", self.not_testable, "effects that cannot be tested on these flights");
+  field("candidates", self.candidates, "number of tested effects");
+  field("threshold", self.threshold, "chi2 threshold of a detection");
+  field("rms_given_hpa", self.rms_given, "rms residual of the unchanged model");
+  field("residual_rms_hpa", self.residual_rms, "rms residual after a linearised refit");
+  field("residual_rms_held_out_hpa", self.residual_rms_held_out, "the same, cross-validated");
+  field("noise_rms_hpa", self.noise_rms, "rms noise with the unchanged model");
+  field("noise_rms_with_findings_hpa", self.noise_rms_with_findings, "rms noise with all findings");
+  field("samples", self.samples, "number of samples");
+  field("flaps_out", self.flaps_out, "residual of samples excluded because of flaps");
+  field.list("held_out", self.held_out, "residual of held-out parts",
+             [](const HeldOutPart& part, Field& of_part) {
+               of_part("name", part.flight, "file of the flight");
+               of_part("is_off", part.is_off(), "whether the bias is significant");
+               of_part("expected_bias_hpa", part.expected, "expected standard deviation of the bias");
+               describe(part.statistics, of_part);
+             });
+  field("masks", field.named(mask_info, self.masks), "samples with each mask");
+  field("notes", self.notes, "notes on the diagnosis");
+}
 
 /// Changes `silent` to `unexplained` if a held-out part has a significant bias.
 void judge_held_out(Diagnosis& diagnosis);

@@ -12,6 +12,13 @@ struct EffectWithoutTrace {
   std::string_view reason;
 };
 
+template <class Field>
+void describe(const EffectWithoutTrace& self, Field& field) {
+  field("id", self.id, "id of the effect");
+  field("title", self.title, "title of the effect");
+  field("reason", self.reason, "reason for which no term of a model describes it");
+}
+
 /// Known effects that single samples cannot show, so that no term of the model can describe them.
 inline constexpr std::array<EffectWithoutTrace, 23> effects_without_trace{{
     {"aircraft-change", "skin, paint, port or pod changed between campaigns",

@@ -71,6 +71,40 @@ struct FittedParameter {
   int stage = 0;  ///< stage of the fit, from 1; the last one fits all remaining parameters
 };
 
+/// Coefficients of one effect in JSON, with names such as "a2".
+struct FittedEffect {
+  std::string id;
+  std::vector<FittedParameter> parameters{};
+};
+
+/// Coefficients grouped by their effects, in order.
+std::vector<FittedEffect> fitted_effects(const std::vector<FittedParameter>& parameters);
+
+template <class Field>
+void describe(const FittedEffect& self, Field& field) {
+  const auto names = [&self](auto condition) {
+    std::vector<std::string> those;
+    for (const FittedParameter& each : self.parameters) {
+      if (condition(each)) those.push_back(each.name);
+    }
+    return those.empty() ? std::nullopt : std::optional(those);
+  };
+  const char* const unit = "unit of the coefficient";
+  using Parameter = FittedParameter;
+  field("id", self.id, "id of the effect");
+  field("parameters", field.named(self.parameters, &Parameter::value), "fitted coefficients", unit);
+  field("stderr", field.named(self.parameters, &Parameter::standard_error), "standard errors", unit);
+  field("stderr_noise", field.named(self.parameters, &Parameter::noise_error),
+        "standard errors without misfit and calibration", unit);
+  field("stderr_jackknife", field.named(self.parameters, &Parameter::jackknife_error),
+        "standard errors by jackknife over flights or their parts", unit);
+  field("start", field.named(self.parameters, &Parameter::start), "coefficients before the fit", unit);
+  field("at_bound", names([](const Parameter& each) { return each.at_bound; }),
+        "coefficients at a bound; absent if none");
+  field("fixed", names([](const Parameter& each) { return !each.fitted; }),
+        "coefficients that were not fitted; absent if none");
+}
+
 /// Fit statistics with one effect removed and the others refitted.
 struct Omission {
   std::string effect;
@@ -78,12 +112,26 @@ struct Omission {
   double r_squared = 0.0;
 };
 
+template <class Field>
+void describe(const Omission& self, Field& field) {
+  field("effect", self.effect, "id of the removed effect");
+  field("rms_hpa", self.rms, "rms residual without it");
+  field("r2", self.r_squared, "R2 without it");
+}
+
 /// Result of the fit for one surface, in addition to its coefficients.
 struct SurfaceFit {
   std::string effect;
   double roughness = 0.0;  ///< standard deviation of a second difference of Cp, by marginal likelihood
   double degrees_of_freedom = 0.0;  ///< number of coefficients that the flights determine
 };
+
+template <class Field>
+void describe(const SurfaceFit& self, Field& field) {
+  field("effect", self.effect, "id of the surface");
+  field("roughness", self.roughness, "standard deviation of a second difference of Cp");
+  field("degrees_of_freedom", self.degrees_of_freedom, "number of coefficients that the flights determine");
+}
 
 /// Flight statistics before and after the fit.
 struct FlightFit {
@@ -98,6 +146,15 @@ struct FlightFit {
   double gain_error = 0.0;
   std::string reference{};  ///< see `Reference::name`
 };
+
+template <class Field>
+void describe(const FlightFit& self, Field& field) {
+  field("name", self.flight, "file of the flight");
+  field("reference", self.reference, "reference");
+  field("holdout", self.holdout, "whether the samples are held out");
+  field("before", self.before, "residual before the fit");
+  field("after", self.after, "residual after the fit");
+}
 
 /// Held-out part with the largest ratio of bias to expected bias.
 std::optional<HeldOutPart> worst_held_out(const std::vector<FlightFit>& flights);
@@ -154,6 +211,60 @@ struct RefitResult {
   std::vector<std::string> warnings{};  ///< reasons to doubt the fit, one sentence each
   std::vector<std::string> notes{};     ///< notes for the user, one sentence each, by decreasing severity
 };
+
+/// Keys that `refit` and `improve` share.
+template <class Field>
+void describe_summary(const RefitResult& self, Field& field) {
+  field("estimator", self.estimator, "estimator of the coefficients and their errors");
+  field("left_hpa", self.left, "misfit of the model that varies with the flight state, rms");
+  field("drift_hpa", self.drift_rms, "slow drift of the noise, rms");
+  field("least_squares_rms_hpa", self.least_squares_rms, "rms residual of plain least squares");
+  const std::optional<HeldOutPart> worst = worst_held_out(self.flights);
+  if (!field.has(worst.has_value())) return;
+  field.object("holdout", "held-out part with the most significant bias; absent if none",
+               [&worst](Field& holdout) {
+                 const HeldOutPart part = worst.value_or(HeldOutPart());
+                 holdout("name", part.flight, "file of the flight");
+                 holdout("rms_hpa", part.statistics.rms, "rms residual");
+                 holdout("bias_hpa", part.statistics.bias, "mean residual");
+                 holdout("expected_hpa", part.expected, "expected standard deviation of the bias");
+                 holdout("is_off", part.is_off(), "whether the bias is significant");
+               });
+}
+
+template <class Field>
+void describe(const RefitResult& self, Field& field) {
+  field("effects", fitted_effects(self.parameters), "effects with their coefficients");
+  field("rms_hpa", self.rms, "rms residual after the fit, all samples");
+  field("rms_before_hpa", self.rms_before, "rms residual before the fit");
+  field("rms_over_pressure", self.rms_over_pressure, "rms of residual divided by static pressure");
+  field("bulk_rms_hpa", self.bulk_rms, "robust standard deviation of the residual");
+  field("noise_rms_hpa", self.noise_rms, "rms noise of the residual");
+  field("drift_rms_hpa", self.drift_rms, "slow drift of the noise, rms");
+  describe_summary(self, field);
+  if (field.has(self.defect_error > 0.0))
+    field("delta_p_stderr_hpa", self.defect_error, "standard error of delta-p; with GPS only");
+  field("r2", self.r_squared, "fraction of the variance of delta-p of the reference that the model explains");
+  field("samples", self.samples, "number of samples in the fit");
+  field("outliers", self.outliers, "number of outliers among them");
+  field("samples_per_independent", self.autocorrelation_time, "autocorrelation time", "samples");
+  field("condition_number", self.condition_number, "condition number of the derivatives");
+  field("reference", self.reference_text, "description of the references");
+  field("surfaces", self.surfaces, "fitted surfaces");
+  field.object("covariance", "covariance of the coefficients", [&self](Field& covariance) {
+    covariance("parameters", self.covariance_names, "names of the coefficients");
+    covariance("matrix", self.covariance, "covariance matrix, row by row", "product of the units");
+  });
+  field("omissions", self.omissions, "fit without each effect");
+  field("flights", self.flights, "residual of each flight with the first reference");
+  field("further", self.further, "residual of each flight with further references");
+  field("masks", field.named(mask_info, self.masks), "samples with each mask");
+  if (field.has(!self.worse.empty()))
+    field("worse", self.worse, "reason for which the model should not be used; otherwise absent");
+  field("warnings", self.warnings, "reasons to doubt the fit");
+  field("flaps_out", self.flaps_out, "residual of samples excluded because of flaps");
+  field("notes", self.notes, "notes on the fit");
+}
 
 /// Fits the free coefficients of `model` to the flights with all references: the sum of their likelihoods,
 /// each with a separate noise model. References that do not depend on a free coefficient are not used.

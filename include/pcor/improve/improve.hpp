@@ -32,6 +32,13 @@ struct RungRival {
   double static_change = 0.0;  ///< change of the corrected static pressure by this effect alone, rms hPa
 };
 
+template <class Field>
+void describe(const RungRival& self, Field& field) {
+  field("effect", self.effect, "id of the effect");
+  field("probability", self.probability, "posterior probability among the alternatives");
+  field("static_change_hpa", self.static_change, "change of the corrected static pressure, rms");
+}
+
 /// Step of the forward selection.
 struct ImproveStep {
   std::string added{};                 ///< id of the effect; empty for the refitted input model
@@ -53,6 +60,22 @@ struct ImproveStep {
   std::string delivered{};
   double rival_error = 0.0;  ///< expected error of that choice, rms hPa; included in the stated error
 };
+
+template <class Field>
+void describe(const ImproveStep& self, Field& field) {
+  field("added", self.added.empty() ? nullptr : &self.added, "id of the added effect; null first");
+  field("title", self.title, "title of the effect");
+  field("aliases", self.aliases, "effects that these flights do not separate from it");
+  field("rms_train_hpa", self.rms_train, "rms residual on the training samples");
+  field("rms_holdout_hpa", self.rms_holdout, "rms residual on held-out samples, otherwise cross-validated");
+  field("noise_rms_hpa", self.noise_rms, "rms noise of the residual");
+  field("terms", self.terms, "number of free coefficients");
+  field("learnt", self.learnt, "summary of the step");
+  field("delivered", self.delivered, "id of the effect in the written model; may be empty");
+  field("rival_error_hpa", self.rival_error, "expected error of that choice, rms");
+  field("rivals", self.rivals, "alternatives with different corrected static pressures");
+  field("diagnosis", self.diagnosis, "diagnosis of the model in this step");
+}
 
 /// Residuals of a flight with the first reference, all samples, hPa; NaN for samples not used.
 struct ImprovedFlight {
@@ -80,9 +103,32 @@ struct Improvement {
   std::vector<ImprovedFlight> flights{};
   /// True: rms_holdout is from held-out flights or parts; false: from cross-validation.
   bool holdout_is_flights = false;
+  std::string output{};  ///< file of the final model, filled by the caller
   /// Reason for which the best model is worse than the input model; empty if it is better.
   std::string worse{};
 };
+
+template <class Field>
+void describe(const Improvement& self, Field& field) {
+  const auto rms = [&field](const char* key, double train, double holdout, const char* meaning) {
+    field.object(key, meaning, [=](Field& of_model) {
+      of_model("rms_train_hpa", train, "rms residual on the training samples");
+      of_model("rms_holdout_hpa", holdout, "rms residual on held-out samples");
+    });
+  };
+  field("steps", self.steps, "steps of the selection");
+  rms("as_it_came", self.given_rms_train, self.given_rms_holdout, "input model");
+  rms("delivered", self.rms_train, self.rms_holdout, "written model");
+  field("unexplained", self.steps.empty() ? Unexplained() : self.steps.back().diagnosis.unexplained,
+        "unexplained structure at the end");
+  field("why_stopped", self.why_stopped, "reason for the end of the selection");
+  field("holdout_is_flights", self.holdout_is_flights, "false: rms_holdout_hpa is cross-validated");
+  field("worse", self.worse, "reason for which the result is worse than the input model; otherwise empty");
+  field("flaps_out", self.fit.flaps_out, "residual of samples excluded because of flaps");
+  field("notes", self.fit.notes, "notes on the fit");
+  describe_summary(self.fit, field);
+  field("model", self.output, "file of the written model");
+}
 
 /// Text on the alternatives of a step between which the choice matters; empty without such alternatives.
 std::string rivals_text(const ImproveStep& step);

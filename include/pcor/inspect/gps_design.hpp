@@ -16,6 +16,13 @@ struct GpsDesign {
   bool by_height = false;
 };
 
+template <class Field>
+void describe(const GpsDesign& self, Field& field) {
+  field("level", self.level, "standard error of the mean of delta-p over the flight", "hPa");
+  field("slope", self.slope, "standard error of its change with the airspeed, rms over the flight", "hPa");
+  field("attack", self.attack, "standard error of its change with the attack, rms over the flight", "hPa");
+}
+
 /// Errors that a refit with `--reference wind --reference height` would state, from the manoeuvres and the
 /// gusts alone, before any fit, with usual sizes of the variations of the atmosphere. An error of several hPa
 /// is that of the prior: the flight does not determine this part.

@@ -31,6 +31,19 @@ struct InspectedRole {
   std::string why{};                  ///< evidence, if the name is not one of the aircraft's; otherwise empty
 };
 
+template <class Field>
+void describe(const InspectedRole& self, Field& field) {
+  field("variable", self.variable, "variable of the flight");
+  field("unit", self.unit, "unit in the file, corrected by the data of the aircraft");
+  field("sign", self.is_turned ? "-" : "+", "-: the sign of the variable is opposite to that of the role");
+  field("rate", self.rate, "samples in a record");
+  field("present", self.present, "fraction of valid samples");
+  field("trap", self.trap, "caveat for users of the variable");
+  field("verified", self.is_verified, "whether the name is in a public document of the aircraft");
+  field("others", self.others, "other variables that match the role");
+  field("why", self.why, "evidence, if the name is not one of the aircraft");
+}
+
 /// Defect or coarse resolution of a variable.
 struct Problem {
   std::string variable;
@@ -41,12 +54,29 @@ struct Problem {
   std::string action;  ///< action taken, and how to change it
 };
 
+template <class Field>
+void describe(const Problem& self, Field& field) {
+  field("variable", self.variable, "variable of the flight");
+  field("kind", self.kind, "jump, or recorded in steps");
+  field("times", self.times, "times of the problem, UTC");
+  field("number", self.number, "size of the problem", "see unit");
+  field("unit", self.unit, "unit of the number");
+  field("action", self.action, "action taken, and how to change it");
+}
+
 /// Variable that may match a role, by name, long name, unit and values.
 struct InspectedCandidate {
   std::string variable;
   double score = 0.0;  ///< 0 to 1
   std::string why;
 };
+
+template <class Field>
+void describe(const InspectedCandidate& self, Field& field) {
+  field("variable", self.variable, "variable that may match the role");
+  field("score", self.score, "strength of the evidence, 0 to 1");
+  field("why", self.why, "evidence");
+}
 
 /// Role without a variable, and the consequence.
 struct MissingRole {
@@ -57,6 +87,14 @@ struct MissingRole {
   std::string cost;
   std::vector<std::string> effects;  ///< effects of the catalogue that cannot be fitted or diagnosed
 };
+
+template <class Field>
+void describe(const MissingRole& self, Field& field) {
+  field("role", self.role, "role without a variable");
+  field("looked_for", self.looked_for, "names of variables that were searched");
+  field("cost", self.cost, "consequence; empty if the role is not needed");
+  field("effects", self.effects, "effects that cannot be fitted or diagnosed");
+}
 
 /// Contents of a flight.
 struct Inspection {
@@ -87,11 +125,58 @@ struct Inspection {
   std::vector<Interval> intervals{};   ///< regimes of the flight; empty without pressures
   std::vector<ModelCandidate> laws{};  ///< models for this aircraft, best match first
   std::optional<GpsDesign> by_gps{};   ///< empty without pressures or GPS
+  std::vector<std::string> next{};     ///< commands that continue, filled by a program that knows its name
+  std::string unreadable{};            ///< reason if the flight cannot be read, filled by the caller
   std::vector<std::string> notes{};
   /// Runnable model: the roles, and terms with zero coefficients for a refit; empty without pressures.
   std::optional<ModelDefinition> model{};
   std::shared_ptr<const FlightSamples> samples{};  ///< samples of the figures; nullptr without pressures
 };
+
+template <class Field>
+void describe(const Inspection& self, Field& field) {
+  field("path", self.path, "file of the flight");
+  if (field.has(!self.unreadable.empty()))
+    field("unreadable", self.unreadable, "reason, if unreadable; no other keys then");
+  if (!field.has(self.unreadable.empty())) return;
+  field("aircraft", self.aircraft, "aircraft, from the attributes of the file");
+  field("project", self.project, "project, from the attributes of the file");
+  field("flight", self.flight, "number of the flight, from the attributes of the file");
+  field("institution", self.institution, "institution, from the attributes of the file");
+  field("names_of", self.family, "naming convention of the variables");
+  field("alike", self.alike, "matching naming conventions");
+  const double highest_rate = self.rates.empty() ? 0.0 : self.rates.rbegin()->first / self.time.step;
+  field("rate_hz", highest_rate, "highest rate of a variable");
+  field("records", self.records, "number of records");
+  field.time("begin", self.time.first, "time of the first record");
+  field.time("end", self.time.last, "time of the last record");
+  field("gaps", self.time.gap_count, "number of gaps in time");
+  std::vector<std::pair<std::string, InspectedRole>> roles;
+  for (const InspectedRole& role : self.roles) roles.emplace_back(role.role, role);
+  field("roles", roles, "variable of each role");
+  field("missing", self.missing, "roles without a variable");
+  field.list(
+      "frozen", self.frozen, "sensors with constant readings", [&](const FrozenSpan& span, Field& frozen) {
+        const auto time = [&](std::size_t sample) { return self.samples ? self.samples->time[sample] : 0.0; };
+        frozen("role", span.quantity == Quantity::count ? "" : info_of(span.quantity).name,
+               "role of the sensor");
+        frozen.time("begin", time(span.first), "first sample");
+        frozen.time("end", time(span.first + span.count - 1), "last sample");
+      });
+  field.list("regimes", self.intervals, "regimes of the flight", [](const Interval& interval, Field& regime) {
+    regime("name", interval.regime == Regime::count ? "" : info_of(interval.regime).name, "regime");
+    regime.time("begin", interval.begin, "begin of the interval");
+    regime.time("end", interval.end, "end of the interval");
+  });
+  field("determines", self.by_gps, "how well GPS determines delta-p on this flight; absent without GPS");
+  field("laws", self.laws, "models for this aircraft, best match first");
+  field("candidates", self.candidates, "variables that may match each role, by decreasing score");
+  field("not_used", self.not_used, "variables without a role, except candidates");
+  field("problems", self.problems, "defects and coarse resolution of variables");
+  field("why_no_model", self.why_no_model, "reason if the flight has no model");
+  field("next", self.next, "commands that continue");
+  field("notes", self.notes, "notes on the flight");
+}
 
 /// Inspects a flight: metadata, variables of the roles, missing roles and their consequences, regimes, and
 /// matching models among `laws` (model files). Unreadable files of `laws` are reported in a note.

@@ -63,6 +63,30 @@ struct ProcessSummary {
   std::vector<std::string> notes;    ///< notes for the user, one sentence each
 };
 
+template <class Field>
+void describe(const ProcessSummary& self, Field& field) {
+  field("aircraft", self.aircraft, "aircraft, from the attributes of the file");
+  field("project", self.project, "project, from the attributes of the file");
+  field("flight", self.flight, "number of the flight, from the attributes of the file");
+  field.time("start", self.first_time, "time of the first record");
+  field.time("end", self.last_time, "time of the last record");
+  field("records", self.records, "number of records");
+  field("rate", self.rate, "samples in a record");
+  field("samples", self.samples, "number of samples");
+  field("corrected", self.corrected, "samples in which both pressures were corrected");
+  field("flying_dynamic_pressure_hpa", self.flying_dynamic_pressure, "minimum of samples in flight");
+  field("in_flight", self.in_flight, "corrected samples in flight");
+  field("gaps", self.gaps, "number of gaps in time");
+  field.object("delta_p_hpa", "delta-p applied in flight", [&self](Field& delta_p) {
+    delta_p("mean", self.mean_defect, "mean", "hPa");
+    delta_p("least", self.min_defect, "minimum", "hPa");
+    delta_p("greatest", self.max_defect, "maximum", "hPa");
+  });
+  field("flags", field.named(quality_info, self.flagged), "samples with each quality bit");
+  field("variables", self.outputs, "derived variables of the output");
+  field("notes", self.notes, "notes on the flight");
+}
+
 /// Runs every sample of the flight `input` through the real-time loop of `model` and writes the derived
 /// variables to `output`: delta-p (`PCOR`, `PCOR_LAMS`), corrected pressures (`PSXC`, `QCXC`), `MACHX`,
 /// `ATX`, `TASX`, `ATLAMS`, `ATLAMSF`, `QCLAMS` and the quality bits `PCORFLAG`, named by the model's

@@ -30,10 +30,22 @@ struct ProcessedFlight {
   std::filesystem::path input;
   std::filesystem::path output;
   FlightState state = FlightState::processed;
-  ModelDefinition model{};   ///< model used; empty if no model could be selected
-  ProcessSummary summary{};  ///< empty unless the flight was processed
-  std::string reason{};      ///< reason for which it could not be read, one line
+  ModelDefinition model{};    ///< model used; empty if no model could be selected
+  ProcessSummary summary{};   ///< empty unless the flight was processed
+  std::string reason{};       ///< reason for which it could not be read, one line
+  std::string model_label{};  ///< name of the model in JSON; default: that in the model file
 };
+
+template <class Field>
+void describe(const ProcessedFlight& self, Field& field) {
+  field("input", self.input.string(), "file of the flight");
+  field("output", self.output.string(), "file of the result");
+  field("model", self.model_label.empty() ? self.model.model.name : self.model_label, "model of the flight");
+  field("state", self.state, "processed, up to date or unreadable");
+  if (field.has(self.state == FlightState::unreadable))
+    field("reason", self.reason, "reason for which the flight is unreadable; otherwise absent");
+  if (field.has(self.state == FlightState::processed)) describe(self.summary, field);
+}
 
 /// Selects the model for a flight. May throw Error if there is no model.
 using ModelSelector = std::function<ModelDefinition(const std::filesystem::path& flight)>;

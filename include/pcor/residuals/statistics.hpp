@@ -20,6 +20,16 @@ struct Statistics {
   double rms_over_noise() const;
 };
 
+template <class Field>
+void describe(const Statistics& self, Field& field) {
+  field("samples", self.samples, "number of samples");
+  field("bias_hpa", self.bias, "mean residual");
+  field("bias_stderr_hpa", self.bias_error, "standard error of the bias, with the correlation of the noise");
+  field("rms_hpa", self.rms, "rms residual");
+  field("scatter_hpa", self.scatter(), "standard deviation of the residual");
+  field("noise_rms_hpa", self.noise_rms, "rms noise of the residual");
+}
+
 /// True if the excess of the mean square over the noise is larger in `a` than in `b`. False if the noise is
 /// unknown.
 bool fails_more(const Statistics& a, const Statistics& b);

@@ -21,6 +21,15 @@ struct ModelCandidate {
   bool fits() const { return is_in_time && lacks.empty() && why_not.empty(); }
 };
 
+template <class Field>
+void describe(const ModelCandidate& self, Field& field) {
+  field("name", self.model.model.name, "name of the model");
+  field("model", self.path.string(), "file of the model");
+  field("lacks", self.lacks, "variables of the model that are absent from the flight");
+  field("is_in_time", self.is_in_time, "whether the model is valid at the date of the flight");
+  field("why_not", self.why_not, "other reason against the model");
+}
+
 /// Models of a flight's aircraft among model files, sorted: applicable ones first; among these, operational
 /// ones (`LawInfo::in_processing`) first, then those of the pressures that the aircraft's data list first.
 /// The aircraft is identified by a common registration: "C-130 N130AR" and "N130AR". `notes` reports

@@ -218,6 +218,19 @@ struct LegFlown {
   double max_attack = 0.0;
 };
 
+template <class Field>
+void describe(const LegFlown& self, Field& field) {
+  field("kind", self.kind, "kind of the leg in the scenario");
+  field.time("start", self.first_time, "first time of the leg");
+  field.time("end", self.last_time, "last time of the leg");
+  field("altitude_m", self.altitude, "mean altitude");
+  field("pressure_hpa", self.pressure, "mean pressure");
+  field("airspeed_m_s", std::vector<double>{self.min_speed, self.max_speed},
+        "least and greatest true airspeed");
+  field("attack_deg", std::vector<double>{self.min_attack, self.max_attack},
+        "least and greatest angle of attack");
+}
+
 /// Result of a simulation.
 struct SimulationSummary {
   std::string name;
@@ -231,7 +244,26 @@ struct SimulationSummary {
   std::vector<std::string> variables;  ///< recorded variables
   std::vector<std::string> truth;      ///< true values, names with TRUE_
   std::vector<std::string> effects;    ///< ids of the simulated errors
+  std::string scenario{};              ///< file of the scenario, filled by the caller
+  std::string output{};                ///< file of the flight
 };
+
+template <class Field>
+void describe(const SimulationSummary& self, Field& field) {
+  field("scenario", self.scenario, "file of the scenario");
+  field("output", self.output, "file of the flight");
+  field("name", self.name, "name of the flight");
+  field("aircraft", self.aircraft, "aircraft of the scenario");
+  field("seed", self.seed, "seed of the random numbers");
+  field.time("start", self.first_time, "time of the first record");
+  field.time("end", self.last_time, "time of the last record");
+  field("records", self.records, "number of records");
+  field("rate", self.rate, "samples in a record");
+  field("effects", self.effects, "ids of the simulated errors");
+  field("variables", self.variables, "recorded variables");
+  field("truth", self.truth, "variables with the true values");
+  field("legs", self.legs, "legs of the flight");
+}
 
 /// Simulates the flight and writes the recorded variables, and their true values, to the netCDF file
 /// `output`.

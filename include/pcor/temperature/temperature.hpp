@@ -64,6 +64,24 @@ struct TemperatureFit {
   double sigma = 0.0;                     ///< standard deviation of a height, m: see `TemperatureResult`
 };
 
+/// Values of each power of the temperature, named a0, a1, a2.
+template <class Value>
+std::vector<std::pair<std::string, Value>> by_power(const std::vector<Value>& values) {
+  std::vector<std::pair<std::string, Value>> result;
+  for (const Value& value : values) result.emplace_back("a" + std::to_string(result.size()), value);
+  return result;
+}
+
+/// Unit in the keys of coefficients a0, a1 and a2.
+inline constexpr const char* power_units = "K, 1, 1/K";
+
+template <class Field>
+void describe(const TemperatureFit& self, Field& field) {
+  field("coefficients", by_power(self.coefficients), "T corrected = T + a0 + a1 t + ..., t in degC",
+        power_units);
+  field("stderr", by_power(self.standard_errors), "standard errors", power_units);
+}
+
 /// Fit statistics of corrections of one degree.
 struct DegreeChoice {
   int degree = -1;        ///< -1: no correction
@@ -74,12 +92,27 @@ struct DegreeChoice {
   double held_out_error = 0.0;
 };
 
+template <class Field>
+void describe(const DegreeChoice& self, Field& field) {
+  field("degree", self.degree, "degree of the correction; -1: no correction");
+  field("deviance", self.deviance, "-2 ln L minus its value without correction");
+  field("held_out", self.held_out, "the same for flights left out of the fit");
+  field("held_out_stderr", self.held_out_error, "its standard error");
+}
+
 /// Correction at one temperature.
 struct TemperatureCorrection {
   double temperature = 0.0;     ///< degC
   double correction = 0.0;      ///< K
   double standard_error = 0.0;  ///< K
 };
+
+template <class Field>
+void describe(const TemperatureCorrection& self, Field& field) {
+  field("temperature_degc", self.temperature, "temperature");
+  field("correction_k", self.correction, "correction at this temperature");
+  field("stderr_k", self.standard_error, "standard error of the correction");
+}
 
 /// Error of the static-pressure model that heights detect in climbs, in addition to the thermometer error.
 /// Prior size: the stated error of delta-p plus 0.1 hPa, because standard errors of coefficients include the
@@ -94,6 +127,16 @@ struct LawError {
   double range = 0.0;  ///< range of the pressure error over the flights, hPa
 };
 
+template <class Field>
+void describe(const LawError& self, Field& field) {
+  field("effect", self.effect, "id of the effect");
+  field("parameter", self.parameter, "coefficient");
+  field("change", self.change, "estimated error of the coefficient", "unit of the coefficient");
+  field("stderr", self.standard_error, "standard error of the estimate", "unit of the coefficient");
+  field("size", self.size, "prior standard deviation", "unit of the coefficient");
+  field("range_hpa", self.range, "range of the pressure error over the flights");
+}
+
 /// Correction estimated from one part of the data: the common one plus a constant.
 struct PartCorrection {
   std::string part{};           ///< flight, "climbs" or "descents"
@@ -102,6 +145,15 @@ struct PartCorrection {
   double standard_error = 0.0;  ///< includes noise only, K
   double common = 0.0;          ///< correction of all data at that temperature, K
 };
+
+template <class Field>
+void describe(const PartCorrection& self, Field& field) {
+  field("part", self.part, "flight, climbs or descents");
+  field("temperature_degc", self.temperature, "mean temperature of the part");
+  field("correction_k", self.correction, "correction of the part at that temperature");
+  field("stderr_k", self.standard_error, "standard error of the correction, noise only");
+  field("common_k", self.common, "correction of all data at that temperature");
+}
 
 /// Heights of one flight, as means over 10 s.
 struct FlightHeights {
@@ -120,6 +172,20 @@ struct FlightHeights {
   std::vector<double> after{};        ///< difference with the correction, m
   std::vector<double> innovation{};   ///< normalised innovation of the likelihood
 };
+
+template <class Field>
+void describe(const FlightHeights& self, Field& field) {
+  const bool used = self.left_out.empty();
+  field("name", self.flight, "file of the flight");
+  field("used", used, "whether the flight is used");
+  if (field.has(!used))
+    field("left_out", self.left_out, "reason for exclusion; absent if the flight is used");
+  if (!field.has(used)) return;
+  field("samples", self.samples, "number of heights; absent if the flight is not used");
+  field("stretches", self.segments, "contiguous segments of the integral; absent if not used");
+  field("rms_before_m", self.rms_before, "GPS height minus integral, rms; absent if not used");
+  field("rms_after_m", self.rms_after, "the same with the correction; absent if not used");
+}
 
 struct TemperatureResult {
   ModelDefinition model;  ///< model with the correction as effect temp-calibration, fixed in refits
@@ -176,6 +242,50 @@ struct TemperatureResult {
   std::vector<std::string> notes_on_degree{};  ///< the notes on the choice of the degree
 };
 
+template <class Field>
+void describe(const TemperatureResult& self, Field& field) {
+  describe(self.likelihood, field);
+  field("covariance", self.covariance, "covariance of the coefficients", "product of the units");
+  field("profile", by_power(self.profile), "lower and upper end of the profile likelihood", power_units);
+  field("sigma_m", self.likelihood.sigma, "noise of the GPS height in a sample, slow and fast");
+  field("samples", self.samples, "number of heights");
+  field("flights", self.flights, "heights of each flight");
+  field.object("least_squares", "least squares on height, for comparison", [&self](Field& least_squares) {
+    describe(self.least_squares, least_squares);
+    least_squares("sigma_m", self.least_squares.sigma, "rms difference of heights");
+    least_squares("would_add_k", self.least_squares_add, "constant added by least squares");
+    least_squares("would_add_stderr_k", self.least_squares_add_error, "standard error of that constant");
+  });
+  field("corrections", self.corrections, "correction over the range of temperatures");
+  field("degrees", self.degrees, "choice of the degree");
+  field("per_hpa", by_power(self.per_hpa), "change by a static-pressure bias of 1 hPa",
+        "K/hPa, 1/hPa, 1/(K hPa)");
+  field("pressure_error_hpa", self.pressure_error, "standard deviation of a constant static-pressure bias");
+  field("law_error_hpa", self.law_error, "standard deviation of a bias proportional to pressure");
+  field.object("noise", "noise of the heights", [&self](Field& noise) {
+    noise("gps_m", self.gps_noise, "white noise of a sample");
+    noise("gps_slow_m", self.gps_wander, "correlated noise");
+    noise("gps_memory_s", self.gps_wander_time, "correlation time");
+    noise("drift_m_per_minute", self.drift, "random walk of the integral");
+    noise("innovation_variance", self.innovation_variance, "variance of innovations; 1 is correct");
+    noise("innovation_correlation", self.innovation_correlation, "their correlation; 0 is correct");
+  });
+  field("law_errors", self.law_errors, "errors of the static-pressure model, which were subtracted");
+  field.object("humidity", "relative error of the vapour pressure", [&self](Field& humidity) {
+    humidity("change", self.humidity_change, "estimate");
+    humidity("stderr", self.humidity_error, "standard error");
+  });
+  field.object("parts", "corrections from parts of the data", [&self](Field& parts) {
+    parts("flights", self.parts_by_flight, "correction of each flight");
+    parts("climbs_and_descents", self.parts_by_climb, "correction of climbs and of descents");
+    parts("spread_of_flights_k", self.spread_of_flights, "spread of flights; 0 if they agree");
+    parts("spread_of_climbs_k", self.spread_of_climbs, "spread of climbs and descents; 0 if they agree");
+  });
+  field("worse", self.worse, "reason for which the correction is rejected; otherwise empty");
+  field("warnings", self.warnings, "warnings");
+  field("notes", self.notes, "notes on the calibration");
+}
+
 /// Calibrates the temperature by GPS height: the hydrostatic equation, integrated along each flight with the
 /// corrected temperature, is compared with the height (memo, eqs. 23 and 24 and GV addition).
 ///
@@ -200,6 +310,15 @@ struct CalibrationRound {
   double temperature_change = 0.0;     ///< largest change of the correction over the temperature range, K
 };
 
+template <class Field>
+void describe(const CalibrationRound& self, Field& field) {
+  field("rms_hpa", self.rms_hpa, "rms residual of the pressure fit");
+  field("coefficients", by_power(self.coefficients), "coefficients of the temperature correction",
+        power_units);
+  field("defect_change_hpa", self.defect_change, "change of delta-p, rms over the flights");
+  field("temperature_change_k", self.temperature_change, "largest change of the temperature correction");
+}
+
 struct IterativeCalibration {
   RefitResult pressure;  ///< result of the last iteration
   /// Result of the last iteration, degree of the first; its model has both corrections.
@@ -207,6 +326,14 @@ struct IterativeCalibration {
   std::vector<CalibrationRound> rounds{};
   bool converged = false;
 };
+
+template <class Field>
+void describe(const IterativeCalibration& self, Field& field) {
+  describe(self.temperature, field);
+  if (!field.has(!self.rounds.empty())) return;
+  field("rounds", self.rounds, "iterations of pressure and temperature; absent without --iterate");
+  field("converged", self.converged, "whether the iterations converged; absent without --iterate");
+}
 
 /// The memo's iteration: delta-p from LAMS depends on the temperature, and the temperature on the pressure.
 /// Alternates both fits until delta-p changes by less than 0.001 hPa and the temperature by less than 0.001
