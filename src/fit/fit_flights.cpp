@@ -162,16 +162,12 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
     Reduction part;
     const Eigen::MatrixXd rows = fit.white_rows(parameters, loss);
     Eigen::VectorXd weight(rows.rows());
-    double curvatures = 0.0;
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
       const double innovation = rows(i, fitted);
-      const auto [value, slope, bend] = loss(innovation);
-      part.cost += 0.5 * value;
-      curvatures += slope + 2.0 * innovation * innovation * bend;
-      weight[i] = slope;
+      const std::array<double, 3> rho = loss(innovation);
+      part.cost += 0.5 * rho[0];
+      weight[i] = rho[1];
     }
-    part.bins = fit.bins().size();
-    if (weight.sum() > 0.0) part.curvature = curvatures / weight.sum();
     const Eigen::MatrixXd left = fit.without_offsets(rows, weight);
     if (fit.offsets() > 0) {
       const Eigen::MatrixXd taken = (rows - left).leftCols(fitted);
@@ -184,23 +180,17 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
   };
   Reduction whole;
   whole.absorbed = Eigen::VectorXd::Zero(fitted);
-  double curvature = 0.0;
   TriangularFactor sum(fitted + 1);
   for (const Reduction& part : of_each(reduced, parameters)) {
     sum.add(part.factor);
     if (part.absorbed.size() > 0) whole.absorbed += part.absorbed;
     whole.cost += part.cost;
-    whole.bins += part.bins;
-    if (part.bins > 0) curvature += part.curvature * static_cast<double>(part.bins);
   }
   for (FitFlights* const other : seeing_) {
     const Reduction more = other->reduce(parameters, loss);
     sum.add(more.factor);
     whole.cost += more.cost;
-    whole.bins += more.bins;
-    curvature += more.curvature * static_cast<double>(more.bins);
   }
-  whole.curvature = curvature / static_cast<double>(whole.bins);
   whole.factor = sum.factor();
   whole.valid = std::isfinite(whole.cost) && whole.factor.allFinite();
   return whole;

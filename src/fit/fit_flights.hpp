@@ -171,10 +171,6 @@ struct Reduction {
   /// Sums of the squares of the same derivatives absorbed by offsets; empty if there is no offset.
   Eigen::VectorXd absorbed;
   double cost = 0.0;  ///< half the sum of the loss over the innovations
-  /// Curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the bins: ratio of the
-  /// second derivative of the cost to that of the weighted squares.
-  double curvature = 1.0;
-  std::size_t bins = 0;
   bool valid = true;  ///< false where some residual is not a number at these parameters
 
   /// Lengths of the derivatives, including the part absorbed by offsets.
@@ -182,13 +178,13 @@ struct Reduction {
 
   template <class Archive>
   void save(Archive& archive) const {
-    archive(upper_triangle(factor), absorbed, cost, curvature, bins);
+    archive(upper_triangle(factor), absorbed, cost);
   }
 
   template <class Archive>
   void load(Archive& archive) {
     std::vector<double> triangle;
-    archive(triangle, absorbed, cost, curvature, bins);
+    archive(triangle, absorbed, cost);
     factor = from_upper_triangle(triangle);
   }
 };

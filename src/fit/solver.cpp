@@ -11,7 +11,6 @@
 
 #include <pcor/base/error.hpp>
 #include "fit/global_search.hpp"
-#include "fit/minimise.hpp"
 #include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/missing.hpp"
@@ -177,25 +176,29 @@ class Solver {
     if (!flights_.shares_noise()) solution_.deviation = flights_.deviation(solution_.values);
   }
 
-  /// Solution of the linear problem in closed form, if derivatives do not depend on the coefficients. Returns
-  /// the cost before the step.
-  double linear_step(const ScaledLoss& loss) {
+  struct Step {
+    double cost = infinity;    ///< before the step, with that of the prior; infinite if it is not a number
+    double length = infinity;  ///< in units of the residual: change of the residuals by the step
+  };
+
+  /// Solution of the weighted linear problem in closed form, with the weights and derivatives at the
+  /// unknowns.
+  Step linear_step(const ScaledLoss& loss) {
     const Reduction reduction = flights_.reduce(solution_.values, loss);
     task_.tell();
     const Eigen::Index size = unknowns_.size();
-    const Prior drawn = prior();
-    const Eigen::Index more = drawn.rows.rows();
-    Eigen::MatrixXd rows(size + more, size);
-    Eigen::VectorXd right(size + more);
-    rows << reduction.factor.topLeftCorner(size, size), drawn.rows;
-    right << -reduction.factor.col(size).head(size), drawn.rows * (drawn.start - unknowns_);
-    if (!rows.allFinite() || !right.allFinite()) return infinity;
+    const Eigen::MatrixXd drawn = solution_.deviation * prior_.rows;
+    Eigen::MatrixXd rows(size + drawn.rows(), size);
+    Eigen::VectorXd right(rows.rows());
+    rows << reduction.factor.topLeftCorner(size, size), drawn;
+    right << -reduction.factor.col(size).head(size), drawn * (prior_.centre - unknowns_);
+    if (!reduction.valid || !right.allFinite()) return {};
+    const Eigen::VectorXd before = unknowns_;
     unknowns_ = bounded_least_squares(rows, right + rows * unknowns_, lower_, upper_, unknowns_);
     spread();
-    return reduction.cost;
+    return {reduction.cost + 0.5 * right.tail(drawn.rows()).squaredNorm(),
+            (rows * (unknowns_ - before)).norm()};
   }
-
-  Prior prior() const { return {prior_.centre, solution_.deviation * prior_.rows}; }
 
   /// True if no unknown moved by a hundredth of its uncertainty from flights and prior.
   bool has_converged(const Eigen::VectorXd& before) {
@@ -206,39 +209,42 @@ class Solver {
     return std::max(by_flights, by_prior) < 0.01 * std::max(solution_.deviation, 1e-300);
   }
 
-  /// Records parameters at a bound. True if there are any.
-  bool find_bounds() {
-    bool any = false;
+  /// Records parameters at a bound.
+  void find_bounds() {
     for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
       const double near = 1e-9 * std::max(std::abs(unknowns_[k]), 1e-12);
-      const bool touches = unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
-      solution_.at_bound[wanted_[static_cast<std::size_t>(k)]] = touches;
-      any = any || touches;
+      solution_.at_bound[wanted_[static_cast<std::size_t>(k)]] =
+          unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
     }
-    return any;
   }
 
-  /// Minimises that loss; true if the deviation that scales it is then unchanged.
+  /// Minimises that loss; true if the deviation that scales it is then unchanged. Least squares with the
+  /// weights of the step before do not increase the loss of linear residuals (Huber and Ronchetti 2009,
+  /// Robust Statistics, section 7.8); a step that increases it is halved.
   bool settles_with(Loss loss) {
+    constexpr int max_steps = 200;
     const ScaledLoss scaled(loss, solution_.deviation);
-    minimise(flights_, solution_.values, scaled, prior(), unknowns_);
-    spread();
-    // Nearly collinear coefficients at a bound: clipped steps stall before the minimum; bounded steps
-    // continue.
-    double cost = infinity;
     Eigen::VectorXd best = unknowns_;
-    for (int step = 0; step < 20 && find_bounds(); ++step) {
+    double least = infinity;
+    for (int step = 0; step < max_steps; ++step) {
       const Eigen::VectorXd now = unknowns_;
-      const double cost_now = linear_step(scaled);
-      if (!(cost_now < (1.0 - 1e-10) * cost)) break;
-      cost = cost_now;
+      const auto [cost, length] = linear_step(scaled);
+      if (!std::isfinite(cost) && !std::isfinite(least)) {
+        throw Error(
+            "the fit found no coefficients: from their values in the model the residuals are not numbers; "
+            "give other starting values, or look for them with --search");
+      }
+      if (cost > (1.0 + 1e-12) * least) {
+        unknowns_ = 0.5 * (now + best);
+        spread();
+        continue;
+      }
       best = now;
+      least = cost;
+      if (length < 1e-6 * solution_.deviation) break;
     }
-    unknowns_ = best;
-    spread();
     const double before = solution_.deviation;
     find_deviation();
-    task_.tell();
     return std::abs(solution_.deviation - before) < 1e-3 * before;
   }
 
