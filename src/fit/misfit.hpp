@@ -1,10 +1,30 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <vector>
 
 #include "fit/fit_flights.hpp"
 
 namespace pcor::internal {
+
+/// States of the flights in the bins of each own flight, NaN if unknown.
+std::vector<Eigen::MatrixXd> binned_states(FitFlights& flights);
+
+/// The bumps of the misfit at given states.
+class MisfitBasis {
+ public:
+  MisfitBasis() = default;
+  /// Finds mean and deviation of each state over all flights. @param states of the own flights, in bins
+  MisfitBasis(const FlightPartition& share, const std::vector<Eigen::MatrixXd>& states);
+
+  static Eigen::Index count();
+  /// One row for each bin. @param states in these bins
+  Eigen::MatrixXd operator()(const Eigen::MatrixXd& states) const;
+
+ private:
+  Eigen::VectorXd mean_{};
+  Eigen::VectorXd deviation_{};  // zero if a state is not recorded or constant
+};
 
 /// What the law lacks as a smooth function of the flight state: a sum of functions of attack ratio, sideslip
 /// ratio, q/p, climb rate, load factor and static pressure, the same on all flights. Each state is
@@ -13,29 +33,15 @@ namespace pcor::internal {
 /// by restricted likelihood, given the noise (Patterson and Thompson 1971, Biometrika 58, 545). States that
 /// are not recorded are left out. Beside it each flight has a zero of its own.
 struct Misfit {
+  MisfitBasis bumps{};
   Eigen::VectorXd variance{};    ///< height of each bump, hPa^2; empty if unknown
   Eigen::VectorXd height{};      ///< most likely height of each bump, hPa
   double between_flights = 0.0;  ///< variance of the zero of each flight, hPa^2
   double left = 0.0;             ///< rms of the misfit not absorbed by the law, with its uncertainty, hPa
 };
 
-/// The bumps at the bins of flights.
-class MisfitBasis {
- public:
-  /// Finds mean and deviation of each state over all flights.
-  explicit MisfitBasis(FitFlights& flights);
-
-  static Eigen::Index count();
-  /// One row for each bin.
-  Eigen::MatrixXd operator()(const FitFlight& fit) const;
-
- private:
-  Eigen::VectorXd mean_{};
-  Eigen::VectorXd deviation_{};  // zero if a state is not recorded or constant
-};
-
 /// Estimates misfit and noise of the flights of a fit alternately: each from the residual after the other.
 /// The flights then have that noise.
-Misfit find_misfit(FitFlights& flights, const MisfitBasis& columns, const Solution& solution);
+Misfit find_misfit(FitFlights& flights, const Solution& solution);
 
 }  // namespace pcor::internal

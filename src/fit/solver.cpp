@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t min_free_bins = 15;  // one minute: noise deviation to 20 %
 
-void require_samples(const FitFlights& flights) {
+void require_samples(const FitFlights& flights, std::size_t free, bool is_stage) {
   const FitSetup& setup = flights.setup();
   if (flights.samples() == 0 && !setup.regimes.empty()) {
     std::vector<std::string_view> names;
@@ -36,7 +36,7 @@ void require_samples(const FitFlights& flights) {
         "--max-flaps, --exclude",
         flights.count() == 1 ? flights.task().flights.name(0) : "the flights", mask_text(flights.masks())));
   }
-  const std::size_t unknown = flights.unknowns();
+  const std::size_t unknown = free + flights.offsets();  // of every interval
   if (flights.samples() <= unknown) {
     throw Error(
         fmt::format("{} samples are too few for {} coefficients (not used: {}); give more flights or fix "
@@ -44,7 +44,7 @@ void require_samples(const FitFlights& flights) {
                     flights.samples(), unknown, mask_text(flights.masks())));
   }
   // The noise is found from bins of four seconds; that of a stage is the noise of all samples.
-  const std::size_t fewest = unknown + (flights.shares_noise() ? 1 : min_free_bins);
+  const std::size_t fewest = unknown + (is_stage ? 1 : min_free_bins);
   const std::size_t bins = flights.bins();
   if (bins < fewest) {
     throw Error(fmt::format(
@@ -54,36 +54,37 @@ void require_samples(const FitFlights& flights) {
   }
 }
 
-/// The unknowns are the wanted parameters.
+/// The unknowns are the free parameters.
 class Solver {
  public:
-  Solver(FitFlights& flights, Solution from)
+  Solver(FitFlights& flights, Solution from, const std::vector<std::size_t>& free, bool is_stage)
       : flights_(flights),
         task_(flights.task()),
-        wanted_(flights.setup().wanted),
+        free_(free),
+        is_stage_(is_stage),
         solution_(std::move(from)),
-        prior_(prior_rows(task_, wanted_)),
-        lower_(as_index(wanted_.size())),
+        prior_(prior_rows(task_, free_)),
+        lower_(as_index(free_.size())),
         upper_(lower_.size()) {
     for (Eigen::Index k = 0; k < lower_.size(); ++k) {
-      const Bounds& bounds = task_.parameters[wanted_[static_cast<std::size_t>(k)]].bounds;
+      const Bounds& bounds = task_.parameters[free_[static_cast<std::size_t>(k)]].bounds;
       lower_[k] = bounds.lower;
       upper_[k] = bounds.upper;
     }
-    unknowns_ = solution_.values(wanted_).cwiseMax(lower_).cwiseMin(upper_);
+    unknowns_ = solution_.values(free_).cwiseMax(lower_).cwiseMin(upper_);
     solution_.at_bound.resize(task_.parameters.size(), false);
     spread();
   }
 
   Solution solve() {
     if (task_.options.search) {
-      unknowns_ = global_search(flights_, solution_.values);
+      unknowns_ = global_search(flights_, solution_.values, free_);
       spread();
     }
     flights_.prepare(solution_.values);
     const Loss loss = task_.options.loss;
-    // Noise of other samples indicates a stage that starts at a solution.
-    if (!flights_.shares_noise()) {
+    // A stage starts at a solution.
+    if (!is_stage_) {
       choose_times();
       linear_step({});
       measure();
@@ -123,13 +124,13 @@ class Solver {
 
  private:
   /// Writes the unknowns to their positions in the solution.
-  void spread() { solution_.values(wanted_) = unknowns_; }
+  void spread() { solution_.values(free_) = unknowns_; }
 
   /// Start with the least squares for each time over which a need is estimated: the sum of squares may have
   /// several minima, like a wave shifted by more than its length.
   void choose_times() {
     for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
-      std::vector<double> times = task_.parameters[wanted_[static_cast<std::size_t>(k)]].tried;
+      std::vector<double> times = task_.parameters[free_[static_cast<std::size_t>(k)]].tried;
       if (times.empty()) continue;
       times.insert(times.begin(), unknowns_[k]);
       const auto [lower, upper] = std::pair(lower_[k], upper_[k]);
@@ -157,7 +158,7 @@ class Solver {
       double least = infinity;
       for (const Eigen::VectorXd& solution : solutions) {
         put(solution);
-        const double cost = flights_.reduce(solution_.values, huber).cost;
+        const double cost = flights_.reduce(solution_.values, huber, free_).cost;
         if (cost < least) best = solution;
         least = std::min(least, cost);
       }
@@ -167,13 +168,14 @@ class Solver {
   }
 
   void measure() {
-    flights_.measure_noise(solution_.values, false);
+    if (is_stage_) return flights_.prepare(solution_.values);
+    flights_.weigh(solution_.values);
     find_deviation();
   }
 
   /// The deviation of a stage of a few manoeuvres is that of all samples, as its noise is.
   void find_deviation() {
-    if (!flights_.shares_noise()) solution_.deviation = flights_.deviation(solution_.values);
+    if (!is_stage_) solution_.deviation = flights_.deviation(solution_.values);
   }
 
   struct Step {
@@ -184,7 +186,7 @@ class Solver {
   /// Solution of the weighted linear problem in closed form, with the weights and derivatives at the
   /// unknowns.
   Step linear_step(const ScaledLoss& loss) {
-    const Reduction reduction = flights_.reduce(solution_.values, loss);
+    const Reduction reduction = flights_.reduce(solution_.values, loss, free_);
     task_.tell();
     const Eigen::Index size = unknowns_.size();
     const Eigen::MatrixXd drawn = solution_.deviation * prior_.rows;
@@ -202,7 +204,7 @@ class Solver {
 
   /// True if no unknown moved by a hundredth of its uncertainty from flights and prior.
   bool has_converged(const Eigen::VectorXd& before) {
-    const Reduction reduction = flights_.reduce(solution_.values, {});
+    const Reduction reduction = flights_.reduce(solution_.values, {}, free_);
     const Eigen::VectorXd step = unknowns_ - before;
     const double by_flights = (reduction.factor.leftCols(step.size()) * step).norm();
     const double by_prior = (prior_.rows * step).norm();
@@ -213,7 +215,7 @@ class Solver {
   void find_bounds() {
     for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
       const double near = 1e-9 * std::max(std::abs(unknowns_[k]), 1e-12);
-      solution_.at_bound[wanted_[static_cast<std::size_t>(k)]] =
+      solution_.at_bound[free_[static_cast<std::size_t>(k)]] =
           unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
     }
   }
@@ -250,7 +252,8 @@ class Solver {
 
   FitFlights& flights_;
   const FitTask& task_;
-  const std::vector<std::size_t>& wanted_;
+  const std::vector<std::size_t>& free_;
+  const bool is_stage_;
   Solution solution_;
   const PriorRows prior_;
   Eigen::VectorXd unknowns_;
@@ -260,9 +263,9 @@ class Solver {
 
 }  // namespace
 
-Solution solve(FitFlights& flights, Solution from) {
-  require_samples(flights);
-  return Solver(flights, std::move(from)).solve();
+Solution solve(FitFlights& flights, Solution from, const std::vector<std::size_t>& free, bool is_stage) {
+  require_samples(flights, free.size(), is_stage);
+  return Solver(flights, std::move(from), free, is_stage).solve();
 }
 
 }  // namespace pcor::internal
