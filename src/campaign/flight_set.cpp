@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <list>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
@@ -58,12 +57,10 @@ struct FlightSet::Memory {
 
   explicit Memory(std::size_t bytes) : free(bytes) {}
 
-  std::mutex mutex{};
   std::size_t free;
   std::list<Kept> kept{};
   std::list<Entry*> open{};  // most recently used first
 
-  /// Requires the locked mutex.
   bool take(std::size_t bytes) {
     for (auto last = kept.end(); bytes > free && last != kept.begin();) {
       --last;
@@ -200,19 +197,15 @@ std::shared_ptr<const FlightSamples> FlightSet::samples(std::size_t flight, cons
   if (entry.given) return entry.given;
   Memory& memory = *entry.memory;
   const std::uint64_t key = samples_key(model, reference, mask);
-  {
-    const std::lock_guard lock(memory.mutex);
-    const auto known = std::find_if(memory.kept.begin(), memory.kept.end(), [&](const Memory::Kept& each) {
-      return each.flight == &entry && each.key == key;
-    });
-    if (known != memory.kept.end()) {
-      memory.kept.splice(memory.kept.begin(), memory.kept, known);
-      return known->samples;
-    }
+  const auto known = std::find_if(memory.kept.begin(), memory.kept.end(), [&](const Memory::Kept& each) {
+    return each.flight == &entry && each.key == key;
+  });
+  if (known != memory.kept.end()) {
+    memory.kept.splice(memory.kept.begin(), memory.kept, known);
+    return known->samples;
   }
   auto read = std::make_shared<const FlightSamples>(read_samples(entry.open(), model, reference, mask));
   const std::size_t bytes = bytes_of(*read);
-  const std::lock_guard lock(memory.mutex);
   if (memory.take(bytes)) memory.kept.push_front({&entry, key, read, bytes});
   return read;
 }
@@ -281,20 +274,6 @@ void FlightSet::require_unchanged() const {
     entries_[number]->require_unchanged();
     return true;
   });
-}
-
-bool FlightSet::reserve(std::size_t bytes) const {
-  if (empty()) return false;
-  Memory& memory = *entries_.front()->memory;
-  const std::lock_guard lock(memory.mutex);
-  return memory.take(bytes);
-}
-
-void FlightSet::release(std::size_t bytes) const {
-  if (empty()) return;
-  Memory& memory = *entries_.front()->memory;
-  const std::lock_guard lock(memory.mutex);
-  memory.free += bytes;
 }
 
 }  // namespace pcor

@@ -15,8 +15,8 @@
 #include <pcor/flight/flight_writer.hpp>
 
 #include "base/phrasing.hpp"
-#include "campaign/binned_flights.hpp"
 #include "campaign/reference_doubt.hpp"
+#include "campaign/whitened.hpp"
 #include "numerics/binned_residual.hpp"
 #include "numerics/missing.hpp"
 #include "parallel/flight_partition.hpp"

@@ -22,7 +22,6 @@ constexpr int max_rounds = 4;
 constexpr double generous_threshold = 9.0;
 constexpr std::size_t generous_effects = 6;
 constexpr double stretch_time = 300.0;  // s
-constexpr double min_eigenvalue = 1e-11;
 
 template <class Value>
 std::vector<Value> part(const std::vector<Value>& all, std::size_t first, std::size_t last) {
@@ -70,7 +69,7 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
   // Slow effects and slow drift compete for the same part of the residuals, so the noise is estimated from
   // two starts: with all candidate effects removed, and with no effect removed. The more likely result is
   // used.
-  const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1), min_eigenvalue);
+  const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1), rank_limit);
   const double by_effects = search_from(start, true);
   const bool drifts =
       std::any_of(noise_.begin(), noise_.end(), [](const auto& each) { return each.drifts(); });
@@ -327,23 +326,19 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const Eigen::Index width = as_index(places.size()) + 1;
   const auto part_of = [this](std::size_t f, double time) { return held_out_part(*flight(f).samples, time); };
   std::vector<Eigen::MatrixXd> white(binned_.bins.size());
-  // Sums of the parts in adjacent columns: whitened rows first, then unwhitened rows.
-  const auto information = share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+  // Whitened rows of each part first, then unwhitened ones.
+  const auto sums = share_.sum_of_each_flight<PartialSums>([&](std::size_t f) {
     Eigen::MatrixXd all(binned_.columns[f].rows(), width);
     all << binned_.columns[f](Eigen::all, places), binned_.residuals[f];
     white[f] = whitened(all, binned_.bins[f], noise_[f], 0);
-    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(width, 2 * width * as_index(held_out_parts));
+    PartialSums own(2 * held_out_parts, width);
     for (Eigen::Index i = 0; i < all.rows(); ++i) {
       const std::size_t part = part_of(f, binned_.bins[f].time()[static_cast<std::size_t>(i)]);
-      for (const Eigen::MatrixXd* const each : {&white[f], &all}) {
-        if (each == &all && flight(f).reference != 0) continue;  // refit weighs each reference by its noise
-        const std::size_t place = part + (each == &all ? held_out_parts : 0);
-        sums.middleCols(width * as_index(place), width)
-            .selfadjointView<Eigen::Lower>()
-            .rankUpdate(each->row(i).transpose());
-      }
+      own.add(part, white[f].row(i).transpose());
+      // A refit weighs each reference by its noise.
+      if (flight(f).reference == 0) own.add(part + held_out_parts, all.row(i).transpose());
     }
-    return sums;
+    return own;
   });
   // Coefficients that the other parts hardly constrain stay near their usual size: a prior as in the search.
   Eigen::VectorXd precision = Eigen::VectorXd::Zero(width - 1);
@@ -358,19 +353,17 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   // Prediction of each part from a fit to the others.
   const auto rows = static_cast<double>(scores_->row_count);
   const auto estimates_from = [&](std::size_t first) {
-    std::vector<Eigen::MatrixXd> parts;
+    const auto begin = sums.products.begin() + static_cast<std::ptrdiff_t>(first);
+    const std::vector<Eigen::MatrixXd> parts(begin, begin + static_cast<std::ptrdiff_t>(held_out_parts));
     Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(width, width);
-    for (std::size_t part = 0; part < held_out_parts; ++part) {
-      const Eigen::MatrixXd lower = information.middleCols(width * as_index(first + part), width);
-      whole += parts.emplace_back(lower.selfadjointView<Eigen::Lower>());
-    }
+    for (const Eigen::MatrixXd& part : parts) whole += part;
     std::vector<Eigen::VectorXd> estimates;
     for (const Eigen::MatrixXd& part : parts) {
       const Eigen::MatrixXd rest = whole - part;
       Eigen::MatrixXd normal = rest.topLeftCorner(width - 1, width - 1);
       // Unit: variance of the rows.
       normal.diagonal() += rest(width - 1, width - 1) / rows * precision;
-      estimates.push_back(pseudo_solution(normal, rest.col(width - 1).head(width - 1), min_eigenvalue));
+      estimates.push_back(pseudo_solution(normal, rest.col(width - 1).head(width - 1), rank_limit));
     }
     return estimates;
   };

@@ -7,9 +7,9 @@
 
 #include "campaign/binned_flights.hpp"
 #include "campaign/columns.hpp"
+#include "campaign/whitened.hpp"
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/search.hpp"
-#include "diagnose/whitened_system.hpp"
 #include "numerics/noise_model.hpp"
 
 namespace pcor::internal {

@@ -7,7 +7,7 @@
 
 #include <pcor/regimes/regimes.hpp>
 #include "campaign/columns.hpp"
-#include "diagnose/whitened_system.hpp"
+#include "campaign/whitened.hpp"
 
 namespace pcor::internal {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pcor/model_io/model_definition.hpp>
-#include "diagnose/whitened_system.hpp"
+#include "campaign/whitened.hpp"
 
 namespace pcor::internal {
 

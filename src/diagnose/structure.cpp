@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "diagnose/whitened_system.hpp"
+#include "campaign/whitened.hpp"
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
@@ -133,7 +133,7 @@ std::vector<Eigen::VectorXd> StructureTest::left_by(const std::vector<Eigen::Mat
     part.rightCols(1) = all[f].transpose() * flights.left[f];
     return part;
   });
-  const Eigen::VectorXd solution = pseudo_solution(normal.leftCols(width), normal.rightCols(1), 1e-11);
+  const Eigen::VectorXd solution = pseudo_solution(normal.leftCols(width), normal.rightCols(1), rank_limit);
   std::vector<Eigen::VectorXd> left = flights.left;
   for (std::size_t f = 0; f < left.size(); ++f) {
     if (share_.owns(f)) left[f] -= all[f] * solution;

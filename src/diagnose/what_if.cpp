@@ -193,12 +193,11 @@ std::vector<double> lower_triangle(const Eigen::MatrixXd& matrix) {
   return values;
 }
 
-WhatIfSums as_sums(const SumOfProducts& sum) { return {lower_triangle(sum.products), sum.count}; }
-
-std::vector<WhatIfSums> as_sums(const std::vector<SumOfProducts>& all) {
-  std::vector<WhatIfSums> sums;
-  for (const SumOfProducts& each : all) sums.push_back(as_sums(each));
-  return sums;
+std::vector<WhatIfSums> as_sums(const PartialSums& sums) {
+  std::vector<WhatIfSums> result;
+  for (std::size_t part = 0; part < sums.counts.size(); ++part)
+    result.push_back({lower_triangle(sums.products[part]), sums.counts[part]});
+  return result;
 }
 
 /// All columns of a flight by records, in double precision.
@@ -396,8 +395,11 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   for (const WhatIfFit::Weights& each : fit.weights())
     panel.weights.push_back({each.found, as_sums(each.parts), lower_triangle(each.score_covariance)});
   panel.alike = as_sums(fit.alike());
-  panel.outliers = as_sums(fit.outliers());
-  if (fit.held_out().count > 0.0) panel.held_out = as_sums(fit.held_out());
+  panel.outliers = std::move(panel.alike.back());
+  panel.alike.pop_back();
+  for (WhatIfSums& sums : as_sums(fit.held_out())) {
+    if (sums.samples > 0.0) panel.held_out = std::move(sums);
+  }
   const auto is_shown = [&](std::size_t file) {
     const auto& wanted_flights = options.diagnose.series_of;
     return !wanted_flights || file >= flights.size() ||

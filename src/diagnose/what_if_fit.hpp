@@ -6,11 +6,10 @@
 #include <vector>
 
 #include <pcor/report/report.hpp>
-#include "campaign/binned_flights.hpp"
+#include "campaign/whitened.hpp"
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/flown_regimes.hpp"
 #include "diagnose/search.hpp"
-#include "numerics/noise_model.hpp"
 
 namespace pcor::internal {
 
@@ -22,22 +21,9 @@ using ResidualAt = std::function<std::vector<double>(const Eigen::VectorXd& valu
 using ResidualWith =
     std::function<ResidualAt(const FlightColumns& flight, const std::vector<std::size_t>& groups)>;
 
-/// Products of (columns, residual) with themselves, summed over `count` samples.
-struct SumOfProducts {
-  Eigen::MatrixXd products{};
-  double count = 0.0;
-
-  SumOfProducts& operator+=(const SumOfProducts& other);
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(products, count);
-  }
-};
-
-/// Least-squares problem of a what-if: columns and residual of some flights in units of the noise, with the
-/// weights of a refit with all effects that were found, unless stated otherwise. A process of a team has the
-/// columns of its flights only; every process has the sums.
+/// What a what-if fits: columns and residual of some flights in units of the noise, weighted as a refit with
+/// the effects that were found weights them; unless said otherwise with all of these. A member of a team has
+/// the columns of its own flights, and all have the sums.
 class WhatIfFit {
  public:
   /// @param others samples that are not fitted
@@ -60,16 +46,16 @@ class WhatIfFit {
   /// Sums over the parts of the flights with the weights of a refit with some of the effects that were found.
   struct Weights {
     std::vector<std::size_t> found;
-    std::vector<SumOfProducts> parts;
-    Eigen::MatrixXd
-        score_covariance;  ///< covariance of the products of columns and residual due to the noise
+    PartialSums parts;
+    Eigen::MatrixXd score_covariance;  ///< of the columns' products with the residual, by the noise
   };
 
   /// The first element is without findings, the last with all findings.
   const std::vector<Weights>& weights() const { return weights_; }
-  const std::vector<SumOfProducts>& alike() const { return alike_; }
-  const SumOfProducts& outliers() const { return outliers_; }
-  const SumOfProducts& held_out() const { return held_out_; }
+  /// Of the records of the first reference, alike: the same parts, and then the outliers.
+  const PartialSums& alike() const { return alike_; }
+  /// Of the records that take no part; empty without any.
+  const PartialSums& held_out() const { return held_out_; }
 
   /// Information matrix of all columns.
   Eigen::MatrixXd information() const;
@@ -92,18 +78,12 @@ class WhatIfFit {
 
  private:
   std::vector<Eigen::Index> free_columns(const std::vector<std::size_t>& groups) const;
-  void settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualWith& residual_with);
-  /// Gives the coefficients with the groups that were found.
-  /// @param residual_of gives the residual of an own flight with these
-  void find_sums(const std::vector<std::size_t>& found, bool is_robust,
-                 const std::function<const ResidualAt&(std::size_t flight)>& residual_of);
+  void find_sums(const std::vector<std::size_t>& found, bool is_robust, const ResidualWith& residual_with);
   std::vector<double> residual_for(const FlightColumns& flight, const Eigen::VectorXd& values,
                                    const ResidualAt& residual_at) const;
-  Eigen::MatrixXd score_covariance(std::size_t flight, const Eigen::MatrixXd& rows,
-                                   const NoiseModel& noise) const;
-  std::vector<NoiseModel> weights_after(const Eigen::VectorXd& values, std::vector<NoiseModel> noise) const;
-  std::vector<NoiseModel> noise_after(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& free,
-                                      bool drifts) const;
+  std::vector<Eigen::VectorXd> weights_at(const Eigen::VectorXd& values) const;
+  WhitenedSystem least_squares(const std::vector<Eigen::Index>& free, bool is_robust, Eigen::VectorXd& values,
+                               std::vector<Eigen::VectorXd>& weights) const;
   void sum_records();
   void sum_held_out();
 
@@ -118,11 +98,12 @@ class WhatIfFit {
   BinnedFlights binned_{};
   std::vector<FlownRegime> regimes_{};
   std::vector<Weights> weights_{};
-  SumOfProducts whole_{};       // with the weights of a refit
-  SumOfProducts with_noise_{};  // divided by the noise, without its autocorrelation
-  std::vector<SumOfProducts> alike_{};
-  SumOfProducts outliers_{};
-  SumOfProducts held_out_{};
+  // Products of (columns, residual): as a refit weighs the rows, and in units of the noise without its memory
+  Eigen::MatrixXd least_squares_{};
+  Eigen::MatrixXd information_{};
+  double row_count_ = 0.0;
+  PartialSums alike_{};
+  PartialSums held_out_{};
 };
 
 }  // namespace pcor::internal

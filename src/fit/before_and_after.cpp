@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/phrasing.hpp"
+#include "fit/loss_function.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/packed_residuals.hpp"
@@ -33,6 +34,8 @@ namespace {
 
 /// A flight before and after the fit.
 struct Compared {
+  FitSums sums{};
+  OutlierRun longest_run{};
   std::vector<FlightFit> parts{};  ///< the part that was fitted, and the part that was held out
   std::vector<double> fitted_blocks{};
   std::size_t held_out_blocks = 0;
@@ -43,12 +46,65 @@ struct Compared {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(parts, fitted_blocks, held_out_blocks, held_out_derivatives, flaps_out, notes, flown);
+    archive(sums, longest_run, parts, fitted_blocks, held_out_blocks, held_out_derivatives, flaps_out, notes,
+            flown);
   }
 };
 
+/// @param before residual of each sample with the coefficients of the files
+/// @param after with those of the fit
+FitSums sums_of(const FitFlight& fit, const FitTask& task, const std::vector<double>& before,
+                const std::vector<double>& after, const NoiseFloor& noise) {
+  // Delta-p of the reference from its unchanged file, so that R2 does not grow with a fitted reference.
+  const std::vector<double> wanted = fit.residuals().target_defect(task.start.data());
+  FitSums sums;
+  sums.samples = fit.kept().size();
+  std::vector<double> was;
+  std::vector<double> is;
+  for (std::size_t i = 0; i < sums.samples; ++i) {
+    const std::size_t sample = fit.kept()[i];
+    const double relative = after[sample] / fit.static_pressure(i);
+    was.push_back(before[sample]);
+    is.push_back(after[sample]);
+    sums.squares_before += was[i] * was[i];
+    sums.squares += is[i] * is[i];
+    sums.relative_squares += relative * relative;
+    sums.wanted += wanted[sample];
+    sums.wanted_squares += wanted[sample] * wanted[sample];
+    sums.noise_squares += noise.local_rms[sample] * noise.local_rms[sample];
+  }
+  const auto bulk_squares = [](const std::vector<double>& residual) {
+    const double deviation = robust_standard_deviation(residual);
+    return residual.empty() ? 0.0 : deviation * deviation * static_cast<double>(residual.size());
+  };
+  sums.bulk_squares_before = bulk_squares(was);
+  sums.bulk_squares = bulk_squares(is);
+  return sums;
+}
+
+OutlierRun longest_run_of(const FitFlight& fit, const std::vector<double>& residual,
+                          const NoiseFloor& noise) {
+  const FlightSamples& samples = fit.residuals().samples();
+  OutlierRun longest{samples.name};
+  OutlierRun now;
+  for (const std::size_t i : fit.kept()) {
+    const bool goes_on =
+        now.samples > 0 && residual[i] * now.mean > 0.0 && samples.time[i] - now.end < 1.5 * samples.step;
+    if (!(std::abs(residual[i]) > tukey_width * noise.local_rms[i])) {
+      now = {};
+      continue;
+    }
+    if (!goes_on) now = {samples.name, 0, samples.time[i]};
+    now.end = samples.time[i];
+    now.mean += (residual[i] - now.mean) / static_cast<double>(++now.samples);
+    if (now.duration() > longest.duration()) longest = now;
+  }
+  return longest;
+}
+
+/// @param fitted flight that took part with the first reference; null for the others
 Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::VectorXd& values,
-                  const std::vector<std::size_t>& wanted) {
+                  const std::vector<std::size_t>& wanted, const FitFlight* fitted = nullptr) {
   const Residuals& residuals = rows.residuals();
   const FlightSamples& samples = residuals.samples();
   const std::vector<double> before = residuals.values(own_parameters(residuals, task, task.start).data());
@@ -75,6 +131,13 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
   };
   add(rows.used(), false);
   add(rows.held_out(), true);
+  if (fitted == nullptr) return result;
+  result.sums = sums_of(*fitted, task, before, after, noise);
+  result.longest_run = longest_run_of(*fitted, after, noise);
+  result.flaps_out = flaps_out(residuals, values.data());
+  for (const std::string& note : samples.notes) result.notes.emplace_back(samples.name, note);
+  for (const Interval& interval : samples.intervals)
+    result.flown.set(static_cast<std::size_t>(interval.regime));
   return result;
 }
 
@@ -91,16 +154,13 @@ std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& value
   });
 }
 
-/// Flights in the fit with the corrections of `more`, and held-out flights.
-template <class More>
-std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values, const More& more) {
+/// Flights in the fit, and held-out flights.
+std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values, bool is_first_reference) {
   const FitTask& task = flights.task();
   const std::vector<std::size_t>& wanted = flights.setup().wanted;
   std::vector<Compared> each = flights.of_each(
-      [&](std::size_t, FitFlight& fit) {
-        Compared one = compared(fit.linear_rows(), task, values, wanted);
-        more(fit.residuals(), one);
-        return one;
+      [&](std::size_t, const FitFlight& fit) {
+        return compared(fit.linear_rows(), task, values, wanted, is_first_reference ? &fit : nullptr);
       },
       values);
   for (Compared& one : held_out(task, values, wanted)) each.push_back(std::move(one));
@@ -109,32 +169,30 @@ std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& value
 
 }  // namespace
 
-double BeforeAndAfter::noise_rms(std::size_t samples) const {
-  double squares = 0.0;
-  for (const FlightFit& flight : flights) {
-    if (!flight.holdout)
-      squares += flight.after.noise_rms * flight.after.noise_rms * static_cast<double>(flight.after.samples);
-  }
-  return std::sqrt(squares / static_cast<double>(samples));
+void FitSums::add(const FitSums& other) {
+  samples += other.samples;
+  squares_before += other.squares_before;
+  bulk_squares_before += other.bulk_squares_before;
+  squares += other.squares;
+  bulk_squares += other.bulk_squares;
+  relative_squares += other.relative_squares;
+  wanted += other.wanted;
+  wanted_squares += other.wanted_squares;
+  noise_squares += other.noise_squares;
 }
 
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values,
                                 const Eigen::MatrixXd& covariance, double left) {
-  const std::vector<Compared> each =
-      compared(flights, values, [&](const Residuals& residuals, Compared& one) {
-        const FlightSamples& samples = residuals.samples();
-        one.flaps_out = flaps_out(residuals, values.data());
-        for (const std::string& note : samples.notes) one.notes.emplace_back(samples.name, note);
-        for (const Interval& interval : samples.intervals)
-          one.flown.set(static_cast<std::size_t>(interval.regime));
-      });
+  const std::vector<Compared> each = compared(flights, values, true);
+  BeforeAndAfter all;
   FittedMeans fitted;
   ResidualSums with_flaps;
   for (const Compared& one : each) {
     fitted.add(one.fitted_blocks);
     with_flaps.add(one.flaps_out);
+    all.sums.add(one.sums);
+    if (one.longest_run.duration() > all.longest_run.duration()) all.longest_run = one.longest_run;
   }
-  BeforeAndAfter all;
   all.flaps_out = with_flaps.statistics();
   for (const Compared& one : each) {
     for (FlightFit part : one.parts) {
@@ -154,7 +212,7 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
   }
   for (std::string& note : notes_of_flights(notes)) all.notes.push_back(std::move(note));
   for (const std::unique_ptr<FitFlights>& with : flights.further()) {
-    for (const Compared& one : compared(*with, values, [](const Residuals&, Compared&) {}))
+    for (const Compared& one : compared(*with, values, false))
       all.further.insert(all.further.end(), one.parts.begin(), one.parts.end());
   }
   return all;

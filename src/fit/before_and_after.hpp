@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -8,16 +10,58 @@
 
 namespace pcor::internal {
 
+/// Sums over the fitted samples of the first reference.
+struct FitSums {
+  std::size_t samples = 0;
+  double squares_before = 0.0;       ///< residuals with the coefficients of the files, hPa^2
+  double bulk_squares_before = 0.0;  ///< robust deviation with these, hPa^2
+  double squares = 0.0;
+  double bulk_squares = 0.0;
+  double relative_squares = 0.0;  ///< residual over static pressure
+  double wanted = 0.0;            ///< delta-p implied by the reference, hPa
+  double wanted_squares = 0.0;
+  double noise_squares = 0.0;  ///< noise floor, hPa^2
+
+  void add(const FitSums& other);
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(samples, squares_before, bulk_squares_before, squares, bulk_squares, relative_squares, wanted,
+            wanted_squares, noise_squares);
+  }
+
+  double rms_of(double sum) const { return std::sqrt(sum / static_cast<double>(samples)); }
+  /// R^2 of a model with that sum of squared residuals.
+  double r_squared(double of_squares) const {
+    return 1.0 - of_squares / (wanted_squares - wanted * wanted / static_cast<double>(samples));
+  }
+};
+
+/// Consecutive samples on one side of the noise.
+struct OutlierRun {
+  std::string flight{};
+  std::size_t samples = 0;
+  double begin = 0.0;  ///< s since 1970 UTC
+  double end = 0.0;
+  double mean = 0.0;  ///< hPa
+
+  double duration() const { return end - begin; }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(flight, samples, begin, end, mean);
+  }
+};
+
 /// The flights with the coefficients of the files and with those of the fit.
 struct BeforeAndAfter {
+  FitSums sums{};
+  OutlierRun longest_run{};          ///< of fitted samples with the first reference
   std::vector<FlightFit> flights{};  ///< the parts that were fitted and those that were held out
   std::vector<FlightFit> further{};  ///< results with each further reference
   std::vector<std::string> notes{};  ///< about fitted flights
   RegimeSet flown{};                 ///< regimes in the fitted flights
   Statistics flaps_out{};            ///< fitted flights
-
-  /// Unit hPa, over all fitted samples.
-  double noise_rms(std::size_t samples) const;
 };
 
 /// @param covariance of the fitted parameters, without the uncertainty of the reference, which is common to

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include <pcor/numerics/noise.hpp>
 #include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
@@ -18,38 +17,13 @@ constexpr std::size_t min_flights = 8;  // minimum number for omitting whole fli
 constexpr double parts = 20.0;          // otherwise number of parts of all flights together
 constexpr double min_part = 120.0;      // s
 
-/// Minimum number of bins for variance and correlation of the influence from the data; with fewer bins,
-/// normal innovations are assumed.
-constexpr Eigen::Index enough_bins = 200;
-
-/// Means of the loss over normal innovations: of rho' + 2 s rho'' and of the square of the influence.
-struct NormalLoss {
-  double slope = 0.0;
-  double square = 0.0;
-
-  NormalLoss(const ScaledLoss& loss, double deviation) {
-    constexpr double step = 0.05;
-    double weight = 0.0;
-    for (double z = -6.0; z <= 6.0; z += step) {
-      const double density = std::exp(-0.5 * z * z);
-      const double innovation = deviation * z;
-      const std::array<double, 3> rho = loss(innovation);
-      weight += density;
-      slope += density * (rho[1] + 2.0 * innovation * innovation * rho[2]);
-      square += density * rho[1] * rho[1] * innovation * innovation;
-    }
-    slope /= weight;
-    square /= weight;
-  }
-};
-
 /// Flights, or parts of flights, omitted one at a time: blocks are numbered per flight, after those of the
 /// flights before it.
 class Blocks {
  public:
   explicit Blocks(FitFlights& flights) : begin_(flights.count(), 0.0), count_(flights.count(), 1) {
-    const auto spans = flights.of_each([](std::size_t, FitFlight& fit) {
-      const std::vector<double>& time = fit.bins().time();
+    const auto spans = flights.share().of_each_flight<std::pair<double, double>>([&](std::size_t flight) {
+      const std::vector<double>& time = flights.bins(flight).time();
       return time.empty() ? std::pair(0.0, 0.0) : std::pair(time.front(), time.back() - time.front());
     });
     double all = 0.0;
@@ -87,20 +61,12 @@ struct BlockSums {
   }
 };
 
-/// Sums over the bins of one set of equations, of a flight or of all.
-struct Sums {
+/// Sums over the bins of a flight with one reference, for one set of equations.
+struct FlightScores {
   std::vector<BlockSums> blocks;
-  Eigen::MatrixXd covariance;  ///< scores of all equations by the noise; nonzero for the last ones only
+  Eigen::MatrixXd covariance;  ///< scores of all equations by the noise; zero but for the last ones
   Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
-  Eigen::MatrixXd
-      doubt;  ///< derivatives by the uncertainties of the reference, each by one standard uncertainty
-
-  /// Adds sums without blocks.
-  void add(const Sums& other) {
-    covariance += other.covariance;
-    misfit += other.misfit;
-    doubt += other.doubt;
-  }
+  Eigen::MatrixXd doubt;       ///< derivatives by the errors of the reference, in standard uncertainties
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -142,124 +108,6 @@ Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector
   return all;
 }
 
-/// Common input of the sums over all references and equations.
-struct ScoreContext {
-  const std::vector<std::size_t>& all;  // the parameters of all equations and those that are held
-  Eigen::Index fitted;                  // number of parameters in equations
-  const Blocks& blocks;
-  const Misfit& misfit;
-  const MisfitBasis& misfit_columns;
-  const FitEquations* last;
-  std::vector<std::string> doubts;
-  std::vector<std::vector<StageScores>> stages;  // each flight with the first reference
-};
-
-/// Sums of one reference. @param first parameter of the equations among all
-Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index first, ScoreContext& scores) {
-  const std::vector<std::size_t>& all = scores.all;
-  const bool is_first_reference = &flights == equations.flights;
-  const Solution& solution = equations.solution;
-  const ScaledLoss loss(flights.task().options.loss, solution.deviation);
-  const NormalLoss normal(loss, solution.deviation);
-  const Eigen::Index size = as_index(all.size());
-  const Eigen::Index own = as_index(equations.parameters.size());
-  const bool is_last = &equations == scores.last;
-  std::vector<Eigen::Index> doubt_places;  // positions of this reference's uncertainties among all
-  for (const std::string& name : flights.doubt().names())
-    doubt_places.push_back(std::find(scores.doubts.begin(), scores.doubts.end(), name) -
-                           scores.doubts.begin());
-  const BlockSums nothing{Eigen::MatrixXd::Zero(own, size), Eigen::VectorXd::Zero(own)};
-  const auto sums_of_flight = [&](std::size_t number, FitFlight& fit) {
-    Sums sums;
-    sums.blocks.assign(scores.blocks.count(number), nothing);
-    sums.covariance = Eigen::MatrixXd::Zero(scores.fitted, scores.fitted);
-    sums.misfit = Eigen::MatrixXd::Zero(own, MisfitBasis::count());
-    sums.doubt = Eigen::MatrixXd::Zero(own, as_index(scores.doubts.size()));
-    if (fit.bins().size() == 0) return sums;
-    const Eigen::VectorXd innovations = fit.white_rows(solution.values, loss).rightCols(1);
-    const Eigen::Index count = innovations.size();
-    std::vector<double> influence(static_cast<std::size_t>(count));
-    Eigen::VectorXd weight(count);
-    double slope = 0.0;  // derivative of the loss, mean over the bins
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const double innovation = innovations[i];
-      const std::array<double, 3> rho = loss(innovation);
-      influence[static_cast<std::size_t>(i)] = rho[1] * innovation;
-      weight[i] = rho[1];
-      slope += (rho[1] + 2.0 * innovation * innovation * rho[2]) / static_cast<double>(count);
-    }
-    if (count < enough_bins) slope = normal.slope;
-    const Eigen::MatrixXd columns = fit.without_offsets(fit.white_columns(solution.values, all), weight);
-    const Eigen::MatrixXd left = columns.middleCols(first, own);
-    const Eigen::MatrixXd weighted = fit.is_whitened() ? left : fit.weighted(left, weight);
-    if (is_last) {
-      const Eigen::MatrixXd joint =
-          joined(is_first_reference ? scores.stages[number] : std::vector<StageScores>(), fit.bins().time(),
-                 weighted, scores.fitted);
-      if (fit.is_whitened()) {
-        const std::vector<Segment>& segments = fit.bins().segments();
-        const Autoregression memory = count < enough_bins ? Autoregression{{}, std::sqrt(normal.square)}
-                                                          : autoregression(influence, segments, infinity);
-        sums.covariance = covariance_of_sums(memory, joint, segments);
-      } else {
-        sums.covariance = fit.covariance_of_sums(joint);
-      }
-      if (is_first_reference) {
-        const Eigen::VectorXd by_zero = joint.colwise().sum();
-        sums.covariance += scores.misfit.between_flights * by_zero * by_zero.transpose();
-      }
-    } else if (is_first_reference) {
-      scores.stages[number].push_back({first, fit.bins().time(), weighted});
-    }
-    if (is_first_reference && !fit.is_whitened())
-      sums.misfit = weighted.transpose() * scores.misfit_columns(fit);
-    if (!flights.doubt().empty()) {
-      const Eigen::MatrixXd doubted = fit.white_doubts(flights.doubt(), solution.values);
-      sums.doubt(Eigen::all, doubt_places) = slope * left.transpose() * doubted;
-    }
-    for (Eigen::Index i = 0; i < count; ++i) {
-      BlockSums& block = sums.blocks[scores.blocks(number, fit.bins().time()[static_cast<std::size_t>(i)])];
-      block.derivatives += slope * left.row(i).transpose() * columns.row(i);
-      block.score += influence[static_cast<std::size_t>(i)] * left.row(i).transpose();
-    }
-    return sums;
-  };
-  Sums whole;
-  whole.covariance = Eigen::MatrixXd::Zero(scores.fitted, scores.fitted);
-  whole.misfit = Eigen::MatrixXd::Zero(own, MisfitBasis::count());
-  whole.doubt = Eigen::MatrixXd::Zero(own, as_index(scores.doubts.size()));
-  for (const Sums& one : flights.of_each(sums_of_flight, solution.values)) {
-    whole.add(one);
-    whole.blocks.insert(whole.blocks.end(), one.blocks.begin(), one.blocks.end());
-  }
-  return whole;
-}
-
-/// Sums over all references; innovations of different references are independent.
-Sums sums_of(const FitEquations& equations, Eigen::Index first, ScoreContext& scores) {
-  Sums whole;
-  for (FitFlights* const flights : equations.flights->joint()) {
-    const Sums more = sums_of(*flights, equations, first, scores);
-    if (whole.blocks.empty()) {
-      whole = more;
-      continue;
-    }
-    whole.add(more);
-    for (std::size_t b = 0; b < whole.blocks.size(); ++b) {
-      whole.blocks[b].derivatives += more.blocks[b].derivatives;
-      whole.blocks[b].score += more.blocks[b].score;
-    }
-  }
-  return whole;
-}
-
-double information_of(FitFlights& flights) {
-  double sum = 0.0;
-  for (const double part : flights.of_each([](std::size_t, FitFlight& fit) { return fit.information(); }))
-    sum += part;
-  return sum;
-}
-
 /// Inverse of a regular matrix with unknowns of different orders of magnitude.
 Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd scale = matrix.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -269,59 +117,114 @@ Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
-FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const std::vector<std::size_t>& held,
-                             const Misfit& misfit, const MisfitBasis& misfit_columns) {
+FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Misfit& misfit) {
   const FitEquations& last = equations.back();
-  const FitTask& task = last.flights->task();
-  std::vector<std::size_t> all;
-  for (const FitEquations& each : equations)
-    all.insert(all.end(), each.parameters.begin(), each.parameters.end());
-  const Eigen::Index fitted = as_index(all.size());
-  const std::vector<std::size_t> parameters = all;
-  all.insert(all.end(), held.begin(), held.end());
-  const Eigen::Index size = as_index(all.size());
-
-  const Blocks blocks(*last.flights);
+  FitFlights& main = *last.flights;
+  const FitTask& task = main.task();
+  const std::vector<std::size_t>& parameters = main.setup().wanted;
+  const Eigen::Index fitted = as_index(parameters.size());
+  const Eigen::Index size = fitted + as_index(main.setup().held.size());
+  const Blocks blocks(main);
+  const std::vector<std::string> doubts = doubts_of(main);
   std::vector<BlockSums> left_out(blocks.count(),
                                   {Eigen::MatrixXd::Zero(fitted, size), Eigen::VectorXd::Zero(fitted)});
-  Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
   Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitBasis::count());
-  ScoreContext scores{all, fitted, blocks, misfit, misfit_columns, &last, doubts_of(*last.flights), {}};
-  scores.stages.resize(last.flights->count());
-  Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(scores.doubts.size()));
+  Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(doubts.size()));
+  std::vector<std::vector<StageScores>> stages(main.count());  // of each own flight with the first reference
   Eigen::Index first = 0;
   for (const FitEquations& each : equations) {
     const Eigen::Index own = as_index(each.parameters.size());
-    if (own == 0 && &each != &last) continue;
-    const Sums sums = sums_of(each, first, scores);
-    by_misfit.middleRows(first, own) = sums.misfit;
-    by_doubt.middleRows(first, own) = sums.doubt;
-    score += sums.covariance;
-    for (std::size_t b = 0; b < left_out.size(); ++b) {
-      derivatives.middleRows(first, own) += sums.blocks[b].derivatives;
-      left_out[b].derivatives.middleRows(first, own) = sums.blocks[b].derivatives;
-      left_out[b].score.segment(first, own) = sums.blocks[b].score;
+    const Eigen::VectorXd& values = each.solution.values;
+    const ScaledLoss loss(task.options.loss, each.solution.deviation);
+    for (FitFlights* const flights : each.flights->joint()) {
+      const bool is_first_reference = flights == each.flights;
+      const std::vector<Eigen::MatrixXd> states =
+          is_first_reference ? binned_states(*flights) : std::vector<Eigen::MatrixXd>();
+      std::vector<Eigen::MatrixXd> doubted;
+      std::vector<Eigen::Index> doubt_places;  // of the uncertainties of this reference among all
+      if (!flights->doubt().empty()) {
+        doubted = flights->of_own([&](std::size_t flight, const FitFlight& fit) {
+          return flights->weighted(flight, fit.by_doubts(flights->bins(flight), flights->doubt(), values));
+        });
+      }
+      for (const std::string& name : flights->doubt().names())
+        doubt_places.push_back(std::find(doubts.begin(), doubts.end(), name) - doubts.begin());
+      const auto scores_of = [&](std::size_t flight) {
+        FlightScores scores{{},
+                            Eigen::MatrixXd::Zero(fitted, fitted),
+                            Eigen::MatrixXd::Zero(own, by_misfit.cols()),
+                            Eigen::MatrixXd::Zero(own, by_doubt.cols())};
+        scores.blocks.assign(blocks.count(flight),
+                             {Eigen::MatrixXd::Zero(own, size), Eigen::VectorXd::Zero(own)});
+        const std::vector<double>& time = flights->bins(flight).time();
+        if (time.empty()) return scores;
+        const FitRows rows = flights->rows(flight, values, loss);
+        const Eigen::VectorXd weight = loss.weights(rows.innovations);
+        double slope = 0.0;  // derivative of the influence, mean over the bins
+        for (const double innovation : rows.innovations) {
+          const std::array<double, 3> rho = loss(innovation);
+          slope += (rho[1] + 2.0 * innovation * innovation * rho[2]) / static_cast<double>(time.size());
+        }
+        const Eigen::MatrixXd columns = rows.without_offsets(rows.columns, weight);
+        const Eigen::MatrixXd left = columns.middleCols(first, own);
+        const Eigen::MatrixXd weighted = flights->weighted(flight, weight.asDiagonal() * left);
+        if (&each == &last) {
+          const Eigen::MatrixXd joint = joined(
+              is_first_reference ? stages[flight] : std::vector<StageScores>(), time, weighted, fitted);
+          scores.covariance = noise_covariance(joint, flights->bins(flight), flights->noise(flight), 0);
+          if (is_first_reference) {
+            const Eigen::VectorXd by_zero = joint.colwise().sum();
+            scores.covariance += misfit.between_flights * by_zero * by_zero.transpose();
+          }
+        } else {
+          stages[flight].push_back({first, time, weighted});
+        }
+        if (is_first_reference) scores.misfit = weighted.transpose() * misfit.bumps(states[flight]);
+        if (!doubted.empty())
+          scores.doubt(Eigen::all, doubt_places) = slope * left.transpose() * doubted[flight];
+        for (Eigen::Index i = 0; i < left.rows(); ++i) {
+          BlockSums& block = scores.blocks[blocks(flight, time[static_cast<std::size_t>(i)])];
+          block.derivatives += slope * left.row(i).transpose() * columns.row(i);
+          block.score += weight[i] * rows.innovations[i] * left.row(i).transpose();
+        }
+        return scores;
+      };
+      auto block = left_out.begin();
+      for (const FlightScores& flight :
+           main.share().of_each_flight<FlightScores>(scores_of, digest_of(values))) {
+        score += flight.covariance;
+        by_misfit.middleRows(first, own) += flight.misfit;
+        by_doubt.middleRows(first, own) += flight.doubt;
+        for (const BlockSums& sums : flight.blocks) {
+          block->derivatives.middleRows(first, own) += sums.derivatives;
+          block++->score.segment(first, own) += sums.score;
+        }
+      }
     }
     first += own;
   }
+  Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
+  for (const BlockSums& block : left_out) derivatives += block.derivatives;
   const PriorRows prior = prior_rows(task, parameters);
   const double unit = last.solution.deviation * last.solution.deviation;
   derivatives.leftCols(fitted) += unit * prior.rows.transpose() * prior.rows;
   score += unit * unit * prior.rows.transpose() * prior.inflation.asDiagonal() * prior.rows;
 
   FitCovariance found;
-  found.information = information_of(*last.flights);
+  for (const double part : main.share().of_each_flight<double>(
+           [&](std::size_t flight) { return information_about_mean(main.bins(flight), main.noise(flight)); }))
+    found.information += part;
   found.blocks = left_out.size();
   found.matrix = Eigen::MatrixXd::Zero(size, size);
   found.by_noise = found.by_flights = Eigen::MatrixXd::Zero(fitted, fitted);
   found.jackknife = Eigen::VectorXd::Constant(fitted, nan);
-  const Eigen::MatrixXd doubt = task.doubt(held, held);
+  const Eigen::MatrixXd doubt = task.doubt(main.setup().held, main.setup().held);
   found.matrix.bottomRightCorner(size - fitted, size - fitted) = doubt;
   // Parameters at a bound have no variance.
   std::vector<Eigen::Index> varying;
   for (Eigen::Index k = 0; k < fitted; ++k) {
-    if (!last.solution.at_bound[all[static_cast<std::size_t>(k)]]) varying.push_back(k);
+    if (!last.solution.at_bound[parameters[static_cast<std::size_t>(k)]]) varying.push_back(k);
   }
   if (varying.empty()) return found;
   const Eigen::MatrixXd inverse = scaled_inverse(derivatives(varying, varying));
@@ -336,7 +239,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
   found.by_flights(varying, varying) = own;
   const Eigen::MatrixXd by_one = -inverse * by_doubt(varying, Eigen::all);
   own += by_one * by_one.transpose();
-  found.doubts = scores.doubts;
+  found.doubts = doubts;
   found.by_doubt = Eigen::MatrixXd::Zero(fitted, by_one.cols());
   found.by_doubt(varying, Eigen::all) = by_one;
   const Eigen::MatrixXd across = carried * doubt;

@@ -10,7 +10,8 @@
 
 namespace pcor::internal {
 
-/// Equations of a fit: some parameters from the samples of some flights, at the result of their stage.
+/// Equations of a fit: some of the wanted parameters from the samples of some flights, at the result of their
+/// stage.
 struct FitEquations {
   FitFlights* flights;
   std::vector<std::size_t> parameters;
@@ -43,13 +44,10 @@ struct FitCovariance {
 /// residual. The derivatives of all equations by all parameters are A, the covariance of their scores is B,
 /// and the covariance of the parameters is A^-1 B A^-T (Newey and McFadden 1994, Handbook of Econometrics 4,
 /// section 6). A score is the sum of weighted derivative times influence (rho' r). Its covariance comes from
-/// the noise (`noise_covariance`) and the misfit of the law; for references of many samples it comes from an
-/// autoregression of the influence. Errors of fixed parameters propagate to the others.
+/// the noise (`noise_covariance`) and the misfit of the law. Errors of fixed parameters propagate to the
+/// others.
 ///
-/// @param misfit misfit of the law, with its columns
-/// @param equations the last ones include all samples @param held fixed parameters with an error stated in
-/// the files
-FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const std::vector<std::size_t>& held,
-                             const Misfit& misfit, const MisfitBasis& misfit_columns);
+/// @param equations in the order of the wanted parameters; the last ones include all samples
+FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Misfit& misfit);
 
 }  // namespace pcor::internal

@@ -5,47 +5,42 @@
 #include <cmath>
 
 #include "campaign/gps_rows.hpp"
-#include "numerics/binned_rows.hpp"
-#include "numerics/median.hpp"
-#include "numerics/missing.hpp"
-#include "numerics/noise_flights.hpp"
+#include "numerics/decompositions.hpp"
 #include "parallel/digest.hpp"
-#include "parallel/distributed_median.hpp"
 #include "residuals/moving_columns.hpp"
 
 namespace pcor::internal {
 namespace {
 
-/// Values of a flight in addition to the samples of the set: copies of them at common pressures, or with
-/// columns that depend on coefficients.
-std::size_t samples_kept_by_a_fit(const FlightSamples& samples, const Reference& reference) {
-  const ModelSamples& model = samples.model;
-  const std::size_t columns =
-      model.columns.size() + model.moving.size() + samples.reference.columns.size() + 12;
-  const std::size_t copies = (reference.model() != nullptr ? 1 : 0) + (model.moving.empty() ? 0 : 1);
-  return copies * (columns * samples.time.size() + model.along_beam.values.size());
-}
-
 struct FlightCounts {
+  NoiseFlight outline{};
   std::size_t samples = 0;
-  std::size_t bins = 0;
   std::size_t offsets = 0;
   std::array<std::size_t, mask_count> masks{};
-  std::vector<bool> linear{};  ///< one per parameter: whether the residual is linear in it
-  double begin = 0.0;          ///< start of the first bin, s since 1970 UTC
+  std::vector<bool> linear{};  ///< for each of the parameters whether the residual is linear in it
+  bool rows_are_linear = false;
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(samples, bins, offsets, masks, linear, begin);
+    archive(outline, samples, offsets, masks, linear, rows_are_linear);
   }
 };
 
+std::vector<std::size_t> joined(std::vector<std::size_t> first, const std::vector<std::size_t>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
 }  // namespace
 
+Eigen::MatrixXd FitRows::without_offsets(const Eigen::MatrixXd& of, const Eigen::VectorXd& weights) const {
+  if (offsets.cols() == 0) return of;
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * offsets;
+  return of - offsets * (pseudo_inverse(offsets.transpose() * weighted) * (weighted.transpose() * of));
+}
+
 Eigen::VectorXd Reduction::lengths() const {
-  Eigen::VectorXd squares = factor.leftCols(factor.cols() - 1).colwise().squaredNorm();
-  if (absorbed.size() > 0) squares += absorbed;
-  return squares.cwiseSqrt();
+  return (factor.leftCols(factor.cols() - 1).colwise().squaredNorm().transpose() + absorbed).cwiseSqrt();
 }
 
 std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
@@ -56,28 +51,35 @@ std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
 FitFlights::FitFlights(const FitTask& task, FitSetup setup)
     : task_(task),
       setup_(std::move(setup)),
+      columns_(joined(setup_.wanted, setup_.held)),
       doubt_(task.model, task.reference, task.options.trust_reference),
-      cache_(task.flights.size()),
-      reserved_{task.flights} {
-  const auto counts = of_each([](std::size_t, FitFlight& fit) {
-    const std::vector<double>& time = fit.bins().time();
-    return FlightCounts{fit.kept().size(),
-                        fit.bins().size(),
-                        fit.offsets(),
+      prepared_(setup_.values),
+      evaluated_(setup_.values),
+      by_offsets_(count()),
+      spikes_(count()) {
+  binned_.bins.resize(count());
+  binned_.columns.resize(count());
+  binned_.residuals.resize(count());
+  binned_.reference.resize(count());
+  const auto counts = of_each([this](std::size_t number, const FitFlight& fit) {
+    prepare(number, fit);
+    const std::vector<double>& time = bins(number).time();
+    return FlightCounts{{time.empty() ? 0.0 : time.front(), time.size()},
+                        fit.kept().size(),
+                        fit.linear_rows().interval_count(),
                         fit.residuals().mask_counts(),
                         fit.residuals().is_linear(),
-                        time.empty() ? 0.0 : time.front()};
+                        fit.linear_rows().is_linear()};
   });
   linear_ = counts.front().linear;
+  rows_are_linear_ = counts.front().rows_are_linear;
   for (const FlightCounts& flight : counts) {
+    binned_.outlines.push_back(flight.outline);
     samples_ += flight.samples;
-    bins_ += flight.bins;
+    bins_ += flight.outline.bins;
     offsets_ += flight.offsets;
     for (std::size_t m = 0; m < mask_count; ++m) masks_[m] += flight.masks[m];
   }
-  std::vector<NoiseFlight> binned;
-  for (const FlightCounts& flight : counts) binned.push_back({flight.begin, flight.bins});
-  for_noise_ = flights_for_noise(binned);
   if (!setup_.regimes.empty()) return;
   for (const FitTask& with : task_.further) {
     further_.push_back(std::make_unique<FitFlights>(with, setup_));
@@ -91,9 +93,8 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
 bool FitFlights::sees_parameters() {
   constexpr std::size_t min_bins = 100;
   if (bins_ < min_bins || setup_.wanted.empty()) return false;
-  const auto largest = of_each([this](std::size_t, FitFlight& fit) {
-    const Eigen::MatrixXd rows = fit.rows(setup_.values);
-    return rows.rows() > 0 ? rows.leftCols(as_index(setup_.wanted.size())).cwiseAbs().maxCoeff() : 0.0;
+  const auto largest = share().of_each_flight<double>([this](std::size_t flight) {
+    return bins(flight).size() > 0 ? columns(flight).leftCols(wanted()).cwiseAbs().maxCoeff() : 0.0;
   });
   return std::any_of(largest.begin(), largest.end(), [](double each) { return each > 0.0; });
 }
@@ -101,9 +102,9 @@ bool FitFlights::sees_parameters() {
 bool FitFlights::masks_change_at(const Eigen::VectorXd& parameters) {
   bool change = false;
   for (FitFlights* const each : joint()) {
-    for (const int one :
-         each->of_each([&](std::size_t, FitFlight& fit) { return fit.masks_change_at(parameters) ? 1 : 0; },
-                       parameters))
+    for (const int one : each->of_each(
+             [&](std::size_t, const FitFlight& fit) { return fit.masks_change_at(parameters) ? 1 : 0; },
+             parameters))
       change = change || one != 0;
   }
   return change;
@@ -125,179 +126,189 @@ bool FitFlights::has_moving_columns() const {
                      [](const ModelEffect& effect) { return memory_of(effect).of != Quantity::count; });
 }
 
-std::shared_ptr<const FlightSamples> FitFlights::samples_of(std::size_t number) const {
-  if (cache_[number]) return nullptr;
-  return task_.flights.samples(number, task_.model, task_.reference, task_.options.mask);
-}
-
-std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
-                                            std::shared_ptr<const FlightSamples> samples) {
-  if (cache_[number]) return cache_[number];
-  const std::size_t own_samples = samples_kept_by_a_fit(*samples, task_.reference);
-  auto fit = std::make_shared<FitFlight>(std::move(samples), task_, setup_);
-  fit->prepare(prepared_parameters_.size() > 0 ? prepared_parameters_ : setup_.values);
-  if (noise_) fit->set_noise(*noise_, number);
-  const std::size_t columns = 2 * (setup_.wanted.size() + 1) + fit->offsets();
-  const std::size_t bytes =
-      (own_samples + columns * fit->bins().size() + fit->kept().size()) * sizeof(double);
-  if (task_.flights.reserve(bytes)) {
-    reserved_.bytes += bytes;
-    cache_[number] = fit;
-  }
-  return fit;
-}
-
-void FitFlights::visit_those(const std::function<bool(std::size_t)>& chosen,
-                             const std::function<void(std::size_t, FitFlight&)>& visit) {
-  task_.flights.share().visit(
-      task_.threads(), chosen, [this](std::size_t number) { return samples_of(number); },
+void FitFlights::visit(const std::function<void(std::size_t, const FitFlight&)>& work) {
+  share().visit(
+      task_.threads(), [](std::size_t) { return true; },
+      [this](std::size_t number) {
+        return task_.flights.samples(number, task_.model, task_.reference, task_.options.mask);
+      },
       [&](std::size_t number, std::shared_ptr<const FlightSamples> samples) {
-        visit(number, *made(number, std::move(samples)));
+        work(number, FitFlight(std::move(samples), task_, setup_, prepared_));
       });
 }
 
-Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss) {
-  const Eigen::Index fitted = as_index(setup_.wanted.size());
-  const auto reduced = [&](std::size_t, FitFlight& fit) {
-    Reduction part;
-    const Eigen::MatrixXd rows = fit.white_rows(parameters, loss);
-    Eigen::VectorXd weight(rows.rows());
-    double curvatures = 0.0;
-    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-      const double innovation = rows(i, fitted);
-      const auto [value, slope, bend] = loss(innovation);
-      part.cost += 0.5 * value;
-      curvatures += slope + 2.0 * innovation * innovation * bend;
-      weight[i] = slope;
+std::vector<Eigen::MatrixXd> FitFlights::of_own(
+    const std::function<Eigen::MatrixXd(std::size_t, const FitFlight&)>& make) {
+  std::vector<Eigen::MatrixXd> own(count());
+  share().attempt(
+      [&] { visit([&](std::size_t number, const FitFlight& fit) { own[number] = make(number, fit); }); });
+  return own;
+}
+
+std::vector<Eigen::VectorXd> FitFlights::of_bins(
+    const std::function<Eigen::VectorXd(std::size_t)>& make) const {
+  std::vector<Eigen::VectorXd> own;
+  for (std::size_t flight = 0; flight < count(); ++flight) {
+    if (share().owns(flight)) own.push_back(make(flight));
+  }
+  return own;
+}
+
+void FitFlights::evaluate(std::size_t flight, const FitFlight& fit) {
+  const Eigen::MatrixXd rows = fit.rows(bins(flight), evaluated_, columns_);
+  binned_.columns[flight] = rows.leftCols(rows.cols() - 1);
+  binned_.residuals[flight] = rows.rightCols(1);
+}
+
+/// Residuals that are not linear, and their derivatives, at other parameters in the same bins.
+void FitFlights::evaluate_at(const Eigen::VectorXd& parameters) {
+  if (rows_are_linear_ || parameters == evaluated_) return;
+  evaluated_ = parameters;
+  share().attempt(
+      [&] { visit([this](std::size_t flight, const FitFlight& fit) { evaluate(flight, fit); }); });
+}
+
+void FitFlights::prepare(std::size_t flight, const FitFlight& fit) {
+  binned_.bins[flight] = fit.bins(prepared_, spikes_[flight]);
+  by_offsets_[flight] = fit.by_offsets(bins(flight));
+  evaluate(flight, fit);
+}
+
+void FitFlights::prepare(const Eigen::VectorXd& parameters) {
+  for (FitFlights* const other : seeing_) other->prepare(parameters);
+  if (parameters == prepared_) return evaluate_at(parameters);
+  prepared_ = evaluated_ = parameters;
+  share().attempt([&] { visit([this](std::size_t flight, const FitFlight& fit) { prepare(flight, fit); }); });
+}
+
+Eigen::VectorXd FitFlights::residual(std::size_t flight, const Eigen::VectorXd& parameters) const {
+  return binned_.residuals[flight] + columns(flight) * (parameters - evaluated_)(columns_);
+}
+
+Eigen::MatrixXd FitFlights::weighted(std::size_t flight, const Eigen::MatrixXd& columns) const {
+  return weights_of_bins(bins(flight), deviation_).asDiagonal() * columns;
+}
+
+FitRows FitFlights::rows(std::size_t flight, const Eigen::VectorXd& parameters,
+                         const ScaledLoss& loss) const {
+  FitRows rows{weighted(flight, columns(flight)), weighted(flight, residual(flight, parameters)),
+               weighted(flight, by_offsets_[flight])};
+  if (rows.offsets.cols() == 0) return rows;
+  // Huber's solution is the start of a loss with several minima.
+  rows.innovations = rows.without_offsets(rows.innovations, Eigen::VectorXd::Ones(rows.innovations.size()));
+  for (const ScaledLoss& each : {loss.convex(), loss}) {
+    constexpr int max_rounds = 200;
+    for (int round = 0; round < max_rounds && !loss.is_least_squares(); ++round) {
+      const Eigen::VectorXd before = rows.innovations;
+      rows.innovations = rows.without_offsets(before, each.weights(before));
+      if (!((rows.innovations - before).norm() > 1e-12 * rows.innovations.norm())) break;
     }
-    part.bins = fit.bins().size();
-    if (weight.sum() > 0.0) part.curvature = curvatures / weight.sum();
-    const Eigen::MatrixXd left = fit.without_offsets(rows, weight);
-    if (fit.offsets() > 0) {
-      const Eigen::MatrixXd taken = (rows - left).leftCols(fitted);
-      part.absorbed = taken.array().square().matrix().transpose() * weight;
-    }
-    TriangularFactor factor(fitted + 1);
-    factor.add(left, weight.cwiseSqrt());
-    part.factor = factor.factor();
-    return part;
-  };
+  }
+  return rows;
+}
+
+Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss,
+                             const std::vector<std::size_t>& free) {
+  std::vector<Eigen::Index> places;
+  for (const std::size_t parameter : free) {
+    places.push_back(std::find(setup_.wanted.begin(), setup_.wanted.end(), parameter) -
+                     setup_.wanted.begin());
+  }
+  const Eigen::Index fitted = as_index(free.size());
   Reduction whole;
   whole.absorbed = Eigen::VectorXd::Zero(fitted);
-  double curvature = 0.0;
   TriangularFactor sum(fitted + 1);
-  for (const Reduction& part : of_each(reduced, parameters)) {
-    sum.add(part.factor);
-    if (part.absorbed.size() > 0) whole.absorbed += part.absorbed;
-    whole.cost += part.cost;
-    whole.bins += part.bins;
-    if (part.bins > 0) curvature += part.curvature * static_cast<double>(part.bins);
+  for (FitFlights* const each : joint()) {
+    each->evaluate_at(parameters);
+    const auto reduced = [&](std::size_t flight) {
+      const FitRows rows = each->rows(flight, parameters, loss);
+      Reduction part;
+      for (const double innovation : rows.innovations) part.cost += 0.5 * loss(innovation)[0];
+      const Eigen::VectorXd weight = loss.weights(rows.innovations);
+      Eigen::MatrixXd all(rows.columns.rows(), fitted + 1);
+      all << rows.columns(Eigen::all, places), rows.innovations;
+      const Eigen::MatrixXd left = rows.without_offsets(all, weight);
+      part.absorbed = (all - left).leftCols(fitted).cwiseAbs2().transpose() * weight;
+      TriangularFactor factor(fitted + 1);
+      factor.add(left, weight.cwiseSqrt());
+      part.factor = factor.factor();
+      return part;
+    };
+    for (const Reduction& part : share().of_each_flight<Reduction>(reduced, digest_of(parameters))) {
+      sum.add(part.factor);
+      whole.absorbed += part.absorbed;
+      whole.cost += part.cost;
+    }
   }
-  for (FitFlights* const other : seeing_) {
-    const Reduction more = other->reduce(parameters, loss);
-    sum.add(more.factor);
-    whole.cost += more.cost;
-    whole.bins += more.bins;
-    curvature += more.curvature * static_cast<double>(more.bins);
-  }
-  whole.curvature = curvature / static_cast<double>(whole.bins);
   whole.factor = sum.factor();
   whole.valid = std::isfinite(whole.cost) && whole.factor.allFinite();
   return whole;
 }
 
 Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters) {
-  const auto factor = [&](std::size_t, FitFlight& fit) { return fit.unweighted_factor(parameters); };
-  TriangularFactor sum(as_index(setup_.wanted.size()) + 1);
+  const auto factor = [&](std::size_t, const FitFlight& fit) { return fit.unweighted_factor(parameters); };
+  TriangularFactor sum(wanted() + 1);
   for (const Eigen::MatrixXd& part : of_each(factor, parameters)) sum.add(part);
   return sum.factor();
 }
 
-void FitFlights::prepare(const Eigen::VectorXd& parameters) {
-  // Flights that are read again are prepared again, at the same parameters.
-  prepared_parameters_ = parameters;
-  for (FitFlights* const other : seeing_) other->prepare(parameters);
-  const auto is_kept = [this](std::size_t number) { return cache_[number] != nullptr; };
-  task_.flights.share().attempt([&] {
-    visit_those(is_kept, [&](std::size_t number, FitFlight& fit) {
-      fit.prepare(parameters);
-      if (noise_) fit.set_noise(*noise_, number);
-    });
-  });
+void FitFlights::weigh(const Eigen::VectorXd& parameters) {
+  prepare(parameters);
+  for (FitFlights* const each : joint()) {
+    const double deviation = robust_deviation(share().comm(), each->of_bins([&](std::size_t flight) {
+      return each->residual(flight, parameters);
+    }));
+    each->deviation_ = deviation > 0.0 ? deviation : 1.0;
+  }
 }
 
-void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool slow_parts,
-                               const std::function<Eigen::VectorXd(const FitFlight&)>& misfit) {
-  for (FitFlights* const other : seeing_) other->measure_noise(parameters, slow_parts);
-  if (!shares_noise_) noise_.reset();  // the noise is estimated again, so the old one is not applied
-  prepare(parameters);
-  if (shares_noise_) return;
-  const auto some = task_.flights.share().gather_flights<BinnedRows>(
-      [&](std::vector<BinnedRows>& parts) {
-        visit_those(
-            [this](std::size_t number) {
-              return std::binary_search(for_noise_.begin(), for_noise_.end(), number);
-            },
-            [&](std::size_t number, FitFlight& fit) {
-              parts[number] = {fit.bins(), fit.rows(parameters)};
-              if (misfit) parts[number].rows.rightCols(1) -= misfit(fit);
-            });
-      },
-      digest_of(parameters));
-  std::vector<Binning> bins;
-  std::vector<Eigen::VectorXd> residuals;
-  std::vector<Eigen::MatrixXd> columns;
-  for (const std::size_t number : for_noise_) {
-    bins.push_back(some[number].bins);
-    residuals.emplace_back(some[number].rows.rightCols(1));
-    columns.emplace_back(some[number].rows.leftCols(as_index(setup_.wanted.size())));
+void FitFlights::measure_noise(const Eigen::VectorXd& parameters,
+                               const std::function<Eigen::VectorXd(std::size_t)>& misfit) {
+  weigh(parameters);
+  for (FitFlights* const each : joint()) {
+    BinnedFit fit;
+    fit.columns = [&](std::size_t flight) { return each->columns(flight).leftCols(wanted()); };
+    fit.left = [&](std::size_t flight) -> Eigen::VectorXd {
+      if (each != this || !misfit) return each->residual(flight, parameters);
+      return residual(flight, parameters) - misfit(flight);
+    };
+    fit.state = digest_of(parameters);
+    each->noise_ = noise_of_flights(share(), each->binned_, fit,
+                                    [&](const auto& bins, const auto& some, const auto& left) {
+                                      return find_noise(bins, some, left, task_.threads()).model;
+                                    });
   }
-  const auto found = std::make_shared<FitNoise>();
-  const bool slow = slow_parts || !task_.reference.is_of_one_sample();
-  found->shared =
-      slow ? find_noise(bins, columns, residuals, task_.threads()).model : estimate_noise(bins, residuals);
-  found->shared.level.clear();
-  found->levels.resize(count());
-  std::vector<std::vector<double>> of_each(count());  // residuals in bins
-  task_.flights.share().attempt([&] {
-    visit([&](std::size_t number, FitFlight& fit) {
-      Eigen::VectorXd residual = fit.rows(parameters).rightCols(1);
-      of_each[number].assign(residual.begin(), residual.end());
-      if (misfit) residual -= misfit(fit);
-      found->levels[number] = noise_levels(fit.bins(), residual, found->shared);
-    });
-  });
-  std::vector<double> own;
-  for (const std::vector<double>& flight : of_each) own.insert(own.end(), flight.begin(), flight.end());
-  const double deviation =
-      deviation_of_median * median_of_absolute_values(task_.flights.share().comm(), std::move(own));
-  if (deviation > 0.0) found->deviation = deviation;
-  for (std::size_t number = 0; number < count(); ++number) {
-    if (cache_[number]) cache_[number]->set_noise(*found, number);
-  }
-  noise_ = found;
 }
 
 double FitFlights::drift_rms() const {
   double squares = 0.0;
-  for (std::size_t k = 0; noise_ && k < slow_times.size(); ++k)
-    squares += noise_->shared.slow[k] * noise_->shared.slow[k];
+  for (std::size_t k = 0; !noise_.empty() && k < slow_times.size(); ++k)
+    squares += noise_.front().slow[k] * noise_.front().slow[k];
   return std::sqrt(squares);
 }
 
 double FitFlights::deviation(const Eigen::VectorXd& parameters) {
-  std::vector<double> own;
+  std::vector<Eigen::VectorXd> innovations;
   for (FitFlights* const each : joint()) {
-    std::vector<Eigen::VectorXd> innovations(count());
-    task_.flights.share().attempt([&] {
-      each->visit([&](std::size_t number, FitFlight& fit) {
-        innovations[number] = fit.white_rows(parameters, {}).rightCols(1);
-      });
-    });
-    for (const Eigen::VectorXd& flight : innovations)
-      own.insert(own.end(), flight.data(), flight.data() + flight.size());
+    each->evaluate_at(parameters);
+    for (const Eigen::VectorXd& own :
+         each->of_bins([&](std::size_t flight) { return each->rows(flight, parameters, {}).innovations; }))
+      innovations.push_back(own);
   }
-  return deviation_of_median * median_of_absolute_values(task_.flights.share().comm(), std::move(own));
+  return robust_deviation(share().comm(), innovations);
+}
+
+std::size_t FitFlights::outliers(const Eigen::VectorXd& parameters, double limit) {
+  evaluate_at(parameters);
+  std::size_t sum = 0;
+  for (const std::size_t part : share().of_each_flight<std::size_t>([&](std::size_t flight) {
+         const Eigen::VectorXd innovations = rows(flight, parameters, {}).innovations;
+         return spikes_[flight] +
+                static_cast<std::size_t>(
+                    (innovations.cwiseAbs().array() > limit).select(bins(flight).counts(), 0.0).sum());
+       }))
+    sum += part;
+  return sum;
 }
 
 }  // namespace pcor::internal

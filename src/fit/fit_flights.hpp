@@ -2,12 +2,10 @@
 
 #include <Eigen/Dense>
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -16,28 +14,21 @@
 #include <pcor/residuals/residuals.hpp>
 #include "campaign/linear_rows.hpp"
 #include "campaign/reference_doubt.hpp"
+#include "campaign/whitened.hpp"
 #include "fit/fit_task.hpp"
 #include "fit/loss_function.hpp"
-#include "numerics/noise_model.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "numerics/whitening.hpp"
 
 namespace pcor::internal {
 
-/// Input of a stage of a fit from the flights.
+/// Input of a fit from the flights, or of a stage of it.
 struct FitSetup {
   Eigen::VectorXd values{};           ///< start of all parameters; masks use these values
-  std::vector<std::size_t> wanted{};  ///< the parameters that are fitted
+  std::vector<std::size_t> wanted{};  ///< the fitted parameters
+  std::vector<std::size_t> held{};    ///< fixed parameters with an error stated in the files
   /// If not empty, only samples in these intervals are used, and every interval has a separate offset of
   /// delta-p/p.
   std::vector<Regime> regimes{};
-};
-
-/// Noise of the flights of a fit: the shared part, and the levels of each flight.
-struct FitNoise {
-  double deviation = 1.0;  ///< robust, residuals in bins, hPa: the weight of the reference
-  NoiseModel shared{};
-  std::vector<std::vector<NoiseLevel>> levels{};
 };
 
 /// Number of first fit parameters that are also the first parameters of the residuals.
@@ -56,146 +47,101 @@ Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
                                  const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
                                  const std::vector<std::size_t>& wanted);
 
-/// One flight of a fit with one reference: its samples in bins of a few seconds, or as long as the residual's
-/// window, and their residuals and derivatives, whitened in units of the noise.
-///
-/// The offsets of the intervals of a stage are internal to the flight: at given parameters and loss they
-/// minimise the loss, and the part of the derivatives that they absorb is removed, so that derivatives of the
-/// minimum loss are exact (Golub and Pereyra 1973, SIAM Journal on Numerical Analysis 10, 413).
+/// The samples of one flight of a fit with one reference.
 ///
 /// Derivatives by the coefficients of two static systems are taken at common pressures
-/// (`Residuals::at_common_pressures`) and stay fixed until the flight is prepared again: at the solution they
-/// are orthogonal to the residual, a method of instrumental variables and not of least squares. Derivatives
-/// of residuals other than static pressure stay fixed as well: they hardly change and are slow to compute.
+/// (`Residuals::at_common_pressures`): at the solution they are orthogonal to the residual, a method of
+/// instrumental variables and not of least squares.
 class FitFlight {
  public:
-  FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup);
+  /// @param parameters those at which columns that depend on a coefficient are taken
+  FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup,
+            const Eigen::VectorXd& parameters);
 
   const LinearRows& linear_rows() const { return rows_; }
   const Residuals& residuals() const { return rows_.residuals(); }
   const std::vector<std::size_t>& kept() const { return rows_.used(); }
-  /// Number of intervals with a separate offset.
-  std::size_t offsets() const { return rows_.interval_count(); }
-  const Binning& bins() const { return bins_; }
   double static_pressure(std::size_t kept) const { return (*static_pressure_)[rows_.used()[kept]]; }
-
-  /// Finds samples that depart from their neighbours at these parameters, excludes them permanently, and
-  /// prepares the bins of the others. A least-squares loss excludes no sample.
-  void prepare(const Eigen::VectorXd& parameters);
 
   /// Whether other samples are used at these parameters.
   bool masks_change_at(const Eigen::VectorXd& parameters) const;
 
-  /// Sets the noise to entry `flight` of `noise`; without noise all bins have equal weight.
-  void set_noise(const FitNoise& noise, std::size_t flight);
+  /// Bins of the samples that do not depart from their neighbours at these parameters. A least-squares loss
+  /// excludes no sample. @param spikes receives the number of excluded samples
+  Binning bins(const Eigen::VectorXd& parameters, std::size_t& spikes) const;
 
-  /// Derivatives by the wanted parameters, and the residual, hPa, by columns, one row for each bin; without
-  /// offsets.
-  Eigen::MatrixXd rows(const Eigen::VectorXd& parameters) const;
+  /// Derivatives by some parameters, and the residual, hPa, by columns, one row for each bin.
+  Eigen::MatrixXd rows(const Binning& bins, const Eigen::VectorXd& parameters,
+                       const std::vector<std::size_t>& wanted) const;
 
-  /// Whitened rows in units of the noise: the last column contains the innovations with the offsets of
-  /// minimum loss, from Huber's solution if a loss has several minima.
-  Eigen::MatrixXd white_rows(const Eigen::VectorXd& parameters, const ScaledLoss& loss) const;
+  /// Derivatives by the offsets of the intervals, hPa, in bins.
+  Eigen::MatrixXd by_offsets(const Binning& bins) const;
 
-  /// Whitened columns minus the part absorbed by offsets when the bins have these weights.
-  Eigen::MatrixXd without_offsets(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weights) const;
-
-  /// Whitened derivatives by any parameters, in units of the noise.
-  Eigen::MatrixXd white_columns(const Eigen::VectorXd& parameters,
-                                const std::vector<std::size_t>& wanted) const;
-
-  /// Effect of one standard uncertainty of each reference error on the residual, in the same units.
-  Eigen::MatrixXd white_doubts(const ReferenceDoubt& doubt, const Eigen::VectorXd& parameters) const;
-
-  /// Weighted columns with one row per bin; the weight is the square root of the samples in a bin over the
-  /// deviation of the reference, as in least squares of samples. If the reference combines many samples
-  /// (wind, heights), the columns are whitened in units of the noise.
-  Eigen::MatrixXd white(const Eigen::MatrixXd& columns) const;
-
-  /// Whitened columns in units of the noise.
-  Eigen::MatrixXd without_noise(const Eigen::MatrixXd& columns) const {
-    return Whitening(bins_, noise_, 0)(columns);
-  }
-
-  /// Weights of the scores: left' diag(weight) residual = weighted' (residual in hPa).
-  Eigen::MatrixXd weighted(const Eigen::MatrixXd& left, const Eigen::VectorXd& weight) const {
-    return scale_.cwiseProduct(weight).asDiagonal() * left;
-  }
-
-  /// The covariance of the sums of the noise times columns that have a row for each bin.
-  Eigen::MatrixXd covariance_of_sums(const Eigen::MatrixXd& columns) const;
-
-  /// Whether `white` removes the correlation of the noise.
-  bool is_whitened() const { return whitening_.has_value(); }
-
-  /// Number of independent residuals over their variance, hPa^-2: the information about the mean over the
-  /// flight.
-  double information() const;
+  /// Effect of one standard uncertainty of each reference error on the residual, hPa, in bins.
+  Eigen::MatrixXd by_doubts(const Binning& bins, const ReferenceDoubt& doubt,
+                            const Eigen::VectorXd& parameters) const;
 
   /// Triangular factor of rows (derivatives, residual) in hPa, with equal weight for all samples.
   Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters) const;
 
-  /// Excluded samples, and samples in bins with an innovation beyond `limit`.
-  std::size_t outliers(const Eigen::VectorXd& parameters, double limit) const;
-
  private:
-  Eigen::MatrixXd means(const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted) const;
-  void whiten_what_stays();
-  Eigen::MatrixXd moved(Eigen::MatrixXd rows, const Eigen::VectorXd& parameters) const;
-
   const FitTask* task_;
   const FitSetup* setup_;
   std::shared_ptr<FlightSamples> moving_;  // samples of `rows_`, if columns depend on coefficients
   LinearRows rows_;
   const std::vector<double>* static_pressure_;  // one per sample
-  std::size_t spikes_ = 0;
-  Binning bins_;
-  Eigen::VectorXd prepared_parameters_;
-  NoiseModel noise_;                    // noise in bins
-  Eigen::VectorXd scale_;               // one per bin; empty before the noise was measured
-  std::optional<Whitening> whitening_;  // if the reference combines many samples
-  // Rows at `prepared_parameters_`, if the residual is treated as linear in all wanted parameters.
-  Eigen::MatrixXd kept_rows_;
-  Eigen::MatrixXd kept_white_rows_;
-  Eigen::MatrixXd white_offsets_;  // derivatives by the offsets
 };
 
 /// Hash that differs if some bit of the parameters differs.
 std::uint64_t digest_of(const Eigen::VectorXd& parameters);
 
+/// Weighted rows of a flight at given parameters and loss.
+///
+/// The offsets of the intervals of a stage are internal to the flight: they minimise the loss, and the part
+/// of the derivatives that they absorb is removed, so that derivatives of the minimum loss are exact (Golub
+/// and Pereyra 1973, SIAM Journal on Numerical Analysis 10, 413).
+struct FitRows {
+  Eigen::MatrixXd columns{};      ///< derivatives by wanted and held parameters
+  Eigen::VectorXd innovations{};  ///< residuals with the offsets of minimum loss
+  Eigen::MatrixXd offsets{};      ///< derivatives by the offsets
+
+  /// Columns minus the part absorbed by offsets when the bins have these weights.
+  Eigen::MatrixXd without_offsets(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weights) const;
+};
+
 /// Result of a pass over all flights.
 struct Reduction {
-  /// Factor of weighted whitened rows (derivatives by wanted parameters, residual), minus the part absorbed
-  /// by offsets.
+  /// Factor of weighted rows (derivatives by wanted parameters, residual), minus the part absorbed by
+  /// offsets.
   Eigen::MatrixXd factor;
-  /// Sums of the squares of the same derivatives absorbed by offsets; empty if there is no offset.
+  /// Sums of the squares of the same derivatives absorbed by offsets.
   Eigen::VectorXd absorbed;
   double cost = 0.0;  ///< half the sum of the loss over the innovations
-  /// Curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the bins: ratio of the
-  /// second derivative of the cost to that of the weighted squares.
-  double curvature = 1.0;
-  std::size_t bins = 0;
-  bool valid = true;  ///< false if a residual is NaN at these parameters
+  bool valid = true;  ///< false where some residual is not a number at these parameters
 
   /// Lengths of the derivatives, including the part absorbed by offsets.
   Eigen::VectorXd lengths() const;
 
   template <class Archive>
   void save(Archive& archive) const {
-    archive(upper_triangle(factor), absorbed, cost, curvature, bins);
+    archive(upper_triangle(factor), absorbed, cost);
   }
 
   template <class Archive>
   void load(Archive& archive) {
     std::vector<double> triangle;
-    archive(triangle, absorbed, cost, curvature, bins);
+    archive(triangle, absorbed, cost);
     factor = from_upper_triangle(triangle);
   }
 };
 
 /// The flights of a fit. Passes over them run several flights at a time, and each member of a team passes
 /// over its own; results are added in the order of the flights, so they do not depend on the number of
-/// threads or members.
+/// threads or members. Residuals and derivatives of the own flights in bins stay in memory, samples as far as
+/// the set keeps them.
+///
+/// Derivatives of residuals other than static pressure, which hardly change and are slow to compute, and
+/// those at common pressures stay fixed until the flights are prepared again.
 class FitFlights {
  public:
   FitFlights(const FitTask& task, FitSetup setup);
@@ -225,90 +171,109 @@ class FitFlights {
   /// Whether the residual is linear in each of the parameters.
   const std::vector<bool>& is_linear() const { return linear_; }
   std::size_t samples() const { return samples_; }
-  /// The wanted parameters, and the offsets of all intervals.
-  std::size_t unknowns() const { return setup_.wanted.size() + offsets_; }
+  /// Number of intervals with a separate offset.
+  std::size_t offsets() const { return offsets_; }
   /// Bins of all flights at the values of the setup.
   std::size_t bins() const { return bins_; }
   const std::array<std::size_t, mask_count>& masks() const { return masks_; }
 
-  /// Results for every flight, in the order of flights, on every member of the team: one exchange.
+  /// Results for every flight from its samples, in the order of flights, on every member of the team: one
+  /// exchange.
   /// @param make gets the number of a flight and the flight; it is called by several threads
   /// @param parameters must agree between the members
   template <class Make>
   auto of_each(const Make& make, const Eigen::VectorXd& parameters = {}) {
-    using Part = std::decay_t<decltype(make(std::size_t{}, std::declval<FitFlight&>()))>;
+    using Part = std::decay_t<decltype(make(std::size_t{}, std::declval<const FitFlight&>()))>;
     static_assert(!std::is_same_v<Part, bool>, "elements of std::vector<bool> share words between threads");
-    return task_.flights.share().gather_flights<Part>(
+    return share().gather_flights<Part>(
         [&](std::vector<Part>& parts) {
-          visit([&](std::size_t number, FitFlight& fit) { parts[number] = make(number, fit); });
+          visit([&](std::size_t number, const FitFlight& fit) { parts[number] = make(number, fit); });
         },
         digest_of(parameters));
   }
 
+  /// Matrices of the own flights from their samples; empty for the others.
+  std::vector<Eigen::MatrixXd> of_own(
+      const std::function<Eigen::MatrixXd(std::size_t flight, const FitFlight& fit)>& make);
+
+  const FlightPartition& share() const { return task_.flights.share(); }
+
   /// Whether other samples of any flight are used at these parameters.
   bool masks_change_at(const Eigen::VectorXd& parameters);
 
-  Reduction reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss);
+  /// Sums of all references. @param free those of the wanted parameters whose columns are wanted
+  Reduction reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss,
+                   const std::vector<std::size_t>& free);
+  Reduction reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss) {
+    return reduce(parameters, loss, setup_.wanted);
+  }
 
   /// Triangular factor of rows (derivatives, residual) in hPa for the first reference, with equal weight for
   /// all samples.
   Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters);
 
-  /// Prepares every flight at these parameters; the noise stays.
+  /// Prepares bins, residuals and derivatives of every flight at these parameters; the noise stays.
   void prepare(const Eigen::VectorXd& parameters);
 
-  /// Prepares every flight, and estimates the noise and the weight of the reference, or keeps those of
-  /// `share_noise`. The shared part of the noise is estimated from up to sixteen flights at equal distances.
-  /// @param slow_parts includes slow parts, which residuals of many samples always have
-  /// @param misfit misfit of the law in the bins of a flight, hPa, excluded from the noise; may be empty
-  void measure_noise(const Eigen::VectorXd& parameters, bool slow_parts,
-                     const std::function<Eigen::VectorXd(const FitFlight&)>& misfit = {});
+  /// Prepares every flight, and renews the weight of each reference.
+  void weigh(const Eigen::VectorXd& parameters);
+
+  /// Also estimates the noise of each reference.
+  /// @param misfit misfit of the law in the bins of an own flight, hPa, excluded from the noise; may be empty
+  void measure_noise(const Eigen::VectorXd& parameters,
+                     const std::function<Eigen::VectorXd(std::size_t flight)>& misfit = {});
 
   /// Combined slow parts of the noise, hPa; zero before the noise was measured.
   double drift_rms() const;
 
-  /// Copies the noise of other samples of the same flights.
-  void share_noise(const FitFlights& others) {
-    noise_ = others.noise_;
-    shares_noise_ = true;
-    for (std::size_t i = 0; i < further_.size(); ++i) further_[i]->share_noise(*others.further_[i]);
-  }
+  /// Weighs like the same reference in other samples of the same flights.
+  void share_weight(const FitFlights& others) { deviation_ = others.deviation_; }
 
-  bool shares_noise() const { return shares_noise_; }
-
-  /// Robust deviation of the innovations; 1 if the noise model is right.
+  /// Robust deviation of the innovations.
   double deviation(const Eigen::VectorXd& parameters);
 
+  /// Number of excluded samples, and of samples in bins with an innovation beyond `limit`.
+  std::size_t outliers(const Eigen::VectorXd& parameters, double limit);
+
+  // Of an own flight:
+  const Binning& bins(std::size_t flight) const { return binned_.bins[flight]; }
+  /// Noise in these bins, after it was measured at their parameters.
+  const NoiseModel& noise(std::size_t flight) const { return noise_[flight]; }
+  /// Derivatives by the wanted and the held parameters, hPa per unit, in bins.
+  const Eigen::MatrixXd& columns(std::size_t flight) const { return binned_.columns[flight]; }
+  /// Residual in bins, hPa, without offsets.
+  Eigen::VectorXd residual(std::size_t flight, const Eigen::VectorXd& parameters) const;
+  /// Columns that have a row for each bin, with the weights of least squares.
+  Eigen::MatrixXd weighted(std::size_t flight, const Eigen::MatrixXd& columns) const;
+  FitRows rows(std::size_t flight, const Eigen::VectorXd& parameters, const ScaledLoss& loss) const;
+
  private:
-  void visit(const std::function<void(std::size_t flight, FitFlight& fit)>& visit) {
-    visit_those([](std::size_t) { return true; }, visit);
-  }
+  void visit(const std::function<void(std::size_t flight, const FitFlight& fit)>& work);
+  /// Vectors of the own flights from their bins.
+  std::vector<Eigen::VectorXd> of_bins(const std::function<Eigen::VectorXd(std::size_t flight)>& make) const;
+  void prepare(std::size_t flight, const FitFlight& fit);
+  void evaluate(std::size_t flight, const FitFlight& fit);
+  void evaluate_at(const Eigen::VectorXd& parameters);
   bool sees_parameters();
-  /// Visits the chosen flights of this member.
-  void visit_those(const std::function<bool(std::size_t flight)>& chosen,
-                   const std::function<void(std::size_t flight, FitFlight& fit)>& visit);
-  std::shared_ptr<const FlightSamples> samples_of(std::size_t number) const;
-  std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);
+  Eigen::Index wanted() const { return as_index(setup_.wanted.size()); }
 
   const FitTask& task_;
-  const FitSetup setup_;  // the flights in the cache point to it
+  const FitSetup setup_;
+  const std::vector<std::size_t> columns_;  // wanted and held parameters
   const ReferenceDoubt doubt_;
-  std::vector<std::shared_ptr<FitFlight>> cache_;
-  /// Memory of the set, returned even if the constructor throws.
-  struct Reservation {
-    const FlightSet& flights;
-    std::atomic<std::size_t> bytes{0};
-    ~Reservation() { flights.release(bytes); }
-  } reserved_;
   std::vector<bool> linear_;
+  bool rows_are_linear_ = true;
   std::size_t samples_ = 0;
   std::size_t offsets_ = 0;
   std::size_t bins_ = 0;
   std::array<std::size_t, mask_count> masks_{};
-  std::vector<std::size_t> for_noise_;  // flights used to estimate the shared noise
-  std::shared_ptr<const FitNoise> noise_;
-  bool shares_noise_ = false;
-  Eigen::VectorXd prepared_parameters_;
+  Eigen::VectorXd prepared_;   // parameters of the bins, and of columns that depend on coefficients
+  Eigen::VectorXd evaluated_;  // parameters of residuals and derivatives
+  BinnedFlights binned_;
+  std::vector<Eigen::MatrixXd> by_offsets_;  // derivatives by the offsets, hPa
+  std::vector<std::size_t> spikes_;
+  double deviation_ = 1.0;         // robust, residuals in bins, hPa: the weight of the reference
+  std::vector<NoiseModel> noise_;  // empty before it was measured
   std::vector<std::unique_ptr<FitFlights>> further_;
   std::vector<FitFlights*> seeing_;  // further references that depend on some parameter
 };

@@ -19,10 +19,10 @@ constexpr int trials_per_dimension = 500;
 /// Least squares of a trial: searched parameters as given, linear ones solved for.
 class Trial {
  public:
-  Trial(FitFlights& flights, const Eigen::VectorXd& values)
-      : flights_(flights), setup_(flights.setup()), parameters_(values) {
-    for (std::size_t k = 0; k < setup_.wanted.size(); ++k) {
-      (flights.is_linear()[setup_.wanted[k]] ? linear_ : searched_).push_back(as_index(k));
+  Trial(FitFlights& flights, const Eigen::VectorXd& values, const std::vector<std::size_t>& free)
+      : flights_(flights), free_(free), parameters_(values) {
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      (flights.is_linear()[free[k]] ? linear_ : searched_).push_back(as_index(k));
     }
     best_ = wanted();
   }
@@ -32,7 +32,7 @@ class Trial {
 
   double operator()(const std::vector<double>& searched) {
     for (std::size_t i = 0; i < searched.size(); ++i) parameters_[parameter(searched_[i])] = searched[i];
-    const Reduction reduction = flights_.reduce(parameters_, {});
+    const Reduction reduction = flights_.reduce(parameters_, {}, free_);
     flights_.task().tell();
     if (!reduction.valid) return infinity;
     const Eigen::VectorXd residual = reduction.factor.rightCols(1);
@@ -52,14 +52,12 @@ class Trial {
   }
 
  private:
-  Eigen::Index parameter(Eigen::Index k) const {
-    return as_index(setup_.wanted[static_cast<std::size_t>(k)]);
-  }
+  Eigen::Index parameter(Eigen::Index k) const { return as_index(free_[static_cast<std::size_t>(k)]); }
 
-  Eigen::VectorXd wanted() const { return parameters_(setup_.wanted); }
+  Eigen::VectorXd wanted() const { return parameters_(free_); }
 
   FitFlights& flights_;
-  const FitSetup& setup_;
+  const std::vector<std::size_t>& free_;
   Eigen::VectorXd parameters_;
   std::vector<Eigen::Index> linear_;
   std::vector<Eigen::Index> searched_;
@@ -69,9 +67,10 @@ class Trial {
 
 }  // namespace
 
-Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values) {
+Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values,
+                              const std::vector<std::size_t>& free) {
   const FitTask& task = flights.task();
-  Trial trial(flights, values);
+  Trial trial(flights, values, free);
   if (trial.searched().empty()) {
     throw Error(
         "--search: the residual is linear in every free coefficient, so there is only one minimum; omit the "
@@ -81,7 +80,7 @@ Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values
   std::vector<double> upper;
   std::vector<double> start;
   for (const Eigen::Index k : trial.searched()) {
-    const std::size_t place = flights.setup().wanted[static_cast<std::size_t>(k)];
+    const std::size_t place = free[static_cast<std::size_t>(k)];
     const auto& [low, high] = task.parameters[place].bounds;
     if (!std::isfinite(low) || !std::isfinite(high)) {
       const std::string& name = task.parameters[place].name;

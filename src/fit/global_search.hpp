@@ -10,8 +10,9 @@ namespace pcor::internal {
 /// with a fixed seed). Parameters in which the residual is linear are solved for in closed form at every
 /// trial, so only the others are searched. It minimises the sum of squares.
 ///
-/// @param values of all parameters @return values of the wanted parameters
-/// @throws Error if a parameter to be searched has no bounds, or if there is no such parameter.
-Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values);
+/// @param values of all parameters @return those of the free ones
+/// @throws Error if a parameter to be searched has no bounds, or none is to be searched.
+Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values,
+                              const std::vector<std::size_t>& free);
 
 }  // namespace pcor::internal

@@ -114,7 +114,8 @@ class GpsSolver {
     return prior;
   }
 
-  Part part_of(GpsKind kind, FitFlight& fit, FlightState& state, bool with_noise, bool with_outliers) const {
+  Part part_of(GpsKind kind, const FitFlight& fit, FlightState& state, bool with_noise,
+               bool with_outliers) const {
     const Eigen::VectorXd own = own_parameters(fit.residuals(), task_, values_);
     const FlightSamples& samples = fit.residuals().samples();
     Part part;
@@ -158,7 +159,7 @@ class GpsSolver {
     for (std::size_t r = 0; r < flights_.size(); ++r) {
       const GpsKind kind = *gps_kind(flights_[r]->task().reference);
       const std::vector<Part> parts = flights_[r]->of_each(
-          [&](std::size_t number, FitFlight& fit) {
+          [&](std::size_t number, const FitFlight& fit) {
             return part_of(kind, fit, states_[r][number], with_noise, with_outliers);
           },
           values_);

@@ -7,7 +7,6 @@
 #include <pcor/physics/constants.hpp>
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
-#include "numerics/whitening.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -31,7 +30,8 @@ std::vector<double> load_factor_of(const FlightSamples& samples) {
     return *recorded;
   std::vector<double> factor = samples.motion.roll;  // load factor of a level turn
   for (double& each : factor)
-    each = 1.0 / std::max(std::cos(each * constants::radians_per_degree), 0.1);  // NaN stays
+    each = 1.0 / std::max(std::cos(each * constants::radians_per_degree),
+                          0.1);  // NaN stays
   return factor;
 }
 
@@ -51,34 +51,18 @@ std::array<std::vector<double>, states> states_of(const FlightSamples& samples) 
           *model.find(Quantity::static_pressure)};
 }
 
-/// States in bins, NaN if unknown.
-Eigen::MatrixXd binned_states(const FitFlight& fit) {
-  const Binning& bins = fit.bins();
-  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(as_index(bins.size()), states, nan);
-  const auto series = states_of(fit.residuals().samples());
-  for (std::size_t s = 0; s < series.size(); ++s) {
-    if (!series[s].empty()) result.col(as_index(s)) = bins.means(series[s]);
-  }
-  return result;
-}
-
-/// Number, sum and sum of squares of each state.
-Eigen::MatrixXd moments_of(const FitFlight& fit) {
-  Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(states, 3);
-  const Eigen::MatrixXd values = binned_states(fit);
-  for (Eigen::Index s = 0; s < states; ++s) {
-    for (const double value : values.col(s)) {
-      if (std::isfinite(value)) moments.row(s) += Eigen::RowVector3d(1.0, value, value * value);
-    }
-  }
-  return moments;
-}
-
 /// Products of (derivatives, bumps, residual), whitened and unwhitened.
 struct Products {
   Eigen::MatrixXd white{};
   Eigen::MatrixXd plain{};
   double bins = 0.0;
+
+  Products& operator+=(const Products& other) {
+    white += other.white;
+    plain += other.plain;
+    bins += other.bins;
+    return *this;
+  }
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -88,11 +72,7 @@ struct Products {
 
 /// Products of the parts of columns that the derivatives absorb. @param across products of both
 Eigen::MatrixXd absorbed(const Eigen::MatrixXd& information, const Eigen::MatrixXd& across) {
-  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * across;
-  return scaled.transpose() *
-         pseudo_inverse(Eigen::MatrixXd(scale.asDiagonal() * information * scale.asDiagonal()), 1e-11) *
-         scaled;
+  return across.transpose() * information_inverse(information) * across;
 }
 
 /// Information about the heights of the bumps: derivatives have no prior, bumps have the variance of their
@@ -206,11 +186,28 @@ double variance_between(const std::vector<FlightMean>& flights) {
 
 }  // namespace
 
-MisfitBasis::MisfitBasis(FitFlights& flights) {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(states, 3);
-  for (const Eigen::MatrixXd& part :
-       flights.of_each([](std::size_t, FitFlight& fit) { return moments_of(fit); }))
-    sum += part;
+std::vector<Eigen::MatrixXd> binned_states(FitFlights& flights) {
+  return flights.of_own([&](std::size_t flight, const FitFlight& fit) {
+    const Binning& bins = flights.bins(flight);
+    Eigen::MatrixXd result = Eigen::MatrixXd::Constant(as_index(bins.size()), states, nan);
+    const auto series = states_of(fit.residuals().samples());
+    for (std::size_t s = 0; s < series.size(); ++s) {
+      if (!series[s].empty()) result.col(as_index(s)) = bins.means(series[s]);
+    }
+    return result;
+  });
+}
+
+MisfitBasis::MisfitBasis(const FlightPartition& share, const std::vector<Eigen::MatrixXd>& in_bins) {
+  const auto sum = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+    Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(states, 3);  // number, sum and sum of squares
+    for (Eigen::Index s = 0; s < states; ++s) {
+      for (const double value : in_bins[flight].col(s)) {
+        if (std::isfinite(value)) moments.row(s) += Eigen::RowVector3d(1.0, value, value * value);
+      }
+    }
+    return moments;
+  });
   const Eigen::ArrayXd count = sum.col(0).array().max(1.0);
   mean_ = sum.col(1).array() / count;
   deviation_ = (sum.col(2).array() / count - mean_.array().square()).max(0.0).sqrt();
@@ -221,8 +218,7 @@ MisfitBasis::MisfitBasis(FitFlights& flights) {
 
 Eigen::Index MisfitBasis::count() { return states * bumps; }
 
-Eigen::MatrixXd MisfitBasis::operator()(const FitFlight& fit) const {
-  const Eigen::MatrixXd values = binned_states(fit);
+Eigen::MatrixXd MisfitBasis::operator()(const Eigen::MatrixXd& values) const {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(values.rows(), count());
   for (Eigen::Index s = 0; s < states; ++s) {
     if (deviation_[s] == 0.0) continue;
@@ -238,34 +234,25 @@ Eigen::MatrixXd MisfitBasis::operator()(const FitFlight& fit) const {
   return result;
 }
 
-Misfit find_misfit(FitFlights& flights, const MisfitBasis& columns, const Solution& solution) {
+Misfit find_misfit(FitFlights& flights, const Solution& solution) {
   Misfit misfit;
-  flights.measure_noise(solution.values, true);
-  if (flights.bins() < min_bins || !flights.task().reference.is_of_one_sample()) return misfit;
+  flights.measure_noise(solution.values);
+  const FlightPartition& share = flights.share();
+  const std::vector<Eigen::MatrixXd> in_bins = binned_states(flights);
+  misfit.bumps = MisfitBasis(share, in_bins);
+  if (flights.bins() < min_bins) return misfit;
+  const Eigen::Index own = as_index(flights.setup().wanted.size());
+  const Eigen::Index count = MisfitBasis::count();
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
-    Products sum;
-    for (const Products& part : flights.of_each(
-             [&](std::size_t, FitFlight& fit) {
-               const Eigen::MatrixXd rows = fit.rows(solution.values);
-               const Eigen::Index own = rows.cols() - 1;
-               Eigen::MatrixXd all(rows.rows(), rows.cols() + columns.count());
-               all << rows.leftCols(own), columns(fit), rows.col(own);
-               const Eigen::MatrixXd white = fit.without_noise(all);
-               return Products{white.transpose() * white, all.transpose() * all,
-                               static_cast<double>(all.rows())};
-             },
-             solution.values)) {
-      if (sum.bins == 0.0) {
-        sum = part;
-        continue;
-      }
-      sum.white += part.white;
-      sum.plain += part.plain;
-      sum.bins += part.bins;
-    }
-    const Eigen::Index own = sum.white.cols() - columns.count() - 1;
-    const double rms = std::sqrt(sum.plain(sum.plain.rows() - 1, sum.plain.cols() - 1) / sum.bins);
+    const auto sum = share.sum_of_each_flight<Products>([&](std::size_t flight) {
+      Eigen::MatrixXd all(in_bins[flight].rows(), own + count + 1);
+      all << flights.columns(flight).leftCols(own), misfit.bumps(in_bins[flight]),
+          flights.residual(flight, solution.values);
+      const Eigen::MatrixXd white = whitened(all, flights.bins(flight), flights.noise(flight), 0);
+      return Products{white.transpose() * white, all.transpose() * all, static_cast<double>(all.rows())};
+    });
+    const double rms = std::sqrt(sum.plain(own + count, own + count) / sum.bins);
     if (!(rms > 0.0) || !sum.white.allFinite()) return misfit;
     const Heights heights(sum, own);
     const Eigen::VectorXd variance = variances_of(heights, rms);
@@ -273,7 +260,6 @@ Misfit find_misfit(FitFlights& flights, const MisfitBasis& columns, const Soluti
     const double weight = weight_of(posterior, variance, rms);
     misfit.variance = weight * variance;
     misfit.height = weight * posterior.mean;
-    const Eigen::Index count = columns.count();
     const Eigen::MatrixXd across = sum.plain.block(0, own, own, count);
     const Eigen::MatrixXd left =
         sum.plain.block(own, own, count, count) - absorbed(sum.plain.topLeftCorner(own, own), across);
@@ -281,16 +267,16 @@ Misfit find_misfit(FitFlights& flights, const MisfitBasis& columns, const Soluti
         weight *
         std::max(0.0, (left * (posterior.covariance + posterior.mean * posterior.mean.transpose())).trace()) /
         sum.bins);
-    flights.measure_noise(solution.values, true, [&](const FitFlight& fit) -> Eigen::VectorXd {
-      return columns(fit) * misfit.height;
+    flights.measure_noise(solution.values, [&](std::size_t flight) -> Eigen::VectorXd {
+      return misfit.bumps(in_bins[flight]) * misfit.height;
     });
   }
-  misfit.between_flights = variance_between(flights.of_each(
-      [&](std::size_t, FitFlight& fit) -> FlightMean {
-        const Eigen::VectorXd left = fit.rows(solution.values).rightCols(1) - columns(fit) * misfit.height;
-        return left.size() > 0 ? FlightMean{left.mean(), 1.0 / fit.information()} : FlightMean{};
-      },
-      solution.values));
+  misfit.between_flights = variance_between(share.of_each_flight<FlightMean>([&](std::size_t flight) {
+    const Eigen::VectorXd left =
+        flights.residual(flight, solution.values) - misfit.bumps(in_bins[flight]) * misfit.height;
+    if (left.size() == 0) return FlightMean{};
+    return FlightMean{left.mean(), 1.0 / information_about_mean(flights.bins(flight), flights.noise(flight))};
+  }));
   return misfit;
 }
 

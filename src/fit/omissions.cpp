@@ -22,7 +22,19 @@ SquaredResiduals::SquaredResiduals(FitFlights& flights, const Solution& solution
 }
 
 double SquaredResiduals::at(const Eigen::VectorXd& values) const {
-  if (!is_linear_) return sums_at(flights_, values, solution_.deviation).squares;
+  if (!is_linear_) {
+    double sum = 0.0;
+    for (const double part : flights_.of_each(
+             [&](std::size_t, const FitFlight& fit) {
+               const std::vector<double> residual = fit.residuals().values(values.data());
+               double squares = 0.0;
+               for (const std::size_t i : fit.kept()) squares += residual[i] * residual[i];
+               return squares;
+             },
+             values))
+      sum += part;
+    return sum;
+  }
   const std::vector<std::size_t>& wanted = flights_.setup().wanted;
   Eigen::VectorXd step = Eigen::VectorXd::Ones(as_index(wanted.size()) + 1);
   step.head(as_index(wanted.size())) = values(wanted) - solution_.values(wanted);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fit/fit_sums.hpp"
+#include "fit/before_and_after.hpp"
 
 namespace pcor::internal {
 

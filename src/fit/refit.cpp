@@ -77,55 +77,47 @@ FitTask task_of(const ModelDefinition& model, const References& references, cons
 /// Result of the stages of a fit.
 struct Fitted {
   Solution solution{};
-  std::vector<std::size_t> parameters{};           // sorted by stage
-  std::vector<std::size_t> held{};                 // fixed parameters with an error stated in the files
-  std::vector<int> stage_of{};                     // one per parameter
-  std::unique_ptr<FitFlights> flights{};           // all samples and all fitted parameters
-  std::vector<std::unique_ptr<FitFlights>> own{};  // flights of each stage, if there are several
+  std::vector<std::size_t> parameters{};              // in the order of the stages
+  std::vector<std::size_t> held{};                    // fixed parameters with an error stated in the files
+  std::vector<int> stage_of{};                        // one per parameter
+  std::unique_ptr<FitFlights> flights{};              // with all samples and all parameters that were fitted
+  std::vector<std::unique_ptr<FitFlights>> stages{};  // samples of each stage but the last
   std::vector<FitEquations> equations{};
   bool has_converged = true;
+
+  FitSetup setup(const std::vector<Regime>& regimes = {}) const {
+    return {solution.values, parameters, held, regimes};
+  }
 };
 
-/// Iterates over the stages until no coefficient moves by a hundredth of its uncertainty. The noise is that
-/// of all samples.
+/// Iterates over the stages until no coefficient moves by a hundredth of its uncertainty. The weights are
+/// those of all samples.
 void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::vector<std::size_t>>& stages) {
   constexpr int max_rounds = 50;
   Solution& solution = fitted.solution;
-  for (std::size_t s = 0; s < stages.size(); ++s) {
-    const bool last = s + 1 == stages.size();
-    FitSetup setup{solution.values, stages[s]};
-    if (!last) setup.regimes = task.options.stages[s].regimes;
-    fitted.own.push_back(std::make_unique<FitFlights>(task, std::move(setup)));
-    fitted.equations.push_back({fitted.own.back().get(), stages[s], {}});
+  for (std::size_t s = 0; s + 1 < stages.size(); ++s) {
+    fitted.stages.push_back(std::make_unique<FitFlights>(task, fitted.setup(task.options.stages[s].regimes)));
+    fitted.equations.push_back({fitted.stages.back().get(), stages[s], solution});
   }
+  fitted.equations.push_back({fitted.flights.get(), stages.back(), solution});
   fitted.has_converged = false;
   for (int round = 0; round < max_rounds && !fitted.has_converged; ++round) {
     const Eigen::VectorXd before = solution.values;
-    // The noise hardly changes after the first rounds.
+    // The weights hardly change after the first rounds.
     if (round < 2) {
-      fitted.flights->measure_noise(solution.values, false);
+      fitted.flights->weigh(solution.values);
       solution.deviation = fitted.flights->deviation(solution.values);
     }
+    for (const std::unique_ptr<FitFlights>& stage : fitted.stages) stage->share_weight(*fitted.flights);
     for (FitEquations& each : fitted.equations) {
       if (each.parameters.empty()) continue;
-      each.flights->share_noise(*fitted.flights);
-      solution = solve(*each.flights, std::move(solution));
-      each.solution = solution;
-      if (round == 0) condition_number(each.flights->reduce(solution.values, {}), task, each.parameters);
+      solution = solve(*each.flights, std::move(solution), each.parameters, true);
+      if (round == 0)
+        condition_number(each.flights->reduce(solution.values, {}, each.parameters), task, each.parameters);
     }
     const Eigen::VectorXd lengths = fitted.flights->reduce(solution.values, {}).lengths();
     const Eigen::VectorXd step = (solution.values - before)(fitted.parameters);
     fitted.has_converged = lengths.cwiseProduct(step).cwiseAbs().maxCoeff() < 0.01;
-  }
-  // Every stage at the coefficients that all of them found.
-  for (FitEquations& each : fitted.equations) {
-    if (each.parameters.empty()) {
-      each.flights->share_noise(*fitted.flights);
-      each.solution = solution;
-    }
-    each.solution.values = solution.values;
-    each.solution.at_bound = solution.at_bound;
-    each.flights->prepare(solution.values);
   }
 }
 
@@ -149,7 +141,7 @@ Fitted at_start(const FitTask& task, const std::vector<std::vector<std::size_t>>
 void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
   constexpr int max_rounds = 6;
   for (int round = 0; round < max_rounds && find_roughness(flights, solution, task.surfaces); ++round)
-    solution = solve(flights, std::move(solution));
+    solution = solve(flights, std::move(solution), flights.setup().wanted);
 }
 
 Fitted fit_in_stages(FitTask& task) {
@@ -159,19 +151,15 @@ Fitted fit_in_stages(FitTask& task) {
   Solution& solution = fitted.solution;
   constexpr int max_masks = 3;
   for (int round = 0; round < max_masks; ++round) {
-    fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
-    solution = solve(*fitted.flights, std::move(solution));
+    fitted.flights = std::make_unique<FitFlights>(task, fitted.setup());
+    solution = solve(*fitted.flights, std::move(solution), fitted.parameters);
     if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution);
     // The masks are those of the solution, so that the start does not decide.
     if (!fitted.flights->masks_change_at(solution.values)) break;
   }
-  if (stages.size() > 1) {
+  if (stages.size() > 1)
     repeat_stages(fitted, task, stages);
-    // Errors, identifiability and effects below are based on all samples.
-    fitted.flights->measure_noise(solution.values, false);
-    solution.deviation = fitted.flights->deviation(solution.values);
-  }
-  if (fitted.equations.empty())
+  else
     fitted.equations.push_back({fitted.flights.get(), fitted.parameters, solution});
   return fitted;
 }
@@ -201,7 +189,7 @@ Fitted prepared_for_gps(const FitTask& task) {
                       surface->effect, surface->effect));
     }
   }
-  fitted.flights = std::make_unique<FitFlights>(task, FitSetup{task.start, fitted.parameters});
+  fitted.flights = std::make_unique<FitFlights>(task, fitted.setup());
   if (fitted.flights->samples() == 0) {
     throw Error(
         fmt::format("no usable sample for the fit: {}; see the variables of the model and --min-airspeed, "
@@ -233,7 +221,7 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
   covariance.blocks = gps.parts;
   if (is_alone && !is_masked_again && fitted.flights->masks_change_at(solution.values)) {
     // The masks use the solution, so that the start does not matter.
-    fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
+    fitted.flights = std::make_unique<FitFlights>(task, fitted.setup());
     solution.values = task.start;
     return add_gps(fitted, task, covariance, true);
   }
@@ -247,7 +235,7 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
       const Eigen::Index p = as_index(fitted.held[h]);
       covariance.matrix(count + as_index(h), count + as_index(h)) = task.doubt(p, p);
     }
-    fitted.flights->measure_noise(solution.values, false);
+    fitted.flights->measure_noise(solution.values);
     solution.deviation = fitted.flights->deviation(solution.values);
   } else {
     covariance.matrix.topLeftCorner(count, count) = gps.covariance;
@@ -367,6 +355,7 @@ Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
   for (FitFlights* const each : flights.joint()) sum.add(each->unweighted_factor(values));
   Reduction result;
   result.factor = sum.factor();
+  result.absorbed = Eigen::VectorXd::Zero(sum.columns() - 1);
   return result;
 }
 
@@ -382,18 +371,17 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   Misfit misfit;
   if (!by_gps_alone) {
     FitFlights& flights = *fitted.flights;
-    const MisfitBasis misfit_columns(flights);
-    misfit = find_misfit(flights, misfit_columns, solution);
-    // The weights are those of the noise without the misfit from now on.
+    misfit = find_misfit(flights, solution);
+    // The weights are those at the solution from now on, of every stage.
     fitted.solution.deviation = flights.deviation(solution.values);
     for (FitEquations& each : fitted.equations) {
-      each.solution.deviation = solution.deviation;
+      each.solution = solution;
       if (each.flights == &flights) continue;
-      each.flights->share_noise(flights);
+      each.flights->share_weight(flights);
       each.flights->prepare(solution.values);
     }
     result.condition_number = condition_number(unweighted(flights, solution.values), task, fitted.parameters);
-    covariance = fit_covariance(fitted.equations, fitted.held, misfit, misfit_columns);
+    covariance = fit_covariance(fitted.equations, misfit);
   }
   const std::optional<GpsFit> gps = add_gps(fitted, task, covariance);
   if (by_gps_alone) {
@@ -405,24 +393,24 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.reference_text = reference_text(flights);
   result.masks = flights.masks();
   result.jackknife_parts = covariance.blocks;
-  const FitSums sums = sums_at(flights, solution.values, solution.deviation);
+  BeforeAndAfter compared = before_and_after(flights, solution.values, covariance.by_flights, misfit.left);
+  task.tell();
+  const FitSums& sums = compared.sums;
   result.samples = sums.samples;
+  result.rms_before = sums.rms_of(sums.squares_before);
   result.rms = sums.rms_of(sums.squares);
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
   result.bulk_rms = sums.rms_of(sums.bulk_squares);
+  result.noise_rms = sums.rms_of(sums.noise_squares);
   if (covariance.information > 0.0)
     result.autocorrelation_time =
         std::max(static_cast<double>(sums.samples) /
                      (sums.bulk_squares / static_cast<double>(sums.samples) * covariance.information),
                  1.0);
   result.r_squared = sums.r_squared(sums.squares);
-  result.outliers = sums.outliers;
-  const FitSums before = sums_at(flights, task.start, solution.deviation);
-  result.rms_before = before.rms_of(before.squares);
+  result.outliers = flights.outliers(solution.values, tukey_width * solution.deviation);
   const SquaredResiduals squares(flights, solution);
   if (!gps) result.omissions = omissions(flights, solution, sums, squares);
-  BeforeAndAfter compared = before_and_after(flights, solution.values, covariance.by_flights, misfit.left);
-  result.noise_rms = compared.noise_rms(result.samples);
   result.flights = std::move(compared.flights);
   result.further = std::move(compared.further);
   result.flaps_out = compared.flaps_out;
@@ -435,10 +423,10 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.drift_rms = flights.drift_rms();
   result.left = misfit.left;
   // Gusts are in the residual of the wind: a better law need not make it smaller.
-  result.worse = why_worse(result, by_gps_alone ? infinity : before.rms_of(before.bulk_squares));
+  result.worse = why_worse(result, by_gps_alone ? infinity : sums.rms_of(sums.bulk_squares_before));
   result.least_squares_rms = gps ? result.rms : sums.rms_of(squares.least());
-  // Gusts and drifts of the wind are not errors of the model.
-  if (!by_gps_alone) result.warnings = fit_warnings(flights, result, solution.values);
+  // Gusts and drifts of the wind are no faults of the model.
+  if (!by_gps_alone) result.warnings = fit_warnings(result, compared.longest_run);
   if (gps) result.warnings.insert(result.warnings.begin(), gps->warnings.begin(), gps->warnings.end());
   result.notes = notes_of(result, task, fitted, covariance.by_noise, gps, compared);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights.title());

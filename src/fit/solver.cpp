@@ -11,7 +11,6 @@
 
 #include <pcor/base/error.hpp>
 #include "fit/global_search.hpp"
-#include "fit/minimise.hpp"
 #include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/missing.hpp"
@@ -21,7 +20,7 @@ namespace {
 
 constexpr std::size_t min_free_bins = 15;  // one minute: noise deviation to 20 %
 
-void require_samples(const FitFlights& flights) {
+void require_samples(const FitFlights& flights, std::size_t free, bool is_stage) {
   const FitSetup& setup = flights.setup();
   if (flights.samples() == 0 && !setup.regimes.empty()) {
     std::vector<std::string_view> names;
@@ -37,15 +36,15 @@ void require_samples(const FitFlights& flights) {
         "--max-flaps, --exclude",
         flights.count() == 1 ? flights.task().flights.name(0) : "the flights", mask_text(flights.masks())));
   }
-  const std::size_t unknown = flights.unknowns();
+  const std::size_t unknown = free + flights.offsets();  // of every interval
   if (flights.samples() <= unknown) {
     throw Error(
         fmt::format("{} samples are too few for {} coefficients (not used: {}); give more flights or fix "
                     "coefficients",
                     flights.samples(), unknown, mask_text(flights.masks())));
   }
-  // The noise is estimated from bins of four seconds; every stage uses the noise of all samples.
-  const std::size_t fewest = unknown + (flights.shares_noise() ? 1 : min_free_bins);
+  // The noise is found from bins of four seconds; that of a stage is the noise of all samples.
+  const std::size_t fewest = unknown + (is_stage ? 1 : min_free_bins);
   const std::size_t bins = flights.bins();
   if (bins < fewest) {
     throw Error(fmt::format(
@@ -55,36 +54,37 @@ void require_samples(const FitFlights& flights) {
   }
 }
 
-/// The unknowns are the wanted parameters.
+/// The unknowns are the free parameters.
 class Solver {
  public:
-  Solver(FitFlights& flights, Solution from)
+  Solver(FitFlights& flights, Solution from, const std::vector<std::size_t>& free, bool is_stage)
       : flights_(flights),
         task_(flights.task()),
-        wanted_(flights.setup().wanted),
+        free_(free),
+        is_stage_(is_stage),
         solution_(std::move(from)),
-        prior_(prior_rows(task_, wanted_)),
-        lower_(as_index(wanted_.size())),
+        prior_(prior_rows(task_, free_)),
+        lower_(as_index(free_.size())),
         upper_(lower_.size()) {
     for (Eigen::Index k = 0; k < lower_.size(); ++k) {
-      const Bounds& bounds = task_.parameters[wanted_[static_cast<std::size_t>(k)]].bounds;
+      const Bounds& bounds = task_.parameters[free_[static_cast<std::size_t>(k)]].bounds;
       lower_[k] = bounds.lower;
       upper_[k] = bounds.upper;
     }
-    unknowns_ = solution_.values(wanted_).cwiseMax(lower_).cwiseMin(upper_);
+    unknowns_ = solution_.values(free_).cwiseMax(lower_).cwiseMin(upper_);
     solution_.at_bound.resize(task_.parameters.size(), false);
     spread();
   }
 
   Solution solve() {
     if (task_.options.search) {
-      unknowns_ = global_search(flights_, solution_.values);
+      unknowns_ = global_search(flights_, solution_.values, free_);
       spread();
     }
     flights_.prepare(solution_.values);
     const Loss loss = task_.options.loss;
-    // Noise of other samples indicates a stage that starts at a solution.
-    if (!flights_.shares_noise()) {
+    // A stage starts at a solution.
+    if (!is_stage_) {
       choose_times();
       linear_step({});
       measure();
@@ -124,13 +124,13 @@ class Solver {
 
  private:
   /// Writes the unknowns to their positions in the solution.
-  void spread() { solution_.values(wanted_) = unknowns_; }
+  void spread() { solution_.values(free_) = unknowns_; }
 
   /// Start with the least squares for each time over which a need is estimated: the sum of squares may have
   /// several minima, like a wave shifted by more than its length.
   void choose_times() {
     for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
-      std::vector<double> times = task_.parameters[wanted_[static_cast<std::size_t>(k)]].tried;
+      std::vector<double> times = task_.parameters[free_[static_cast<std::size_t>(k)]].tried;
       if (times.empty()) continue;
       times.insert(times.begin(), unknowns_[k]);
       const auto [lower, upper] = std::pair(lower_[k], upper_[k]);
@@ -158,7 +158,7 @@ class Solver {
       double least = infinity;
       for (const Eigen::VectorXd& solution : solutions) {
         put(solution);
-        const double cost = flights_.reduce(solution_.values, huber).cost;
+        const double cost = flights_.reduce(solution_.values, huber, free_).cost;
         if (cost < least) best = solution;
         least = std::min(least, cost);
       }
@@ -168,83 +168,92 @@ class Solver {
   }
 
   void measure() {
-    flights_.measure_noise(solution_.values, false);
+    if (is_stage_) return flights_.prepare(solution_.values);
+    flights_.weigh(solution_.values);
     find_deviation();
   }
 
   /// The deviation of a stage of a few manoeuvres is that of all samples, as its noise is.
   void find_deviation() {
-    if (!flights_.shares_noise()) solution_.deviation = flights_.deviation(solution_.values);
+    if (!is_stage_) solution_.deviation = flights_.deviation(solution_.values);
   }
 
-  /// Solution of the linear problem in closed form, if derivatives do not depend on the coefficients. Returns
-  /// the cost before the step.
-  double linear_step(const ScaledLoss& loss) {
-    const Reduction reduction = flights_.reduce(solution_.values, loss);
+  struct Step {
+    double cost = infinity;    ///< before the step, with that of the prior; infinite if it is not a number
+    double length = infinity;  ///< in units of the residual: change of the residuals by the step
+  };
+
+  /// Solution of the weighted linear problem in closed form, with the weights and derivatives at the
+  /// unknowns.
+  Step linear_step(const ScaledLoss& loss) {
+    const Reduction reduction = flights_.reduce(solution_.values, loss, free_);
     task_.tell();
     const Eigen::Index size = unknowns_.size();
-    const Prior drawn = prior();
-    const Eigen::Index more = drawn.rows.rows();
-    Eigen::MatrixXd rows(size + more, size);
-    Eigen::VectorXd right(size + more);
-    rows << reduction.factor.topLeftCorner(size, size), drawn.rows;
-    right << -reduction.factor.col(size).head(size), drawn.rows * (drawn.start - unknowns_);
-    if (!rows.allFinite() || !right.allFinite()) return infinity;
+    const Eigen::MatrixXd drawn = solution_.deviation * prior_.rows;
+    Eigen::MatrixXd rows(size + drawn.rows(), size);
+    Eigen::VectorXd right(rows.rows());
+    rows << reduction.factor.topLeftCorner(size, size), drawn;
+    right << -reduction.factor.col(size).head(size), drawn * (prior_.centre - unknowns_);
+    if (!reduction.valid || !right.allFinite()) return {};
+    const Eigen::VectorXd before = unknowns_;
     unknowns_ = bounded_least_squares(rows, right + rows * unknowns_, lower_, upper_, unknowns_);
     spread();
-    return reduction.cost;
+    return {reduction.cost + 0.5 * right.tail(drawn.rows()).squaredNorm(),
+            (rows * (unknowns_ - before)).norm()};
   }
-
-  Prior prior() const { return {prior_.centre, solution_.deviation * prior_.rows}; }
 
   /// True if no unknown moved by a hundredth of its uncertainty from flights and prior.
   bool has_converged(const Eigen::VectorXd& before) {
-    const Reduction reduction = flights_.reduce(solution_.values, {});
+    const Reduction reduction = flights_.reduce(solution_.values, {}, free_);
     const Eigen::VectorXd step = unknowns_ - before;
     const double by_flights = (reduction.factor.leftCols(step.size()) * step).norm();
     const double by_prior = (prior_.rows * step).norm();
     return std::max(by_flights, by_prior) < 0.01 * std::max(solution_.deviation, 1e-300);
   }
 
-  /// Records parameters at a bound. True if there are any.
-  bool find_bounds() {
-    bool any = false;
+  /// Records parameters at a bound.
+  void find_bounds() {
     for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
       const double near = 1e-9 * std::max(std::abs(unknowns_[k]), 1e-12);
-      const bool touches = unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
-      solution_.at_bound[wanted_[static_cast<std::size_t>(k)]] = touches;
-      any = any || touches;
+      solution_.at_bound[free_[static_cast<std::size_t>(k)]] =
+          unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
     }
-    return any;
   }
 
-  /// Minimises that loss; true if the deviation that scales it is then unchanged.
+  /// Minimises that loss; true if the deviation that scales it is then unchanged. Least squares with the
+  /// weights of the step before do not increase the loss of linear residuals (Huber and Ronchetti 2009,
+  /// Robust Statistics, section 7.8); a step that increases it is halved.
   bool settles_with(Loss loss) {
+    constexpr int max_steps = 200;
     const ScaledLoss scaled(loss, solution_.deviation);
-    minimise(flights_, solution_.values, scaled, prior(), unknowns_);
-    spread();
-    // Nearly collinear coefficients at a bound: clipped steps stall before the minimum; bounded steps
-    // continue.
-    double cost = infinity;
     Eigen::VectorXd best = unknowns_;
-    for (int step = 0; step < 20 && find_bounds(); ++step) {
+    double least = infinity;
+    for (int step = 0; step < max_steps; ++step) {
       const Eigen::VectorXd now = unknowns_;
-      const double cost_now = linear_step(scaled);
-      if (!(cost_now < (1.0 - 1e-10) * cost)) break;
-      cost = cost_now;
+      const auto [cost, length] = linear_step(scaled);
+      if (!std::isfinite(cost) && !std::isfinite(least)) {
+        throw Error(
+            "the fit found no coefficients: from their values in the model the residuals are not numbers; "
+            "give other starting values, or look for them with --search");
+      }
+      if (cost > (1.0 + 1e-12) * least) {
+        unknowns_ = 0.5 * (now + best);
+        spread();
+        continue;
+      }
       best = now;
+      least = cost;
+      if (length < 1e-6 * solution_.deviation) break;
     }
-    unknowns_ = best;
-    spread();
     const double before = solution_.deviation;
     find_deviation();
-    task_.tell();
     return std::abs(solution_.deviation - before) < 1e-3 * before;
   }
 
   FitFlights& flights_;
   const FitTask& task_;
-  const std::vector<std::size_t>& wanted_;
+  const std::vector<std::size_t>& free_;
+  const bool is_stage_;
   Solution solution_;
   const PriorRows prior_;
   Eigen::VectorXd unknowns_;
@@ -254,9 +263,9 @@ class Solver {
 
 }  // namespace
 
-Solution solve(FitFlights& flights, Solution from) {
-  require_samples(flights);
-  return Solver(flights, std::move(from)).solve();
+Solution solve(FitFlights& flights, Solution from, const std::vector<std::size_t>& free, bool is_stage) {
+  require_samples(flights, free.size(), is_stage);
+  return Solver(flights, std::move(from), free, is_stage).solve();
 }
 
 }  // namespace pcor::internal

@@ -7,6 +7,7 @@
 #include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/noise_covariance.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -22,6 +23,12 @@ struct Products {
   Eigen::MatrixXd squares{};
   Eigen::MatrixXd noise{};
 
+  Products& operator+=(const Products& other) {
+    squares += other.squares;
+    noise += other.noise;
+    return *this;
+  }
+
   template <class Archive>
   void serialize(Archive& archive) {
     archive(squares, noise);
@@ -29,23 +36,15 @@ struct Products {
 };
 
 Products products_of(FitFlights& flights, const Eigen::VectorXd& values) {
-  Products sum;
-  for (const Products& part : flights.of_each(
-           [&](std::size_t, FitFlight& fit) {
-             const Eigen::MatrixXd white = fit.white(fit.rows(values));
-             const Eigen::MatrixXd left = white.leftCols(white.cols() - 1);
-             const Eigen::MatrixXd weighted = fit.weighted(left, Eigen::VectorXd::Ones(left.rows()));
-             return Products{white.transpose() * white, fit.covariance_of_sums(weighted)};
-           },
-           values)) {
-    if (sum.squares.size() == 0) {
-      sum = part;
-      continue;
-    }
-    sum.squares += part.squares;
-    sum.noise += part.noise;
-  }
-  return sum;
+  const Eigen::Index count = as_index(flights.setup().wanted.size());
+  return flights.share().sum_of_each_flight<Products>([&](std::size_t flight) {
+    const FitRows rows = flights.rows(flight, values, {});
+    Eigen::MatrixXd all(rows.columns.rows(), count + 1);
+    all << rows.columns.leftCols(count), rows.innovations;
+    const Eigen::MatrixXd weighted = flights.weighted(flight, all.leftCols(count));
+    return Products{all.transpose() * all,
+                    noise_covariance(weighted, flights.bins(flight), flights.noise(flight), 0)};
+  });
 }
 
 /// Information of the flights on one surface, all other coefficients fitted.
@@ -69,11 +68,8 @@ Determined determined(const Products& products, const PriorRows& prior, double u
   Eigen::MatrixXd of_others = all(others, others);
   const Eigen::MatrixXd drawn = prior.rows(Eigen::all, others);
   of_others += unit * drawn.transpose() * drawn;
-  const Eigen::VectorXd scale = of_others.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd across = all(others, own);
-  const Eigen::MatrixXd taken = scale.asDiagonal() *
-                                pseudo_inverse(scale.asDiagonal() * of_others * scale.asDiagonal(), 1e-11) *
-                                (scale.asDiagonal() * across);  // others by own
+  const Eigen::MatrixXd taken = information_inverse(of_others) * across;  // others by own
   found.information -= across.transpose() * taken;
   found.right -= taken.transpose() * y(others);
   const Eigen::MatrixXd shared = products.noise(own, others) * taken;
@@ -128,7 +124,7 @@ std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinit
 
 bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces) {
   const std::vector<std::size_t>& wanted = flights.setup().wanted;
-  flights.measure_noise(solution.values, true);
+  flights.measure_noise(solution.values);
   const double unit = solution.deviation * solution.deviation;
   const Products products = products_of(flights, solution.values);
   bool changed = false;

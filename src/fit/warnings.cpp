@@ -8,7 +8,6 @@
 
 #include <pcor/base/utc.hpp>
 #include "fit/loss_function.hpp"
-#include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -18,42 +17,6 @@ constexpr double larger_elsewhere =
     1.05;  // a fit of half a flight may be a few per cent worse on the rest by chance
 constexpr double max_chance = 30.0;     // s of consecutive outliers; spikes and gusts are shorter
 constexpr double many_outliers = 0.05;  // fraction of all samples
-
-/// Consecutive samples on one side of the noise.
-struct Run {
-  std::string flight{};
-  std::size_t samples = 0;
-  double begin = 0.0;  ///< s since 1970 UTC
-  double end = 0.0;
-  double mean = 0.0;  ///< hPa
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(flight, samples, begin, end, mean);
-  }
-};
-
-Run max_run(const FitFlight& fit, const Eigen::VectorXd& values) {
-  const FlightSamples& samples = fit.residuals().samples();
-  const std::vector<double> series = only_at(fit.residuals().values(values.data()), fit.kept());
-  const NoiseFloor noise = noise_of_flight(samples, series);
-  Run longest{samples.name};
-  Run now;
-  for (const std::size_t i : fit.kept()) {
-    const bool beyond = std::abs(series[i]) > tukey_width * noise.local_rms[i];
-    const bool goes_on =
-        now.samples > 0 && series[i] * now.mean > 0.0 && samples.time[i] - now.end < 1.5 * samples.step;
-    if (!beyond) {
-      now = {};
-      continue;
-    }
-    if (!goes_on) now = {samples.name, 0, samples.time[i]};
-    now.end = samples.time[i];
-    now.mean += (series[i] - now.mean) / static_cast<double>(++now.samples);
-    if (now.end - now.begin > longest.end - longest.begin) longest = now;
-  }
-  return longest;
-}
 
 }  // namespace
 
@@ -77,8 +40,7 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before) {
   return "";
 }
 
-std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& result,
-                                      const Eigen::VectorXd& values) {
+std::vector<std::string> fit_warnings(const RefitResult& result, const OutlierRun& longest) {
   std::vector<std::string> warnings;
   if (result.r_squared < 0.0) {
     warnings.push_back(
@@ -86,16 +48,13 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
                     "constant would be better than this model",
                     result.r_squared));
   }
-  const std::vector<Run> runs = flights.of_each(
-      [&](std::size_t, FitFlight& fit) { return fit.kept().empty() ? Run{} : max_run(fit, values); }, values);
-  const Run longest = *std::max_element(
-      runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.end - a.begin < b.end - b.begin; });
-  if (longest.end - longest.begin >= max_chance) {
-    warnings.push_back(
-        fmt::format("{}: {} to {}, {} consecutive samples have a mean residual of {:+.2f} hPa, each above "
-                    "{:.1f} sigma; they are not outliers: an effect is missing or a sensor failed",
-                    longest.flight, utc_text(longest.begin, "%H:%M:%S"), utc_text(longest.end, "%H:%M:%S"),
-                    longest.samples, longest.mean, tukey_width));
+  if (longest.duration() >= max_chance) {
+    warnings.push_back(fmt::format(
+        "{}: from {} to {} {} samples in a row are off by {:+.2f} hPa in the mean, each beyond {:.1f} "
+        "deviations of the noise, so they are no outliers: the model lacks what happened there, or a sensor "
+        "failed",
+        longest.flight, utc_text(longest.begin, "%H:%M:%S"), utc_text(longest.end, "%H:%M:%S"),
+        longest.samples, longest.mean, tukey_width));
   }
   const double share = static_cast<double>(result.outliers) / static_cast<double>(result.samples);
   if (share > many_outliers) {

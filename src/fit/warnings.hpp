@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/fit_flights.hpp"
+#include "fit/before_and_after.hpp"
 
 namespace pcor::internal {
 
@@ -15,10 +15,9 @@ namespace pcor::internal {
 std::string why_worse(const RefitResult& result, double bulk_rms_before);
 
 /// Reasons not to trust a fit, one sentence each: residuals vary more than delta-p itself; outliers are
-/// consecutive, which indicates a missing effect; the number of outliers suggests that the loss hides a
-/// missing effect; or assumed slow drift may be a missing effect.
-std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& result,
-                                      const Eigen::VectorXd& values);
+/// consecutive, which indicates a missing effect; outliers are so many that the loss hides a missing effect;
+/// or assumed slow drift may be a missing effect.
+std::vector<std::string> fit_warnings(const RefitResult& result, const OutlierRun& longest);
 
 /// Warnings if the jackknife contradicts the stated errors, or if stages do not converge.
 /// @param with_doubt errors include the uncertainty of a prior or of fixed coefficients

@@ -40,6 +40,13 @@ Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen:
                                    (solver.eigenvectors().transpose() * (scale.asDiagonal() * right))));
 }
 
+Eigen::MatrixXd information_inverse(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() *
+         pseudo_inverse(scale.asDiagonal() * information * scale.asDiagonal(), rank_limit) *
+         scale.asDiagonal();
+}
+
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix) {
   return matrix.completeOrthogonalDecomposition().pseudoInverse();
 }

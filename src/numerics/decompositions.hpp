@@ -21,6 +21,10 @@ Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix);
 /// The inverse of a regular matrix.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 
+/// Share of the largest eigenvalue, unknowns scaled alike, below which normal equations in double precision
+/// do not determine a direction.
+inline constexpr double rank_limit = 1e-11;
+
 /// The inverse of a symmetric matrix over the directions whose eigenvalue is above `least`; zero over the
 /// others.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least);
@@ -29,6 +33,9 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least);
 /// others.
 Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen::VectorXd& right,
                                 double least);
+
+/// The inverse of the information on unknowns in any units, over the directions that it determines.
+Eigen::MatrixXd information_inverse(const Eigen::MatrixXd& information);
 
 /// Moore-Penrose inverse, without the directions whose singular values are zero within rounding errors.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);

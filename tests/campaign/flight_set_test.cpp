@@ -166,14 +166,4 @@ TEST_F(FlightSets, KeepSamplesForEachSetOfRoles) {
             forgetful.samples(0, model, *lams_reference(), mask));
 }
 
-TEST_F(FlightSets, GiveMemoryOfSamplesThatNobodyUses) {
-  made::Plan plan;
-  plan.defect = made::equation_18;
-  const FlightSet flights({made::shared(plan)}, {TimestampAlignment::begin, &serial_communicator(), 1000});
-  EXPECT_TRUE(flights.reserve(600));
-  EXPECT_FALSE(flights.reserve(600));
-  flights.release(600);
-  EXPECT_TRUE(flights.reserve(1000));
-}
-
 }  // namespace

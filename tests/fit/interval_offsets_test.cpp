@@ -54,16 +54,17 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
     task_.start = Eigen::Vector3d(0.004, 0.02, 0.03);
     task_.doubt = Eigen::Matrix3d::Zero();
     whole_ = std::make_unique<FitFlights>(task_, FitSetup{task_.start, {0, 1, 2}});
-    whole_->measure_noise(task_.start, true);
-    stage_ = std::make_unique<FitFlights>(task_, FitSetup{task_.start, {1, 2}, {Regime::pitch_manoeuvre}});
-    stage_->share_noise(*whole_);
+    whole_->weigh(task_.start);
+    stage_ =
+        std::make_unique<FitFlights>(task_, FitSetup{task_.start, {1, 2}, {}, {Regime::pitch_manoeuvre}});
+    stage_->share_weight(*whole_);
   }
 
   Solution solution() {
     Solution from;
     from.values = task_.start;
     from.deviation = whole_->deviation(task_.start);
-    return solve(*stage_, from);
+    return solve(*stage_, from, {1, 2}, true);
   }
 
   RefitOptions options_;
@@ -90,12 +91,10 @@ TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
   std::vector<Eigen::MatrixXd> columns;  // derivatives of each flight by the slopes and by its offsets
   std::vector<Eigen::VectorXd> residuals;
   Eigen::Index bins = 0;
-  const auto systems = stage_->of_each([&](std::size_t, FitFlight& fit) {
+  const auto systems = stage_->of_each([&](std::size_t flight, const FitFlight& fit) {
     const FlightSamples& samples = fit.residuals().samples();
     const std::vector<double>& pressure = *samples.model.find(Quantity::static_pressure);
-    const Eigen::MatrixXd rows = fit.white(fit.rows(task_.start));
-    Eigen::MatrixXd own(rows.rows(), 2);
-    own = rows.leftCols(2);
+    Eigen::MatrixXd own = stage_->weighted(flight, stage_->columns(flight));
     for (std::size_t k = 0; k < 4; ++k) {
       const Interval& interval = samples.intervals[k];
       std::vector<double> shift(samples.time.size(), 0.0);
@@ -103,10 +102,10 @@ TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
         if (samples.time[i] >= interval.begin && samples.time[i] < interval.end) shift[i] = pressure[i];
       }
       own.conservativeResize(Eigen::NoChange, own.cols() + 1);
-      own.rightCols(1) = fit.white(fit.bins().means(shift));
+      own.rightCols(1) = stage_->weighted(flight, stage_->bins(flight).means(shift));
     }
     own.conservativeResize(Eigen::NoChange, own.cols() + 1);
-    own.rightCols(1) = rows.rightCols(1);
+    own.rightCols(1) = stage_->weighted(flight, stage_->residual(flight, task_.start));
     return own;
   });
   for (const Eigen::MatrixXd& system : systems) {

@@ -320,7 +320,7 @@ TEST(Refit, DrawsToItsStartWhatTheFlightsLeaveOpen) {
   }
 }
 
-TEST(Refit, GlobalSearchFindsOptimumThatCeresMisses) {
+TEST(Refit, GlobalSearchFindsOptimumThatTheStartMisses) {
   // A wave in time: between the start and the truth lie many minima of its frequency.
   made::Plan plan = plan_18(13);
   plan.defect = [](double p, double q, double ratio, double time) {

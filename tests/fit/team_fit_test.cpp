@@ -130,7 +130,7 @@ TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
   const auto most = std::max_element(growths.begin(), growths.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
   EXPECT_LE(most->first, 8 * (unknowns + 1) * (unknowns + 2) / 2 + 64);
-  EXPECT_GT(most->second, 5U);
+  EXPECT_GT(most->second, 3U);
 }
 
 TEST(TeamFit, FailsOnAllMembersAlike) {

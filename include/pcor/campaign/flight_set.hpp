@@ -50,7 +50,7 @@ struct FlightOutline {
 /// roles and kept within the memory limit.
 ///
 /// Copies of a set share this state, and so do the sets returned by `only`, `part` and `with`. Not
-/// thread-safe, except `reserve` and `release`.
+/// thread-safe.
 class FlightSet {
  public:
   FlightSet();  ///< no flight
@@ -109,11 +109,6 @@ class FlightSet {
   /// Check at the end of a computation. @throws Error, on every rank, with a file that was replaced or
   /// changed since it was opened
   void require_unchanged() const;
-
-  /// Reserves memory of the set for results computed from its samples; unused samples are evicted. False if
-  /// the memory is not available. Must be returned with `release`. Thread-safe.
-  bool reserve(std::size_t bytes) const;
-  void release(std::size_t bytes) const;
 
  private:
   struct Entry;

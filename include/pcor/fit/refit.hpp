@@ -273,9 +273,9 @@ void describe(const RefitResult& self, Field& field) {
 /// Coefficients: least squares with Huber loss of residuals in bins of four seconds, each bin weighted by the
 /// square root of its sample count, each reference by the robust standard deviation of its residuals. Slow
 /// misfit of the model is not treated as drift: the correction is the best one over all flown conditions.
-/// From the coefficients of the file the linear problem is solved in closed form; Ceres then solves the full
-/// problem, with bounds and loss. Every pass reduces each flight to a triangular factor; the factors are
-/// combined.
+/// From the coefficients of the file the linear problem is solved in closed form, within the bounds; its
+/// weights and derivatives are renewed until the loss is at its minimum. Every pass reduces each flight to a
+/// triangular factor; the factors are combined.
 ///
 /// Standard errors: M (N + F) M' with the derivatives M of the coefficients with respect to the residuals,
 /// the covariance N of the noise (an autoregression with one level per five minutes, and drift, by restricted

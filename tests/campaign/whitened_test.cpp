@@ -1,5 +1,5 @@
 // Sums over whitened columns against generalised least squares with the covariance written out.
-#include "diagnose/whitened_system.hpp"
+#include "campaign/whitened.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,17 +2,74 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
+#include "campaign/binned_flights.hpp"
 #include "numerics/noise_model.hpp"
 #include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
 
-/// Whitened columns and residuals of flights, each against each of its references, and the sums of this
-/// generalised least-squares problem that a search needs. A process of a team has the rows of its flights
-/// only.
+// Noise of the residuals in bins, the weights that follow from it, and the sums of weighted rows: fit,
+// diagnosis, what-if and comparison have them from here.
+
+/// Binned inputs of the noise estimate.
+struct BinnedFit {
+  /// Columns fitted to a flight of this rank.
+  std::function<Eigen::MatrixXd(std::size_t flight)> columns;
+  /// Residual after the fit, hPa.
+  std::function<Eigen::VectorXd(std::size_t flight)> left;
+  /// Digest of the parameters of the fit, on which the ranks must agree.
+  std::uint64_t state = 0;
+};
+
+using FindNoise =
+    std::function<NoiseModel(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+                             const std::vector<Eigen::VectorXd>& left)>;
+
+/// Noise of each flight, separate for each reference. The common part is found from a few flights by `find`;
+/// the level of a flight follows from the common part and its residual.
+std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const BinnedFlights& flights,
+                                         const BinnedFit& fit, const FindNoise& find);
+
+/// Common noise of the flights against the first reference, with the levels of the flights of this rank.
+NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vector<NoiseModel>& noise);
+
+/// Robust standard deviation of the values of the own flights of all members together.
+double robust_deviation(Communicator& comm, const std::vector<Eigen::VectorXd>& values);
+
+/// Weights of least squares in units of the deviation of a residual: the root of the samples in each bin over
+/// the most, over the deviation.
+Eigen::VectorXd weights_of_bins(const Binning& bins, double deviation);
+
+/// Information of a flight about a common mean of its bins, 1/hPa^2: the number of independent bins over
+/// their variance; zero without bins.
+double information_about_mean(const Binning& bins, const NoiseModel& noise);
+
+/// Sums over the rows (columns, residual) of several parts of the flights, such as those that are held out in
+/// turn. Sums of flights add up.
+struct PartialSums {
+  std::vector<Eigen::MatrixXd> products{};  ///< of the rows of each part with each other
+  std::vector<double> counts{};             ///< rows of each part
+
+  PartialSums() = default;
+  PartialSums(std::size_t parts, Eigen::Index width)
+      : products(parts, Eigen::MatrixXd::Zero(width, width)), counts(parts, 0.0) {}
+
+  void add(std::size_t part, const Eigen::VectorXd& row);
+  PartialSums& operator+=(const PartialSums& other);
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(products, counts);
+  }
+};
+
+/// Whitened columns and residuals of flights, each against each of its references, and the sums over all of
+/// them that a search needs: those of a generalised least-squares problem. A member of a team has the rows of
+/// its own.
 struct WhitenedSystem {
   FlightPartition share = FlightPartition(0);
   std::vector<Eigen::MatrixXd> rows{};             ///< per flight: whitened columns and, last, the residual

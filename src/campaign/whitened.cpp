@@ -1,4 +1,4 @@
-#include "diagnose/whitened_system.hpp"
+#include "campaign/whitened.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,25 @@
 #include <numeric>
 #include <utility>
 
+#include "numerics/binned_rows.hpp"
+#include "numerics/median.hpp"
+#include "numerics/noise_covariance.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "parallel/distributed_median.hpp"
 #include "parallel/symmetric_part.hpp"
 
 namespace pcor::internal {
 namespace {
+
+/// Flights from `first` until `last` that determine the noise.
+std::vector<std::size_t> few_of(const std::vector<NoiseFlight>& flights, std::size_t first,
+                                std::size_t last) {
+  const auto begin = flights.begin();
+  std::vector<std::size_t> few = flights_for_noise(
+      {begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(last)});
+  for (std::size_t& flight : few) flight += first;
+  return few;
+}
 
 constexpr double block_time = 60.0;  // s
 
@@ -53,6 +67,80 @@ Eigen::Index find_blocks(const Binning& bins, std::vector<Eigen::Index>& block) 
 }
 
 }  // namespace
+
+std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const BinnedFlights& flights,
+                                         const BinnedFit& fit, const FindNoise& find) {
+  std::vector<NoiseModel> noise(flights.bins.size());
+  for (std::size_t first = 0; first < noise.size();) {
+    std::size_t last = first;
+    while (last < noise.size() && flights.reference[last] == flights.reference[first]) ++last;
+    const std::vector<std::size_t> few = few_of(flights.outlines, first, last);
+    const auto rows_of = share.of_entries(few).of_each_flight<BinnedRows>(
+        [&](std::size_t k) {
+          const Eigen::MatrixXd columns = fit.columns(few[k]);
+          BinnedRows some{flights.bins[few[k]], {columns.rows(), columns.cols() + 1}};
+          some.rows << columns, fit.left(few[k]);
+          return some;
+        },
+        fit.state);
+    std::vector<Binning> bins;
+    std::vector<Eigen::MatrixXd> columns;
+    std::vector<Eigen::VectorXd> left;
+    for (const BinnedRows& some : rows_of) {
+      bins.push_back(some.bins);
+      columns.emplace_back(some.rows.leftCols(some.rows.cols() - 1));
+      left.emplace_back(some.rows.rightCols(1));
+    }
+    NoiseModel shared = find(bins, columns, left);
+    shared.level.clear();
+    for (; first < last; ++first) {
+      noise[first] = shared;
+      noise[first].level.resize(1);
+      if (!share.owns(first)) continue;
+      const Binning& own = flights.bins[first];
+      noise[first].level[0] = level_of_bins(noise_levels(own, fit.left(first), shared), own);
+    }
+  }
+  return noise;
+}
+
+NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vector<NoiseModel>& noise) {
+  NoiseModel first = noise.front();
+  first.level.clear();
+  for (std::size_t f = 0; f < flights.first_count(); ++f) first.level.push_back(noise[f].level[0]);
+  return first;
+}
+
+double robust_deviation(Communicator& comm, const std::vector<Eigen::VectorXd>& values) {
+  std::vector<double> all;
+  for (const Eigen::VectorXd& own : values) all.insert(all.end(), own.begin(), own.end());
+  return deviation_of_median * median_of_absolute_values(comm, std::move(all));
+}
+
+Eigen::VectorXd weights_of_bins(const Binning& bins, double deviation) {
+  if (bins.size() == 0) return bins.counts();
+  return (bins.counts() / bins.counts().maxCoeff()).cwiseSqrt() / deviation;
+}
+
+double information_about_mean(const Binning& bins, const NoiseModel& noise) {
+  if (bins.size() == 0) return 0.0;
+  const auto count = static_cast<double>(bins.size());
+  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(as_index(bins.size()), 1);
+  return count * count / noise_covariance(ones, bins, noise, 0)(0, 0);
+}
+
+void PartialSums::add(std::size_t part, const Eigen::VectorXd& row) {
+  products[part].noalias() += row * row.transpose();
+  counts[part] += 1.0;
+}
+
+PartialSums& PartialSums::operator+=(const PartialSums& other) {
+  for (std::size_t part = 0; part < counts.size(); ++part) {
+    products[part] += other.products[part];
+    counts[part] += other.counts[part];
+  }
+  return *this;
+}
 
 Eigen::VectorXd WhitenedSystem::left(std::size_t flight, const Eigen::VectorXd& coefficients) const {
   return rows[flight].col(columns()) - rows[flight].leftCols(columns()) * coefficients;
