@@ -235,17 +235,6 @@ Series heights(const FlightSamples& samples, const Air& air) {
   return z;
 }
 
-double mean_of(const Series& values) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    count += 1.0;
-  }
-  return sum / count;
-}
-
 // Variance of a gust of one second in a -5/3 cascade that matches the differences of the residual over 4 s
 // within 150 s around each sample. The factor applies to processes of 2, 8 and 32 s.
 Series gust_level(const Series& east, const Series& north, const Series& time, double step) {

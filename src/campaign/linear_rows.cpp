@@ -55,15 +55,15 @@ LinearRows::LinearRows(Residuals residuals, const ModelDefinition& model, const 
   if (!setup.regimes.empty()) keep_regimes(setup.regimes);
 }
 
-/// A column must not hold noise that its own row holds. A diagnosis takes pressures, their rates and the
-/// speed of the laser from predictions; temperatures are recorded values. A fit takes the pressures of two
-/// systems from their mean, and recorded samples otherwise.
+/// A column must not hold noise that its own row holds. A diagnosis takes pressures and the speed of the
+/// laser from predictions; rates of change and temperatures are recorded values, and so is all that a
+/// residual over neighbouring samples reads. A fit takes the pressures of two systems from their mean.
 void LinearRows::choose_inputs(const ModelDefinition& model, const Reference& reference, Inputs inputs) {
   if (inputs == Inputs::none) return;
   std::shared_ptr<const FlightSamples> elsewhere = residuals_.at_common_pressures();
-  if (inputs == Inputs::noise_free) {
-    auto predicted =
-        std::make_shared<FlightSamples>(with_predicted_pressures(elsewhere ? *elsewhere : samples()));
+  if (inputs == Inputs::noise_free && residuals_.reach() == 0) {
+    auto predicted = std::make_shared<FlightSamples>(
+        with_predicted_pressures(elsewhere ? *elsewhere : samples(), samples()));
     const Residuals of_predicted(predicted, model, reference, residuals_.mask());
     if (auto sensor = of_predicted.predicted_sensor(residuals_.parameters().data()))
       *predicted->model.find(sensor->first) = std::move(sensor->second);

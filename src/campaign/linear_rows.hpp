@@ -14,8 +14,8 @@ namespace pcor::internal {
 /// Points at which derivatives are evaluated.
 enum class Inputs {
   none,        ///< not evaluated: residuals only
-  recorded,    ///< recorded samples, for a fit
-  noise_free,  ///< predicted values at the sensor of the reference, for a diagnosis
+  recorded,    ///< recorded samples, or common pressures of two systems, for a fit
+  noise_free,  ///< predicted pressures and laser, for a diagnosis
 };
 
 /// Options of the rows of a flight.

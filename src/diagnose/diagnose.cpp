@@ -48,23 +48,25 @@ EffectInputs inputs_of(const std::vector<Finding>& findings, const ModelDefiniti
     const auto variable = model.variables.find(quantity);
     if (variable != model.variables.end()) inputs.variables.insert(variable->second);
   };
+  const auto read_with_angles = [&](Quantity need) {
+    read(need);
+    const bool is_attack = need == Quantity::attack || need == Quantity::attack_ratio;
+    const bool is_sideslip = need == Quantity::sideslip || need == Quantity::sideslip_ratio;
+    if (is_attack) read(Quantity::attack_differential_pressure);
+    if (is_sideslip) read(Quantity::sideslip_differential_pressure);
+    if (is_attack || is_sideslip) read(is_attack ? Quantity::attack : Quantity::sideslip);
+  };
   for (const Finding& finding : findings) {
     if (finding.effect.is_formula()) {
       const auto formula = Formula::parse(finding.effect.formula, finding.effect.parameter_names, nullptr);
       for (const std::string& name : formula ? formula->variables() : std::vector<std::string>()) {
         inputs.variables.insert(name);
-        if (quantity_named(name) != Quantity::count) read(quantity_named(name));
+        if (quantity_named(name) != Quantity::count) read_with_angles(quantity_named(name));
       }
       continue;
     }
     for (const Quantity need : effect_info[effect_named(finding.effect.id)].needs) {
-      if (need == Quantity::count) continue;
-      read(need);
-      const bool is_attack = need == Quantity::attack || need == Quantity::attack_ratio;
-      const bool is_sideslip = need == Quantity::sideslip || need == Quantity::sideslip_ratio;
-      if (is_attack) read(Quantity::attack_differential_pressure);
-      if (is_sideslip) read(Quantity::sideslip_differential_pressure);
-      if (is_attack || is_sideslip) read(is_attack ? Quantity::attack : Quantity::sideslip);
+      if (need != Quantity::count) read_with_angles(need);
     }
   }
   return inputs;
@@ -239,26 +241,23 @@ std::array<std::size_t, mask_count> count_masks(const TeamColumns& columns) {
   return all;
 }
 
-Verdict verdict_of(const Diagnosis& diagnosis, double explained, const UnexplainedStructure& structure) {
+Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
   constexpr double notable = 0.03;  // fraction of the explained part
   if (diagnosis.findings.empty())
     return diagnosis.unexplained.significant ? Verdict::unexplained : Verdict::silent;
-  if (diagnosis.unexplained.significant && structure.left > notable * explained) return Verdict::partial;
+  if (diagnosis.unexplained.significant && left > notable * explained) return Verdict::partial;
   const bool alone = std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
                                  [](const Finding& finding) { return finding.aliases.empty(); });
-  return alone && structure.rival.empty() ? Verdict::identified : Verdict::ambiguous;
+  return alone && diagnosis.rival.empty() ? Verdict::identified : Verdict::ambiguous;
 }
 
-/// Withdraws the findings if one variable of the files explains more than they do.
-void overrule(Diagnosis& diagnosis) {
+/// Withdraws the findings if a straight line in one variable of the files is more likely than they are.
+void overrule(Diagnosis& diagnosis, const std::string& variable) {
   for (const Finding& finding : diagnosis.findings) {
-    diagnosis.notes.push_back(fmt::format(
-        "{} explains a part of the residual, but a straight line in {} is more likely (probability above 95 "
-        "%): "
-        "the effect is not reported as the cause",
-        finding.id(),
-        (diagnosis.unexplained.variables.empty() ? std::string("one variable")
-                                                 : diagnosis.unexplained.variables.front().name)));
+    diagnosis.notes.push_back(
+        fmt::format("{} is not reported as the cause: a straight line in {} is more "
+                    "likely, with a probability above 95 %",
+                    finding.id(), variable));
   }
   diagnosis.findings.clear();
   for (FlightDiagnosis& flight : diagnosis.flights) {
@@ -343,19 +342,21 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   diagnosis.unexplained = std::move(structure.found);
   for (std::size_t f = 0; f < structure.traced.size(); ++f)
     diagnosis.flights[f].traced = std::move(structure.traced[f]);
-  if (structure.overrules) overrule(diagnosis);
-  if (!structure.rival.empty()) {
+  if (structure.overrules) {
+    overrule(diagnosis, structure.rival);
+  } else if (!structure.rival.empty()) {
+    diagnosis.rival = structure.rival;
     diagnosis.notes.push_back(
-        fmt::format("a straight line in {} explains the residual about as well as the effects; neither is "
-                    "ruled out with a probability of 95 %",
-                    structure.rival));
+        fmt::format("a straight line in {} may be the cause in place of the effects: its "
+                    "probability is between 5 and 95 %",
+                    diagnosis.rival));
   }
   if (!flaps.empty())
     diagnose_flaps(analysis, flaps, groups_of(set, flaps.candidates), options.seed, diagnosis);
   keep_series(analysis, options.series_of, diagnosis.flights);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
-  diagnosis.verdict = verdict_of(diagnosis, explained, structure);
+  diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);
   judge_held_out(diagnosis);
   std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
   diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());

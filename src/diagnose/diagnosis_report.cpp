@@ -25,13 +25,14 @@ using namespace internal::report;
 constexpr std::size_t limits_in_summary = 3;
 constexpr std::size_t rivals_in_title = 2;
 
-std::string either(const Finding& finding) {
+std::string either(const Finding& finding, const std::string& rival) {
   std::string names = finding.id();
   if (finding.aliases.size() > rivals_in_title) {
     names += fmt::format(" or one of {} others", finding.aliases.size());
   } else {
     for (const Alias& alias : finding.aliases) names += " or " + alias.effect;
   }
+  if (!rival.empty()) names += fmt::format(", or {} is the cause", rival);
   return fmt::format("An effect is missing, {}: these flights cannot distinguish them", names);
 }
 
@@ -182,7 +183,7 @@ std::string verdict_text(const Diagnosis& diagnosis) {
     case Verdict::identified:
       return effects;
     case Verdict::ambiguous:
-      return ids.size() == 1 ? either(diagnosis.findings.front())
+      return ids.size() == 1 ? either(diagnosis.findings.front(), diagnosis.rival)
                              : effects + "; these flights cannot separate all of them from others";
     case Verdict::partial:
       return effects + "; the remaining structure is not explained by any effect";

@@ -291,11 +291,13 @@ bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity
   using Sums = Eigen::Matrix<double, 6, 1>;
   const Sums sums = analysis.share().sum_of_each_flight<Sums>([&](std::size_t f) {
     Sums own = Sums::Zero();
-    const std::vector<double>& known = analysis.flights()[f].quantity(quantity);
-    if (known.empty()) return own;
+    const FlightColumns& flight = analysis.flights()[f];
+    const std::vector<double>* known = &flight.quantity(quantity);
+    if (known->empty()) known = flight.samples->model.find(quantity);
+    if (known == nullptr || known->empty()) return own;
     for (const std::size_t record : analysis.bins()[f].records()) {
       const double x = (*variable.values[f])[record];
-      const double y = known[record];
+      const double y = (*known)[record];
       if (std::isfinite(x) && std::isfinite(y)) own += (Sums() << 1.0, x, y, x * x, y * y, x * y).finished();
     }
     return own;
@@ -340,11 +342,14 @@ LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& ch
   const auto prior = [](double expected, std::size_t tested_count) {
     return std::log(expected / static_cast<double>(tested_count));
   };
-  const double against =
-      search.evidence(effects) +
-      static_cast<double>(chosen.size()) * prior(expected_effects, analysis.groups().size()) -
-      prior(expected_variables, causes.size());
+  std::size_t tested_effects = 0;
+  for (std::size_t group = 0; group < analysis.groups().size(); ++group)
+    tested_effects += analysis.search().is_absorbed(group) ? 0 : 1;
+  const double against = search.evidence(effects) +
+                         static_cast<double>(chosen.size()) * prior(expected_effects, tested_effects) -
+                         prior(expected_variables, causes.size());
   for (std::size_t k = 0; k < causes.size(); ++k) {
+    if (search.is_absorbed(chosen.size() + k)) continue;
     const double log_odds = search.evidence({chosen.size() + k}) - against;
     if (log_odds > best.log_odds) best = {tested.variables[causes[k]]->name, log_odds};
   }
@@ -410,7 +415,7 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   }
   const LineRival line = chosen.empty() ? LineRival() : best_line(analysis, chosen, beside_all, inputs);
   result.overrules = line.log_odds > sure;
-  if (line.log_odds > -sure && !result.overrules) result.rival = line.variable;
+  if (line.log_odds > -sure) result.rival = line.variable;
   std::unique_ptr<const Tested> beside_base;
   if (result.overrules) {
     beside_base =

@@ -23,7 +23,7 @@ struct UnexplainedStructure {
   /// True if a straight line in one variable of the files is more likely than all chosen effects, with a
   /// probability of 95 %: these are then rejected, and `found` describes the residual of the base alone.
   bool overrules = false;
-  std::string rival{};  ///< variable of such a line with a probability of 5 to 95 %; otherwise empty
+  std::string rival{};  ///< variable of such a line with a probability above 5 %; otherwise empty
   std::vector<std::vector<double>> traced{};  ///< best variable of each local flight, one value per record
 };
 

@@ -116,6 +116,11 @@ std::vector<FitFlights*> FitFlights::joint() {
   return all;
 }
 
+bool FitFlights::rows_are_linear() {
+  const std::vector<FitFlights*> all = joint();
+  return std::all_of(all.begin(), all.end(), [](const FitFlights* each) { return each->rows_are_linear_; });
+}
+
 bool FitFlights::uses_fixed_jacobian() const {
   return has_moving_columns() || keeps_derivatives(task_.reference) || !seeing_.empty();
 }

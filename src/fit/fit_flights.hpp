@@ -159,6 +159,9 @@ class FitFlights {
   /// of flights and samples, masks and single figures refer to the first reference.
   std::vector<FitFlights*> joint();
 
+  /// True if the residuals against all fitted references are linear in the free parameters.
+  bool rows_are_linear();
+
   /// True if derivatives, or columns that depend on a coefficient, stay fixed until the flights are prepared
   /// again.
   bool uses_fixed_jacobian() const;

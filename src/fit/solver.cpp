@@ -11,6 +11,7 @@
 
 #include <pcor/base/error.hpp>
 #include "fit/global_search.hpp"
+#include "fit/minimise.hpp"
 #include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/missing.hpp"
@@ -220,12 +221,23 @@ class Solver {
     }
   }
 
-  /// Minimises that loss; true if the deviation that scales it is then unchanged. Least squares with the
-  /// weights of the step before do not increase the loss of linear residuals (Huber and Ronchetti 2009,
-  /// Robust Statistics, section 7.8); a step that increases it is halved.
+  /// Minimises that loss; true if the deviation that scales it is then unchanged. Residuals that are not
+  /// linear are solved by Ceres. Least squares with the weights of the step before do not increase the loss
+  /// of linear residuals (Huber and Ronchetti 2009, Robust Statistics, section 7.8); a step that increases it
+  /// is halved.
   bool settles_with(Loss loss) {
     constexpr int max_steps = 200;
     const ScaledLoss scaled(loss, solution_.deviation);
+    if (!flights_.rows_are_linear()) {
+      const auto reduce = [&](const Eigen::VectorXd& unknowns) {
+        Eigen::VectorXd values = solution_.values;
+        values(free_) = unknowns;
+        task_.tell();
+        return flights_.reduce(values, scaled, free_);
+      };
+      minimise({reduce, solution_.deviation * prior_.rows, prior_.centre, lower_, upper_}, unknowns_);
+      spread();
+    }
     Eigen::VectorXd best = unknowns_;
     double least = infinity;
     for (int step = 0; step < max_steps; ++step) {

@@ -62,7 +62,7 @@ struct Candidates {
   bool all = false;
 };
 
-Candidate candidate_of(const Finding& finding, Verdict verdict) {
+Candidate candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
   Candidate candidate;
   candidate.choices.push_back({{finding.effect, finding.held, finding.is_alike}, finding.probability});
   candidate.title = finding.title;
@@ -72,7 +72,7 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
     if (alias.probability >= min_probability)
       candidate.choices.push_back({{alias.correction, alias.held, alias.is_alike}, alias.probability});
   }
-  if (verdict == Verdict::partial) {
+  if (diagnosis.verdict == Verdict::partial) {
     candidate.is_named = false;
     candidate.caution = "; significant structure remains, so this effect may not be the cause";
   } else if (!candidate.aliases.empty()) {
@@ -80,6 +80,9 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
         fmt::format("; these flights cannot distinguish it from {}{}{}", fmt::join(candidate.aliases, ", "),
                     finding.advice.sentence.empty() ? "" : ": ", finding.advice.sentence);
   }
+  if (!diagnosis.rival.empty())
+    candidate.caution +=
+        fmt::format("; a straight line in {} may be the cause in its place", diagnosis.rival);
   return candidate;
 }
 
@@ -315,7 +318,8 @@ class Climb {
     step.title = std::string(surface_named(id)->title);
     measure(step, offer->fit, before.alike);
     // Other parts than those of the steps before: their ratio continues the ladder.
-    step.rms_holdout = result_.steps.back().rms_holdout * out.rms_after / out.rms_before;
+    if (!loop_.has_holdout)
+      step.rms_holdout = result_.steps.back().rms_holdout * out.rms_after / out.rms_before;
     step.learnt =
         fmt::format("{}: {:.1f} degrees of freedom; {}; it describes the residual and identifies no cause",
                     id, offer->degrees_of_freedom, figures);
@@ -394,7 +398,7 @@ class Climb {
     candidates.all = now.verdict == Verdict::identified || now.verdict == Verdict::ambiguous;
     for (const Finding& finding : now.findings) {
       if (!may_be_of_reference(finding) && !has(result_.fit.model, finding.effect.id))
-        candidates.effects.push_back(candidate_of(finding, now.verdict));
+        candidates.effects.push_back(candidate_of(finding, now));
     }
     if (candidates.all || !loop_.trace_variables) return candidates;
     for (const EmpiricalPredictor& variable : now.unexplained.variables) {

@@ -7,7 +7,8 @@
 
 #include "numerics/decompositions.hpp"
 #include "numerics/low_pass.hpp"
-#include "numerics/triangular_factor.hpp"
+#include "numerics/missing.hpp"
+#include "roles/pressure_height.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -15,12 +16,20 @@ namespace {
 constexpr Eigen::Index terms = 5;
 using Row = Eigen::Matrix<double, terms, 1>;
 
-/// Replaces a series by its least-squares combination of a row of each sample; a value without a row stays.
+constexpr double max_misfit_of_height = 0.02;  // rms in ln p: 160 m
+constexpr double max_misfit_of_radome = 0.05;  // rms, fraction of the mean dynamic pressure
+constexpr double max_departure = 3.0;          // of one sample, in units of the largest rms
+
+// Gaussian in time, s: several times the memory of the noise of transducers, about a minute.
+constexpr double slow_part = 300.0;
+constexpr double slow_block = 10.0;  // s
+
+/// Least-squares combination of a row of each sample; NaN for a sample without a row.
 /// @param row_of gives the row of a sample, not finite if an input is missing
-/// @return false, with the series unchanged, if fewer than 300 samples have a row, or if the combination
-/// misses the series by more than `max_rms`: then the other sensors do not measure the same air
+/// @return empty if fewer than 300 samples have a row, or if the combination misses the series by more than
+/// `max_rms`: then the other sensors do not measure the same air
 template <class RowOf>
-bool predict(std::vector<double>& series, double max_rms, const RowOf& row_of) {
+std::vector<double> combination(const std::vector<double>& series, double max_rms, const RowOf& row_of) {
   constexpr std::size_t min_rows = 300;
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(terms, terms);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(terms);
@@ -34,35 +43,38 @@ bool predict(std::vector<double>& series, double max_rms, const RowOf& row_of) {
     squares += series[i] * series[i];
     ++rows;
   }
-  if (rows < min_rows) return false;
+  if (rows < min_rows) return {};
   const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Row solution = scale.asDiagonal() * pseudo_solution(scale.asDiagonal() * normal * scale.asDiagonal(),
                                                             scale.cwiseProduct(right), 1e-12);
   const double left = std::max(0.0, squares - solution.dot(right));
-  if (!(std::sqrt(left / static_cast<double>(rows)) < max_rms)) return false;
-  for (std::size_t i = 0; i < series.size(); ++i) {
-    const double value = row_of(i).dot(solution);
-    if (std::isfinite(value)) series[i] = value;
-  }
-  return true;
+  if (!(std::sqrt(left / static_cast<double>(rows)) < max_rms)) return {};
+  std::vector<double> result(series.size());
+  for (std::size_t i = 0; i < series.size(); ++i) result[i] = row_of(i).dot(solution);
+  return result;
 }
 
-constexpr double max_misfit_of_height = 0.02;  // in ln p: 160 m
-constexpr double max_misfit_of_radome = 0.05;  // of the mean dynamic pressure
-
-// Gaussian in time, s: several times the memory of the noise of transducers, about a minute.
-constexpr double slow_part = 300.0;
-
-/// Mean of the available values; NaN if there is no value.
-double mean_of(const std::vector<double>& series) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const double value : series) {
-    if (!std::isfinite(value)) continue;
-    sum += value;
-    count += 1.0;
+/// Slow part of a series with missing values, from means over blocks of ten seconds; NaN far from all values.
+std::vector<double> slow_part_of(const std::vector<double>& series, double step) {
+  const auto width = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(slow_block / step)));
+  std::vector<double> blocks;
+  for (std::size_t first = 0; first < series.size(); first += width) {
+    const auto begin = series.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(width, series.size() - first));
+    blocks.push_back(mean_of({begin, end}));
   }
-  return sum / count;
+  blocks = low_passed(blocks, slow_part / (step * static_cast<double>(width)));
+  std::vector<double> result(series.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const double place = std::clamp((static_cast<double>(i) + 0.5) / static_cast<double>(width) - 0.5, 0.0,
+                                    static_cast<double>(blocks.size() - 1));
+    const auto before = static_cast<std::size_t>(place);
+    const std::size_t after = std::min(before + 1, blocks.size() - 1);
+    const double part = place - static_cast<double>(before);
+    const double between = blocks[before] + part * (blocks[after] - blocks[before]);
+    result[i] = std::isfinite(between) ? between : blocks[part < 0.5 ? before : after];
+  }
+  return result;
 }
 
 }  // namespace
@@ -73,47 +85,57 @@ std::vector<double> predicted_by_radome(std::vector<double> dynamic_pressure, co
   if (radome == nullptr || pressure == nullptr) return dynamic_pressure;
   const std::vector<double>* const attack = samples.find(Quantity::attack_differential_pressure);
   const std::vector<double>* const sideslip = samples.find(Quantity::sideslip_differential_pressure);
-  predict(dynamic_pressure, max_misfit_of_radome * mean_of(dynamic_pressure), [&](std::size_t i) -> Row {
+  const double max_rms = max_misfit_of_radome * mean_of(dynamic_pressure);
+  const std::vector<double> predicted = combination(dynamic_pressure, max_rms, [&](std::size_t i) -> Row {
     const double q = (*radome)[i];
-    if (!(q > 0.0)) return Row::Constant(std::nan(""));
+    if (!(q > 0.0)) return Row::Constant(nan);
     const auto squared = [&](const std::vector<double>* angle) {
       return angle == nullptr ? 0.0 : (*angle)[i] * (*angle)[i] / q;
     };
     return Row{1.0, q, squared(attack), squared(sideslip), q * q / (*pressure)[i]};
   });
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    if (std::abs(predicted[i] - dynamic_pressure[i]) < max_departure * max_rms)
+      dynamic_pressure[i] = predicted[i];
+  }
   return dynamic_pressure;
 }
 
 std::vector<double> predicted_by_height(std::vector<double> static_pressure,
                                         const std::vector<double>& altitude, double step) {
   if (altitude.size() != static_pressure.size()) return static_pressure;
-  std::vector<double> recorded = static_pressure;
-  for (double& value : recorded) value = std::log(value);
-  std::vector<double> logarithm = recorded;
-  const bool is_predicted = predict(logarithm, max_misfit_of_height, [&](std::size_t i) -> Row {
-    const double z = 1e-4 * altitude[i];
-    return Row{1.0, z, z * z, z * z * z, z * z * z * z};
-  });
-  if (!is_predicted) return static_pressure;
-  for (std::size_t i = 0; i < recorded.size(); ++i) recorded[i] -= logarithm[i];
-  const std::vector<double> slow = low_passed(recorded, slow_part / step);
-  for (std::size_t i = 0; i < recorded.size(); ++i) {
-    if (std::isfinite(altitude[i]) && std::isfinite(slow[i]))
-      static_pressure[i] = std::exp(logarithm[i] + slow[i]);
+  std::vector<double> logarithm = static_pressure;
+  for (double& value : logarithm) value = value > 0.0 ? std::log(value) : nan;
+  const std::vector<double> predicted =
+      combination(logarithm, max_misfit_of_height, [&](std::size_t i) -> Row {
+        const double z = 1e-4 * altitude[i];
+        return Row{1.0, z, z * z, z * z * z, z * z * z * z};
+      });
+  if (predicted.empty()) return static_pressure;
+  std::vector<double> left(logarithm.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = logarithm[i] - predicted[i];
+  const std::vector<double> slow = slow_part_of(left, step);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (std::abs(left[i] - slow[i]) < max_departure * max_misfit_of_height)
+      static_pressure[i] = std::exp(predicted[i] + slow[i]);
   }
   return static_pressure;
 }
 
-FlightSamples with_predicted_pressures(FlightSamples samples) {
+FlightSamples with_predicted_pressures(FlightSamples samples, const FlightSamples& recorded) {
+  std::vector<double> altitude = samples.motion.altitude;
+  for (const ModelSamples* const system : {&recorded.model, &recorded.reference}) {
+    const std::vector<double>* const pressure = system->find(Quantity::static_pressure);
+    if (pressure != nullptr && pressure->size() == altitude.size() &&
+        compare_height(altitude, *pressure).kind == HeightEvidence::Kind::pressure_altitude)
+      altitude.clear();
+  }
   for (ModelSamples* const system : {&samples.model, &samples.reference}) {
-    // The combination of the radome contains the static pressure.
-    for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
-      std::vector<double>* const pressure = system->find(quantity);
-      if (pressure == nullptr) continue;
-      *pressure = quantity == Quantity::static_pressure
-                      ? predicted_by_height(std::move(*pressure), samples.motion.altitude, samples.step)
-                      : predicted_by_radome(std::move(*pressure), *system);
-    }
+    if (std::vector<double>* const pressure = system->find(Quantity::static_pressure))
+      *pressure = predicted_by_height(std::move(*pressure), altitude, samples.step);
+    // The radome is that of the model; its combination contains the static pressure.
+    if (std::vector<double>* const pressure = system->find(Quantity::dynamic_pressure))
+      *pressure = predicted_by_radome(std::move(*pressure), samples.model);
   }
   return samples;
 }

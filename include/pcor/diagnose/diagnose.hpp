@@ -392,6 +392,9 @@ struct Diagnosis {
   std::string reference;
   std::vector<Finding> findings{};  ///< sorted by decreasing strength
   Unexplained unexplained;
+  /// Variable of the files in which a straight line may be the cause in place of the findings, with a
+  /// probability of 5 to 95 %; otherwise empty.
+  std::string rival{};
   std::vector<AbsorbedEffect> absorbed{};
   std::vector<UpperLimit> limits{};  ///< sorted by decreasing size
   std::vector<NotTestable> not_testable{};
@@ -424,6 +427,7 @@ void describe(const Diagnosis& self, Field& field) {
   field("reference", self.reference, "description of the references");
   field("findings", self.findings, "missing effects, strongest first");
   field("unexplained", self.unexplained, "structure that no effect explains");
+  field("rival", self.rival, "variable that may be the cause in place of the findings; otherwise empty");
   field("absorbed", self.absorbed, "effects absorbed by coefficients of the model");
   field("limits", self.limits, "effects that were tested and not found");
   field("not_testable", self.not_testable, "effects that cannot be tested on these flights");
@@ -454,7 +458,8 @@ void judge_held_out(Diagnosis& diagnosis);
 ///
 /// Tests each formula of the options and each effect of the catalogue that the model lacks: does its
 /// contribution explain residuals that the model's free coefficients cannot? Columns are derivatives through
-/// the whole chain at the air data of the model. The noise model is an autoregression with a separate level
+/// the whole chain at pressures that the height and the radome predict. The findings compete with straight
+/// lines in the recorded variables. The noise model is an autoregression with a separate level
 /// every five minutes and a slow drift. The threshold is the distribution of the best of all candidates on
 /// flights without any effect. The noise of several flights is estimated on all processors.
 ///
