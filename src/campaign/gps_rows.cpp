@@ -437,6 +437,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
   result.kind = GpsKind::height;
   result.time = samples.time;
   result.warmth.resize(size, 0.0);
+  result.thickness.resize(size, 0.0);
   result.is_break.resize(size, true);
   result.rise.resize(size, 0.0);
   const Eigen::Index count = as_index(wanted.size());
@@ -461,6 +462,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
         air.airspeed[i] * air.airspeed[i] / (2.0 * 3.5 * air.gas_constant[i] * temperature);
     const double by_recovery = -temperature * heating / (1.0 + heating);
     result.warmth[i] = 1.0 / temperature;
+    result.thickness[i] = air.gas_constant[i] * temperature / (constants::standard_gravity * air.pressure[i]);
     const bool goes_on = last < size && samples.time[i] - samples.time[last] < 3.5 * samples.step;
     if (goes_on) {
       const double fall = air.gas_constant[i] / constants::standard_gravity;

@@ -56,10 +56,11 @@ struct GpsRows {
   std::vector<double> airspeed;  ///< wind: airspeed without gusts, m/s
   std::vector<double> east;      ///< wind: east component of the direction of the airspeed, without gusts
   std::vector<double> north;
-  std::vector<double> warmth;  ///< height: 1/T, 1/K
-  std::vector<bool> is_break;  ///< height: the height since the sample before is not known
-  RowByRow rows;               ///< wind: of the east, then of the north component of all samples
-  Eigen::MatrixXd defect;      ///< derivatives of the corrected static pressure by the wanted coefficients
+  std::vector<double> warmth;     ///< height: 1/T, 1/K
+  std::vector<double> thickness;  ///< height: height change by a pressure change, m/hPa
+  std::vector<bool> is_break;     ///< height: the height since the sample before is not known
+  RowByRow rows;                  ///< wind: of the east, then of the north component of all samples
+  Eigen::MatrixXd defect;         ///< derivatives of the corrected static pressure by the wanted coefficients
 };
 
 /// Rows at the given coefficients.
