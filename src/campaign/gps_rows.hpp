@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -57,10 +58,18 @@ struct GpsRows {
   std::vector<double> east;      ///< wind: east component of the direction of the airspeed, without gusts
   std::vector<double> north;
   std::vector<double> warmth;     ///< height: 1/T, 1/K
-  std::vector<double> thickness;  ///< height: height change by a pressure change, m/hPa
+  std::vector<double> thickness;  ///< height change by a pressure change, m/hPa
   std::vector<bool> is_break;     ///< height: the height since the sample before is not known
   RowByRow rows;                  ///< wind: of the east, then of the north component of all samples
   Eigen::MatrixXd defect;         ///< derivatives of the corrected static pressure by the wanted coefficients
+};
+
+/// Effects that the model lacks: each coefficient adds an amount at a location of the model.
+struct AddedEffects {
+  std::vector<std::size_t> amounts_of_model{};  ///< parameters of the model, the amounts at its locations
+  std::vector<std::size_t> at{};                ///< index of the location of each coefficient among these
+  /// Amounts per unit of each coefficient, one row per sample, at these inputs of the model; finite.
+  std::function<Eigen::MatrixXd(const ModelSamples& inputs)> amounts{};
 };
 
 /// Rows at the given coefficients.
@@ -75,8 +84,9 @@ struct GpsRows {
 /// taken for some tenths of a kelvin.
 /// @param used the samples that take part
 /// @param parameters of the model, all of them; `wanted` are those of which the rows have derivatives
+/// @param effects have further columns, after those of `wanted`
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
-                 const std::vector<std::size_t>& wanted);
+                 const std::vector<std::size_t>& wanted, const AddedEffects& effects = {});
 
 }  // namespace pcor::internal
