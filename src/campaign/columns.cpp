@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/physics/constants.hpp>
 #include <pcor/realtime/chain.hpp>
 #include "campaign/linear_rows.hpp"
 #include "campaign/model_parameters.hpp"
@@ -46,7 +49,7 @@ struct System {
 
 /// Evaluations of the candidates of one system.
 std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t reference, bool of_reference,
-                                       const std::vector<EffectLocation>& places,
+                                       const std::vector<EffectLocation>& places, const ModelSamples& inputs,
                                        const FlightSamples& samples) {
   std::vector<Evaluation> evaluations;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
@@ -61,7 +64,7 @@ std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t r
     if (candidate.memory != 0.0) {  // the history starts from the samples' inputs
       evaluation.memory = memory_of(candidate.effect).of;
       evaluation.remembered =
-          remembered(evaluation.memory, samples.model, samples.time, samples.step, candidate.memory);
+          remembered(evaluation.memory, inputs, samples.time, samples.step, candidate.memory);
     }
     const std::vector<double>& neutral = candidate.effect.parameters;
     for (std::size_t first = 0; first < candidate.tested.size(); first += jet_width) {
@@ -224,6 +227,76 @@ void complete(const CandidateModels& set, bool two_systems, const std::vector<st
   }
 }
 
+/// Amounts that the candidates on the model's system add at its locations, per unit of each coefficient.
+AddedEffects effects_of(const CandidateModels& set, std::size_t reference, const System& own,
+                        const FlightSamples& samples, const std::vector<std::size_t>& used) {
+  AddedEffects effects;
+  for (std::size_t place = own.first_place; place < own.end; ++place)
+    effects.amounts_of_model.push_back(place);
+  effects.at.resize(set.first_column(set.candidates.size()), 0);
+  for (const Evaluation& each : evaluations_of(set, reference, false, own.places(), samples.model, samples)) {
+    for (std::size_t p = 0; p < each.width; ++p)
+      effects.at[each.first_column + p] = static_cast<std::size_t>(each.place);
+  }
+  effects.amounts = [&, reference,
+                     columns = as_index(effects.at.size())](const ModelSamples& inputs) -> Eigen::MatrixXd {
+    std::vector<std::size_t> all(samples.time.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    Eigen::MatrixXf added = Eigen::MatrixXf::Zero(as_index(all.size()), columns);
+    put_candidates(
+        chain_of(set.extended.model, inputs.roles), inputs,
+        evaluations_of(set, reference, false, own.places(), inputs, samples), all, Eigen::MatrixXd(),
+        [](std::size_t, const State<double>&) {}, added);
+    complete(set, false, used, added);
+    return -added.unaryExpr([](float amount) { return std::isfinite(amount) ? amount : 0.0F; })
+                .cast<double>();
+  };
+  return effects;
+}
+
+/// Columns of wind in hPa: the change of the airspeed, without gusts, in units of that by the static
+/// pressure.
+/// @param own number of coefficients of the model
+void put_wind_columns(const GpsRows& rows, const std::vector<std::size_t>& used, Eigen::Index own,
+                      FlightColumns& columns) {
+  const Eigen::Index size = as_index(rows.time.size());
+  for (const std::size_t i : used) {
+    const Eigen::Index row = as_index(i);
+    if (std::isnan(rows.rows(row, 0))) continue;
+    // dV = -R T / (p V) dp, the equation of Bernoulli
+    const double per_speed = -rows.airspeed[i] / (constants::standard_gravity * rows.thickness[i]);
+    const Eigen::RowVectorXf along =
+        (per_speed * (rows.east[i] * rows.rows.row(row) + rows.north[i] * rows.rows.row(size + row)))
+            .cast<float>();
+    columns.base.row(row).head(own) = along.head(own);
+    for (Eigen::Index c = 0; c < columns.candidates.cols(); ++c) {
+      float& value = columns.candidates(row, c);
+      if (std::isfinite(value)) value = along[own + c];
+    }
+  }
+}
+
+/// The whitened rows of a flight against wind or height, and the columns of wind in hPa.
+void put_gps(GpsKind kind, const CandidateModels& set, const System& own, const LinearRows& rows,
+             FlightColumns& columns) {
+  const FlightSamples& samples = *columns.samples;
+  const GpsRows found = gps_rows(kind, samples, own.model, rows.used(), rows.residuals().parameters().data(),
+                                 own.free, effects_of(set, columns.reference, own, samples, rows.used()));
+  const Eigen::Index free = as_index(own.free.size());
+  std::vector<double> usual;
+  for (std::size_t k = 0; k < own.free.size(); ++k) usual.push_back(set.base[k].usual);
+  columns.is_by_gps = true;
+  if (kind == GpsKind::wind) put_wind_columns(found, rows.used(), free, columns);
+  if (found.defect.rows() == 0) return;
+  columns.gps = gps_system(found, usual);
+  // The coefficients of other systems do not change a comparison with GPS.
+  const Eigen::MatrixXf own_columns = std::move(columns.gps.rows);
+  const Eigen::Index others = columns.base.cols() - free;
+  columns.gps.rows = Eigen::MatrixXf::Zero(own_columns.rows(), own_columns.cols() + others);
+  columns.gps.rows.leftCols(free) = own_columns.leftCols(free);
+  columns.gps.rows.rightCols(own_columns.cols() - free) = own_columns.rightCols(own_columns.cols() - free);
+}
+
 }  // namespace
 
 const std::vector<double>& FlightColumns::quantity(Quantity wanted) const {
@@ -231,6 +304,16 @@ const std::vector<double>& FlightColumns::quantity(Quantity wanted) const {
   const auto found = std::find_if(quantities.begin(), quantities.end(),
                                   [wanted](const auto& each) { return each.first == wanted; });
   return found == quantities.end() ? none : found->second;
+}
+
+void FlightColumns::keep_base(const std::vector<Eigen::Index>& kept) {
+  gps.keep(kept, 0, base.cols());
+  base = Eigen::MatrixXf(base(Eigen::all, kept));
+}
+
+void FlightColumns::keep_candidates(const std::vector<Eigen::Index>& kept) {
+  gps.keep(kept, base.cols(), candidates.cols());
+  candidates = Eigen::MatrixXf(candidates(Eigen::all, kept));
 }
 
 Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins) {
@@ -247,6 +330,7 @@ FlightColumns outline_of(const FlightColumns& flight) {
   outline.file = flight.file;
   outline.reference = flight.reference;
   outline.window = flight.window;
+  outline.is_by_gps = flight.is_by_gps;
   auto samples = std::make_shared<FlightSamples>();
   samples->name = flight.samples->name;
   samples->flaps_variable = flight.samples->flaps_variable;
@@ -266,13 +350,16 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   const System& own = systems.front();
   std::shared_ptr<const Reference> held_against = set.references[reference];
   if (systems.size() > 1) held_against = held_against->with_model(systems.back().model);
+  const std::optional<GpsKind> kind = gps_kind(*held_against);
+  const bool is_wind = kind == GpsKind::wind;  // its residuals contain gusts, as their derivatives do
   const LinearRows rows(Residuals(extended, own.model, *held_against, mask), own.model, *held_against,
-                        {Inputs::noise_free, {}, first_part});
+                        {is_wind ? Inputs::none : Inputs::noise_free, {}, first_part});
   const Residuals& residuals = rows.residuals();
   const double* const start = residuals.parameters().data();
   const bool of_neighbours = residuals.reach() > 0;
   const std::vector<std::size_t> used = of_neighbours ? rows.used() : with_flaps_out(rows);
-  const std::vector<std::size_t> needed = with_neighbours(used, residuals.reach(), residuals.size());
+  const std::vector<std::size_t> needed =
+      is_wind ? used : with_neighbours(used, residuals.reach(), residuals.size());
 
   FlightColumns columns;
   columns.reference = reference;
@@ -282,6 +369,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   columns.exact = residuals.values(start);
   std::vector<std::size_t> wanted;
   for (const System& system : systems) {
+    if (is_wind) continue;
     wanted.insert(wanted.end(), system.free.begin(), system.free.end());
     for (std::size_t place = system.first_place; place < system.end && !of_neighbours; ++place)
       wanted.push_back(place);
@@ -304,7 +392,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   for (const System& system : systems) {
     const bool is_own = &system == &own;
     const std::size_t first = is_own ? 0 : set.base_of_others[reference];
-    for (std::size_t c = 0; c < system.free.size(); ++c, ++next) {
+    for (std::size_t c = 0; c < system.free.size() && !is_wind; ++c, ++next) {
       for (std::size_t k = 0; k < used.size(); ++k)
         columns.base(as_index(used[k]), as_index(first + c)) = static_cast<float>(-found(as_index(k), next));
     }
@@ -314,7 +402,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
     const ModelSamples& inputs = is_own ? rows.inputs().model : rows.inputs().reference;
     const Model& with_all = is_own ? set.extended.model : set.others[reference]->model;
     const std::vector<Evaluation> evaluations =
-        evaluations_of(set, reference, !is_own, system.places(), *extended);
+        evaluations_of(set, reference, !is_own, system.places(), extended->model, *extended);
     put_candidates(
         chain_of(with_all, inputs.roles), inputs, evaluations, needed, at_places,
         [&](std::size_t sample, const State<double>& state) {
@@ -323,10 +411,12 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
           }
         },
         columns.candidates);
-    if (of_neighbours)
+    if (of_neighbours && !is_wind)
       sum_over_neighbours(residuals, evaluations, system.first_place, used, needed, columns.candidates);
   }
   complete(set, systems.size() > 1, used, columns.candidates);
+  // With other references first, heights are the climbs of minutes, whose noise is that of any residual.
+  if (is_wind || (kind && gps_kind(*set.references.front()))) put_gps(*kind, set, own, rows, columns);
   for (const Quantity quantity : {Quantity::corrected_mach, Quantity::ambient_temperature})
     columns.quantities.emplace_back(quantity, residuals.quantity(quantity, start));
   columns.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, start);

@@ -7,6 +7,7 @@
 
 #include <pcor/residuals/residuals.hpp>
 #include "campaign/candidate.hpp"
+#include "campaign/gps_system.hpp"
 #include "numerics/binning.hpp"
 #include "residuals/packed_residuals.hpp"
 
@@ -33,16 +34,23 @@ struct FlightColumns {
   std::vector<double> flaps_out{};
   Eigen::MatrixXf base;        ///< columns of the free coefficients of the models, hPa per unit
   Eigen::MatrixXf candidates;  ///< columns of the tested parameters of all candidates, one after another
+  bool is_by_gps = false;      ///< against wind or height
+  GpsSystem gps{};             ///< by GPS: whitened rows, with the columns of `base` and `candidates`
   /// Motion of the flight, for smooth functions and pictures; NaN everywhere if unknown.
   std::vector<std::pair<Quantity, std::vector<double>>> quantities{};
   std::vector<double> corrected_pressure{};  ///< corrected static pressure, hPa
 
   const std::vector<double>& quantity(Quantity quantity) const;
 
+  /// Leaves out the other columns of the base.
+  void keep_base(const std::vector<Eigen::Index>& kept);
+  /// Leaves out the other columns of candidates. @param kept numbers from the first candidate's column
+  void keep_candidates(const std::vector<Eigen::Index>& kept);
+
   template <class Archive>
   void serialize(Archive& archive) {
     archive(file, reference, window, samples, mask, given, residual, exact, flaps_out, base, candidates,
-            quantities, corrected_pressure);
+            is_by_gps, gps, quantities, corrected_pressure);
   }
 };
 

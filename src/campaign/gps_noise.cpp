@@ -24,8 +24,8 @@ enum WindSize : Eigen::Index { gusts, white, drift, drift_time, with_height, wan
 constexpr std::array<Size, 6> wind_sizes{
     {{1.0, 0.7}, {0.05, 0.7}, {0.5, 1.0}, {600.0, 0.7}, {0.03, 1.0}, {0.05, 0.5}}};
 
-enum HeightSize : Eigen::Index { value, value_with_height, gps, warmth };
-constexpr std::array<Size, 4> height_sizes{{{0.05, 1.0}, {0.02, 1.0}, {0.2, 0.7}, {0.3, 0.7}}};
+enum HeightSize : Eigen::Index { value, value_with_height, gps, warmth, pressure };
+constexpr std::array<Size, 5> height_sizes{{{0.05, 1.0}, {0.02, 1.0}, {0.2, 0.7}, {0.3, 0.7}, {0.02, 0.7}}};
 
 constexpr std::array<double, 3> gust_times{2.0, 8.0, 32.0};  // s
 
@@ -130,7 +130,8 @@ WhiteRows white_height(const Eigen::VectorXd& sizes, const GpsRows& rows, const 
                                                    variance[2] * (1.0 - warmth_stays * warmth_stays)});
     }
     if (std::isnan(rows.rows(i, last))) continue;
-    filter.read(i, rows.rows.row(i), States(1.0, 1.0, 0.0), noise + more[i]);
+    const double by_pressure = sizes[pressure] * rows.thickness[sample];
+    filter.read(i, rows.rows.row(i), States(1.0, 1.0, 0.0), noise + by_pressure * by_pressure + more[i]);
   }
   return std::move(filter.white());
 }

@@ -98,21 +98,16 @@ ModelSamples without_gusts(const FlightSamples& samples, const ModelDefinition& 
   ModelSamples calm = samples.model;
   Series& static_pressure = *calm.find(Quantity::static_pressure);
   Series& dynamic_pressure = *calm.find(Quantity::dynamic_pressure);
-  Series* const recovery_temperature = calm.find(Quantity::recovery_temperature);
   low_pass_angles(calm, samples.step);
-  for (const Quantity with_gusts :
-       {Quantity::mach, Quantity::true_airspeed, Quantity::dynamic_pressure_rate, Quantity::airspeed_rate}) {
+  for (const Quantity with_gusts : {Quantity::mach, Quantity::true_airspeed, Quantity::dynamic_pressure_rate,
+                                    Quantity::airspeed_rate, Quantity::recovery_temperature}) {
     if (Series* const values = calm.find(with_gusts)) *values = low_passed(*values, 45.0 / samples.step);
   }
   for (std::size_t i = 0; i < airspeed.size(); ++i) {
     if (std::isnan(airspeed[i])) continue;
     const double heat = 2.0 * 3.5 * air.gas_constant[i] * air.temperature[i];
     const double heating = airspeed[i] * airspeed[i] / heat;
-    const double was = air.airspeed[i] * air.airspeed[i] / heat;
     dynamic_pressure[i] += air.pressure[i] * (std::pow(1.0 + heating, 3.5) - 1.0) - air.dynamic[i];
-    if (recovery_temperature == nullptr) continue;
-    double& recorded = (*recovery_temperature)[i];
-    recorded += (recorded - air.temperature[i]) * (heating / was - 1.0);
   }
   // The static defect depends on the dynamic pressure.
   const ModelOnSamples calm_law(file, calm);
@@ -138,16 +133,44 @@ struct Derivatives {
 
 class Differentiation {
  public:
-  Differentiation(const ModelOnSamples& law, const double* parameters, const std::vector<std::size_t>& wanted)
-      : law_(law), parameters_(parameters), wanted_(wanted), dual_(law.parameters().size()) {
-    const Eigen::Index size = as_index(wanted.size());
+  /// @param inputs of the law
+  Differentiation(const ModelOnSamples& law, const ModelSamples& inputs, const double* parameters,
+                  const std::vector<std::size_t>& wanted, const AddedEffects& effects)
+      : law_(law),
+        parameters_(parameters),
+        wanted_(wanted),
+        at_location_(effects.at),
+        dual_(law.parameters().size()) {
+    wanted_.insert(wanted_.end(), effects.amounts_of_model.begin(), effects.amounts_of_model.end());
+    for (std::size_t& location : at_location_) location += wanted.size();
+    own_ = as_index(wanted.size());
+    if (!at_location_.empty()) amounts_ = effects.amounts(inputs);
+    const Eigen::Index size = as_index(wanted_.size());
     at_.airspeed.resize(size);
     at_.pressure.resize(size);
     at_.temperature.resize(size);
     at_.log_pressure.resize(size);
   }
 
-  const Derivatives& operator()(std::size_t sample) {
+  Eigen::Index count() const { return own_ + as_index(at_location_.size()); }
+
+  Derivatives operator()(std::size_t sample) {
+    differentiate(sample);
+    return {with_effects(at_.airspeed, sample), with_effects(at_.pressure, sample),
+            with_effects(at_.temperature, sample), with_effects(at_.log_pressure, sample)};
+  }
+
+ private:
+  Eigen::RowVectorXd with_effects(const Eigen::RowVectorXd& by, std::size_t sample) const {
+    Eigen::RowVectorXd all(count());
+    all.head(own_) = by.head(own_);
+    for (Eigen::Index c = own_; c < count(); ++c)
+      all[c] = by[as_index(at_location_[static_cast<std::size_t>(c - own_)])] *
+               amounts_(as_index(sample), c - own_);
+    return all;
+  }
+
+  void differentiate(std::size_t sample) {
     for (std::size_t first = 0; first < wanted_.size(); first += jet_width) {
       const std::size_t width = std::min<std::size_t>(jet_width, wanted_.size() - first);
       for (std::size_t p = 0; p < dual_.size(); ++p) dual_[p] = Jet(parameters_[p]);
@@ -168,13 +191,14 @@ class Differentiation {
         at_.log_pressure[to] = pressure.v[d] / pressure.a;
       }
     }
-    return at_;
   }
 
- private:
   const ModelOnSamples& law_;
   const double* parameters_;
-  const std::vector<std::size_t>& wanted_;
+  std::vector<std::size_t> wanted_;       // including the amounts at the locations of effects
+  std::vector<std::size_t> at_location_;  // index of the location of each coefficient of the effects
+  Eigen::Index own_ = 0;
+  Eigen::MatrixXd amounts_{};
   std::vector<Jet> dual_;
   Derivatives at_{};
 };
@@ -269,6 +293,14 @@ Series gust_level(const Series& east, const Series& north, const Series& time, d
   return level;
 }
 
+/// Height change by a change of the pressure, m/hPa.
+Series thickness_of(const Air& air) {
+  Series thickness(air.pressure.size(), 0.0);
+  for (std::size_t i = 0; i < thickness.size(); ++i)
+    thickness[i] = air.gas_constant[i] * air.temperature[i] / (constants::standard_gravity * air.pressure[i]);
+  return thickness;
+}
+
 void add_rises(GpsRows& result, const Series& z) {
   double before = nan;
   for (const double height : z) {
@@ -279,7 +311,7 @@ void add_rises(GpsRows& result, const Series& z) {
 
 GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
                   const std::vector<std::size_t>& used, const double* parameters,
-                  const std::vector<std::size_t>& wanted) {
+                  const std::vector<std::size_t>& wanted, const AddedEffects& effects) {
   const ModelOnSamples law(file, samples.model);
   const Air air = air_of(samples, law, parameters);
   const std::size_t size = samples.time.size();
@@ -321,19 +353,21 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
   result.east.resize(size, 0.0);
   result.north.resize(size, 0.0);
   add_rises(result, z);
-  const Eigen::Index count = as_index(wanted.size());
-  const Eigen::Index records = as_index(size);
-  result.rows = RowByRow::Constant(2 * records, count + gps_nuisance_count + 1, nan);
-  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), count);
+  result.thickness = thickness_of(air);
   const ModelSamples calm = without_gusts(samples, file, parameters, air, airspeed);
   const ModelOnSamples calm_law(file, calm);
-  Differentiation differentiate(calm_law, parameters, wanted);
+  Differentiation differentiate(calm_law, calm, parameters, wanted, effects);
+  const Eigen::Index count = differentiate.count();
+  const Eigen::Index own = as_index(wanted.size());
+  const Eigen::Index records = as_index(size);
+  result.rows = RowByRow::Constant(2 * records, count + gps_nuisance_count + 1, nan);
+  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), own);
   Eigen::Index number = 0;
   for (const std::size_t i : used) {
     if (std::isnan(east[i]) || std::isnan(north[i])) continue;
-    const Derivatives& by = differentiate(i);
+    const Derivatives by = differentiate(i);
     if (!by.airspeed.allFinite()) continue;
-    result.defect.row(number++) = by.pressure;
+    result.defect.row(number++) = by.pressure.head(own);
     const double speed = airspeed[i];
     const double sine = std::sin(calm_course[i]);
     const double cosine = std::cos(calm_course[i]);
@@ -382,13 +416,13 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
     fill(as_index(i), sine, cosine, up, 0.0, acceleration_east, east[i]);
     fill(records + as_index(i), cosine, -sine, 0.0, up, acceleration_north, north[i]);
   }
-  result.defect.conservativeResize(number, count);
+  result.defect.conservativeResize(number, own);
   return result;
 }
 
 GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
                     const std::vector<std::size_t>& used, const double* parameters,
-                    const std::vector<std::size_t>& wanted) {
+                    const std::vector<std::size_t>& wanted, const AddedEffects& effects) {
   const ModelOnSamples law(file, samples.model);
   const Air air = air_of(samples, law, parameters);
   const std::size_t size = samples.time.size();
@@ -404,16 +438,25 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
   result.kind = GpsKind::height;
   result.time = samples.time;
   result.warmth.resize(size, 0.0);
+  result.thickness = thickness_of(air);
   result.is_break.resize(size, true);
   result.rise.resize(size, 0.0);
-  const Eigen::Index count = as_index(wanted.size());
+  ModelSamples calm = samples.model;
+  low_pass_angles(calm, samples.step);
+  for (const Quantity input :
+       {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature}) {
+    if (Series* const values = calm.find(input)) *values = low_passed(*values, 5.0 / samples.step);
+  }
+  const ModelOnSamples calm_law(file, calm);
+  Differentiation differentiate(calm_law, calm, parameters, wanted, effects);
+  const Eigen::Index count = differentiate.count();
+  const Eigen::Index own = as_index(wanted.size());
   const Eigen::Index columns = count + gps_nuisance_count;
   result.rows = RowByRow::Constant(as_index(size), columns + 1, nan);
-  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), count);
+  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), own);
   std::vector<bool> takes_part(size, false);
   for (const std::size_t i : used) takes_part[i] = true;
 
-  Differentiation differentiate(law, parameters, wanted);
   Derivatives before;
   Eigen::RowVectorXd height = Eigen::RowVectorXd::Zero(columns + 1);  // height followed by its derivatives
   double recovery_before = 0.0;
@@ -421,7 +464,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
   Eigen::Index number = 0;
   for (std::size_t i = 0; i < size; ++i) {
     if (std::isnan(air.pressure[i] + air.temperature[i])) continue;
-    const Derivatives& by = differentiate(i);
+    const Derivatives by = differentiate(i);
     if (!by.log_pressure.allFinite() || !by.temperature.allFinite()) continue;
     const double temperature = air.temperature[i];
     const double heating =
@@ -461,9 +504,9 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
         row[count + isobar_north] = to_north;
       }
     }
-    result.defect.row(number++) = by.pressure;
+    result.defect.row(number++) = by.pressure.head(own);
   }
-  result.defect.conservativeResize(number, count);
+  result.defect.conservativeResize(number, own);
   return result;
 }
 
@@ -478,9 +521,9 @@ std::optional<GpsKind> gps_kind(const Reference& reference) {
 
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
-                 const std::vector<std::size_t>& wanted) {
-  return kind == GpsKind::wind ? wind_rows(samples, model, used, parameters, wanted)
-                               : height_rows(samples, model, used, parameters, wanted);
+                 const std::vector<std::size_t>& wanted, const AddedEffects& effects) {
+  return kind == GpsKind::wind ? wind_rows(samples, model, used, parameters, wanted, effects)
+                               : height_rows(samples, model, used, parameters, wanted, effects);
 }
 
 }  // namespace pcor::internal

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -56,10 +57,19 @@ struct GpsRows {
   std::vector<double> airspeed;  ///< wind: airspeed without gusts, m/s
   std::vector<double> east;      ///< wind: east component of the direction of the airspeed, without gusts
   std::vector<double> north;
-  std::vector<double> warmth;  ///< height: 1/T, 1/K
-  std::vector<bool> is_break;  ///< height: the height since the sample before is not known
-  RowByRow rows;               ///< wind: of the east, then of the north component of all samples
-  Eigen::MatrixXd defect;      ///< derivatives of the corrected static pressure by the wanted coefficients
+  std::vector<double> warmth;     ///< height: 1/T, 1/K
+  std::vector<double> thickness;  ///< height change by a pressure change, m/hPa
+  std::vector<bool> is_break;     ///< height: the height since the sample before is not known
+  RowByRow rows;                  ///< wind: of the east, then of the north component of all samples
+  Eigen::MatrixXd defect;         ///< derivatives of the corrected static pressure by the wanted coefficients
+};
+
+/// Effects that the model lacks: each coefficient adds an amount at a location of the model.
+struct AddedEffects {
+  std::vector<std::size_t> amounts_of_model{};  ///< parameters of the model, the amounts at its locations
+  std::vector<std::size_t> at{};                ///< index of the location of each coefficient among these
+  /// Amounts per unit of each coefficient, one row per sample, at these inputs of the model; finite.
+  std::function<Eigen::MatrixXd(const ModelSamples& inputs)> amounts{};
 };
 
 /// Rows at the given coefficients.
@@ -72,9 +82,9 @@ struct GpsRows {
 /// the terms with the temperature and the rise use pressures low-passed by 15 s, because even a thousandth of
 /// the noise of pressure or GPS in them would appear as a temperature error of a few tenths of a kelvin.
 /// @param used samples of the fit @param parameters all parameters of the model; the rows have derivatives by
-/// `wanted`
+/// `wanted` @param effects have further columns, after those of `wanted`
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
-                 const std::vector<std::size_t>& wanted);
+                 const std::vector<std::size_t>& wanted, const AddedEffects& effects = {});
 
 }  // namespace pcor::internal

@@ -153,7 +153,7 @@ Eigen::VectorXd WhitenedSystem::by_minutes(const std::function<Eigen::VectorXd(s
     const Eigen::Index first = block[f].front();
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(block[f].back() - first + 1);
     for (Eigen::Index i = 0; i < values.size(); ++i)
-      sums[block[f][static_cast<std::size_t>(i)] - first] += values[i];
+      sums[block[f][static_cast<std::size_t>(bin_of(f, i))] - first] += values[i];
     return sums;
   });
   Eigen::VectorXd all(blocks);
@@ -181,12 +181,11 @@ void marginalize(WhitenedSystem& system, Eigen::Index count) {
   const Eigen::MatrixXd across = system.information(kept, Eigen::all).middleCols(first, count);
   Eigen::MatrixXd inner = system.information.block(first, first, count, count);
   inner.diagonal().array() += 1.0;
-  system.information =
-      (system.information(kept, kept) - across * Eigen::LLT<Eigen::MatrixXd>(inner).solve(across.transpose()))
-          .eval();
+  const Eigen::MatrixXd fit = Eigen::LLT<Eigen::MatrixXd>(inner).solve(across.transpose());
+  system.information = (system.information(kept, kept) - across * fit).eval();
   system.plain = system.plain(kept, kept).eval();
   for (Eigen::MatrixXd& rows : system.rows) {
-    if (rows.size() > 0) rows = rows(Eigen::all, kept).eval();
+    if (rows.size() > 0) rows = (rows(Eigen::all, kept) - rows.middleCols(first, count) * fit).eval();
   }
 }
 
@@ -229,14 +228,21 @@ void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier
 WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
                            const std::vector<Eigen::MatrixXd>& columns,
                            const std::vector<Eigen::VectorXd>& residuals,
-                           const std::vector<NoiseModel>& noise) {
+                           const std::vector<NoiseModel>& noise, const std::vector<WhiteFlight>& white) {
   WhitenedSystem scores;
   scores.share = share;
   scores.rows.resize(bins.size());
+  scores.bin.resize(bins.size());
   scores.block.resize(bins.size());
+  const auto is_white = [&white](std::size_t f) { return !white.empty() && white[f].rows.size() > 0; };
   const auto counts = share.of_each_flight<RowCount>([&](std::size_t f) {
-    scores.rows[f] = whitened(joined(columns[f], residuals[f]), bins[f], noise[f], 0);
-    return RowCount{bins[f].size(), find_blocks(bins[f], scores.block[f])};
+    if (is_white(f)) {
+      scores.rows[f] = white[f].rows;
+      scores.bin[f] = white[f].bin;
+    } else {
+      scores.rows[f] = whitened(joined(columns[f], residuals[f]), bins[f], noise[f], 0);
+    }
+    return RowCount{static_cast<std::size_t>(scores.rows[f].rows()), find_blocks(bins[f], scores.block[f])};
   });
   for (std::size_t f = 0; f < counts.size(); ++f) {
     for (Eigen::Index& block : scores.block[f]) block += scores.blocks;
@@ -250,7 +256,7 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
                        .sum_of_each_flight<SymmetricPart>([&](std::size_t f) {
                          NoiseModel still = noise[f];
                          still.slow = {};
-                         return squares_of(noise[f].drifts()
+                         return squares_of(noise[f].drifts() && !is_white(f)
                                                ? whitened(joined(columns[f], residuals[f]), bins[f], still, 0)
                                                : scores.rows[f]);
                        })

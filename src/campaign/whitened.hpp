@@ -73,13 +73,17 @@ struct PartialSums {
 struct WhitenedSystem {
   FlightPartition share = FlightPartition(0);
   std::vector<Eigen::MatrixXd> rows{};             ///< per flight: whitened columns and, last, the residual
-  std::vector<std::vector<Eigen::Index>> block{};  ///< per flight: index of the minute of each row
+  std::vector<std::vector<Eigen::Index>> bin{};    ///< per flight: bin of each row; empty: rows are bins
+  std::vector<std::vector<Eigen::Index>> block{};  ///< per flight: index of the minute of each bin
   Eigen::Index blocks = 0;                         ///< minutes of all flights
   std::size_t row_count = 0;                       ///< total of all flights
   Eigen::MatrixXd information{};                   ///< columns and residual with columns and residual
   Eigen::MatrixXd plain{};                         ///< the same as if the noise had no slow parts
 
   Eigen::Index columns() const { return information.cols() - 1; }
+  Eigen::Index bin_of(std::size_t flight, Eigen::Index row) const {
+    return bin[flight].empty() ? row : bin[flight][static_cast<std::size_t>(row)];
+  }
 
   /// Whitened residual of a flight of this process after the columns with these coefficients.
   Eigen::VectorXd left(std::size_t flight, const Eigen::VectorXd& coefficients) const;
@@ -89,11 +93,18 @@ struct WhitenedSystem {
   Eigen::VectorXd by_minutes(const std::function<Eigen::VectorXd(std::size_t flight)>& of_rows) const;
 };
 
+/// White rows of a flight, columns and residual, and the bin of each row.
+struct WhiteFlight {
+  Eigen::MatrixXd rows{};
+  std::vector<Eigen::Index> bin{};
+};
+
 /// Whitens the columns of each own flight. @param noise likewise, each of one flight alone
+/// @param white rows of flights that need no whitening; empty for the others
 WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
                            const std::vector<Eigen::MatrixXd>& columns,
                            const std::vector<Eigen::VectorXd>& residuals,
-                           const std::vector<NoiseModel>& noise);
+                           const std::vector<NoiseModel>& noise, const std::vector<WhiteFlight>& white = {});
 
 /// Whitens with one noise model for all flights and the noise level of each flight.
 WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
@@ -110,7 +121,8 @@ void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier
                            std::vector<Eigen::VectorXd>& noise, WhitenedSystem& scores);
 
 /// Takes the last `count` columns before the residual out of the system, as noise: their coefficients have a
-/// normal prior with variance 1 in units of the noise and are averaged over.
+/// normal prior with variance 1 in units of the noise and are averaged over. Their best fit is subtracted
+/// from the rows.
 void marginalize(WhitenedSystem& system, Eigen::Index count);
 
 /// Sums the rows of all flights.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "campaign/gps_rows.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/shape_uncertainty.hpp"
 #include "numerics/decompositions.hpp"
@@ -43,12 +44,14 @@ std::size_t held_out_part(const FlightSamples& samples, double time) {
 }
 
 Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed,
-                   const std::vector<Eigen::VectorXd>& added)
+                   const std::vector<Eigen::VectorXd>& added, Eigen::VectorXd prior)
     : share_(columns.share),
       first_share_(share_.of_entries(first_entries(columns.flights))),
       groups_(std::move(groups)),
-      seed_(seed) {
+      seed_(seed),
+      prior_(std::move(prior)) {
   base_ = columns.flights.front().base.cols();
+  if (prior_.size() == 0) prior_ = Eigen::VectorXd::Zero(base_);
   binned_ = in_bins(share_, columns.flights, [&](std::size_t f) { return columns.flights[f].given; });
   for (FlightColumns& flight : columns.flights) {
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
@@ -59,7 +62,11 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
     added_.push_back(Eigen::VectorXd::Zero(columns_count));
     added_.back().head(base_) = effect;
   }
+  for (std::size_t f = 0; f < flight_count(); ++f) {
+    if (flight(f).is_by_gps) nuisances_ = gps_shared_nuisances;
+  }
   const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([this](std::size_t f) {
+    if (flight(f).is_by_gps) return Eigen::MatrixXd(Eigen::MatrixXd::Zero(base_, base_ + 1));
     const auto base = binned_.columns[f].leftCols(base_);
     Eigen::MatrixXd part(base_, base_ + 1);
     part.leftCols(base_) = base.transpose() * base;
@@ -244,18 +251,32 @@ std::vector<Eigen::MatrixXd> Analysis::find_shape_uncertainty(const std::vector<
   return shape_uncertainty(share_, flights, binned_, effects);
 }
 
-WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns) const {
+WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns, bool of_candidates) const {
   std::vector<Eigen::MatrixXd> all;
+  std::vector<WhiteFlight> white(columns.size());
   for (std::size_t f = 0; f < columns.size(); ++f) {
-    Eigen::MatrixXd& both = all.emplace_back(columns[f].rows(), columns[f].cols() + uncertainty_[f].cols());
-    both << columns[f], uncertainty_[f];
+    const Eigen::Index own = columns[f].cols() + uncertainty_[f].cols();
+    Eigen::MatrixXd& both = all.emplace_back(Eigen::MatrixXd::Zero(columns[f].rows(), own + nuisances_));
+    both.leftCols(own) << columns[f], uncertainty_[f];
+    const GpsSystem& gps = flight(f).gps;
+    if (gps.rows.size() == 0) continue;
+    const Eigen::Index taken = of_candidates ? columns[f].cols() : base_;
+    white[f].rows = Eigen::MatrixXd::Zero(gps.rows.rows(), own + nuisances_ + 1);
+    white[f].rows.leftCols(taken) = gps.rows.leftCols(taken).cast<double>();
+    white[f].rows.rightCols(nuisances_ + 1) = gps.rows.rightCols(nuisances_ + 1).cast<double>();
+    const std::vector<std::size_t>& records = binned_.bins[f].records();
+    for (const std::size_t record : gps.record) {
+      const auto next = std::upper_bound(records.begin(), records.end(), record) - records.begin();
+      white[f].bin.push_back(
+          binned_.bins[f].bins()[static_cast<std::size_t>(std::max<std::ptrdiff_t>(next, 1) - 1)]);
+    }
   }
-  return find_scores(share_, binned_.bins, all, binned_.residuals, noise_);
+  return find_scores(share_, binned_.bins, all, binned_.residuals, noise_, white);
 }
 
 void Analysis::find_search(const std::vector<std::size_t>& chosen) {
   uncertainty_ = find_shape_uncertainty(chosen);
-  scores_ = std::make_unique<WhitenedSystem>(whiten(binned_.columns));
+  scores_ = std::make_unique<WhitenedSystem>(whiten(binned_.columns, true));
   white_noise_.assign(binned_.bins.size(), {});
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
     if (!share_.owns(f)) continue;
@@ -263,7 +284,8 @@ void Analysis::find_search(const std::vector<std::size_t>& chosen) {
     white_noise_[f] = rows.rightCols(1) - rows.leftCols(coefficients_.size()) * coefficients_;
   }
   take_out_common_noise(*scores_);
-  marginalize(*scores_, shape_columns * as_index(added_.size()));
+  marginalize(*scores_, shape_columns * as_index(added_.size()) + nuisances_);
+  scores_->information.diagonal().head(base_) += prior_;
   search_ = std::make_unique<Search>(*scores_, base_, groups_);
 }
 
@@ -271,7 +293,7 @@ void Analysis::take_out_common_noise(WhitenedSystem& scores) const {
   if (further_.empty()) return;
   std::vector<Eigen::VectorXd> left = white_noise_;
   for (std::size_t later = flights_.size(); later < binned_.bins.size(); ++later) {
-    if (!share_.owns(later)) continue;
+    if (!share_.owns(later) || flight(later).is_by_gps) continue;
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
       if (flight(earlier).file == flight(later).file && flight(earlier).window == flight(later).window)
         internal::take_out_common_noise(binned_.bins, earlier, later, left, scores);
@@ -287,9 +309,9 @@ WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more,
     Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
     both << binned_.columns[f].leftCols(base_), more[f];
   }
-  WhitenedSystem scores = whiten(columns);
+  WhitenedSystem scores = whiten(columns, false);
   take_out_common_noise(scores);
-  marginalize(scores, marginalized);
+  marginalize(scores, marginalized + nuisances_);
   return scores;
 }
 
@@ -325,15 +347,26 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const std::vector<Eigen::Index> places = places_of(groups);
   const Eigen::Index width = as_index(places.size()) + 1;
   const auto part_of = [this](std::size_t f, double time) { return held_out_part(*flight(f).samples, time); };
+  const auto time_of = [this](std::size_t f, Eigen::Index row) {
+    return binned_.bins[f].time()[static_cast<std::size_t>(scores_->bin_of(f, row))];
+  };
   std::vector<Eigen::MatrixXd> white(binned_.bins.size());
   // Whitened rows of each part first, then unwhitened ones.
   const auto sums = share_.sum_of_each_flight<PartialSums>([&](std::size_t f) {
-    Eigen::MatrixXd all(binned_.columns[f].rows(), width);
-    all << binned_.columns[f](Eigen::all, places), binned_.residuals[f];
-    white[f] = whitened(all, binned_.bins[f], noise_[f], 0);
+    Eigen::MatrixXd all;
+    if (flight(f).is_by_gps) {
+      std::vector<Eigen::Index> with_residual = places;
+      with_residual.push_back(scores_->columns());
+      all = scores_->rows[f](Eigen::all, with_residual);
+      white[f] = all;  // a refit uses these rows as well
+    } else {
+      all.resize(binned_.columns[f].rows(), width);
+      all << binned_.columns[f](Eigen::all, places), binned_.residuals[f];
+      white[f] = whitened(all, binned_.bins[f], noise_[f], 0);
+    }
     PartialSums own(2 * held_out_parts, width);
     for (Eigen::Index i = 0; i < all.rows(); ++i) {
-      const std::size_t part = part_of(f, binned_.bins[f].time()[static_cast<std::size_t>(i)]);
+      const std::size_t part = part_of(f, time_of(f, i));
       own.add(part, white[f].row(i).transpose());
       // A refit weighs each reference by its noise.
       if (flight(f).reference == 0) own.add(part + held_out_parts, all.row(i).transpose());
@@ -342,6 +375,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   });
   // Coefficients that the other parts hardly constrain stay near their usual size: a prior as in the search.
   Eigen::VectorXd precision = Eigen::VectorXd::Zero(width - 1);
+  precision.head(base_) = prior_;
   Eigen::Index place = base_;
   for (const std::size_t group : groups) {
     for (std::size_t k = 0; k < groups_[group].usual.size(); ++k) {
@@ -373,8 +407,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   result.chi2 = scores_->by_minutes([&](std::size_t f) {
     Eigen::VectorXd squares(white[f].rows());
     for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
-      const Eigen::VectorXd& estimate =
-          estimates[part_of(f, binned_.bins[f].time()[static_cast<std::size_t>(i)])];
+      const Eigen::VectorXd& estimate = estimates[part_of(f, time_of(f, i))];
       const double left = white[f](i, width - 1) - white[f].row(i).head(width - 1) * estimate;
       squares[i] = left * left;
     }

@@ -44,8 +44,9 @@ class Analysis {
   /// @param groups of columns of the flights' candidates, one for each effect that is tested
   /// @param added coefficients of the base of effects of the flow that were found before and are in the model
   /// now, one vector for each effect
+  /// @param prior inverse prior variances of the coefficients of the base about the model; empty: none
   Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed,
-           const std::vector<Eigen::VectorXd>& added = {});
+           const std::vector<Eigen::VectorXd>& added = {}, Eigen::VectorXd prior = {});
 
   /// Partition of the flights against the first reference.
   const FlightPartition& share() const { return first_share_; }
@@ -113,8 +114,10 @@ class Analysis {
   void find_search(const std::vector<std::size_t>& chosen);
   /// Columns of the uncertain shapes of the chosen effects of the flow: groups first, then the added effects.
   std::vector<Eigen::MatrixXd> find_shape_uncertainty(const std::vector<std::size_t>& chosen);
-  /// Whitens the columns, followed by those of uncertain shapes.
-  WhitenedSystem whiten(const std::vector<Eigen::MatrixXd>& columns) const;
+  /// Whitens the columns, followed by those of uncertain shapes and the nuisances of GPS.
+  /// @param of_candidates the columns are those of base and candidates; otherwise flights against GPS have
+  /// those of the base alone
+  WhitenedSystem whiten(const std::vector<Eigen::MatrixXd>& columns, bool of_candidates) const;
   /// Removes the common noise from the rows against further references.
   void take_out_common_noise(WhitenedSystem& scores) const;
   FlightColumns& flight(std::size_t number) {
@@ -144,6 +147,8 @@ class Analysis {
   NoiseModel first_noise_{};
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;
+  Eigen::Index nuisances_ = 0;                  // columns of nuisances of GPS
+  Eigen::VectorXd prior_;                       // inverse variances of the coefficients of the base
   std::vector<Eigen::VectorXd> added_{};        // coefficients of all columns for each added effect
   std::vector<Eigen::MatrixXd> uncertainty_{};  // columns of uncertain shapes of each flight, in bins
   Eigen::VectorXd coefficients_{};              // all columns, from the last noise estimate

@@ -11,6 +11,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
+#include "campaign/gps_rows.hpp"
 #include "diagnose/advice.hpp"
 #include "diagnose/analysis.hpp"
 #include "diagnose/candidates.hpp"
@@ -282,6 +283,17 @@ std::vector<Eigen::VectorXd> added_of(const ModelDefinition& model, const std::v
   return effects;
 }
 
+/// Prior of the coefficients by GPS alone, as in a refit; none with other references.
+Eigen::VectorXd prior_of(const References& references, const std::vector<BaseCoefficient>& base) {
+  Eigen::VectorXd precision = Eigen::VectorXd::Zero(as_index(base.size()));
+  if (!gps_kind(*references.front())) return precision;
+  for (std::size_t b = 0; b < base.size(); ++b) {
+    if (base[b].usual > 0.0)
+      precision[as_index(b)] = std::pow(gps_prior_in_typical_sizes * base[b].usual, -2.0);
+  }
+  return precision;
+}
+
 /// Diagnosis, and the search result even if a variable of the files overrules it.
 struct SearchedDiagnosis {
   Diagnosis diagnosis{};
@@ -294,7 +306,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
                                  const std::vector<double>& dates) {
   SearchedDiagnosis result;
   Diagnosis& diagnosis = result.diagnosis;
-  const References references = usable_references(all_references, diagnosis.notes);
+  const References references = in_order_of_diagnosis(all_references);
   diagnosis.reference = description_of(references);
   CandidateSet set =
       find_candidates(model, options.formulas, files, references, dates, options.trust_reference);
@@ -320,7 +332,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
                     [](const Candidate& candidate) { return !candidate.is_variant; }));
 
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates), options.seed,
-                          added_of(model, set.base, options.added));
+                          added_of(model, set.base, options.added), prior_of(references, set.base));
   diagnosis.threshold = analysis.result().threshold;
   result.found = diagnosis.findings = findings_of(analysis, set.candidates);
   advise(analysis, set.candidates, diagnosis.findings);
@@ -336,9 +348,17 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
   const double rms_after =
       rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].after; });
-  UnexplainedStructure structure =
-      find_unexplained(analysis, files, model, references, inputs_of(diagnosis.findings, set.extended),
-                       options, rms_after, diagnosis.noise_rms_with_findings);
+  UnexplainedStructure structure;
+  if (gps_kind(*references.front())) {
+    diagnosis.notes.emplace_back(
+        "structure without a name was not searched for, because what the atmosphere adds to a comparison "
+        "with "
+        "GPS looks like it; give a laser or a second system as a further reference");
+  } else {
+    structure =
+        find_unexplained(analysis, files, model, references, inputs_of(diagnosis.findings, set.extended),
+                         options, rms_after, diagnosis.noise_rms_with_findings);
+  }
   diagnosis.unexplained = std::move(structure.found);
   for (std::size_t f = 0; f < structure.traced.size(); ++f)
     diagnosis.flights[f].traced = std::move(structure.traced[f]);

@@ -58,27 +58,15 @@ Testability testability_of(const FlightColumns& flight, const std::vector<double
 /// Single precision of the columns leaves 1e-6 of their length, squared here.
 constexpr double imitation_rank = 1e-12;
 
-References usable_references(const References& references, std::vector<std::string>& notes) {
-  References result;
-  References of_windows;
-  for (const auto& reference : references) {
-    if (reference->is_of_one_sample()) {
-      result.push_back(reference);
-    } else if (reference->window() > 0.0) {
-      of_windows.push_back(reference);
-    } else {
-      notes.push_back(
-          fmt::format("the reference {} was not used in the diagnosis: its residual couples samples over "
-                      "many minutes; compare shows it, and refit uses it",
-                      reference->name()));
-    }
-  }
+References in_order_of_diagnosis(References references) {
   // The samples are read once for the first reference; the laser reads the most.
-  std::stable_partition(result.begin(), result.end(), [](const auto& each) { return each->reads_laser(); });
-  result.insert(result.end(), of_windows.begin(), of_windows.end());
-  if (result.empty())
-    throw Error("no reference with a residual for each sample; give one, such as --reference lams or height");
-  return result;
+  const auto place = [](const Reference& reference) {
+    if (!reference.is_of_one_sample()) return reference.window() > 0.0 ? 2 : 3;
+    return reference.reads_laser() ? 0 : 1;
+  };
+  std::stable_sort(references.begin(), references.end(),
+                   [&place](const auto& a, const auto& b) { return place(*a) < place(*b); });
+  return references;
 }
 
 TeamColumns columns_of_entries(const FlightPartition& share,
@@ -172,8 +160,7 @@ void drop_untestable(CandidateSet& set, TeamColumns& columns) {
     first += count;
   }
   set.candidates = std::move(candidates);
-  for (FlightColumns& flight : columns.flights)
-    flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, kept));
+  for (FlightColumns& flight : columns.flights) flight.keep_candidates(kept);
 }
 
 void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamColumns* further) {
@@ -203,7 +190,7 @@ void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamCol
   set.base = std::move(base);
   for (TeamColumns* const each : {&columns, further}) {
     if (each == nullptr) continue;
-    for (FlightColumns& flight : each->flights) flight.base = Eigen::MatrixXf(flight.base(Eigen::all, kept));
+    for (FlightColumns& flight : each->flights) flight.keep_base(kept);
   }
 }
 

@@ -31,9 +31,8 @@ struct Testability {
 Testability testability_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
                            Eigen::Index count);
 
-/// References that a diagnosis can use, sample-by-sample references first; notes about the others. @throws
-/// Error if no reference can be used.
-References usable_references(const References& references, std::vector<std::string>& notes);
+/// References in the order of a diagnosis: the laser, others of single samples, height, wind.
+References in_order_of_diagnosis(References references);
 
 /// Flights of a team against each of their references, the first reference first. A member has the columns of
 /// its local flights, and the shared outlines of the others (`outline_of`).

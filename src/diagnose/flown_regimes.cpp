@@ -56,7 +56,8 @@ struct RegimeSums {
 /// Whether a pilot can repeat the regime. Events on a level leg other than level flight cannot be repeated.
 bool can_be_repeated(Regime regime) { return regime >= Regime::climb && regime != Regime::level; }
 
-RegimeSums sums_of(const Eigen::MatrixXd& rows, const FlightInBins& flight) {
+RegimeSums sums_of(const WhitenedSystem& scores, std::size_t number, const FlightInBins& flight) {
+  const Eigen::MatrixXd& rows = scores.rows[number];
   constexpr auto phases = static_cast<std::size_t>(Regime::level) + 1;
   const FlightSamples& samples = *flight.columns.samples;
   const std::vector<double>& time = flight.bins.time();
@@ -70,16 +71,19 @@ RegimeSums sums_of(const Eigen::MatrixXd& rows, const FlightInBins& flight) {
     const std::size_t first = place(interval.begin);
     const std::size_t last = place(interval.end);
     std::vector<Eigen::Index> own;
-    for (std::size_t i = first; i < last; ++i) {
-      if (!is_phase(interval.regime) || (regimes[i] >> phases).none()) own.push_back(as_index(i));
+    double within = 0.0;
+    for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+      const auto i = static_cast<std::size_t>(scores.bin_of(number, row));
+      if (i < first || i >= last) continue;
+      within += 1.0;
+      if (!is_phase(interval.regime) || (regimes[i] >> phases).none()) own.push_back(row);
     }
     if (own.empty()) continue;
     const Eigen::MatrixXd columns = rows(own, Eigen::seqN(0, rows.cols() - 1));
     RegimeSum part{SymmetricPart(columns.transpose() * columns)};
     if (flight.columns.reference == 0) {  // an interval counts once for all references
       part.intervals = 1.0;
-      part.duration = (interval.end - interval.begin) * static_cast<double>(own.size()) /
-                      static_cast<double>(last - first);
+      part.duration = (interval.end - interval.begin) * static_cast<double>(own.size()) / within;
     }
     sums.of[static_cast<std::size_t>(interval.regime)] += part;
   }
@@ -95,7 +99,7 @@ RegimeSums sums_of(const Eigen::MatrixXd& rows, const FlightInBins& flight) {
 std::vector<FlownRegime> flown_regimes(const WhitenedSystem& scores,
                                        const std::function<FlightInBins(std::size_t flight)>& flight) {
   RegimeSums sums = scores.share.sum_of_each_flight<RegimeSums>(
-      [&](std::size_t f) { return sums_of(scores.rows[f], flight(f)); });
+      [&](std::size_t f) { return sums_of(scores, f, flight(f)); });
   std::vector<FlownRegime> regimes;
   for (std::size_t r = 0; r < regime_count; ++r) {
     RegimeSum& sum = sums.of[r];

@@ -104,8 +104,7 @@ std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flight
       columns.push_back(as_index(set.first_column(place) + k));
   }
   set.candidates = std::move(candidates);
-  for (FlightColumns& flight : flights.flights)
-    flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, columns));
+  for (FlightColumns& flight : flights.flights) flight.keep_candidates(columns);
   return found;
 }
 
@@ -328,6 +327,12 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
 WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const References& all_references,
                const std::vector<WhatIfCandidate>& wanted, const WhatIfOptions& options) {
   const FlightSet files = flights.with(options.holdout);
+  // A refit by the wind does not minimise one residual per sample.
+  References references = in_order_of_diagnosis(all_references);
+  references.erase(std::remove_if(references.begin(), references.end(),
+                                  [](const auto& each) { return gps_kind(*each) == GpsKind::wind; }),
+                   references.end());
+  if (references.empty()) return {};
   std::vector<std::string> notes;  // reported by the diagnosis
   std::vector<ModelEffect> formulas = options.diagnose.formulas;
   for (const WhatIfCandidate& each : wanted) {
@@ -335,8 +340,8 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
     if (each.effect && each.effect->is_formula() && std::none_of(formulas.begin(), formulas.end(), same))
       formulas.push_back(*each.effect);
   }
-  CandidateSet set = find_candidates(model, formulas, files, usable_references(all_references, notes),
-                                     dates_for(wanted, files), options.diagnose.trust_reference);
+  CandidateSet set = find_candidates(model, formulas, files, references, dates_for(wanted, files),
+                                     options.diagnose.trust_reference);
   keep(set, wanted);
   TeamColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);

@@ -12,6 +12,7 @@
 
 #include "campaign/gps_noise.hpp"
 #include "campaign/gps_rows.hpp"
+#include "campaign/gps_system.hpp"
 #include "fit/fit_task.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
@@ -19,7 +20,6 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double prior_in_typical_sizes = 1.25;
 constexpr double max_error = 1.0;        // error of delta-p in one direction of the coefficients, hPa
 constexpr double min_information = 3.0;  // ratio to the prior information
 constexpr double block_time = 300.0;     // s
@@ -85,7 +85,7 @@ class GpsSolver {
     prior_deviation_.resize(count_);
     for (Eigen::Index k = 0; k < count_; ++k)
       prior_deviation_[k] =
-          prior_in_typical_sizes * task_.parameters[wanted_[static_cast<std::size_t>(k)]].typical;
+          gps_prior_in_typical_sizes * task_.parameters[wanted_[static_cast<std::size_t>(k)]].typical;
   }
 
   GpsFit solve() {

@@ -11,6 +11,7 @@
 #include <pcor/residuals/residuals.hpp>
 #include "campaign/gps_noise.hpp"
 #include "campaign/gps_rows.hpp"
+#include "campaign/gps_system.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 
@@ -19,8 +20,6 @@ namespace pcor {
 using namespace internal;
 
 namespace {
-
-constexpr double prior_in_typical_sizes = 1.25;
 
 /// The error of delta-p by some of the coefficients about their mean effect, hPa, rms.
 double error_about_mean(const Eigen::MatrixXd& defects, const Eigen::MatrixXd& covariance,
@@ -48,7 +47,7 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
         with_attack.push_back(place);
       else
         with_speed.push_back(place);
-      deviations.push_back(prior_in_typical_sizes * std::abs(info.parameters[p].typical));
+      deviations.push_back(gps_prior_in_typical_sizes * std::abs(info.parameters[p].typical));
     }
   }
   const Eigen::Index count = as_index(deviations.size());

@@ -501,13 +501,11 @@ TEST(Diagnose, CompleteModelAgainstHeightsIsSilent) {
   }
 }
 
-TEST(Diagnose, ReferenceMustResolveSingleSamples) {
-  const Paths flights{climbs(394, 0.0)};
-  EXPECT_THROW(pcor::diagnose(flights, model(), {pcor::wind_reference(model())}), pcor::Error);
-  EXPECT_NO_THROW(pcor::diagnose(flights, model(), {pcor::height_reference(model())}));
+TEST(Diagnose, WindIsAFurtherReference) {
   const Diagnosis diagnosis =
-      pcor::diagnose(flights, model(), {pcor::lams_reference(), pcor::wind_reference(model())});
-  EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("wind took no part")));
+      pcor::diagnose({climbs(394, 0.0)}, model(), {pcor::wind_reference(model()), pcor::lams_reference()});
+  EXPECT_EQ(diagnosis.verdict, Verdict::silent);
+  EXPECT_THAT(diagnosis.reference, testing::StartsWith("LAMS"));
 }
 
 TEST(Diagnose, NeedsFlightsAndSamples) {

@@ -168,9 +168,9 @@ ChosenReferences references_to_fit(const ComparisonOptions& options, const Model
   const auto held_together = std::stable_partition(chosen.used.begin(), chosen.used.end(),
                                                    [](const auto& each) { return each->is_of_one_sample(); });
   for (auto each = held_together; each != chosen.used.end(); ++each) {
-    const char* const who = (*each)->window() > 0.0 ? "refit, diagnose and improve use" : "refit uses";
     chosen.not_used.push_back(
-        fmt::format("{}: compare shows it, and {} it if --reference names it", (*each)->name(), who));
+        fmt::format("{}: compare shows it, and refit, diagnose and improve use it if --reference names it",
+                    (*each)->name()));
   }
   chosen.used.erase(held_together, chosen.used.end());
   return chosen;

@@ -1,0 +1,122 @@
+#include <gmock/gmock.h>
+#include <pcor/diagnose/diagnose.hpp>
+#include <pcor/simulate/simulate.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "diagnose/analysis.hpp"
+#include "diagnose/flight_columns.hpp"
+#include "support/temporary_directory.hpp"
+
+using pcor::ModelDefinition;
+using pcor::References;
+using namespace pcor::internal;
+
+namespace {
+
+const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
+
+/// A simulated flight of two hours. @param effect of the scenario, hidden
+std::filesystem::path flight(int seed, const std::string& effect = "") {
+  static const pcor::test::TemporaryDirectory directory;
+  std::ifstream file(scenarios / "c130-eq18.toml");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t place = text.find("\nseed = ");
+  text.replace(place, text.find('\n', place + 1) - place, "\nseed = " + std::to_string(seed));
+  const std::filesystem::path path =
+      directory / (std::to_string(seed) + (effect.empty() ? "" : "-hidden") + ".nc");
+  if (!std::filesystem::exists(path))
+    pcor::simulate_flight(pcor::parse_scenario(text + effect, "test"), path);
+  return path;
+}
+
+const std::vector<std::string> tested{"static-mach3", "static-beta-odd", "static-alpha-quad",
+                                      "static-lag",   "roll-static",     "load-factor",
+                                      "pitot-angle",  "qcf-zero",        "psfd-bias"};
+
+ModelDefinition law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+
+References references_of(bool with_height) {
+  References references{pcor::wind_reference(law())};
+  if (with_height) references.push_back(pcor::height_reference(law()));
+  return references;
+}
+
+/// Decrease of chi2 by each tested effect, with law and nuisances fitted.
+std::map<std::string, double> gains(const std::filesystem::path& path, bool with_height) {
+  const pcor::FlightSet flights({path});
+  CandidateSet set = find_candidates(law(), {}, flights, in_order_of_diagnosis(references_of(with_height)));
+  std::vector<std::string> notes;
+  TeamColumns columns = columns_of_flights(flights, 1, law(), set, {}, notes);
+  leave_out_empty(columns);
+  drop_untestable(set, columns);
+  const Analysis analysis(std::move(columns), groups_of(set, set.candidates), 1);
+  std::map<std::string, double> result;
+  for (std::size_t c = 0; c < set.candidates.size(); ++c) {
+    const std::string& id = set.candidates[c].id;
+    if (std::find(tested.begin(), tested.end(), id) != tested.end() && !set.candidates[c].is_variant)
+      result[id] = analysis.search().score(c, {}).chi2;
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST(GpsDiagnosis, GainsWithoutEffectAreThoseOfChance) {
+  for (const bool with_height : {false, true}) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const int seed : {1, 2, 3, 4}) {
+      for (const auto& [name, gain] : gains(flight(seed), with_height)) {
+        sum += gain;
+        count += 1.0;
+        // One of 36 numbers of chi2 with one degree is above 13 in 1 % of the cases.
+        EXPECT_LT(gain, 13.0) << name << ", seed " << seed << (with_height ? ", with height" : "");
+      }
+    }
+    // The mean of 36 is 1 +- 0.24; the columns of a flight are not independent, which doubles it.
+    EXPECT_NEAR(sum / count, 1.0, 1.0) << (with_height ? "with height" : "wind alone");
+  }
+}
+
+TEST(GpsDiagnosis, HiddenEffectGainsMoreThanOthers) {
+  struct Case {
+    std::string id, parameter;
+    bool with_height;
+  };
+  for (const Case& hidden :
+       {Case{"static-beta-odd", "b1 = 0.01", false}, Case{"roll-static", "defect = 0.5", true}}) {
+    const std::string effect = "\n[[effect]]\nid = \"" + hidden.id + "\"\n" + hidden.parameter + "\n";
+    const int seed = hidden.with_height ? 21 : 26;
+    for (const auto& [name, gain] : gains(flight(seed, effect), hidden.with_height)) {
+      if (name == hidden.id)
+        EXPECT_GT(gain, 200.0);
+      else
+        EXPECT_LT(gain, 13.0) << name << " beside " << hidden.id;
+    }
+  }
+}
+
+TEST(GpsDiagnosis, CompleteModelIsSilent) {
+  for (const bool with_height : {false, true}) {
+    const pcor::Diagnosis diagnosis = pcor::diagnose({flight(4)}, law(), references_of(with_height));
+    EXPECT_EQ(diagnosis.verdict, pcor::Verdict::silent);
+  }
+}
+
+TEST(GpsDiagnosis, FindsHiddenEffect) {
+  const std::string effect = "\n[[effect]]\nid = \"static-beta-odd\"\nb1 = 0.01\n";
+  const pcor::Diagnosis diagnosis = pcor::diagnose({flight(26, effect)}, law(), references_of(false));
+  ASSERT_THAT(diagnosis.findings, testing::SizeIs(1));
+  EXPECT_EQ(diagnosis.findings[0].effect.id, "static-beta-odd");
+  const pcor::Estimate& estimate = diagnosis.findings[0].estimates.front();
+  // Columns are low-passed by 1 s, which reduces oscillations of 9 s to 0.8. A refit iterates.
+  EXPECT_NEAR(estimate.value, 0.01 / 0.8, 3.0 * estimate.standard_error);
+  EXPECT_GT(diagnosis.findings[0].gain, 2.0 * diagnosis.findings[0].gain_error);
+}
