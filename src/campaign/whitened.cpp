@@ -41,7 +41,7 @@ SymmetricPart squares_of(const Eigen::MatrixXd& rows) {
   return SymmetricPart(result.selfadjointView<Eigen::Lower>());
 }
 
-/// What a flight has of the counts of all.
+/// Counts of one flight.
 struct RowCount {
   std::size_t rows = 0;
   Eigen::Index blocks = 0;

@@ -37,22 +37,22 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const Bin
 /// Common noise of the flights against the first reference, with the levels of the flights of this rank.
 NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vector<NoiseModel>& noise);
 
-/// Robust standard deviation of the values of the own flights of all members together.
+/// Robust standard deviation of the values of all ranks together. @param values of the local flights
 double robust_deviation(Communicator& comm, const std::vector<Eigen::VectorXd>& values);
 
-/// Weights of least squares in units of the deviation of a residual: the root of the samples in each bin over
-/// the most, over the deviation.
+/// Weights of the bins in least squares, 1/hPa: the square root of the share of samples in a bin, relative to
+/// the fullest bin, over the deviation of the residual. @param deviation hPa, above zero
 Eigen::VectorXd weights_of_bins(const Binning& bins, double deviation);
 
-/// Information of a flight about a common mean of its bins, 1/hPa^2: the number of independent bins over
+/// Information of a flight on the common mean of its bins, 1/hPa^2: the number of independent bins over
 /// their variance; zero without bins.
 double information_about_mean(const Binning& bins, const NoiseModel& noise);
 
-/// Sums over the rows (columns, residual) of several parts of the flights, such as those that are held out in
-/// turn. Sums of flights add up.
+/// Sums of products of the rows (columns, residual) in each of several parts of the flights, for example
+/// parts that are held out one at a time. Sums of flights are additive.
 struct PartialSums {
-  std::vector<Eigen::MatrixXd> products{};  ///< of the rows of each part with each other
-  std::vector<double> counts{};             ///< rows of each part
+  std::vector<Eigen::MatrixXd> products{};  ///< products of the rows, one matrix for each part
+  std::vector<double> counts{};             ///< number of rows in each part
 
   PartialSums() = default;
   PartialSums(std::size_t parts, Eigen::Index width)
@@ -67,52 +67,53 @@ struct PartialSums {
   }
 };
 
-/// Whitened columns and residuals of flights, each against each of its references, and the sums over all of
-/// them that a search needs: those of a generalised least-squares problem. A member of a team has the rows of
-/// its own.
+/// Whitened columns and residuals of all flights against their references, and the sums of a generalised
+/// least-squares problem. A rank has the rows of its local flights and the sums of all.
 struct WhitenedSystem {
   FlightPartition share = FlightPartition(0);
-  std::vector<Eigen::MatrixXd> rows{};             ///< of each flight, whitened columns and last the residual
-  std::vector<std::vector<Eigen::Index>> block{};  ///< of each flight, the number of the minute of each row
-  Eigen::Index blocks = 0;                         ///< minutes of all flights
-  std::size_t row_count = 0;                       ///< of all flights
+  std::vector<Eigen::MatrixXd> rows{};             ///< whitened columns, then the residual, of each flight
+  std::vector<std::vector<Eigen::Index>> block{};  ///< minute of each row, one list for each flight
+  Eigen::Index blocks = 0;                         ///< number of minutes, all flights
+  std::size_t row_count = 0;                       ///< number of rows, all flights
   Eigen::MatrixXd information{};                   ///< columns and residual with columns and residual
   Eigen::MatrixXd plain{};                         ///< the same as if the noise had no slow parts
 
   Eigen::Index columns() const { return information.cols() - 1; }
 
-  /// What is left of the whitened residual of an own flight after the columns with these coefficients.
+  /// Whitened residual of a local flight minus its columns times the coefficients.
   Eigen::VectorXd left(std::size_t flight, const Eigen::VectorXd& coefficients) const;
 
-  /// The sums over the minutes of all flights of what each row has. @param of_rows gives it for an own flight
+  /// Sums of a quantity of the rows over each minute of all flights. @param of_rows returns the quantity for
+  /// a local flight
   Eigen::VectorXd by_minutes(const std::function<Eigen::VectorXd(std::size_t flight)>& of_rows) const;
 };
 
-/// Whitens the columns of each own flight. @param noise likewise, each of one flight alone
+/// Whitens the columns of each local flight. @param noise one model for each flight, with the levels of that
+/// flight
 WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
                            const std::vector<Eigen::MatrixXd>& columns,
                            const std::vector<Eigen::VectorXd>& residuals,
                            const std::vector<NoiseModel>& noise);
 
-/// The same with one noise for all flights, with the levels of the own.
+/// Whitens the columns of each local flight. @param noise one model for all flights, with the levels of each
 WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
                            const std::vector<Eigen::MatrixXd>& columns,
                            const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
 
-/// Takes out of the rows of `later` what their noise has in common with that of `earlier`, the same flight
-/// against another reference: both hold the noise of the aircraft's own sensors. What is left of the rows
-/// stays in units of the noise.
+/// Removes from the rows of `later` the noise that they share with the rows of `earlier`, which are the same
+/// flight against another reference: both contain the noise of the aircraft's sensors. The rows keep the unit
+/// of the noise.
 ///
-/// @param noise what is left of the whitened residual of each flight when all that was found is taken off; of
-/// the later one without what is common, from here on
+/// @param noise whitened residual of each flight minus all findings; the function removes the shared noise
+/// from the residual of `later`
 void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier, std::size_t later,
                            std::vector<Eigen::VectorXd>& noise, WhitenedSystem& scores);
 
-/// Takes the last `count` columns before the residual out of the system, as noise: their coefficients have a
-/// normal prior with variance 1 in units of the noise and are averaged over.
+/// Removes the last `count` columns before the residual by averaging over their coefficients, which have a
+/// normal prior with variance 1 in units of the noise.
 void marginalize(WhitenedSystem& system, Eigen::Index count);
 
-/// Sums the rows of all flights.
+/// Computes `information` from the rows of all flights.
 void sum_up(WhitenedSystem& scores);
 
 }  // namespace pcor::internal
