@@ -37,22 +37,22 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const Bin
 /// Common noise of the flights against the first reference, with the levels of the flights of this rank.
 NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vector<NoiseModel>& noise);
 
-/// Robust standard deviation of the values of the own flights of all members together.
+/// Robust standard deviation of the values of all ranks together. @param values of the local flights
 double robust_deviation(Communicator& comm, const std::vector<Eigen::VectorXd>& values);
 
-/// Weights of least squares in units of the deviation of a residual: the root of the samples in each bin over
-/// the most, over the deviation.
+/// Weights of the bins in least squares, 1/hPa: the square root of the share of samples in a bin, relative to
+/// the fullest bin, over the deviation of the residual. @param deviation hPa, above zero
 Eigen::VectorXd weights_of_bins(const Binning& bins, double deviation);
 
-/// Information of a flight about a common mean of its bins, 1/hPa^2: the number of independent bins over
+/// Information of a flight on the common mean of its bins, 1/hPa^2: the number of independent bins over
 /// their variance; zero without bins.
 double information_about_mean(const Binning& bins, const NoiseModel& noise);
 
-/// Sums over the rows (columns, residual) of several parts of the flights, such as those that are held out in
-/// turn. Sums of flights add up.
+/// Sums of products of the rows (columns, residual) in each of several parts of the flights, for example
+/// parts that are held out one at a time. Sums of flights are additive.
 struct PartialSums {
-  std::vector<Eigen::MatrixXd> products{};  ///< of the rows of each part with each other
-  std::vector<double> counts{};             ///< rows of each part
+  std::vector<Eigen::MatrixXd> products{};  ///< products of the rows, one matrix for each part
+  std::vector<double> counts{};             ///< number of rows in each part
 
   PartialSums() = default;
   PartialSums(std::size_t parts, Eigen::Index width)
@@ -67,9 +67,8 @@ struct PartialSums {
   }
 };
 
-/// Whitened columns and residuals of flights, each against each of its references, and the sums over all of
-/// them that a search needs: those of a generalised least-squares problem. A member of a team has the rows of
-/// its own.
+/// Whitened columns and residuals of all flights against their references, and the sums of a generalised
+/// least-squares problem. A rank has the rows of its local flights and the sums of all.
 struct WhitenedSystem {
   FlightPartition share = FlightPartition(0);
   std::vector<Eigen::MatrixXd> rows{};             ///< per flight: whitened columns and, last, the residual
@@ -125,7 +124,7 @@ void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier
 /// from the rows.
 void marginalize(WhitenedSystem& system, Eigen::Index count);
 
-/// Sums the rows of all flights.
+/// Computes `information` from the rows of all flights.
 void sum_up(WhitenedSystem& scores);
 
 }  // namespace pcor::internal

@@ -164,7 +164,7 @@ WhitenedSystem WhatIfFit::least_squares(const Places& free, bool is_robust, Eige
     if (!is_robust || settled || step == max_steps) break;
     std::vector<Eigen::VectorXd> left;
     for (std::size_t f = 0; f < weights.size(); ++f)
-      left.push_back(plain[f].asDiagonal() * (binned_.residuals[f] - binned_.columns[f] * values));
+      left.emplace_back(plain[f].asDiagonal() * (binned_.residuals[f] - binned_.columns[f] * values));
     const double deviation = std::max(robust_deviation(flights_.share.comm(), left), 1e-300);
     for (std::size_t f = 0; f < weights.size(); ++f)
       weights[f] = plain[f].cwiseProduct((left[f] / deviation).unaryExpr(&huber_weight).cwiseSqrt());

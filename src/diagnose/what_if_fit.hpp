@@ -52,9 +52,9 @@ class WhatIfFit {
 
   /// The first element is without findings, the last with all findings.
   const std::vector<Weights>& weights() const { return weights_; }
-  /// Of the records of the first reference, alike: the same parts, and then the outliers.
+  /// Unweighted sums of the records of the first reference in the same parts, followed by the outliers.
   const PartialSums& alike() const { return alike_; }
-  /// Of the records that take no part; empty without any.
+  /// Unweighted sums of the records outside the fit; empty without such records.
   const PartialSums& held_out() const { return held_out_; }
 
   /// Information matrix of all columns.

@@ -102,7 +102,7 @@ OutlierRun longest_run_of(const FitFlight& fit, const std::vector<double>& resid
   return longest;
 }
 
-/// @param fitted flight that took part with the first reference; null for the others
+/// @param fitted flight of the fit with the first reference; null for others
 Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::VectorXd& values,
                   const std::vector<std::size_t>& wanted, const FitFlight* fitted = nullptr) {
   const Residuals& residuals = rows.residuals();

@@ -56,7 +56,7 @@ struct OutlierRun {
 /// The flights with the coefficients of the files and with those of the fit.
 struct BeforeAndAfter {
   FitSums sums{};
-  OutlierRun longest_run{};          ///< of fitted samples with the first reference
+  OutlierRun longest_run{};          ///< fitted samples, first reference
   std::vector<FlightFit> flights{};  ///< the parts that were fitted and those that were held out
   std::vector<FlightFit> further{};  ///< results with each further reference
   std::vector<std::string> notes{};  ///< about fitted flights

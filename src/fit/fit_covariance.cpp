@@ -64,7 +64,7 @@ struct BlockSums {
 /// Sums over the bins of a flight with one reference, for one set of equations.
 struct FlightScores {
   std::vector<BlockSums> blocks;
-  Eigen::MatrixXd covariance;  ///< scores of all equations by the noise; zero but for the last ones
+  Eigen::MatrixXd covariance;  ///< scores of all equations by the noise; zero except for the last equations
   Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
   Eigen::MatrixXd doubt;       ///< derivatives by the errors of the reference, in standard uncertainties
 
@@ -131,7 +131,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
   Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitBasis::count());
   Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(doubts.size()));
-  std::vector<std::vector<StageScores>> stages(main.count());  // of each own flight with the first reference
+  std::vector<std::vector<StageScores>> stages(main.count());  // one for each local flight, first reference
   Eigen::Index first = 0;
   for (const FitEquations& each : equations) {
     const Eigen::Index own = as_index(each.parameters.size());
@@ -142,7 +142,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
       const std::vector<Eigen::MatrixXd> states =
           is_first_reference ? binned_states(*flights) : std::vector<Eigen::MatrixXd>();
       std::vector<Eigen::MatrixXd> doubted;
-      std::vector<Eigen::Index> doubt_places;  // of the uncertainties of this reference among all
+      std::vector<Eigen::Index> doubt_places;  // indices of the uncertainties of this reference
       if (!flights->doubt().empty()) {
         doubted = flights->of_own([&](std::size_t flight, const FitFlight& fit) {
           return flights->weighted(flight, fit.by_doubts(flights->bins(flight), flights->doubt(), values));

@@ -137,8 +137,8 @@ struct Reduction {
 
 /// The flights of a fit. Passes over them run several flights at a time, and each member of a team passes
 /// over its own; results are added in the order of the flights, so they do not depend on the number of
-/// threads or members. Residuals and derivatives of the own flights in bins stay in memory, samples as far as
-/// the set keeps them.
+/// threads or members. Residuals and derivatives of the own flights in bins stay in memory; the set keeps the
+/// samples within its memory.
 ///
 /// Derivatives of residuals other than static pressure, which hardly change and are slow to compute, and
 /// those at common pressures stay fixed until the flights are prepared again.
@@ -238,7 +238,7 @@ class FitFlights {
   /// Number of excluded samples, and of samples in bins with an innovation beyond `limit`.
   std::size_t outliers(const Eigen::VectorXd& parameters, double limit);
 
-  // Of an own flight:
+  // Functions of a local flight.
   const Binning& bins(std::size_t flight) const { return binned_.bins[flight]; }
   /// Noise in these bins, after it was measured at their parameters.
   const NoiseModel& noise(std::size_t flight) const { return noise_[flight]; }

@@ -37,7 +37,7 @@ void require_samples(const FitFlights& flights, std::size_t free, bool is_stage)
         "--max-flaps, --exclude",
         flights.count() == 1 ? flights.task().flights.name(0) : "the flights", mask_text(flights.masks())));
   }
-  const std::size_t unknown = free + flights.offsets();  // of every interval
+  const std::size_t unknown = free + flights.offsets();
   if (flights.samples() <= unknown) {
     throw Error(
         fmt::format("{} samples are too few for {} coefficients (not used: {}); give more flights or fix "
@@ -181,7 +181,7 @@ class Solver {
 
   struct Step {
     double cost = infinity;    ///< before the step, with that of the prior; infinite if it is not a number
-    double length = infinity;  ///< in units of the residual: change of the residuals by the step
+    double length = infinity;  ///< change of the weighted residuals by the step
   };
 
   /// Solution of the weighted linear problem in closed form, with the weights and derivatives at the
