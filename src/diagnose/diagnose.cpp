@@ -246,7 +246,8 @@ Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
 void overrule(Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) {
     diagnosis.notes.push_back(fmt::format(
-        "{} explains a part of the residual, but a linear term in {} explains more, so {} is not reported as "
+        "{} explains a part of the residual, but a linear term in {} explains more, so the effect is not "
+        "reported as "
         "the cause",
         finding.id(),
         (diagnosis.unexplained.variables.empty() ? std::string("one variable")
@@ -375,9 +376,9 @@ std::string places_text(const EmpiricalPredictor& variable) {
       variable.formula.empty() ? ""
                                : fmt::format("; the formula is written as added to the {} pressure",
                                              variable.location == EffectLocation::pitot ? "total" : "static");
-  if (variable.places.empty()) return "where it acts is not known" + formula;
+  if (variable.places.empty()) return "its location is unknown" + formula;
   return fmt::format(
-      "it acts at one of these places: {}, since the total pressures of the two systems {}{}",
+      "its location is one of: {}, since the total pressures of the two systems {}{}",
       fmt::join(variable.places, ", "),
       variable.location == EffectLocation::pitot ? "differ with it, too" : "do not differ with it", formula);
 }
