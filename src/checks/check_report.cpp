@@ -85,7 +85,7 @@ ReportTable verdicts(const Checks& checks) {
   table.caption =
       "Inconsistent: larger than the tolerance and than three standard errors. Consistent: within the "
       "tolerance by two standard errors. Otherwise the check is inconclusive.";
-  table.headers = {"check", "verdict", "number", "matters", "result"};
+  table.headers = {"check", "verdict", "number", "tolerance", "result"};
   for (const CheckResult& result : checks.results) {
     if (!result.ran) {
       table.rows.push_back({heading(result.name), "not run", "", "", typeset(sentence(result.reason))});
@@ -155,7 +155,7 @@ std::vector<std::string> summary_of(const Checks& checks) {
   const auto ran = std::count_if(checks.results.begin(), checks.results.end(),
                                  [](const CheckResult& result) { return result.ran; });
   std::vector<std::string> summary{
-      fmt::format("Of {} checks {} could run: {} consistent, {} inconsistent, {} cannot tell.",
+      fmt::format("{} checks, {} with sufficient data: {} consistent, {} inconsistent, {} inconclusive.",
                   checks.results.size(), ran, count(CheckVerdict::consistent),
                   count(CheckVerdict::inconsistent), count(CheckVerdict::inconclusive))};
   for (const CheckResult& result : checks.results) {
@@ -169,8 +169,13 @@ std::vector<std::string> summary_of(const Checks& checks) {
 
 Report check_report(const Checks& checks) {
   Report report = checks.pictures;
-  report.title = "Independent checks of the pressures";
-  report.subtitle = checks.model;
+  std::vector<std::string> inconsistent;
+  for (const CheckResult& result : checks.results) {
+    if (result.ran && result.verdict == CheckVerdict::inconsistent) inconsistent.push_back(result.name);
+  }
+  report.title = inconsistent.empty() ? "No check is inconsistent"
+                                      : fmt::format("Inconsistent: {}", fmt::join(inconsistent, ", "));
+  report.subtitle = "Independent checks" + (checks.model.empty() ? "" : " of " + checks.model);
   report.summary = summary_of(checks);
   for (const CheckResult& result : checks.results)
     report.columns.insert(report.columns.end(), result.columns.begin(), result.columns.end());

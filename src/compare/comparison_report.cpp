@@ -1,5 +1,9 @@
 #include <pcor/compare/comparison_report.hpp>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "compare/comparison_panels.hpp"
 
 namespace pcor {
@@ -8,8 +12,13 @@ using namespace internal;
 
 Report comparison_report(const Comparison& comparison) {
   ComparisonPanels panels(comparison);
-  panels.report().title = "Pressure corrections against " + comparison.reference;
-  panels.report().subtitle = "Errors of the model by regime";
+  const auto best = std::min_element(
+      comparison.models.begin(), comparison.models.end(),
+      [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
+  panels.report().title = fmt::format("{}{}: rms residual {:.3f} hPa, {:.1f} times the noise",
+                                      comparison.models.size() > 1 ? "Smallest error: " : "", best->name,
+                                      best->all.rms, best->all.rms_over_noise());
+  panels.report().subtitle = "Comparison with " + comparison.reference;
   panels.summarise();
   panels.add_panels();
   panels.add_pairs();

@@ -410,9 +410,9 @@ std::string places_text(const EmpiricalPredictor& variable) {
       variable.formula.empty() ? ""
                                : fmt::format("; the formula is written as added to the {} pressure",
                                              variable.location == EffectLocation::pitot ? "total" : "static");
-  if (variable.places.empty()) return "where it acts is not known" + formula;
+  if (variable.places.empty()) return "its location is unknown" + formula;
   return fmt::format(
-      "it acts at one of these places: {}, since the total pressures of the two systems {}{}",
+      "its location is one of: {}, since the total pressures of the two systems {}{}",
       fmt::join(variable.places, ", "),
       variable.location == EffectLocation::pitot ? "differ with it, too" : "do not differ with it", formula);
 }

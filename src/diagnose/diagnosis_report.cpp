@@ -64,7 +64,7 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
     std::vector<std::string> ids;
     for (const AbsorbedEffect& effect : diagnosis.absorbed) ids.push_back(effect.effect);
     report.summary.push_back(
-        "These flights cannot show what the model's own coefficients imitate: " + join_list(ids) + ".");
+        "Not detectable, because the model's own coefficients imitate them: " + join_list(ids) + ".");
   }
 }
 

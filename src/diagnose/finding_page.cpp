@@ -69,8 +69,9 @@ std::string how_sure(const Finding& finding, double threshold) {
       "this on flights without any effect: {}.",
       finding.chi2, threshold, probability(finding.p_value));
   if (finding.events > 0.0) {
-    text += finding.events < 1.5 ? " It rests on a single event."
-                                 : fmt::format(" It rests on about {:.0f} separate events.", finding.events);
+    text += finding.events < 1.5
+                ? " It depends on a single event."
+                : fmt::format(" It depends on about {:.0f} separate events.", finding.events);
   }
   std::vector<std::string> segments;
   for (const Evidence& evidence : finding.evidence) {
@@ -84,7 +85,7 @@ std::string how_sure(const Finding& finding, double threshold) {
 std::string held_out(const Finding& finding) {
   if (!std::isfinite(finding.rms_before) || !std::isfinite(finding.rms_after)) return "";
   return fmt::format("On stretches outside the fit the rms residual {} from {} to {} hPa.",
-                     finding.rms_after < finding.rms_before ? "falls" : "does not fall: it goes",
+                     finding.rms_after < finding.rms_before ? "falls" : "does not fall: it changes",
                      hpa(finding.rms_before), hpa(finding.rms_after));
 }
 

@@ -60,8 +60,8 @@ double condition_number(const Reduction& reduction, const FitTask& task,
     if (weak[k] > 0.1 * weak.maxCoeff()) names.push_back(to_string(k));
   }
   throw Error(
-      fmt::format("{} cannot all be free on these flights: what one does the others undo (condition number "
-                  "{:.0e}); hold one of them, e.g. --fix {}",
+      fmt::format("{} are not identifiable together on these flights (condition number {:.0e}); fix one of "
+                  "them, e.g. --fix {}",
                   fmt::join(names, ", "), condition, names.back()));
 }
 

@@ -77,13 +77,11 @@ ReportTable flight_table(const RefitResult& fit) {
 Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   ComparisonPanels panels(comparison);
   Report& report = panels.report();
-  report.title = fmt::format("Refit of {} to {}", unfitted_name(fit.model), fit.reference_text);
-  report.subtitle = "Before and after";
+  report.title = fmt::format("The refit changes the rms residual from {:.3f} to {:.3f} hPa; noise {:.3f} hPa",
+                             fit.rms_before, fit.rms, fit.noise_rms);
+  report.subtitle = fmt::format("Refit of {} to {}", unfitted_name(fit.model), fit.reference_text);
   add_held_out(report, fit.flights);
   for (const std::string& warning : fit.warnings) report.summary.push_back(sentence(warning));
-  report.summary.push_back(fmt::format(
-      "The fit brings the rms residual from {:.3f} to {:.3f} hPa over {} samples; the noise is {:.3f} hPa.",
-      fit.rms_before, fit.rms, fit.samples, fit.noise_rms));
   if (const std::string text = flaps_out_text(fit.flaps_out, "the fit"); !text.empty())
     report.summary.push_back(sentence(text));
   for (const FlightFit& flight : fit.flights) {

@@ -32,8 +32,8 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before) {
   for (const FlightFit& flight : result.flights) {
     if (flight.holdout && flight.after.rms > larger_elsewhere * flight.before.rms) {
       return fmt::format(
-          "on {}, which was held out, the fit leaves a larger rms, {:.3f} hPa, than the coefficients of the "
-          "file, {:.3f} hPa",
+          "held-out {}: the rms is larger with the fit, {:.3f} hPa, than with the coefficients of the file, "
+          "{:.3f} hPa",
           flight.flight, flight.after.rms, flight.before.rms);
     }
   }

@@ -305,7 +305,7 @@ struct FlightWriter::Implementation {
     for (std::size_t i = 0; i < block.count; ++i) {
       const double before = i == 0 ? last_time : times[i - 1];
       if (!std::isfinite(times[i]) || (time_records + i > 0 && times[i] <= before))
-        throw Error(fmt::format("{}: the time of record {} does not follow the one before", shown.string(),
+        throw Error(fmt::format("{}: the time of record {} does not follow the previous time", shown.string(),
                                 block.first + i));
       since_midnight[i] -= midnight;
       if (whole_seconds && since_midnight[i] != std::floor(since_midnight[i]))

@@ -247,8 +247,8 @@ class IcarttFile::Reader {
             fields_of(line).size() == file_.variables_.size() && formats == std::set{format_of(last)};
         if (!has_all) {
           file_.notes_.push_back(fmt::format(
-              "line {} of {} is left out: it is the last, ends without a line break, and may be cut "
-              "(\"{}\" at its end); fetch the file again from its source to have that record",
+              "line {} of {} was skipped: it is the last line, has no line break and may be truncated "
+              "(\"{}\" at its end); fetch the file again from its source to include this record",
               line_, file_.path_.filename().string(), last));
           break;
         }

@@ -69,10 +69,9 @@ DotPanel ladder_picture(const Improvement& improvement) {
   DotPanel panel;
   panel.title = "The ladder";
   panel.caption =
-      "Rms residual after each effect that was added. Bars are standard errors, as many independent samples "
-      "as the "
-      "memory of the residual leaves; the dashed line is the noise, below which no model comes. "
-      "All are of the same samples: a step may be sure though bars overlap.";
+      "Rms residual after each effect that was added. Bars are standard errors for the effective sample "
+      "size; the dashed line is the noise, a lower limit. All values use the same samples, so a step may be "
+      "significant although bars overlap.";
   panel.axis = "rms residual";
   panel.unit = "hPa";
   panel.series = {"in the fit", held_out_series(improvement)};

@@ -36,7 +36,7 @@ struct Cost {
 constexpr std::array<Cost, 14> costs{{
     {"recovery_temperature",
      "no airspeed and no delta-p from LAMS, unless the temperature of the air is recorded"},
-    {"dew_point", "the air is taken as dry, unless the vapour pressure is recorded"},
+    {"dew_point", "the air is assumed dry, unless the vapour pressure is recorded"},
     {"lams_airspeed", "delta-p cannot be measured; use a second system, heights or winds as the reference"},
     {"attack", "the angle of the laser's beam to the wind is not known, and pitch manoeuvres need the pitch"},
     {"altitude",
@@ -245,7 +245,7 @@ class Look {
       } else if (!says_geometric(flight_.variable(each.variable))) {
         each.score = std::min(each.score, sure_score - 0.01);
         result_.notes.push_back(
-            fmt::format("{} may be a height of GPS or a pressure altitude: {}; it is not taken; if it is a "
+            fmt::format("{} may be a height of GPS or a pressure altitude: {}; it is not used; if it is a "
                         "height of GPS, write altitude = \"{}\" into the [variables] of the model",
                         each.variable, to_string(evidence), each.variable));
       }

@@ -73,12 +73,19 @@ ReportTable missing_of(const Inspection& flight) {
   return table;
 }
 
+std::string title_of(const Inspection& flight) {
+  const auto models = std::count_if(flight.laws.begin(), flight.laws.end(),
+                                    [](const ModelCandidate& law) { return law.fits(); });
+  return fmt::format("{} roles found, {} missing; {} published model{} for this flight", flight.roles.size(),
+                     flight.missing.size(), models, models == 1 ? "" : "s");
+}
+
 }  // namespace
 
 Report inspection_report(const std::vector<Inspection>& flights) {
   Report report;
-  report.title =
-      flights.size() == 1 ? "Variables and roles of the flight" : "Variables and roles of the flights";
+  report.title = flights.size() == 1 ? title_of(flights.front())
+                                     : fmt::format("Roles and manoeuvres of {} flights", flights.size());
   for (const Inspection& flight : flights) {
     report.info.emplace_back("Flight", fmt::format("{}, {} to {} UTC, {} records, {} gaps", flight.path,
                                                    utc_text(flight.time.first), utc_text(flight.time.last),

@@ -207,7 +207,7 @@ void Processing::find_frozen_sensors() {
   }
   if (!frozen_.empty()) {
     note(options_.keep_frozen ? "readings of frozen sensors are corrected, too; PCORFLAG marks them"
-                              : "what frozen sensors read counts as missing; --keep-frozen corrects it");
+                              : "readings of frozen sensors are treated as missing; --keep-frozen uses them");
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/flight/flight.hpp>
+#include "report/columns.hpp"
 #include "report/present_columns.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
@@ -91,12 +92,29 @@ class Outputs {
   std::vector<ReportColumn> columns_;
 };
 
+/// Columns of delta-p plus and minus its standard uncertainty.
+void add_bounds(Report& report) {
+  const ReportColumn* const defect = column_named(report.columns, "PCOR");
+  const ReportColumn* const uncertainty = column_named(report.columns, "PCOR_uncertainty");
+  if (defect == nullptr || uncertainty == nullptr) return;
+  ReportColumn lower{"PCOR_lower", "minus one standard uncertainty", "hPa", defect->values};
+  ReportColumn upper{"PCOR_upper", "plus one standard uncertainty", "hPa", defect->values};
+  for (std::size_t i = 0; i < defect->values.size(); ++i) {
+    lower.values[i] -= uncertainty->values[i];
+    upper.values[i] += uncertainty->values[i];
+  }
+  add_if_present(report, std::move(lower));
+  add_if_present(report, std::move(upper));
+}
+
 void add_pictures(Report& report) {
+  add_bounds(report);
   add_if_present(report, TimePanel{"Delta-p in time",
                                    "Correction added to the static pressure and subtracted from the dynamic "
                                    "pressure, with its standard uncertainty if the model states one. Drag "
                                    "over a time range to restrict all figures to it.",
-                                   {"PCOR", "PCOR_uncertainty"}});
+                                   {"PCOR", "PCOR_lower", "PCOR_upper"},
+                                   "delta-p"});
   if (has_column(report, "PCOR")) {
     std::vector<std::string> states;
     for (const char* name : {"MACHX", "QCXC", "PSXC"}) {
@@ -122,15 +140,15 @@ std::string hpa(double value) { return std::isfinite(value) ? fmt::format("{:.2f
 ReportTable flights_table(const std::vector<ProcessedFlight>& flights) {
   ReportTable table;
   table.title = "Flights";
-  table.caption = "Delta-p is that of samples in flight.";
+  table.caption = "Delta-p of samples in flight.";
   table.headers = {"flight",
                    "model",
-                   "what became of it",
+                   "state",
                    "samples",
                    "corrected",
                    "mean delta-p (hPa)",
-                   "least delta-p (hPa)",
-                   "greatest delta-p (hPa)"};
+                   "minimum delta-p (hPa)",
+                   "maximum delta-p (hPa)"};
   for (const ProcessedFlight& flight : flights) {
     std::vector<std::string> row{flight.input.filename().string(), flight.model.model.name,
                                  std::string(to_string(flight.state))};
@@ -164,11 +182,20 @@ ReportTable flags_table(const std::vector<ProcessedFlight>& flights) {
   return table;
 }
 
+std::string title_of(const std::vector<ProcessedFlight>& flights) {
+  if (flights.size() > 1) return fmt::format("Corrections of {} flights", flights.size());
+  const ProcessSummary& summary = flights.front().summary;
+  return fmt::format("{} of {} samples corrected{}", summary.corrected, summary.samples,
+                     summary.in_flight == 0
+                         ? ""
+                         : fmt::format("; delta-p {:.2f} hPa on average in flight", summary.mean_defect));
+}
+
 }  // namespace
 
 Report process_report(const std::vector<ProcessedFlight>& flights, const std::string& suffix) {
   Report report;
-  report.title = flights.size() == 1 ? "The corrected flight" : "The corrected flights";
+  report.title = title_of(flights);
   Outputs outputs(report, suffix);
   for (const ProcessedFlight& flight : flights) {
     if (flight.state != FlightState::unreadable) outputs.add(flight);

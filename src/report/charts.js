@@ -48,6 +48,7 @@ const cover = (pen, width, height, theme) => pen.rect(0, 0, width, height, theme
 
 function shadeIntervals(pen, box, x, samples, theme) {
   const names = [...samples.regimes.keys()];
+  const taken = [];  // left and right of the names drawn
   for (const {name, begin, end} of samples.intervals) {
     const left = Math.floor(Math.max(x(begin), box.x)), right = Math.ceil(Math.min(x(end), box.x + box.width));
     if (right <= left) continue;
@@ -59,8 +60,10 @@ function shadeIntervals(pen, box, x, samples, theme) {
       pen.rect(at, box.y, Math.min(mark, right - at), 4, colour, chosen ? 0.8 : 0.2);
     const covered = samples.intervals.some((other) =>
       other.end - other.begin < end - begin && other.begin <= (begin + end) / 2 && other.end >= (begin + end) / 2);
-    if (!covered && textWidth(name, smallSize) < right - left - 6)
-      pen.text((left + right) / 2, box.y + 15, name, {fill: theme.quiet, size: smallSize, align: 'middle'});
+    const middle = (left + right) / 2, half = textWidth(name, smallSize) / 2;
+    if (covered || 2 * half > right - left - 6 || taken.some(([from, to]) => from < middle + half && to > middle - half)) continue;
+    taken.push([middle - half, middle + half]);
+    pen.text(middle, box.y + 15, name, {fill: theme.quiet, size: smallSize, align: 'middle'});
   }
 }
 

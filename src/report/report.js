@@ -76,6 +76,7 @@ class ReportPage {
     this.darkMedia.addEventListener('change', later);
     const print = (printing) => {
       this.printing = printing;
+      if (printing) for (const fold of document.querySelectorAll('.fold')) fold.open = true;
       this.draw();
     };
     window.addEventListener('popstate', ({state}) => {

@@ -141,15 +141,34 @@ std::string info(const std::vector<std::pair<std::string, std::string>>& info) {
   return html + "</dl>\n";
 }
 
+std::string folded(std::string_view words, const std::string& content) {
+  return fmt::format("<details class=\"fold\"><summary>{}</summary>\n{}</details>\n", words, content);
+}
+
+std::string summary(const std::vector<std::string>& sentences) {
+  constexpr std::size_t shown = 2;
+  std::string first, more;
+  for (std::size_t i = 0; i < sentences.size(); ++i)
+    (i < shown ? first : more) += element("li", sentences[i]);
+  if (!more.empty())
+    more = folded(fmt::format("{} more", sentences.size() - shown), "<ul>\n" + more + "</ul>\n");
+  return "<ul>\n" + first + "</ul>\n" + more;
+}
+
 std::string head(const Report& report) {
   std::string html =
       "<header>\n" + element("h1", report.title) + element("p", "subtitle", report.subtitle) + "</header>\n";
-  if (!report.summary.empty()) {
-    html += R"(<section class="summary" aria-label="Summary"><ul>)";
-    for (const std::string& sentence : report.summary) html += element("li", sentence);
-    html += "</ul></section>\n";
-  }
-  if (!report.info.empty()) html += R"(<section aria-label="Facts">)" + info(report.info) + "</section>\n";
+  if (!report.summary.empty())
+    html += R"(<section class="summary" aria-label="Summary">)" + summary(report.summary) + "</section>\n";
+  // The command follows its purpose: "To apply it: pcor process ...".
+  if (const std::size_t colon = report.next.rfind(": "); colon != std::string::npos)
+    html +=
+        fmt::format("<section class=\"next\" aria-label=\"Next step\"><p>{} <code>{}</code></p></section>\n",
+                    escaped(std::string_view(report.next).substr(0, colon + 1)),
+                    escaped(std::string_view(report.next).substr(colon + 2)));
+  if (!report.info.empty())
+    html += R"(<section aria-label="Facts">)" + folded("Model, flights and notes", info(report.info)) +
+            "</section>\n";
   return html;
 }
 

@@ -125,22 +125,27 @@ function drawTrack(pen, width, height, item, samples, theme) {
     dots[Math.min(Math.max(Math.round(level(shade.values[i])), 0), levels - 1)].push(x(at.get(i)), y(at.get(i)));
   const order = [...dots.keys()];
   if (item.diverging) order.sort((a, b) => Math.abs(a - levels / 2 + 0.5) - Math.abs(b - levels / 2 + 0.5));
+  const longest = box.width * perPixel / 4, power = 10 ** Math.floor(Math.log10(longest));
+  const bar = power * [5, 2, 1].find((factor) => factor * power <= longest);  // km
   pen.clip(box, () => {
     pen.dots(places.flatMap((i) => [x(at.get(i)), y(at.get(i))]), 1.5, theme.frame, 0.6);
     for (const l of order) pen.dots(dots[l], 3.5, mixed(colours, l / (levels - 1)));
     if (item.barbs) drawBarbs();
-    const named = [];
+    const taken = [[box.x, box.x + 60 + bar / perPixel, box.y + 20]];  // left, right and line of each name
     for (const flight of samples.flights) {
       const first = places.find((i) => i >= flight.first && i < flight.end);
       if (first === undefined) continue;
       const [px, py] = [x(at.get(first)), y(at.get(first))];
       pen.lines([[px - 5, py - 5, px + 5, py - 5, px + 5, py + 5, px - 5, py + 5, px - 5, py - 5]], theme.ink, 1.5);
       const words = `${flight.name} ${clock(samples.time[first], false)}`.trim();
-      const fits = px + 9 + textWidth(words, fontSize) < box.x + box.width;
-      let line = py + 4;
-      while (named.some(([x, y]) => Math.abs(x - px) < 100 && Math.abs(y - line) < 13)) line += 13;
-      named.push([px, line]);
-      pen.text(fits ? px + 9 : px - 9, line, words, {...small(theme, fits ? 'start' : 'end'), fill: theme.ink});
+      // Right or left of the mark, or below it if neither side has room.
+      const width = textWidth(words, fontSize), end = box.x + box.width - 2;
+      const sides = [px + 9, px - 9 - width].filter((x) => x > box.x && x + width < end);
+      const left = sides[0] ?? Math.max(end - width, box.x + 2);
+      let line = sides.length ? py + 4 : py + 19;
+      while (taken.some(([from, to, at]) => from < left + width && to > left && Math.abs(at - line) < 13)) line += 13;
+      taken.push([left, left + width, line]);
+      pen.text(left, line, words, {...small(theme), fill: theme.ink});
     }
   });
   // Barbs that do not overlap.
@@ -157,8 +162,6 @@ function drawTrack(pen, width, height, item, samples, theme) {
       barb(pen, px, py, u * Math.cos(turn) + v * Math.sin(turn), v * Math.cos(turn) - u * Math.sin(turn), theme.ink);
     }
   }
-  const longest = box.width * perPixel / 4, power = 10 ** Math.floor(Math.log10(longest));
-  const bar = power * [5, 2, 1].find((factor) => factor * power <= longest);
   pen.lines([[box.x + 12, box.y + 14, box.x + 12, box.y + 18, box.x + 12 + bar / perPixel, box.y + 18,
     box.x + 12 + bar / perPixel, box.y + 14]], theme.ink, 1.25);
   pen.text(box.x + 18 + bar / perPixel, box.y + 20, `${number(bar, bar)} km`, {...small(theme), fill: theme.ink});

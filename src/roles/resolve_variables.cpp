@@ -30,7 +30,7 @@ class Completion {
     if (!has(Quantity::vapor_pressure) && !has(Quantity::dew_point) && !has(Quantity::frost_point)) {
       if (!take(Quantity::vapor_pressure) && !take(Quantity::dew_point) && file_.model.moist) {
         file_.model.moist = false;
-        traps_.emplace_back("no humidity is recorded: the air is taken as dry");
+        traps_.emplace_back("no humidity is recorded: the air is assumed dry");
       }
     }
     for (std::size_t i = 0; i < role_count; ++i) {

@@ -148,8 +148,8 @@ std::string with_error(double value, double error, std::string_view plus_minus) 
 std::string pressure_error_text(const TemperatureResult& result) {
   if (result.pressure_error > 0.0) {
     return fmt::format(
-        "Errors have in them one of the static pressure of {:.2g} hPa that lasts, and one of its law in "
-        "proportion to the pressure, of {:.2g} hPa at the mean (--pressure-error sets both)",
+        "Standard errors include a constant error of the static pressure of {:.2g} hPa and an error of its "
+        "law proportional to the pressure, {:.2g} hPa at the mean (--pressure-error sets both)",
         result.pressure_error, result.law_error);
   }
   constexpr double usual = 0.3;  // hPa, the rms of the memo's eq. 18
@@ -173,12 +173,11 @@ std::string profile_text(const std::array<double, 2>& ends) {
 
 Report temperature_report(const TemperatureResult& result) {
   Report report;
-  report.title = "Calibration of the temperature by the height";
-  report.subtitle = result.model.model.name;
   const TemperatureCorrection& middle = result.corrections[result.corrections.size() / 2];
-  report.summary.push_back(fmt::format("At {:.0f} °C the temperature is corrected by {} K.",
-                                       middle.temperature,
-                                       with_error(middle.correction, middle.standard_error, "±")));
+  report.title = fmt::format("Temperature correction {} K at {:.0f} °C{}",
+                             with_error(middle.correction, middle.standard_error, "±"), middle.temperature,
+                             result.worse.empty() ? "" : ", not significant");
+  report.subtitle = "Calibration by the GPS height for " + result.model.model.name;
   for (const std::string& warning : result.warnings) report.summary.push_back("Warning: " + warning + ".");
   for (const std::string& note : result.notes) report.summary.push_back("Note: " + note + ".");
   report.info = {

@@ -289,7 +289,7 @@ TEST(DiagnosisReport, HasAPageInWordsForEachFinding) {
   for (const char* part :
        {"The correction b1 * sideslip_ratio * static_pressure (hPa) is added to delta-p.",
         "b1 = -0.00171 ± 0.00012, 0.95 times the usual size.", "in rf02 at 2011-11-17 20:31:52 UTC",
-        "a fall of chi2 by 312.4, where 14.3 would have been enough", "about 2 separate events",
+        "chi2 decreases by 312.4 (threshold 14.3)", "about 2 separate events",
         "20:35:00 UTC (level, yaw manoeuvre), 55 %", "falls from 0.196 to 0.152 hPa",
         "lams-azimuth (error of the azimuth of the laser beam; correlation +0.991, chi2 1.4 lower, 3.2 times "
         "the usual size).",

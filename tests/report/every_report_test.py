@@ -96,6 +96,14 @@ class EveryReport(unittest.TestCase):
                     self.assertGreater(result["panels"], 1)
                     self.assertEqual(self.browser.errors, [])
 
+    def test_the_first_screen_has_a_picture_and_the_next_command(self):
+        self.browser.resize(1400, 1000)
+        for command in COMMANDS:
+            with self.subTest(command=command):
+                self.browser.open(page(command))
+                self.assertLess(self.browser.value("document.querySelector('.item canvas').getBoundingClientRect().top"), 600)
+                self.assertLess(self.browser.value("document.querySelector('.next').getBoundingClientRect().bottom"), 400)
+
     def test_axe_finds_no_violation(self):
         axe = axe_core()
         if not axe:

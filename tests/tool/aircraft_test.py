@@ -314,7 +314,7 @@ class OtherAircraft(unittest.TestCase):
     def test_report(self):
         self.run_tool("inspect", "faam-core.nc", "ncar.nc", "--report", "page.html")
         page = (self.path / "page.html").read_text()
-        for title in ("Variables and roles of the flights", "Height", "Roles of faam-core.nc", "Missing from ncar.nc"):
+        for title in ("Roles and manoeuvres of 2 flights", "Height", "Roles of faam-core.nc", "Missing from ncar.nc"):
             self.assertIn(title, page)
 
 

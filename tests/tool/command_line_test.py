@@ -129,6 +129,32 @@ class Outputs(ComparisonTest):
                 for name in written:
                     (self.path / name).unlink()
 
+    def test_overwritten_files_are_announced_or_refused(self):
+        command = ("refit", ONE, "-m", self.model(), "-o", "o.toml", "--json", "r.json")
+        self.done(*command, "--no-clobber", cwd=self.path)
+        (self.path / "r.json").unlink()
+        text = self.done(*command, cwd=self.path).stdout
+        self.assertIn("\noverwrote o.toml\n", text)
+        self.assertIn("\nwrote r.json\n", text)
+        before = comparison_test.contents(self.path)
+        result = self.run_tool(*command, "--no-clobber", cwd=self.path)
+        self.assertEqual((result.returncode, result.stdout, result.stderr.count("\n")), (1, "", 1))
+        self.assertIn("o.toml", result.stderr)
+        self.assertEqual(comparison_test.contents(self.path), before)
+
+    def test_an_output_has_fifteen_lines_and_details_with_verbose(self):
+        model = self.model()
+        for command in (("inspect", ONE), ("compare", ONE, TWO, "-m", model), ("refit", ONE, "-m", model, "-o", "o.toml"),
+                        ("diagnose", ONE, "-m", model), ("improve", ONE, "-m", model, "-o", "o.toml"),
+                        ("check", ONE, "-m", model), ("temperature", ONE, "-m", model, "-o", "o.toml", "--force"),
+                        ("process", ONE, "-m", model, "-o", "o.nc")):
+            with self.subTest(command[0]):
+                lines = self.run_tool(*command, "--report", "r.html", cwd=self.path).stdout.splitlines()
+                self.assertGreater(len(lines), 2)
+                self.assertLessEqual(len(lines), 15, "\n".join(lines))
+                details = self.run_tool(*command, "--verbose", cwd=self.path).stdout.splitlines()
+                self.assertGreaterEqual(len(details), len(lines))
+
     def test_what_a_refused_fit_wrote_is_announced(self):
         result = self.run_tool("temperature", ONE, "-m", self.model(), "-o", "o.toml", "--report", "r.html", cwd=self.path)
         self.assertEqual(result.returncode, 1)
@@ -249,12 +275,12 @@ class Terminal(ComparisonTest):
     def test_verdicts_are_coloured_unless_it_is_refused(self):
         plain = self.done("check", ONE).stdout
         self.assertNotIn("\033", plain)
-        self.assertRegex(self.shown(80, "check", ONE, TERM="xterm"), "\033\\[3[123]m(in)?consistent\033")
-        coloured = self.shown(9000, "check", ONE, TERM="xterm")
+        self.assertRegex(self.shown(80, "check", ONE, "--verbose", TERM="xterm"), "\033\\[3[123]m(in)?consistent\033")
+        coloured = self.shown(9000, "check", ONE, "--verbose", TERM="xterm")
         self.assertRegex(coloured, "(?m)^total-pressure +\033\\[3[123]m(in)?consistent\033\\[0m ")
         self.assertEqual(re.sub("\033\\[[0-9]+m", "", coloured), plain)
         for refused in ({"TERM": "xterm", "NO_COLOR": "1"}, {"TERM": "dumb"}, {}):
-            self.assertEqual(self.shown(9000, "check", ONE, **refused), plain)
+            self.assertEqual(self.shown(9000, "check", ONE, "--verbose", **refused), plain)
 
     def test_a_command_to_copy_stays_whole(self):
         model = self.model()

@@ -87,6 +87,9 @@ def contents(folder):
 THERMOMETER = ["temp-offset.offset", "recovery-factor.da"]
 
 
+DETAILED = ("inspect", "compare", "refit", "diagnose", "improve", "check", "temperature", "process")
+
+
 class ComparisonTest(ToolTest):
     def model(self, change=lambda toml: toml, name="model.toml"):
         path = self.path / name
@@ -99,7 +102,9 @@ class ComparisonTest(ToolTest):
         return path
 
     def done(self, *arguments, **options):
-        result = self.run_tool(*arguments, **options)
+        """A successful run, with all details in its text."""
+        has_details = arguments[0] in DETAILED and "--quiet" not in arguments
+        result = self.run_tool(*arguments, *("--verbose",) * has_details, **options)
         self.assertEqual(result.returncode, 0, result.stderr)
         return result
 

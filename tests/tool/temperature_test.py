@@ -247,7 +247,7 @@ class Fit(TemperatureTest):
         self.assertRegex(text, f"0.3 hPa .* a0 by {0.3 * abs(per_hpa):.2g} K.* --pressure-error 0.3 ")
         with_it = self.text_of("--pressure-error", "0.3")
         self.assertNotIn("noise only", with_it)
-        self.assertIn("Errors have in them one of the static pressure of 0.3 hPa", with_it)
+        self.assertIn("constant error of the static pressure of 0.3 hPa", with_it)
         # Without the option: the usual zero of a transducer, and the 0.00045 of the pressure that the law states,
         # at 500 to 900 hPa.
         for arguments, zero, law in (((), 0.1, 0.33),

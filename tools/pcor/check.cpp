@@ -141,13 +141,7 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
   return pictures;
 }
 
-void print(const Checks& checks, const Options& options, bool has_laser) {
-  if (!checks.model.empty()) say("{}\n", checks.model);
-  say("\n{:<18} {:<14} {}\n", "check", "verdict", "number");
-  for (const CheckResult& result : checks.results) {
-    say("{:<18} {:<14} {}\n", result.name, result.ran ? to_string(result.verdict) : "not run",
-        result.ran ? key_number(result) : "");
-  }
+void print_details(const Checks& checks) {
   say("inconsistent: larger than the tolerance and than three standard errors; consistent: within the "
       "tolerance, by two standard errors\n");
   for (const CheckResult& result : checks.results) {
@@ -162,8 +156,21 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
       if (result.ran || result.reason.find(note) == std::string::npos) say("  note: {}.\n", note);
     }
   }
-  for (const std::string& note : checks.notes) say("\nNote: {}.\n", note);
-  say("\n");
+}
+
+void print(const Checks& checks, const Options& options, bool has_laser) {
+  if (!checks.model.empty()) say("{}\n", checks.model);
+  say("{:<18} {:<14} {}\n", "check", "verdict", "number");
+  std::vector<std::string> not_run;
+  for (const CheckResult& result : checks.results) {
+    if (result.ran)
+      say("{:<18} {:<14} {}\n", result.name, to_string(result.verdict), key_number(result));
+    else
+      not_run.push_back(result.name);
+  }
+  if (!not_run.empty()) say("not run: {}\n", fmt::join(not_run, ", "));
+  if (is_verbose()) print_details(checks);
+  say_notes(checks.notes);
   say_written({options.common.report, options.common.figures, options.table, options.common.json});
   say("{}\n", next_step(checks, options, has_laser));
 }
@@ -221,14 +228,16 @@ void run(const Options& options) {
   std::optional<FlightTable> table;
   if (!options.table.empty()) table = flight_table(flights, model, check_options, checks);
   if (!is_speaker()) return;
+  const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
   OutputTransaction together;
   if (wants_report(options.common))
-    write_report_of_run(check_report(checks), {models_of(options), options.flights.flights, {}},
-                        options.common);
+    write_report_of_run(
+        check_report(checks),
+        {models_of(options), options.flights.flights, {}, next_step(checks, options, has_laser)},
+        options.common);
   if (table) table->write(options.table);
   json.write(checks);
   together.appear();
-  const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
   if (wants_text(options.common)) print(checks, options, has_laser);
 }
 

@@ -20,6 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* standard_output = "-";
 
+bool keeps_existing = false;
+
 bool is_file(const fs::path& path) { return !path.empty() && path != standard_output; }
 
 /// True if two names refer to one file, existing or not.
@@ -99,7 +101,11 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_repo
         ->needs(figures)
         ->capture_default_str();
   }
-  command.add_flag("--quiet", options.quiet, "print no text");
+  CLI::Option* const quiet = command.add_flag("--quiet", options.quiet, "print no text");
+  command.add_flag_callback("--verbose", say_everything, "print all details, and notes in full")
+      ->excludes(quiet);
+  command.add_flag_callback(
+      "--no-clobber", [] { keeps_existing = true; }, "refuse to overwrite existing files");
   command.set_version_flag("--version", "pcor " PCOR_VERSION, "print the version of the program");
 }
 
@@ -161,6 +167,12 @@ void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<
         throw Error(fmt::format("{} is given twice as an output; choose two names", outputs[i].string()));
       }
     }
+    std::error_code code;
+    if (!is_file(outputs[i]) || !fs::is_regular_file(outputs[i], code)) continue;
+    if (keeps_existing)
+      throw Error(fmt::format("{}: the file exists; choose another output or omit --no-clobber",
+                              outputs[i].string()));
+    remember_existing(outputs[i]);
   }
 }
 

@@ -103,8 +103,9 @@ class JsonResult {
   std::optional<AtomicFile> file_{};
 };
 
-/// Refuses outputs that are inputs, under any name, and two outputs with the same destination, including
-/// standard output, `-`. Empty names are ignored.
+/// Refuses outputs that are inputs, under any name, two outputs with the same destination, including standard
+/// output, `-`, and with --no-clobber existing files. Registers existing files for `say_written`. Empty names
+/// are ignored.
 /// @throws Error
 void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
                         const std::vector<std::filesystem::path>& inputs);

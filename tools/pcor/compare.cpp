@@ -38,21 +38,55 @@ void print_row(const std::string& name, const Statistics& s) {
       known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
 }
 
-/// Largest regimes and bands: where the errors of the model are largest.
-void print_model(const ModelComparison& model, bool with_name) {
-  if (with_name) say("\n{}\n", model.name);
-  print_flaps_out(model.flaps_out, "the comparison");
-  say("\n{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter", "rms",
+void print_header() {
+  say("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter", "rms",
       "noise", "ratio");
-  print_row("all", model.all);
-  for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
+}
+
+/// At most `max_regimes` regimes, those with most samples, and the `max_bands` bands with the largest errors.
+void print_parts(const ModelComparison& model, std::size_t max_regimes, std::size_t max_bands) {
+  std::vector<std::size_t> samples;
+  for (const PartStatistics& part : model.regimes) samples.push_back(part.statistics.samples);
+  std::sort(samples.rbegin(), samples.rend());
+  for (const PartStatistics& part : model.regimes) {
+    if (samples.size() <= max_regimes || part.statistics.samples >= samples[max_regimes - 1])
+      print_row("  " + part.name, part.statistics);
+  }
   std::vector<PartStatistics> bands = model.bands;
   std::stable_sort(bands.begin(), bands.end(), [](const PartStatistics& a, const PartStatistics& b) {
     return fails_more(a.statistics, b.statistics);
   });
-  if (bands.size() > 5) bands.resize(5);
+  if (bands.size() > max_bands) bands.resize(max_bands);
   if (!bands.empty()) say("worst bands\n");
   for (const PartStatistics& part : bands) print_row("  " + part.name, part.statistics);
+}
+
+/// All samples of each model and reference; of a single model its main parts.
+void print_short(const Comparison& comparison) {
+  print_header();
+  const bool is_single = comparison.models.size() == 1;
+  for (const ModelComparison& model : comparison.models) {
+    print_row(is_single ? "all" : model.name, model.all);
+    if (is_single && comparison.further.empty())
+      print_parts(model, 5, 2);
+    else if (is_single)
+      print_parts(model, 3, 0);
+  }
+  for (const Comparison& further : comparison.further) {
+    for (const ModelComparison& model : further.models)
+      say("{} against {}: bias {:+.3f}, rms {:.3f} hPa\n", is_single ? "all" : model.name, further.reference,
+          model.all.bias, model.all.rms);
+  }
+  say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
+}
+
+void print_model(const ModelComparison& model, bool with_name) {
+  if (with_name) say("\n{}\n", model.name);
+  print_flaps_out(model.flaps_out, "the comparison");
+  say("\n");
+  print_header();
+  print_row("all", model.all);
+  print_parts(model, model.regimes.size(), 5);
   if (model.flights.size() > 1) {
     say("flights\n");
     for (const PartStatistics& part : model.flights) print_row("  " + part.name, part.statistics);
@@ -75,8 +109,7 @@ void print_model(const ModelComparison& model, bool with_name) {
 void print_further(const Comparison& comparison, bool with_names) {
   say("\nresidual = {}, reference minus model\n", comparison.reference);
   say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
-  say("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter", "rms",
-      "noise", "ratio");
+  print_header();
   for (const ModelComparison& model : comparison.models) {
     print_row(with_names ? model.name : "all", model.all);
     for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
@@ -93,8 +126,7 @@ std::filesystem::path residual_file(const Options& options, std::size_t number) 
          (wanted.stem().string() + "-" + flight.stem().string() + wanted.extension().string());
 }
 
-void print(const Comparison& comparison, const std::vector<ComparedModel>& contenders,
-           const ChosenReferences& references, const Options& options) {
+void print_in_full(const Comparison& comparison, const ChosenReferences& references, const Options& options) {
   print_references(references);
   if (comparison.is_static_pressure) {
     say("residual = static pressure of the reference ({}) minus static pressure of the model\n",
@@ -113,33 +145,50 @@ void print(const Comparison& comparison, const std::vector<ComparedModel>& conte
         total.slope, total.offset, total.rms);
   }
   for (const Comparison& further : comparison.further) print_further(further, options.models.size() > 1);
-  for (const std::string& note : comparison.notes) say("\nNote: {}.\n", note);
-  say("\n");
-  std::vector<std::string> written;
-  for (std::size_t i = 0; !options.residuals.empty() && i < options.comparison.flights.size(); ++i)
-    written.push_back(residual_file(options, i).string());
-  written.insert(written.end(),
-                 {options.common.report, options.common.figures, options.table, options.common.json});
-  say_written(written);
+}
+
+/// Next step: the model with the smallest rms is applied or refitted.
+std::string next_step(const Comparison& comparison, const std::vector<ComparedModel>& contenders,
+                      const Options& options) {
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
   const auto contender = std::find_if(contenders.begin(), contenders.end(),
                                       [&best](const ComparedModel& each) { return each.name == best->name; });
   const std::string& model = options.models[static_cast<std::size_t>(contender - contenders.begin())];
-  if (comparison.models.size() > 1) say("The least rms has {}. ", best->name);
+  const std::string which =
+      comparison.models.size() > 1 ? fmt::format("The smallest rms has {}. ", best->name) : "";
   const std::string flights = advised_command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
-    say("The residual of {} is close to the noise. To apply it: {} process {} -m {} -o corrected.nc\n",
+    return fmt::format(
+        "{}The residual of {} is close to the noise. To apply it: {} process {} -m {} -o corrected.nc", which,
         best->name, program(), shell_path(options.comparison.flights.front()), shell_path(model));
-    return;
   }
-  say("To refit its coefficients: {} refit {} -m {} -o fitted.toml\n", program(), flights, shell_path(model));
-  if (comparison.total_pressure && comparison.is_static_pressure) {
-    say("To refit both systems together: {} refit {} -m {} -o fitted.toml --refit-reference "
-        "fitted-reference.toml\n",
-        program(), flights, shell_path(model));
+  const std::string refit =
+      fmt::format("{} refit {} -m {} -o fitted.toml", program(), flights, shell_path(model));
+  if (is_verbose() && comparison.total_pressure && comparison.is_static_pressure) {
+    return fmt::format(
+        "{0}To refit its coefficients: {1}\nTo refit both systems together: {1} --refit-reference "
+        "fitted-reference.toml",
+        which, refit);
   }
+  return fmt::format("{}To refit its coefficients: {}", which, refit);
+}
+
+void print(const Comparison& comparison, const std::vector<ComparedModel>& contenders,
+           const ChosenReferences& references, const Options& options) {
+  if (is_verbose())
+    print_in_full(comparison, references, options);
+  else
+    print_short(comparison);
+  say_notes(comparison.notes);
+  std::vector<std::string> written;
+  for (std::size_t i = 0; !options.residuals.empty() && i < options.comparison.flights.size(); ++i)
+    written.push_back(residual_file(options, i).string());
+  written.insert(written.end(),
+                 {options.common.report, options.common.figures, options.table, options.common.json});
+  say_written(written);
+  say("{}\n", next_step(comparison, contenders, options));
 }
 
 /// Adds the references of a model to the references of earlier models, without repetition.
@@ -282,8 +331,10 @@ void run(const Options& options) {
     }
   }
   if (wants_report(options.common))
-    write_report_of_run(comparison_report(comparison), {options.models, options.comparison.flights, {}},
-                        options.common);
+    write_report_of_run(
+        comparison_report(comparison),
+        {options.models, options.comparison.flights, {}, next_step(comparison, contenders, options)},
+        options.common);
   if (!options.table.empty()) write_flight_table(comparison, options.table);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     if (levels[i]) result.levels.emplace_back(contenders[i].name, *levels[i]);

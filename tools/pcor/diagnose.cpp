@@ -35,7 +35,19 @@ struct Options {
   bool full = false;
 };
 
-constexpr std::size_t shortened = 5;
+/// The first five items, and the number of the others.
+std::string shortened_list(std::vector<std::string> items) {
+  constexpr std::size_t max_items = 5;
+  const std::size_t more = items.size() <= max_items ? 0 : items.size() - max_items;
+  items.resize(items.size() - more);
+  return fmt::format("{}{}", fmt::join(items, ", "), more == 0 ? "" : fmt::format(" and {} more", more));
+}
+
+void print_rms(const Diagnosis& diagnosis) {
+  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, linearised "
+      "and weighted by the noise\n",
+      diagnosis.rms_given, diagnosis.noise_rms, diagnosis.residual_rms);
+}
 
 void print_finding(const Finding& finding) {
   say("\n{}: {}\n", finding.id(), finding.title);
@@ -74,12 +86,29 @@ void print_findings(const std::vector<Finding>& findings) {
   for (const Finding& finding : findings) print_finding(finding);
 }
 
-/// Prints a list on one line; a long one ends with the number of omitted entries.
-void print_list(const std::string& title, std::vector<std::string> items, bool all) {
-  if (items.empty()) return;
-  const std::size_t more = all || items.size() <= shortened ? 0 : items.size() - shortened;
-  items.resize(items.size() - more);
-  say("{}: {}{}\n", title, fmt::join(items, ", "), more == 0 ? "" : fmt::format(" and {} more", more));
+/// The findings, their rivals and the variables that the remaining residual is correlated with.
+void print_short(const Diagnosis& diagnosis) {
+  constexpr std::size_t max_rows = 3;
+  for (std::size_t i = 0; i < std::min(diagnosis.findings.size(), max_rows); ++i) {
+    const Finding& finding = diagnosis.findings[i];
+    say("{}: {}, {:.3f} hPa rms, p {}\n", finding.id(), estimates_text(finding.estimates), finding.rms,
+        probability(finding.p_value));
+    std::vector<std::string> rivals;
+    for (const Alias& alias : finding.aliases) rivals.push_back(alias.effect);
+    if (!rivals.empty()) say("  not distinguishable from {}\n", shortened_list(rivals));
+    if (!finding.advice.sentence.empty()) say("  advice: {}\n", finding.advice.sentence);
+  }
+  if (!diagnosis.unexplained.significant) return;
+  std::vector<std::string> variables;
+  for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables)
+    variables.push_back(fmt::format("{} (R2 {:.2f})", variable.name, variable.r2));
+  say("unexplained residual: {:.3f} hPa rms{}{}\n", diagnosis.unexplained.rms,
+      variables.empty() ? "" : ", correlated with ", shortened_list(variables));
+}
+
+void print_list(const std::string& title, const std::vector<std::string>& items, bool all) {
+  if (!items.empty())
+    say("{}: {}\n", title, all ? fmt::format("{}", fmt::join(items, ", ")) : shortened_list(items));
 }
 
 void print_others(const Diagnosis& diagnosis, bool all) {
@@ -96,9 +125,9 @@ void print_others(const Diagnosis& diagnosis, bool all) {
                                  limit.rms, limit.note.empty() ? "" : "; ", limit.note));
   }
   say("\n");
-  print_list("not found, and at most (95 %)", std::move(limits), all);
-  print_list("absorbed by the model", std::move(absorbed), all);
-  print_list("not testable", std::move(not_testable), all);
+  print_list("not found, and at most (95 %)", limits, all);
+  print_list("absorbed by the model", absorbed, all);
+  print_list("not testable", not_testable, all);
 }
 
 /// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
@@ -160,21 +189,27 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   return fmt::format("To see where the residual is largest: {} compare {} -m {}", program(), flights, model);
 }
 
-void print(const Diagnosis& diagnosis, const ChosenReferences& references, const Options& options) {
-  say("{}.\n\n", verdict_text(diagnosis));
+void print_in_full(const Diagnosis& diagnosis, const ChosenReferences& references, const Options& options) {
+  say("\n");
   print_references(references);
   say("reference: {}\n", diagnosis.reference);
   say("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
-  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, linearised "
-      "and "
-      "weighted by the noise\n",
-      diagnosis.rms_given, diagnosis.noise_rms, diagnosis.residual_rms);
+  print_rms(diagnosis);
   print_flaps_out(diagnosis.flaps_out, "the diagnosis");
   print_findings(diagnosis.findings);
   print_unexplained(diagnosis.unexplained);
   print_others(diagnosis, options.full);
-  for (const std::string& note : diagnosis.notes) say("\nNote: {}.\n", note);
-  say("\n");
+}
+
+void print(const Diagnosis& diagnosis, const ChosenReferences& references, const Options& options) {
+  say("{}.\n", verdict_text(diagnosis));
+  if (is_verbose() || options.full) {
+    print_in_full(diagnosis, references, options);
+  } else {
+    print_short(diagnosis);
+    print_rms(diagnosis);
+  }
+  say_notes(diagnosis.notes);
   say_written({options.common.report, options.common.figures, options.common.json});
   say("{}\n", next_command(diagnosis, options));
 }
@@ -220,7 +255,8 @@ void run(const Options& options) {
   OutputTransaction together;
   if (wants_report(options.common))
     write_report_of_run(diagnosis_report(diagnosis, model, &tried),
-                        {{options.model}, options.comparison.flights, {}}, options.common);
+                        {{options.model}, options.comparison.flights, {}, next_command(diagnosis, options)},
+                        options.common);
   json.write(diagnosis);
   together.appear();
   if (wants_text(options.common)) print(diagnosis, references, options);

@@ -167,6 +167,7 @@ void print_all() {
 }
 
 void run(const Options& options) {
+  refuse_overwriting({options.common.json}, {});
   JsonResult json(options.common);
   if (const EffectWithoutTrace* const effect = find_without_trace(options.id)) {
     json.write(*effect);

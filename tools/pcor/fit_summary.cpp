@@ -15,7 +15,7 @@ void add_trust_option(CLI::App& command, bool& trust) {
 
 void print_fit_summary(const RefitResult& fit) {
   const std::optional<HeldOutPart> held_out = worst_held_out(fit.flights);
-  if (held_out && held_out->is_off()) say("Warning: {}.\n\n", held_out->text());
+  if (held_out && held_out->is_off()) say("Warning: {}.\n", held_out->text());
   if (fit.left > 0.0)
     say("Model error varying with the flight state: {:.2f} hPa (rms); slow drift of the noise: {:.2f} hPa.\n",
         fit.left, fit.drift_rms);

@@ -38,13 +38,20 @@ struct Options {
   bool trust_reference = false;
 };
 
+std::string next_step(const Options& options) {
+  return fmt::format("To apply it: {} process {} -m {} -o corrected.nc", program(),
+                     shell_path(options.comparison.flights.front()), shell_path(options.output));
+}
+
 void print(const Improvement& improvement, const ChosenReferences& references, const Options& options) {
   print_fit_summary(improvement.fit);
-  print_references(references);
-  say("reference: {}\n", improvement.fit.reference_text);
-  say("fitted to {} samples; not used: {}\n", improvement.fit.samples, mask_text(improvement.fit.masks));
-  print_flaps_out(improvement.fit.flaps_out, "the fit");
-  say("\n");
+  if (is_verbose()) {
+    print_references(references);
+    say("reference: {}\n", improvement.fit.reference_text);
+    say("fitted to {} samples; not used: {}\n", improvement.fit.samples, mask_text(improvement.fit.masks));
+    print_flaps_out(improvement.fit.flaps_out, "the fit");
+    say("\n");
+  }
   const auto figure = [](double rms) { return std::isnan(rms) ? std::string() : fmt::format("{:.4f}", rms); };
   say("{:<24} {:>10} {:>10} {:>10} {:>13}\n", "rms, hPa", "training", "held out", "noise", "coefficients");
   say("{:<24} {:>10} {:>10}\n", "input model", figure(improvement.given_rms_train),
@@ -70,18 +77,18 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
     say("held out: five parts of the flights, one at a time, without outliers; hold out whole flights with "
         "--holdout\n");
   }
-  say("\n");
-  for (const ImproveStep& step : improvement.steps) {
-    say("{}\n", step.learnt);
-    if (const std::string text = rivals_text(step); !text.empty()) say("  {}\n", text);
+  if (is_verbose()) {
+    say("\n");
+    for (const ImproveStep& step : improvement.steps) {
+      say("{}\n", step.learnt);
+      if (const std::string text = rivals_text(step); !text.empty()) say("  {}\n", text);
+    }
   }
   say("stopped: {}\n", improvement.why_stopped);
-  print_unexplained(improvement.steps.back().diagnosis.unexplained);
-  for (const std::string& note : improvement.fit.notes) say("\nNote: {}.\n", note);
-  say("\n");
+  if (is_verbose()) print_unexplained(improvement.steps.back().diagnosis.unexplained);
+  say_notes(improvement.fit.notes);
   say_written({options.output, options.common.report, options.common.figures, options.common.json});
-  say("To apply it: {} process {} -m {} -o corrected.nc\n", program(),
-      shell_path(options.comparison.flights.front()), shell_path(options.output));
+  say("{}\n", next_step(options));
 }
 
 ImproveOptions improve_options(const Options& options, const ModelDefinition& model,
@@ -135,9 +142,10 @@ void run(const Options& options) {
   OutputTransaction together;
   deliver(improvement.model, options.output, inputs);
   if (wants_report(options.common))
-    write_report_of_run(improvement_report(improvement, model, &tried),
-                        {{options.model, options.output}, options.comparison.flights, options.holdout},
-                        options.common);
+    write_report_of_run(
+        improvement_report(improvement, model, &tried),
+        {{options.model, options.output}, options.comparison.flights, options.holdout, next_step(options)},
+        options.common);
   improvement.output = options.output;
   json.write(improvement);
   together.appear();

@@ -105,7 +105,7 @@ void print_head(const Inspection& flight) {
     rates.push_back(fmt::format("{} of {} Hz", count, rate / flight.time.step));
   say("variables: {}\n", fmt::join(rates, ", "));
   if (flight.alike.empty()) {
-    say("naming convention: {}, because the file resembles no known one\n", flight.family_title);
+    say("naming convention: {}, because the file matches no known convention\n", flight.family_title);
   } else if (flight.alike.size() > 1) {
     say("naming convention: files of {} match; names of {} are used; set the right one in the model by "
         "roles\n",
@@ -153,12 +153,14 @@ void print_candidates(const Inspection& flight) {
   if (!flight.not_used.empty()) say("\nnot used: {}\n", fmt::join(flight.not_used, ", "));
 }
 
+void print(const Problem& problem) {
+  say("  {}: {}, {:.4g} {}, {} UTC; {}\n", problem.variable, problem.kind, problem.number, problem.unit,
+      problem.times, problem.action);
+}
+
 void print_problems(const Inspection& flight) {
   if (!flight.problems.empty()) say("\nproblems\n");
-  for (const Problem& problem : flight.problems) {
-    say("  {}: {}, {:.4g} {}, {} UTC; {}\n", problem.variable, problem.kind, problem.number, problem.unit,
-        problem.times, problem.action);
-  }
+  for (const Problem& problem : flight.problems) print(problem);
 }
 
 void print_missing(const Inspection& flight) {
@@ -205,8 +207,30 @@ void print_by_gps(const GpsDesign& gps) {
   say("  its change with the attack    {}\n", text(gps.attack, "a pitch manoeuvre"));
 }
 
-void print(const Inspection& flight) {
-  print_head(flight);
+/// Pressures, numbers of roles and models, problems and missing inputs.
+void print_short(const Inspection& flight) {
+  constexpr std::size_t max_rows = 3;
+  for (const InspectedRole& role : flight.roles) {
+    if (role.role == "static_pressure" || role.role == "dynamic_pressure")
+      say("{}: {}{}{}\n", role.role, role.variable,
+          role.others.empty() ? "" : "; alternatives: ", fmt::join(role.others, " "));
+  }
+  std::vector<std::string> missing;
+  for (const MissingRole& role : flight.missing) missing.push_back(role.role);
+  say("{} roles assigned; missing: {}\n", flight.roles.size(),
+      missing.empty() ? "no role" : fmt::format("{}", fmt::join(missing, ", ")));
+  for (std::size_t i = 0; i < std::min(flight.problems.size(), max_rows); ++i) print(flight.problems[i]);
+  if (flight.problems.size() > max_rows)
+    say("{} more problems: add --verbose\n", flight.problems.size() - max_rows);
+  std::vector<std::string> models;
+  for (const ModelCandidate& law : flight.laws) {
+    if (law.fits()) models.push_back(law.path.stem().string());
+  }
+  say("models for this flight: {}\n",
+      models.empty() ? "no published one" : fmt::format("{}", fmt::join(models, ", ")));
+}
+
+void print_in_full(const Inspection& flight) {
   print_roles(flight);
   print_candidates(flight);
   print_missing(flight);
@@ -221,7 +245,15 @@ void print(const Inspection& flight) {
         : !law.why_not.empty() ? "; " + law.why_not
                                : "; matches the flight's pressures and its date");
   }
-  for (const std::string& note : flight.notes) say("\nNote: {}.\n", note);
+}
+
+void print(const Inspection& flight) {
+  print_head(flight);
+  if (is_verbose())
+    print_in_full(flight);
+  else
+    print_short(flight);
+  say_notes(flight.notes);
 }
 
 void print_next(const Inspection& flight) {
@@ -320,12 +352,13 @@ void run(const Options& options) {
     deliver_with_candidates(first, options.model);
   }
   if (wants_report(options.common)) {
-    write_report_of_run(inspection_report(readable), {{}, options.flights, {}}, options.common);
+    write_report_of_run(inspection_report(readable),
+                        {{}, options.flights, {}, first.next.empty() ? "" : "Next: " + first.next.front()},
+                        options.common);
   }
   json.write(result);
   together.appear();
   if (!text) return;
-  say("\n");
   say_written({options.model, options.common.report, options.common.figures, options.common.json});
   print_next(first);
 }

@@ -92,15 +92,20 @@ void print_flags(const Flags& flagged) {
   bool any = false;
   for (std::size_t i = 0; i < quality_info.size(); ++i) {
     if (flagged[i] == 0) continue;
-    if (!any) say("\n{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
+    if (!any) say("{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
     any = true;
     say("{:>9}  {:<32} {}\n", flagged[i], quality_info[i].name, quality_info[i].meaning);
   }
 }
 
-void print_hint(const ProcessedFlight& flight) {
-  say("To look at the result: ncdump -v {} {} | less\n", shell_quote(flight.summary.outputs.front()),
-      shell_path(flight.output.string()));
+/// Next step for the first processed flight; empty without one.
+std::string next_step(const std::vector<ProcessedFlight>& flights) {
+  const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
+    return each.state == FlightState::processed;
+  });
+  if (done == flights.end()) return "";
+  return fmt::format("To look at the result: ncdump -v {} {} | less",
+                     shell_quote(done->summary.outputs.front()), shell_path(done->output.string()));
 }
 
 /// Prints the summary of one flight.
@@ -127,8 +132,8 @@ void print(const ProcessedFlight& of) {
   say("\n");
   if (summary.gaps > 0) say("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");
   print_flags(summary.flagged);
-  for (const std::string& note : summary.notes) say("\nNote: {}.\n", note);
-  say("\nwrote {} to {}\n", fmt::join(summary.outputs, " "), of.output.string());
+  say_notes(summary.notes);
+  say("{} {} to {}\n", wrote(of.output), fmt::join(summary.outputs, " "), of.output.string());
 }
 
 /// Several flights as a table: a row when a flight is done, and common notes at the end.
@@ -321,7 +326,8 @@ void run(const Options& options) {
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
   if (wants_report(options.common) && !none) {
     write_report_of_run(process_report(flights, options.suffix),
-                        {{options.model + options.models}, options.inputs, {}}, options.common);
+                        {{options.model + options.models}, options.inputs, {}, next_step(flights)},
+                        options.common);
   }
   if (many)
     json.write(result);
@@ -341,10 +347,7 @@ void run(const Options& options) {
     say("{} is up to date for this version, flight, model and options\n", first.output.string());
   }
   say_written({options.common.report, options.common.figures, options.common.json});
-  const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
-    return each.state == FlightState::processed;
-  });
-  if (done != flights.end()) print_hint(*done);
+  if (const std::string next = next_step(flights); !next.empty()) say("{}\n", next);
 }
 
 }  // namespace

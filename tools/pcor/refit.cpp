@@ -114,6 +114,56 @@ void print_further(const std::vector<FlightFit>& further) {
   }
 }
 
+bool is_of_surface(const RefitResult& result, const std::string& parameter) {
+  const std::vector<ModelEffect>& effects = result.model.model.effects;
+  return std::any_of(effects.begin(), effects.end(), [&parameter](const ModelEffect& effect) {
+    return effect.is_surface() && parameter.rfind(effect.id + ".", 0) == 0;
+  });
+}
+
+/// Coefficients except those of surfaces; without --verbose only the fitted ones, at most `max_rows`.
+void print_coefficients(const RefitResult& result, std::size_t max_rows) {
+  say("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error",
+      "by jackknife", "unit");
+  std::size_t rows = 0, omitted = 0;
+  for (const FittedParameter& p : result.parameters) {
+    if (is_of_surface(result, p.name) || (!is_verbose() && !p.fitted)) continue;
+    if (++rows > max_rows) {
+      ++omitted;
+      continue;
+    }
+    const std::string error = !p.fitted                      ? "held"
+                              : p.at_bound                   ? "at bound"
+                              : std::isnan(p.standard_error) ? "unknown"
+                                                             : fmt::format("{:.3g}", p.standard_error);
+    const std::string jackknife =
+        std::isnan(p.jackknife_error) ? "" : fmt::format("{:.3g}", p.jackknife_error);
+    say("{:<36} {:>13.6g} {:>13.6g} {:>13} {:>13}  {}\n", p.name, p.start, p.value, error, jackknife, p.unit);
+  }
+  if (omitted > 0) say("and {} more: add --verbose\n", omitted);
+  for (const SurfaceFit& surface : result.surfaces) {
+    say("{}: second differences of {:.2g}, {:.1f} degrees of freedom\n", surface.effect, surface.roughness,
+        surface.degrees_of_freedom);
+  }
+  if (result.defect_error > 0.0)
+    say("standard error of delta-p over the flights: {:.2f} hPa\n", result.defect_error);
+}
+
+/// The residual, warnings and the fitted coefficients.
+void print_short(const RefitResult& result) {
+  constexpr std::size_t max_rows = 6;
+  say("rms {:.3f} hPa, before {:.3f}; noise {:.3f} hPa; {} samples, {} outliers\n", result.rms,
+      result.rms_before, result.noise_rms, result.samples, result.outliers);
+  print_fit_summary(result);
+  for (const std::string& warning : result.warnings) say("Warning: {}.\n", warning);
+  print_coefficients(result, max_rows);
+  for (const FlightFit& flight : result.flights) {
+    if (flight.holdout)
+      say("held out {}: rms {:.3f} hPa, before {:.3f}, bias {:+.3f}\n", flight.flight, flight.after.rms,
+          flight.before.rms, flight.after.bias);
+  }
+}
+
 void print_result(const RefitResult& result, const ChosenReferences& references) {
   print_fit_summary(result);
   print_references(references);
@@ -123,30 +173,7 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
   say("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
   print_flaps_out(result.flaps_out, "the fit");
   say("\n");
-  say("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error",
-      "by jackknife", "unit");
-  const auto is_of_surface = [&result](const std::string& name) {
-    const std::vector<ModelEffect>& effects = result.model.model.effects;
-    return std::any_of(effects.begin(), effects.end(), [&name](const ModelEffect& effect) {
-      return effect.is_surface() && name.rfind(effect.id + ".", 0) == 0;
-    });
-  };
-  for (const FittedParameter& p : result.parameters) {
-    if (is_of_surface(p.name)) continue;
-    const std::string error = !p.fitted                      ? "held"
-                              : p.at_bound                   ? "at bound"
-                              : std::isnan(p.standard_error) ? "unknown"
-                                                             : fmt::format("{:.3g}", p.standard_error);
-    const std::string jackknife =
-        std::isnan(p.jackknife_error) ? "" : fmt::format("{:.3g}", p.jackknife_error);
-    say("{:<36} {:>13.6g} {:>13.6g} {:>13} {:>13}  {}\n", p.name, p.start, p.value, error, jackknife, p.unit);
-  }
-  for (const SurfaceFit& surface : result.surfaces) {
-    say("{}: second differences of {:.2g}, {:.1f} degrees of freedom\n", surface.effect, surface.roughness,
-        surface.degrees_of_freedom);
-  }
-  if (result.defect_error > 0.0)
-    say("\nstandard error of delta-p over the flights: {:.2f} hPa\n", result.defect_error);
+  print_coefficients(result, result.parameters.size());
   say("\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; robust standard deviation {:.3f}; noise {:.3f} hPa; {} "
       "outliers\n",
       result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
@@ -166,8 +193,8 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
   for (std::size_t a = 0; a < result.covariance_names.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const double r = result.covariance[a][b] / std::sqrt(result.covariance[a][a] * result.covariance[b][b]);
-      if (!(std::abs(r) > 0.9) || is_of_surface(result.covariance_names[a]) ||
-          is_of_surface(result.covariance_names[b]))
+      if (!(std::abs(r) > 0.9) || is_of_surface(result, result.covariance_names[a]) ||
+          is_of_surface(result, result.covariance_names[b]))
         continue;
       if (!any) say("\ncorrelations above 0.9\n");
       any = true;
@@ -176,15 +203,13 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
   }
   print_flights(result.flights);
   print_further(result.further);
-  for (const std::string& note : result.notes) say("\nNote: {}.\n", note);
 }
 
-void print_next_step(const Options& options) {
-  say_written({options.output, options.reference_output});
+std::string next_step(const Options& options) {
   if (options.reference_output.empty()) {
-    say("To see where the errors are largest: {} compare {} -m {} -m {}\n", program(),
-        advised_command_line(options.comparison), shell_path(options.model), shell_path(options.output));
-    return;
+    return fmt::format("To see where the errors are largest: {} compare {} -m {} -m {}", program(),
+                       advised_command_line(options.comparison), shell_path(options.model),
+                       shell_path(options.output));
   }
   ComparisonOptions fitted = options.comparison;
   const std::string first = fitted.references.front();
@@ -194,8 +219,8 @@ void print_next_step(const Options& options) {
     if (colon != std::string::npos && reference.substr(colon) == before)
       reference = reference.substr(0, colon) + ":" + options.reference_output;
   }
-  say("To see where the errors are largest: {} compare {} -m {}\n", program(), advised_command_line(fitted),
-      shell_path(options.output));
+  return fmt::format("To see where the errors are largest: {} compare {} -m {}", program(),
+                     advised_command_line(fitted), shell_path(options.output));
 }
 
 /// Comparison of the model before and after the fit, for the report.
@@ -318,7 +343,10 @@ void run(const Options& options) {
   OutputTransaction together;
   if (comparison) {
     write_report_of_run(refit_report(result, *comparison),
-                        {{options.model, options.output}, options.comparison.flights, options.holdout},
+                        {{options.model, options.output},
+                         options.comparison.flights,
+                         options.holdout,
+                         is_refused ? "" : next_step(options)},
                         options.common);
   }
   if (table) table->write(options.table);
@@ -327,12 +355,17 @@ void run(const Options& options) {
   together.appear();
   const bool with_text = wants_text(options.common, {options.output, options.reference_output});
   if (with_text) {
-    print_result(result, references);
-    say("\n");
+    if (is_verbose())
+      print_result(result, references);
+    else
+      print_short(result);
+    say_notes(result.notes);
     say_written({options.common.report, options.common.figures, options.table, options.common.json});
   }
   if (is_refused) refuse_worse(result.worse, options.force, result.model);
-  if (with_text) print_next_step(options);
+  if (!with_text) return;
+  say_written({options.output, options.reference_output});
+  say("{}\n", next_step(options));
 }
 
 }  // namespace

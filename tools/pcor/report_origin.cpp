@@ -38,6 +38,7 @@ void require_figures(const CommonOptions& options) {
 }
 
 void write_report_of_run(Report report, const ReportFiles& files, const CommonOptions& options) {
+  report.next = files.next;
   report.origin.emplace_back("Command", command_of_this_run);
   report.origin.emplace_back(
       "Made", utc_text(static_cast<double>(std::time(nullptr)), "%Y-%m-%d %H:%M UTC by pcor " PCOR_VERSION));

@@ -11,11 +11,12 @@ namespace pcor::tool {
 /// Stores the command line of this run for `write_report_of_run`.
 void remember_command(int count, const char* const* words);
 
-/// Input files of a report.
+/// Input files of a report, and the next step.
 struct ReportFiles {
   std::vector<std::string> models{};
   std::vector<std::string> flights{};  ///< fitted or compared with a model
   std::vector<std::string> held_out{};
+  std::string next{};  ///< "To apply it: pcor process ..."; may be empty
 };
 
 /// Whether a report is requested, as a page or as figures.

@@ -40,8 +40,8 @@ void print(const SimulationSummary& summary, const Options& options) {
         fmt::format("{:.1f} to {:.1f}", leg.min_attack, leg.max_attack));
   }
   if (!summary.effects.empty()) say("\nsimulated errors: {}\n", fmt::join(summary.effects, ", "));
-  say("\nwrote {} variables, and the true values as TRUE_..., to {}\n", summary.variables.size(),
-      options.output);
+  say("\n{} {} variables, and the true values as TRUE_..., to {}\n", wrote(options.output),
+      summary.variables.size(), options.output);
   say_written({options.common.json});
   say("To see where a model fails on it: {} compare {} -m MODEL.toml\n", program(),
       shell_path(options.output));

@@ -81,10 +81,8 @@ void print_law_errors(const TemperatureResult& result) {
         with_error(result.humidity_change, result.humidity_error));
 }
 
-void print(const TemperatureResult& result) {
-  for (const std::string& warning : result.warnings) say("Warning: {}.\n\n", warning);
-  print_flights(result);
-  say("\nT corrected = T + a0 + a1 t + ..., t in degC\n");
+void print_coefficients(const TemperatureResult& result) {
+  say("T corrected = T + a0 + a1 t + ..., t in degC\n");
   say("{:<4} {:>12} {:>22} {:>24} {:>27} {:>5}\n", "", "likelihood",
       result.pressure_error > 0.0 ? "std. error" : "std. error, noise only", "likelihood interval",
       "least squares on height", "unit");
@@ -95,14 +93,25 @@ void print(const TemperatureResult& result) {
                     result.least_squares.standard_errors[k]),
         coefficient_unit(k));
   }
+}
+
+void print_corrections(const TemperatureResult& result) {
+  say("{:>12} {:>22}\n", "temperature", "correction");
+  for (const TemperatureCorrection& at : result.corrections)
+    say("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
+}
+
+void print_in_full(const TemperatureResult& result) {
+  print_flights(result);
+  say("\n");
+  print_coefficients(result);
   say("Least squares assumes independent heights: its standard errors are too small.\n{}.\n",
       pressure_error_text(result));
   print_law_errors(result);
   say("Least squares gives {} K, after subtraction of errors of the model.\n",
       with_error(result.least_squares_add, result.least_squares_add_error));
-  say("\n{:>12} {:>22}\n", "temperature", "correction");
-  for (const TemperatureCorrection& at : result.corrections)
-    say("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
+  say("\n");
+  print_corrections(result);
   print_parts(result);
   say("\nnoise of the GPS height: {:.2f} m per sample, {:.2f} m correlated over {:.0f} s; the hydrostatic "
       "height drifts by {:.3f} m per minute\n",
@@ -113,7 +122,19 @@ void print(const TemperatureResult& result) {
         std::isnan(choice.held_out)
             ? "-"
             : fmt::format("{:.1f} +- {:.1f}", choice.held_out, choice.held_out_error));
-  for (const std::string& note : result.notes) say("\nNote: {}.\n", note);
+}
+
+void print(const TemperatureResult& result) {
+  if (is_verbose()) {
+    print_in_full(result);
+  } else {
+    print_corrections(result);
+    for (const FlightHeights& flight : result.flights) {
+      if (!flight.left_out.empty()) say("{}: skipped: {}\n", flight.flight, flight.left_out);
+    }
+  }
+  for (const std::string& warning : result.warnings) say("Warning: {}.\n", warning);
+  say_notes(result.notes);
 }
 
 void print(const IterativeCalibration& result) {
@@ -135,6 +156,14 @@ const std::string& first_used(const TemperatureResult& result, const Options& op
   const auto used = std::find_if(result.flights.begin(), result.flights.end(),
                                  [](const FlightHeights& flight) { return flight.left_out.empty(); });
   return options.comparison.flights.at(static_cast<std::size_t>(used - result.flights.begin()));
+}
+
+std::string next_step(const TemperatureResult& result, const Options& options) {
+  if (!result.worse.empty())
+    return "The correction is not yet significant: add flights that climb and descend by 3 km and more, "
+           "there and back along the same track";
+  return fmt::format("To apply it: {} process {} -m {} -o corrected.nc", program(),
+                     shell_path(first_used(result, options)), shell_path(options.output));
 }
 
 void run(const Options& options) {
@@ -171,8 +200,10 @@ void run(const Options& options) {
   const bool is_refused = !result.worse.empty() && !options.force;
   OutputTransaction together;
   if (wants_report(options.common))
-    write_report_of_run(temperature_report(result),
-                        {{options.model, options.output}, options.comparison.flights, {}}, options.common);
+    write_report_of_run(
+        temperature_report(result),
+        {{options.model, options.output}, options.comparison.flights, {}, next_step(result, options)},
+        options.common);
   json.write(in_turn);
   if (!is_refused) {
     refuse_worse(result.worse, options.force, result.model);
@@ -183,18 +214,12 @@ void run(const Options& options) {
   if (with_text) {
     if (options.iterate) print(in_turn);
     print(result);
-    if (!result.worse.empty())
-      say("\nThe correction is not yet significant: add flights that climb and descend by 3 km and more, "
-          "there and back along the same track\n");
-    say("\n");
     say_written({options.common.report, options.common.figures, options.common.json});
   }
   if (is_refused) refuse_worse(result.worse, options.force, result.model);
   if (!with_text) return;
   say_written({options.output});
-  if (result.worse.empty())
-    say("To apply it: {} process {} -m {} -o corrected.nc\n", program(),
-        shell_path(first_used(result, options)), shell_path(options.output));
+  say("{}\n", next_step(result, options));
 }
 
 }  // namespace

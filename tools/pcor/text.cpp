@@ -1,6 +1,5 @@
 #include "text.hpp"
 
-#include <fmt/ranges.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -8,6 +7,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <utility>
 
 #include <pcor/base/message.hpp>
@@ -20,6 +20,7 @@ constexpr std::size_t min_width = 20;
 constexpr auto none = std::string_view::npos;
 
 bool is_plain = false;
+bool with_details = false;
 
 std::string& program_name() {
   static std::string name = "pcor";
@@ -86,6 +87,10 @@ const std::string& program() { return program_name(); }
 void set_program(const std::string& name_as_called) { program_name() = shell_quote(name_as_called); }
 
 void say_plainly() { is_plain = true; }
+
+bool is_verbose() { return with_details; }
+
+void say_everything() { with_details = true; }
 
 std::string folded(std::string_view line, std::size_t width) {
   if (bytes_of(line, width) == line.size()) return std::string(line);
@@ -167,11 +172,46 @@ void finish_text() {
   unfinished_line().clear();
 }
 
+void say_notes(const std::vector<std::string>& notes) {
+  constexpr std::size_t max_notes = 3, max_width = 120;
+  if (is_verbose()) {
+    for (const std::string& note : notes) say("\nNote: {}.\n", note);
+    say("\n");
+    return;
+  }
+  for (std::size_t i = 0; i < std::min(notes.size(), max_notes); ++i) {
+    std::string_view rest = notes[i];
+    const std::string_view line = take_line(rest, max_width, false);
+    say("note {}: {}{}\n", i + 1, line, rest.empty() ? "." : " ...");
+  }
+  if (notes.size() > max_notes) say("more notes: {} (add --verbose)\n", notes.size() - max_notes);
+}
+
+namespace {
+
+std::set<std::filesystem::path>& existing_files() {
+  static std::set<std::filesystem::path> files;
+  return files;
+}
+
+}  // namespace
+
+void remember_existing(const std::filesystem::path& file) { existing_files().insert(file); }
+
+std::string_view wrote(const std::filesystem::path& file) {
+  return existing_files().count(file) == 0 ? "wrote" : "overwrote";
+}
+
 void say_written(const std::vector<std::string>& files) {
-  std::vector<std::string> written;
-  std::copy_if(files.begin(), files.end(), std::back_inserter(written),
-               [](const std::string& file) { return !file.empty() && file != "-"; });
-  if (!written.empty()) say("wrote {}\n", fmt::join(written, ", "));
+  std::string line;
+  for (const std::string_view verb : {"wrote", "overwrote"}) {
+    std::string names;
+    for (const std::string& file : files) {
+      if (!file.empty() && file != "-" && wrote(file) == verb) names += (names.empty() ? " " : ", ") + file;
+    }
+    if (!names.empty()) line += fmt::format("{}{}{}", line.empty() ? "" : "; ", verb, names);
+  }
+  if (!line.empty()) say("{}\n", line);
 }
 
 }  // namespace pcor::tool

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -37,8 +38,21 @@ void tell(const std::string& message);
 /// Prints the unfinished line kept by `say`.
 void finish_text();
 
-/// Prints the names of written files on a separate line: "wrote best.toml, improve.html". Empty names and `-`
-/// are ignored.
+/// Whether commands print all details: false until `say_everything`, by --verbose.
+bool is_verbose();
+void say_everything();
+
+/// Prints notes without full stops as numbered, shortened lines, at most three; all in full if `is_verbose`.
+void say_notes(const std::vector<std::string>& notes);
+
+/// Registers a file that exists before the run, for `say_written`.
+void remember_existing(const std::filesystem::path& file);
+
+/// "wrote" or, for a file that existed before the run, "overwrote".
+std::string_view wrote(const std::filesystem::path& file);
+
+/// Prints the names of written files on a separate line: "wrote best.toml; overwrote improve.html". Empty
+/// names and `-` are ignored.
 void say_written(const std::vector<std::string>& files);
 
 /// Line folded to lines of at most `width` characters, at blanks; continuation lines are indented, below the

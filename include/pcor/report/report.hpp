@@ -293,15 +293,18 @@ using ReportItem =
     std::variant<TimePanel, BinnedPanel, PlanePanel, PairPanel, RegimeTable, BarPanel, CurvePanel, TrackPanel,
                  StripPanel, RegimePanel, QuantilePanel, DotPanel, WhatIfPanel, ReportTable, ReportText>;
 
-/// Content of a report in reading order: title, summary, facts, items, origin. All strings are plain UTF-8.
+/// Content of a report in reading order: title, summary, next step, facts, items, origin. All strings are
+/// plain UTF-8.
 struct Report {
-  std::string title;
+  std::string title;  ///< the result in one sentence
   std::string subtitle;
-  std::vector<std::string> summary;                       ///< sentences
-  std::vector<std::pair<std::string, std::string>> info;  ///< name and value, e.g. "Model"
-  std::vector<double> time;                               ///< sample times, s since 1970 UTC
-  std::vector<std::size_t> flight_starts;                 ///< first sample of each flight; {0} if empty
-  std::vector<std::string> flight_names;                  ///< one per flight, or empty
+  std::vector<std::string> summary;  ///< sentences; the page folds those after the second
+  std::string next;                  ///< "To apply it: pcor process ..."; may be empty
+  std::vector<std::pair<std::string, std::string>>
+      info;                                ///< name and value, e.g. "Model"; folded on the page
+  std::vector<double> time;                ///< sample times, s since 1970 UTC
+  std::vector<std::size_t> flight_starts;  ///< first sample of each flight; {0} if empty
+  std::vector<std::string> flight_names;   ///< one per flight, or empty
   std::vector<ReportColumn> columns;
   std::vector<ReportInterval> intervals;
   std::vector<ReportItem> items;
