@@ -343,6 +343,47 @@ Competition Analysis::competition(const std::vector<std::size_t>& chosen,
   return result;
 }
 
+/// Coefficients that the rows hardly constrain stay near their usual size: a prior as in the search.
+Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products,
+                                   const std::vector<std::size_t>& groups) const {
+  const Eigen::Index count = products.cols() - 1;
+  Eigen::VectorXd precision = Eigen::VectorXd::Zero(count);
+  precision.head(base_) = prior_;
+  Eigen::Index place = base_;
+  for (const std::size_t group : groups) {
+    for (std::size_t k = 0; k < groups_[group].usual.size(); ++k) {
+      const double deviation = groups_[group].deviation(k);
+      if (deviation > 0.0) precision[place + as_index(k)] = 1.0 / (deviation * deviation);
+    }
+    place += groups_[group].count;
+  }
+  Eigen::MatrixXd normal = products.topLeftCorner(count, count);
+  // Unit: variance of the rows.
+  normal.diagonal() += products(count, count) / static_cast<double>(scores_->row_count) * precision;
+  return pseudo_solution(normal, products.col(count).head(count), rank_limit);
+}
+
+Eigen::MatrixXd Analysis::rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& places) const {
+  if (this->flight(flight).is_by_gps) {
+    std::vector<Eigen::Index> with_residual = places;
+    with_residual.push_back(scores_->columns());
+    return scores_->rows[flight](Eigen::all, with_residual);
+  }
+  Eigen::MatrixXd rows(binned_.columns[flight].rows(), as_index(places.size()) + 1);
+  rows << binned_.columns[flight](Eigen::all, places), binned_.residuals[flight];
+  return rows;
+}
+
+Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) const {
+  const std::vector<Eigen::Index> places = places_of(groups);
+  const auto products =
+      first_share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) -> Eigen::MatrixXd {
+        const Eigen::MatrixXd rows = rows_of_refit(f, places);
+        return rows.transpose() * rows;
+      });
+  return solution(products, groups);
+}
+
 HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const std::vector<Eigen::Index> places = places_of(groups);
   const Eigen::Index width = as_index(places.size()) + 1;
@@ -353,17 +394,8 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   std::vector<Eigen::MatrixXd> white(binned_.bins.size());
   // Whitened rows of each part first, then unwhitened ones.
   const auto sums = share_.sum_of_each_flight<PartialSums>([&](std::size_t f) {
-    Eigen::MatrixXd all;
-    if (flight(f).is_by_gps) {
-      std::vector<Eigen::Index> with_residual = places;
-      with_residual.push_back(scores_->columns());
-      all = scores_->rows[f](Eigen::all, with_residual);
-      white[f] = all;  // a refit uses these rows as well
-    } else {
-      all.resize(binned_.columns[f].rows(), width);
-      all << binned_.columns[f](Eigen::all, places), binned_.residuals[f];
-      white[f] = whitened(all, binned_.bins[f], noise_[f], 0);
-    }
+    const Eigen::MatrixXd all = rows_of_refit(f, places);
+    white[f] = flight(f).is_by_gps ? all : whitened(all, binned_.bins[f], noise_[f], 0);
     PartialSums own(2 * held_out_parts, width);
     for (Eigen::Index i = 0; i < all.rows(); ++i) {
       const std::size_t part = part_of(f, time_of(f, i));
@@ -373,32 +405,14 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     }
     return own;
   });
-  // Coefficients that the other parts hardly constrain stay near their usual size: a prior as in the search.
-  Eigen::VectorXd precision = Eigen::VectorXd::Zero(width - 1);
-  precision.head(base_) = prior_;
-  Eigen::Index place = base_;
-  for (const std::size_t group : groups) {
-    for (std::size_t k = 0; k < groups_[group].usual.size(); ++k) {
-      const double deviation = groups_[group].deviation(k);
-      if (deviation > 0.0) precision[place + as_index(k)] = 1.0 / (deviation * deviation);
-    }
-    place += groups_[group].count;
-  }
   // Prediction of each part from a fit to the others.
-  const auto rows = static_cast<double>(scores_->row_count);
   const auto estimates_from = [&](std::size_t first) {
     const auto begin = sums.products.begin() + static_cast<std::ptrdiff_t>(first);
     const std::vector<Eigen::MatrixXd> parts(begin, begin + static_cast<std::ptrdiff_t>(held_out_parts));
     Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(width, width);
     for (const Eigen::MatrixXd& part : parts) whole += part;
     std::vector<Eigen::VectorXd> estimates;
-    for (const Eigen::MatrixXd& part : parts) {
-      const Eigen::MatrixXd rest = whole - part;
-      Eigen::MatrixXd normal = rest.topLeftCorner(width - 1, width - 1);
-      // Unit: variance of the rows.
-      normal.diagonal() += rest(width - 1, width - 1) / rows * precision;
-      estimates.push_back(pseudo_solution(normal, rest.col(width - 1).head(width - 1), rank_limit));
-    }
+    for (const Eigen::MatrixXd& part : parts) estimates.push_back(solution(whole - part, groups));
     return estimates;
   };
   const std::vector<Eigen::VectorXd> estimates = estimates_from(0);

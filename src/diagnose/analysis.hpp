@@ -91,6 +91,9 @@ class Analysis {
   std::vector<double> added_by(std::size_t flight, const std::vector<std::size_t>& groups, std::size_t which,
                                const Eigen::VectorXd& estimate) const;
 
+  /// Coefficients of base and groups by least squares against the first reference, as a refit has them.
+  Eigen::VectorXd least_squares(const std::vector<std::size_t>& groups) const;
+
   /// Residual of base and groups on five-minute blocks that were excluded from their fit, one block in five
   /// at a time.
   HeldOut held_out(const std::vector<std::size_t>& groups) const;
@@ -130,6 +133,10 @@ class Analysis {
   /// Residual of a flight after base and groups, in bins.
   Eigen::VectorXd left_of(std::size_t flight, const std::vector<std::size_t>& groups,
                           const Eigen::VectorXd& estimate) const;
+  /// Columns and residual of a flight as a refit has them: in bins, or the white rows of GPS.
+  Eigen::MatrixXd rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& places) const;
+  /// Coefficients of base and groups from the products of their columns and the residual with each other.
+  Eigen::VectorXd solution(const Eigen::MatrixXd& products, const std::vector<std::size_t>& groups) const;
   /// Positions of the columns of base and groups.
   std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& groups) const;
 

@@ -78,10 +78,10 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const Search& search = analysis.search();
   Eigen::VectorXd with;
-  Eigen::VectorXd without;
   Eigen::MatrixXd covariance;
-  search.fit({}, without, covariance);
   search.fit(chosen, with, covariance);
+  const Eigen::VectorXd refitted = analysis.least_squares({});
+  const Eigen::VectorXd corrected = analysis.least_squares(chosen);
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(analysis);
   std::vector<FlightDiagnosis> flights(analysis.flights().size());
   for (std::size_t f = 0; f < flights.size(); ++f) {
@@ -90,8 +90,8 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
     FlightDiagnosis& flight = flights[f];
     flight.samples = columns.samples;
     flight.mask = columns.mask;
-    const std::vector<double> base = analysis.added(f, {}, without);
-    const std::vector<double> all = analysis.added(f, chosen, with);
+    const std::vector<double> base = analysis.added(f, {}, refitted);
+    const std::vector<double> all = analysis.added(f, chosen, corrected);
     flight.before = columns.given;
     flight.after = columns.given;
     for (std::size_t i = 0; i < base.size(); ++i) {
