@@ -176,11 +176,15 @@ class Look {
         return;
       }
     }
-    for (const std::string& note : notes) {
-      if (note.find("corrected already by the archive") != std::string::npos) {
-        result_.is_corrected = true;
-        result_.notes.push_back(note);
-      }
+    const std::string& static_pressure = model.variables[Quantity::static_pressure];
+    const std::string& dynamic_pressure = model.variables[Quantity::dynamic_pressure];
+    result_.is_corrected =
+        std::any_of(family_.processed.begin(), family_.processed.end(), [&](const PressurePair& pair) {
+          return pair.static_pressure == static_pressure && pair.dynamic_pressure == dynamic_pressure;
+        });
+    if (result_.is_corrected) {
+      result_.notes.push_back(
+          fmt::format("{} and {} are already corrected by the archive", static_pressure, dynamic_pressure));
     }
     if (const auto altitude = model.variables.find(Quantity::altitude);
         altitude != model.variables.end() && pressure_altitudes_.count(altitude->second) != 0)
