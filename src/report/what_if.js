@@ -89,12 +89,12 @@ class WhatIf {
     this.commandPart = make('div', {class: 'what-if-command'}, make('p', {}, 'To add the active effects, and refit'), this.copy, this.command);
     this.coefficients = make('table');
     this.controls = make('div', {class: 'what-if-controls'},
-      make('div', {class: 'scroll'}, this.figures),
+      make('div', {class: 'scroll', tabindex: '0', role: 'group', 'aria-label': 'Residual by fit'}, this.figures),
       make('div', {class: 'what-if-general'},
         make('label', {class: 'switch'}, this.ownSwitch, text('The model’s coefficients are fitted again')), this.reset),
       this.commandPart,
       make('ul', {class: 'what-if-effects', 'aria-label': 'Effects'}, ...this.rows.map(({element}) => element)),
-      make('details', {}, make('summary', {}, 'Coefficients'), make('div', {class: 'scroll'}, this.coefficients)));
+      make('details', {}, make('summary', {}, 'Coefficients'), make('div', {class: 'scroll', tabindex: '0', role: 'group', 'aria-label': 'Coefficients'}, this.coefficients)));
   }
 
   effectRow({id, title, why, note}, e) {

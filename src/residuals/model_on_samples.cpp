@@ -59,6 +59,12 @@ bool ModelOnSamples::stands_at(const double* parameters) const {
   });
 }
 
+std::vector<double> ModelOnSamples::parameters_of_columns() const {
+  std::vector<double> values = parameters();
+  for (const Moving& each : moving_) values[each.parameter] = each.column->at;
+  return values;
+}
+
 std::vector<bool> ModelOnSamples::linear() const {
   std::vector<bool> linear;
   const bool has_minimum = std::isfinite(model_.policy.minimum);

@@ -96,6 +96,9 @@ class ModelOnSamples {
   /// True if the columns that depend on coefficients were computed at these parameters.
   bool stands_at(const double* parameters) const;
 
+  /// Parameters of the file; those on which columns depend have the values of the columns.
+  std::vector<double> parameters_of_columns() const;
+
   bool is_missing_needed(std::size_t sample) const;
   bool is_missing_any(std::size_t sample) const;
 

@@ -42,6 +42,7 @@ class Flights {
     columns.samples = samples;
     columns.reference = reference;
     columns_.push_back(std::move(columns));
+    scores_.bin.emplace_back();
     scores_.rows.emplace_back(
         Eigen::MatrixXd::NullaryExpr(static_cast<Eigen::Index>(bins_.back().size()), width + 1,
                                      [this](Eigen::Index, Eigen::Index) { return normal_(engine_); }));

@@ -63,7 +63,7 @@ TEST(VariableNaming, RefusesWhatHasNoMeaning) {
   EXPECT_THAT(refusal_of(head + "[pressures]\nboth = []"), HasSubstr("both"));
   EXPECT_THAT(refusal_of(head + "[[thermometer]]\nvariable = \"T\""), HasSubstr("give both"));
   EXPECT_THAT(refusal_of(head + "[[thermometer]]\nvariable = \"T\"\nrecovery_factor = \"mine\""),
-              HasSubstr("no published recovery factor"));
+              HasSubstr("mine.toml:6:"));
 }
 
 TEST(VariableNaming, IsNamed) {

@@ -68,9 +68,9 @@ class Lineage(unittest.TestCase):
     def test_models_that_share_a_name_are_told_apart_by_their_files(self):
         (self.path / "twin.toml").write_text((self.path / "first.toml").read_text())
         text = self.run_tool("compare", "one.nc", "-m", "first.toml", "-m", "twin.toml", "-m", MODEL)
-        self.assertRegex(text, r"(?m)^first\.toml$")
-        self.assertRegex(text, r"(?m)^twin\.toml$")
-        self.assertRegex(text, f"(?m)^{re.escape(NAME)}$")
+        self.assertRegex(text, r"(?m)^first\.toml  +923 ")
+        self.assertRegex(text, r"(?m)^twin\.toml  +923 ")
+        self.assertRegex(text, f"(?m)^{re.escape(NAME)}  +923 ")
 
     def test_a_report_says_how_it_came_to_be(self):
         html = (self.path / "refit.html").read_text()

@@ -125,6 +125,7 @@ void print_in_full(const TemperatureResult& result) {
 }
 
 void print(const TemperatureResult& result) {
+  for (const std::string& warning : result.warnings) say("Warning: {}.\n", warning);
   if (is_verbose()) {
     print_in_full(result);
   } else {
@@ -133,7 +134,6 @@ void print(const TemperatureResult& result) {
       if (!flight.left_out.empty()) say("{}: skipped: {}\n", flight.flight, flight.left_out);
     }
   }
-  for (const std::string& warning : result.warnings) say("Warning: {}.\n", warning);
   say_notes(result.notes);
 }
 

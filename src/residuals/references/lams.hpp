@@ -78,11 +78,13 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
   }
 
   std::vector<double> sensitivity() const override {
-    const std::vector<Jet> parameters(model_.parameters().begin(), model_.parameters().end());
+    // From columns at a distant delay the speed would be extrapolated.
+    const std::vector<double> parameters = model_.parameters_of_columns();
+    const std::vector<Jet> constant(parameters.begin(), parameters.end());
     std::vector<double> result(beam_.size());
     for (std::size_t i = 0; i < result.size(); ++i) {
-      const Jet beam(predicted_at(i, model_.parameters().data()), 0);
-      result[i] = residual_at(i, beam, parameters.data()).v[0];
+      const Jet beam(predicted_at(i, parameters.data()), 0);
+      result[i] = residual_at(i, beam, constant.data()).v[0];
     }
     return result;
   }
