@@ -114,12 +114,13 @@ class WhatIfTest(ComparisonTest):
         return json.loads((self.path / "refit.json").read_text())
 
     def assert_same(self, page, refit, added):
-        """Added coefficients to 1 %; the others, which may be near zero, to a tenth of their errors."""
+        """Added coefficients to 1 %; the others, which may be near zero, to 0.15 of their errors: the page has columns
+        from predicted pressures, the refit from recorded pressures."""
         self.assertAlmostEqual(page["rms"], refit["rms_hpa"], delta=0.01 * refit["rms_hpa"])
         for effect in refit["effects"]:
             for name, expected in effect["parameters"].items():
                 found, error = page["coefficients"][f"{effect['id']}.{name}"]
-                tolerance = 0.01 * abs(expected) if effect["id"] in added else 0.1 * effect["stderr"][name]
+                tolerance = 0.01 * abs(expected) if effect["id"] in added else 0.15 * effect["stderr"][name]
                 self.assertAlmostEqual(found, expected, delta=tolerance, msg=f"{effect['id']}.{name} +- {error}")
                 # The page has the errors by the noise. The tool takes the misfit of the law off before it finds the
                 # noise, and knows what held coefficients may err by: a quarter.
