@@ -65,6 +65,8 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
                                                const BinnedFlights& binned,
                                                const std::vector<Eigen::VectorXd>& effects) {
   const Eigen::Index count = as_index(effects.size());
+  std::size_t references = 0;
+  for (const FlightColumns* const flight : flights) references = std::max(references, flight->reference + 1);
   std::vector<Eigen::MatrixXd> result(flights.size());
   for (std::size_t f = 0; f < flights.size(); ++f)
     result[f] = Eigen::MatrixXd::Zero(binned.columns[f].rows(), shape_columns * count);
@@ -73,15 +75,20 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
       return binned.columns[f] * effects[static_cast<std::size_t>(e)];
     };
     const auto squares = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
-      return Eigen::Vector2d(effect_on(f).squaredNorm(), static_cast<double>(binned.columns[f].rows()));
+      Eigen::VectorXd of_references = Eigen::VectorXd::Zero(2 * as_index(references));
+      const Eigen::Index place = 2 * as_index(flights[f]->reference);
+      of_references[place] = effect_on(f).squaredNorm();
+      of_references[place + 1] = static_cast<double>(binned.columns[f].rows());
+      return of_references;
     });
-    if (!(squares[0] > 0.0)) continue;
-    const double rms = std::sqrt(squares[0] / squares[1]);
+    const double sum = squares(Eigen::seq(0, Eigen::last, 2)).sum();
+    if (!(sum > 0.0)) continue;
+    const double rms = std::sqrt(sum / squares(Eigen::seq(1, Eigen::last, 2)).sum());
     const auto sums = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
       const Eigen::VectorXd effect = effect_on(f);
       return logarithms_of(*flights[f], binned.bins[f], effect, rms).transpose() * effect.cwiseAbs2();
     });
-    const Eigen::RowVectorXd mean = sums.transpose() / squares[0];
+    const Eigen::RowVectorXd mean = sums.transpose() / sum;
     for (std::size_t f = 0; f < flights.size(); ++f) {
       if (!share.owns(f)) continue;
       const Eigen::VectorXd effect = effect_on(f);
@@ -90,6 +97,9 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
       auto columns = result[f].middleCols(shape_columns * e, shape_columns);
       columns.leftCols(powers) = power_sd * (effect.asDiagonal() * logarithms);
       columns.col(powers) = delay_sd * rate_of(effect, binned.bins[f]);
+      const Eigen::Index place = 2 * as_index(flights[f]->reference);
+      if (squares[place] > 0.0)
+        columns.col(powers + 1).setConstant(std::sqrt(squares[place] / squares[place + 1]));
     }
   }
   return result;

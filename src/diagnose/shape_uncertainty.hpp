@@ -13,15 +13,15 @@ namespace pcor::internal {
 bool has_uncertain_shape(const ModelEffect& effect);
 
 /// Number of columns that describe the uncertain shape of one effect.
-inline constexpr Eigen::Index shape_columns = 4;
+inline constexpr Eigen::Index shape_columns = 5;
 
 /// Columns of the uncertain shapes of some effects, in bins of each local flight, hPa.
 ///
 /// The flow makes an effect that resembles the formula of the catalogue. An effect u may grow with another
-/// power of the dynamic pressure, the static pressure or its own driver, and may act a little earlier or
-/// later:
+/// power of the dynamic pressure, the static pressure or its own driver, may act a little earlier or later,
+/// and may be zero at another value of its driver:
 ///
-///     0.3 u ln q, 0.3 u ln p, 0.3 u ln |u|, 0.15 s du/dt
+///     0.3 u ln q, 0.3 u ln p, 0.3 u ln |u|, 0.15 s du/dt, rms of u against the same reference
 ///
 /// Each logarithm is less its mean over the flights, weighted by u^2, so that the columns do not change the
 /// size of the effect. The coefficient of each column has a normal prior of standard deviation 1. A value

@@ -90,3 +90,10 @@ TEST(ShapeUncertainty, ScalesWithTheEffect) {
   const Example example;
   EXPECT_TRUE(example.uncertainty(6.0).isApprox(3.0 * example.uncertainty(2.0), 1e-12));
 }
+
+TEST(ShapeUncertainty, AnotherZeroOfTheDriverIsAConstantOfTheSizeOfTheEffect) {
+  const Example example;
+  const Eigen::VectorXd effect = 2.0 * example.column;
+  const double rms = std::sqrt(effect.squaredNorm() / static_cast<double>(rows));
+  EXPECT_TRUE(example.uncertainty(2.0).col(4).isApprox(Eigen::VectorXd::Constant(rows, rms), 1e-12));
+}
