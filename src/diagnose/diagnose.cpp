@@ -28,6 +28,7 @@
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/masks.hpp"
+#include "roles/role_evidence.hpp"
 
 namespace pcor {
 
@@ -268,6 +269,33 @@ void overrule(Diagnosis& diagnosis, const std::string& variable) {
   }
 }
 
+/// Notes on the variables the residual is correlated with that seem to be an input, without a name in the
+/// model, of an effect that was not tested.
+void note_unnamed_inputs(const FlightSet& files, const ModelDefinition& model, Diagnosis& diagnosis) {
+  for (const NotTestable& effect : diagnosis.not_testable) {
+    const std::size_t known = effect_named(effect.effect);
+    if (known == catalogue_size) continue;
+    for (const Quantity input : effect_info[known].needs) {
+      if (!is_role(input) || model.variables.count(input) != 0) continue;
+      const std::string role(info_of(input).name);
+      const auto variables =
+          files.share().of_each_flight<std::string>([&](std::size_t flight) -> std::string {
+            const std::vector<RoleCandidate> candidates = role_candidates(files[flight], role);
+            return is_sure(candidates) ? candidates.front().variable : "";
+          });
+      for (const EmpiricalPredictor& traced : diagnosis.unexplained.variables) {
+        if (std::any_of(variables.begin(), variables.end(),
+                        [&](const std::string& variable) { return variable != traced.name; }))
+          continue;
+        diagnosis.notes.push_back(fmt::format(
+            "{} seems to be the role '{}', which {} reads: to test that effect, write {} = \"{}\" "
+            "into [variables] of the model",
+            traced.name, role, effect.effect, role, traced.name));
+      }
+    }
+  }
+}
+
 /// Base coefficients of each added effect of the flow, from the model.
 std::vector<Eigen::VectorXd> added_of(const ModelDefinition& model, const std::vector<BaseCoefficient>& base,
                                       const std::vector<std::string>& added) {
@@ -360,6 +388,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
                          options, rms_after, diagnosis.noise_rms_with_findings);
   }
   diagnosis.unexplained = std::move(structure.found);
+  note_unnamed_inputs(files, set.extended, diagnosis);
   for (std::size_t f = 0; f < structure.traced.size(); ++f)
     diagnosis.flights[f].traced = std::move(structure.traced[f]);
   if (structure.overrules) {

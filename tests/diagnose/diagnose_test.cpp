@@ -230,6 +230,8 @@ TEST(Diagnose, UnexplainedStructureIsTracedToItsVariable) {
   EXPECT_LT(traced.slope, 0.04);
   ASSERT_THAT(diagnosis.flights, SizeIs(1));
   EXPECT_EQ(diagnosis.flights[0].traced.size(), diagnosis.flights[0].samples->time.size());
+  // The line of the model that lets the effect of the torque be tested.
+  EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("engine_torque = \"ENGTRQ\"")));
 }
 
 TEST(Diagnose, ExcludedSamplesAreNotUsed) {
