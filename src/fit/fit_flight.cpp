@@ -84,6 +84,19 @@ Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTa
   return residuals;
 }
 
+namespace {
+
+/// The residuals of a flight with this mask, or with that at these parameters of the fit if it is empty.
+Residuals masked_by(std::vector<Mask>& mask, std::shared_ptr<const FlightSamples> samples,
+                    const FitTask& task, const Eigen::VectorXd& parameters) {
+  if (!mask.empty()) return {std::move(samples), task.model, task.reference, mask};
+  Residuals residuals = residuals_at(std::move(samples), task, parameters);
+  mask = residuals.mask();
+  return residuals;
+}
+
+}  // namespace
+
 Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
                                  const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
                                  const std::vector<std::size_t>& wanted) {
@@ -94,11 +107,11 @@ Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
 }
 
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup,
-                     const Eigen::VectorXd& parameters)
+                     const Eigen::VectorXd& parameters, std::vector<Mask>& mask)
     : task_(&task),
       setup_(&setup),
       moving_(samples->model.moving.empty() ? nullptr : std::make_shared<FlightSamples>(*samples)),
-      rows_(residuals_at(moving_ ? moving_ : std::move(samples), task, setup.values), task.model,
+      rows_(masked_by(mask, moving_ ? moving_ : std::move(samples), task, setup.values), task.model,
             task.reference, {Inputs::recorded, setup.wanted, task.options.training_share, setup.regimes}),
       static_pressure_(rows_.samples().model.find(Quantity::static_pressure)) {
   if (!moving_) return;

@@ -56,7 +56,8 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
       prepared_(setup_.values),
       evaluated_(setup_.values),
       by_offsets_(count()),
-      spikes_(count()) {
+      spikes_(count()),
+      masks_of_flights_(count()) {
   binned_.bins.resize(count());
   binned_.columns.resize(count());
   binned_.residuals.resize(count());
@@ -138,7 +139,7 @@ void FitFlights::visit(const std::function<void(std::size_t, const FitFlight&)>&
         return task_.flights.samples(number, task_.model, task_.reference, task_.options.mask);
       },
       [&](std::size_t number, std::shared_ptr<const FlightSamples> samples) {
-        work(number, FitFlight(std::move(samples), task_, setup_, prepared_));
+        work(number, FitFlight(std::move(samples), task_, setup_, prepared_, masks_of_flights_[number]));
       });
 }
 

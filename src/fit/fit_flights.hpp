@@ -55,8 +55,9 @@ Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
 class FitFlight {
  public:
   /// @param parameters those at which columns that depend on a coefficient are taken
+  /// @param mask mask of every sample at the values of the setup; found if it is empty
   FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup,
-            const Eigen::VectorXd& parameters);
+            const Eigen::VectorXd& parameters, std::vector<Mask>& mask);
 
   const LinearRows& linear_rows() const { return rows_; }
   const Residuals& residuals() const { return rows_.residuals(); }
@@ -275,6 +276,7 @@ class FitFlights {
   BinnedFlights binned_;
   std::vector<Eigen::MatrixXd> by_offsets_;  // derivatives by the offsets, hPa
   std::vector<std::size_t> spikes_;
+  std::vector<std::vector<Mask>> masks_of_flights_;
   double deviation_ = 1.0;         // robust, residuals in bins, hPa: the weight of the reference
   std::vector<NoiseModel> noise_;  // empty before it was measured
   std::vector<std::unique_ptr<FitFlights>> further_;
