@@ -144,11 +144,12 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
   for (std::size_t k = 0; k < kept.size(); ++k) flights[kept[k]] = std::move(series[k]);
 }
 
-/// Model coefficients after a new fit.
+/// Model coefficients of least squares, as a refit has them, with the errors by the noise.
 std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoefficient>& base) {
-  Eigen::VectorXd change;
+  Eigen::VectorXd whitened;
   Eigen::MatrixXd covariance;
-  analysis.search().fit({}, change, covariance);
+  analysis.search().fit({}, whitened, covariance);
+  const Eigen::VectorXd change = analysis.least_squares({});
   std::vector<Estimate> own;
   for (std::size_t b = 0; b < base.size(); ++b) {
     const Eigen::Index place = as_index(b);

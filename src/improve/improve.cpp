@@ -475,7 +475,7 @@ class Climb {
     const double before = in_turn ? result_.steps.back().rms_holdout : judged.rms_before;
     const double after = in_turn ? step.rms_holdout : judged.rms_after;
     const bool better = in_turn ? after <= before && candidate.is_sure : judged.is_better();
-    const bool worse = in_turn ? after > before : judged.is_worse();
+    const bool worse = after > before || (!in_turn && judged.is_worse());
     const std::string figures =
         fmt::format("held-out rms {} with it, {} without it", shown(after), shown(before));
     const std::string gain =

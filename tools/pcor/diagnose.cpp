@@ -44,8 +44,7 @@ std::string shortened_list(std::vector<std::string> items) {
 }
 
 void print_rms(const Diagnosis& diagnosis) {
-  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, linearised "
-      "and weighted by the noise\n",
+  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, linearised\n",
       diagnosis.rms_given, diagnosis.noise_rms, diagnosis.residual_rms);
 }
 
