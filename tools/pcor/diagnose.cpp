@@ -44,7 +44,8 @@ std::string shortened_list(std::vector<std::string> items) {
 }
 
 void print_rms(const Diagnosis& diagnosis) {
-  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, linearised\n",
+  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, "
+      "linearised\n",
       diagnosis.rms_given, diagnosis.noise_rms, diagnosis.residual_rms);
 }
 
@@ -131,8 +132,16 @@ void print_others(const Diagnosis& diagnosis, bool all) {
 
 /// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
 /// for findings that one command cannot add.
+/// Options of a fit like that of the diagnosis, after the flights and references.
+std::string with_fit_options(std::string flights, const Options& options) {
+  if (options.trust_reference) flights += " --trust-reference";
+  flights += command_line(options.held);
+  if (options.training_share < 1.0) flights += fmt::format(" --training-share {}", options.training_share);
+  return flights;
+}
+
 std::string next_command(const Diagnosis& diagnosis, const Options& options) {
-  const std::string flights = advised_command_line(options.comparison);
+  const std::string flights = with_fit_options(advised_command_line(options.comparison), options);
   const std::string model = shell_path(options.model);
   if (diagnosis.verdict == Verdict::silent) {
     return fmt::format("To apply the model: {} process {} -m {} -o corrected.nc", program(),
@@ -154,7 +163,7 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   if (!findings.empty() && std::all_of(findings.begin(), findings.end(), of_reference)) {
     return fmt::format(
         "The effect belongs to the reference system; the model is unchanged. To see it: {} compare {} -m {}",
-        program(), flights, model);
+        program(), advised_command_line(options.comparison), model);
   }
   const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
@@ -185,7 +194,8 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
         "To test a formula of {} on data outside the fit: {} improve {} -m {} --trace-variables -o best.toml",
         variable.name, program(), flights, model);
   }
-  return fmt::format("To see where the residual is largest: {} compare {} -m {}", program(), flights, model);
+  return fmt::format("To see where the residual is largest: {} compare {} -m {}", program(),
+                     advised_command_line(options.comparison), model);
 }
 
 void print_in_full(const Diagnosis& diagnosis, const ChosenReferences& references, const Options& options) {
@@ -243,11 +253,8 @@ void run(const Options& options) {
       diagnose_with.series_of = diagnosis.flights_with_records();
       tried = what_if(flights, model, references.used, what_if_candidates(diagnosis, diagnose_with.formulas),
                       {diagnose_with, {}, true, diagnosis.own});
-      std::string fit = command_line(options.comparison);
-      if (options.trust_reference) fit += " --trust-reference";
-      fit += command_line(options.held);
-      if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
-      add_commands(tried, options.model, options.comparison.flights.front(), fit);
+      add_commands(tried, options.model, options.comparison.flights.front(),
+                   with_fit_options(command_line(options.comparison), options));
     }
   }
   if (!is_speaker()) return;
