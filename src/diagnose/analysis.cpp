@@ -344,7 +344,7 @@ Competition Analysis::competition(const std::vector<std::size_t>& chosen,
 }
 
 /// Coefficients that the rows hardly constrain stay near their usual size: a prior as in the search.
-Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products,
+Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products, double rows,
                                    const std::vector<std::size_t>& groups) const {
   const Eigen::Index count = products.cols() - 1;
   Eigen::VectorXd precision = Eigen::VectorXd::Zero(count);
@@ -359,7 +359,7 @@ Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products,
   }
   Eigen::MatrixXd normal = products.topLeftCorner(count, count);
   // Unit: variance of the rows.
-  normal.diagonal() += products(count, count) / static_cast<double>(scores_->row_count) * precision;
+  normal.diagonal() += products(count, count) / std::max(rows, 1.0) * precision;
   return pseudo_solution(normal, products.col(count).head(count), rank_limit);
 }
 
@@ -376,12 +376,14 @@ Eigen::MatrixXd Analysis::rows_of_refit(std::size_t flight, const std::vector<Ei
 
 Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) const {
   const std::vector<Eigen::Index> places = places_of(groups);
-  const auto products =
-      first_share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) -> Eigen::MatrixXd {
-        const Eigen::MatrixXd rows = rows_of_refit(f, places);
-        return rows.transpose() * rows;
-      });
-  return solution(products, groups);
+  const auto sums = first_share_.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+    const Eigen::MatrixXd rows = rows_of_refit(f, places);
+    PartialSums own(1, rows.cols());
+    own.products[0] = rows.transpose() * rows;
+    own.counts[0] = static_cast<double>(rows.rows());
+    return own;
+  });
+  return solution(sums.products[0], sums.counts[0], groups);
 }
 
 HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
@@ -407,12 +409,15 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   });
   // Prediction of each part from a fit to the others.
   const auto estimates_from = [&](std::size_t first) {
-    const auto begin = sums.products.begin() + static_cast<std::ptrdiff_t>(first);
-    const std::vector<Eigen::MatrixXd> parts(begin, begin + static_cast<std::ptrdiff_t>(held_out_parts));
     Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(width, width);
-    for (const Eigen::MatrixXd& part : parts) whole += part;
+    double rows = 0.0;
+    for (std::size_t part = first; part < first + held_out_parts; ++part) {
+      whole += sums.products[part];
+      rows += sums.counts[part];
+    }
     std::vector<Eigen::VectorXd> estimates;
-    for (const Eigen::MatrixXd& part : parts) estimates.push_back(solution(whole - part, groups));
+    for (std::size_t part = first; part < first + held_out_parts; ++part)
+      estimates.push_back(solution(whole - sums.products[part], rows - sums.counts[part], groups));
     return estimates;
   };
   const std::vector<Eigen::VectorXd> estimates = estimates_from(0);
