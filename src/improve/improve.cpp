@@ -32,7 +32,6 @@ namespace {
 constexpr double unnamed_limit = 0.99;
 // Tolerated growth of the fit's rms, because the fit weighs samples by their noise and ignores outliers.
 constexpr double fit_limit = 1.005;
-constexpr double surely = 2.0;  // standard deviations
 // Minimum probability of rivals considered in the correction.
 constexpr double min_probability = 0.01;
 // Tolerance relative to the noise: smaller differences of the static pressure do not matter.
@@ -66,7 +65,7 @@ Candidate candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
   Candidate candidate;
   candidate.choices.push_back({{finding.effect, finding.held, finding.is_alike}, finding.probability});
   candidate.title = finding.title;
-  candidate.is_sure = finding.gain > surely * finding.gain_error;
+  candidate.is_sure = finding.gain > sure_gain * finding.gain_error;
   for (const Alias& alias : finding.aliases) {
     candidate.aliases.push_back(alias.effect);
     if (alias.probability >= min_probability)

@@ -14,8 +14,6 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double surely = 2.0;  // standard deviations
-
 /// Index of an effect in a model; the number of effects if there is no effect with that name.
 std::size_t place_of(const ModelDefinition& model, const std::string& effect) {
   const std::vector<ModelEffect>& effects = model.model.effects;
@@ -159,9 +157,9 @@ std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<
 }
 
 bool Comparison::is_better() const {
-  return gain > surely * gain_error || (!is_worse() && first_gain > surely * first_gain_error);
+  return gain > sure_gain * gain_error || (!is_worse() && first_gain > sure_gain * first_gain_error);
 }
-bool Comparison::is_worse() const { return gain < -surely * gain_error; }
+bool Comparison::is_worse() const { return gain < -sure_gain * gain_error; }
 
 Comparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
                          bool held_out) {

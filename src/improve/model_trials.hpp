@@ -54,6 +54,9 @@ ModelDefinition union_of(const std::vector<ModelDefinition>& models);
 /// in their shape in the union.
 std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDefinition& whole);
 
+/// Standard errors of a gain that a paired test requires: 95 %, one-sided, as a gain is better or is not.
+inline constexpr double sure_gain = 1.645;
+
 /// Residuals of two models on the same samples.
 struct Comparison {
   double rms_before = 0.0;  ///< first reference, hPa; NaN if there are no samples
