@@ -449,14 +449,12 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   return result;
 }
 
-std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::size_t>& groups) const {
+std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::size_t>& groups,
+                                    const Eigen::VectorXd& coefficients) const {
   std::vector<double> result(flights_[flight].given.size(), nan);
   const Binning& bins = binned_.bins[flight];
-  Eigen::VectorXd estimate;
-  Eigen::MatrixXd covariance;
-  search_->fit(groups, estimate, covariance);
   const Whitening whitening(bins, noise_[flight], 0);
-  const Eigen::VectorXd series = whitening.slow_parts(left_of(flight, groups, estimate));
+  const Eigen::VectorXd series = whitening.slow_parts(left_of(flight, groups, coefficients));
   for (std::size_t k = 0; k < bins.records().size(); ++k) result[bins.records()[k]] = series[bins.bins()[k]];
   return result;
 }

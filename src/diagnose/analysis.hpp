@@ -99,7 +99,10 @@ class Analysis {
   HeldOut held_out(const std::vector<std::size_t>& groups) const;
 
   /// Most likely drift of a flight after base and `groups`, one value per record, hPa.
-  std::vector<double> drift(std::size_t flight, const std::vector<std::size_t>& groups) const;
+  /// @param coefficients of least squares: those of the noise model may move along collinear columns as the
+  /// drift allows
+  std::vector<double> drift(std::size_t flight, const std::vector<std::size_t>& groups,
+                            const Eigen::VectorXd& coefficients) const;
 
  private:
   /// Iterates noise and effects until they are stable. Returns the likelihood of the result minus the cost of

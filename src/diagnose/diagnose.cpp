@@ -103,7 +103,7 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
       flight.added.push_back(analysis.added_by(f, chosen, k, with));
       flight.evidence.push_back(evidence_along(analysis, f, evidence[k]));
     }
-    flight.drift = analysis.drift(f, chosen);
+    flight.drift = analysis.drift(f, chosen, corrected);
     flight.static_pressure = columns.corrected_pressure;
     flight.mach = columns.quantity(Quantity::corrected_mach);
     flight.attack = columns.quantity(Quantity::attack);

@@ -423,7 +423,9 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   }
   const Tested& shown = result.overrules ? *beside_base : beside_all;
 
-  found.drift_rms = rms_of(analysis.share(), [&](std::size_t f) { return analysis.drift(f, chosen); });
+  const Eigen::VectorXd refitted = analysis.least_squares(chosen);
+  found.drift_rms =
+      rms_of(analysis.share(), [&](std::size_t f) { return analysis.drift(f, chosen, refitted); });
   const bool drifts =
       analysis.drift_gain() > min_drift_gain && found.drift_rms > std::max(usual_drift, noise_rms);
   found.steps = steps_between(analysis, chosen);
