@@ -138,7 +138,7 @@ Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights,
     way += air.airspeed[first + k] * air.step();
   }
   for (const Eigen::Index column : {2, 3}) columns.col(column).array() -= columns.col(column).mean();
-  const Eigen::VectorXd fit = columns.colPivHouseholderQr().solve(departures);
+  const Eigen::VectorXd fit = least_norm_solution(columns, departures);
   Piece piece;
   piece.squares = (departures - columns * fit).squaredNorm();
   piece.freedom = static_cast<double>(samples) - 4.0;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <pcor/base/error.hpp>
+#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -49,12 +50,11 @@ double condition_number(const Reduction& reduction, const FitTask& task,
     }
     scaled.col(k) /= length;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> decomposition(scaled, Eigen::ComputeFullV);
-  const Eigen::VectorXd& singular = decomposition.singularValues();
+  const Eigen::VectorXd singular = singular_values(scaled);
   const double ratio = singular[0] / singular[singular.size() - 1];
   const double condition = std::isfinite(ratio) ? ratio : infinity;
   if (ratio < hopeless_condition || task.uses_prior()) return condition;
-  const Eigen::VectorXd weak = decomposition.matrixV().col(singular.size() - 1).cwiseAbs();
+  const Eigen::VectorXd weak = weakest_direction(scaled).cwiseAbs();
   std::vector<std::string> names;
   for (Eigen::Index k = 0; k < weak.size(); ++k) {
     if (weak[k] > 0.1 * weak.maxCoeff()) names.push_back(to_string(k));

@@ -21,6 +21,10 @@ Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
 }
 
+Eigen::VectorXd weakest_direction(const Eigen::MatrixXd& matrix) {
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix, Eigen::ComputeFullV).matrixV().rightCols(1);
+}
+
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) { return matrix.inverse(); }
 
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least) {

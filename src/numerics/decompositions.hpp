@@ -18,6 +18,9 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 /// The singular values, descending.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix);
 
+/// The combination of columns, of length 1, that changes the rows least.
+Eigen::VectorXd weakest_direction(const Eigen::MatrixXd& matrix);
+
 /// The inverse of a regular matrix.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 
