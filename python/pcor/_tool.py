@@ -36,7 +36,9 @@ class _Bar:
 
     def __init__(self) -> None:
         try:
-            from tqdm.auto import tqdm  # type: ignore[import-untyped]
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of notebooks without ipywidgets, where the bar is text
+                from tqdm.auto import tqdm  # type: ignore[import-untyped]
         except ImportError:
             tqdm = None
         self._tqdm = tqdm
