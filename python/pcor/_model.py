@@ -138,6 +138,9 @@ class Model:
         results = batch.run(recorded, list(outputs) if outputs is not None else batch.outputs, out or {})
         return results if flight is None else _as_dataset(results, flight, names[0], self.name)
 
+    correct.__doc__ = f"{correct.__doc__}\n        Recorded quantities:\n" + "".join(
+        f"            {name}: {unit}, {text}\n" for name, (unit, text, is_recorded) in quantities.items() if is_recorded)
+
     def _recorded(self, flight: xr.Dataset, roles: Mapping[str, str]) -> tuple[list[str], dict[str, np.ndarray]]:
         names: list[str] = []
         recorded: dict[str, np.ndarray] = {}
