@@ -56,6 +56,7 @@ def _without_outputs(text: str) -> Any:
 _tables = {"compare": "regimes", "refit": "coefficients", "diagnose": "findings", "improve": "steps",
            "check": "checks", "inspect": "roles", "effects": "effects"}
 
+
 class Result:
     """Result of a command: the fields of the tool's JSON as attributes and items; an unknown number is None.
 
