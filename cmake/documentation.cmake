@@ -7,7 +7,23 @@ if(DOXYGEN_FOUND AND Python3_FOUND AND TARGET pcor_tool)
   add_custom_command(OUTPUT ${reference}/options.md ${reference}/effects.md ${reference}/output-variables.md ${reference}/json.md
     COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/tools/reference_pages $<TARGET_FILE:pcor_tool> ${reference}
     DEPENDS pcor_tool ${PROJECT_SOURCE_DIR}/tools/reference_pages VERBATIM)
-  add_custom_target(reference_pages DEPENDS ${reference}/options.md)
+
+  # With the Python package and nbconvert: the notebooks with their results, on the real flight if PCOR_FLIGHTS has it.
+  set(notebooks)
+  if(TARGET pcor_python)
+    find_package(Python 3.9 REQUIRED COMPONENTS Interpreter)
+    foreach(notebook real_flight own_effect)
+      add_custom_command(OUTPUT ${reference}/${notebook}.html
+        COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_BINARY_DIR}/python Python::Interpreter -m nbconvert --log-level WARN
+          --execute --to html --output-dir ${reference} ${PROJECT_SOURCE_DIR}/python/notebooks/${notebook}.ipynb
+        DEPENDS pcor_python ${PROJECT_SOURCE_DIR}/python/notebooks/${notebook}.ipynb VERBATIM)
+      list(APPEND notebooks ${reference}/${notebook}.html)
+    endforeach()
+    file(WRITE ${reference}/notebooks.md "# Notebooks\n\n- <a href=\"real_flight.html\">From a real flight to corrected pressures</a>\n\
+- <a href=\"own_effect.html\">A new effect</a>\n")
+    set(DOXYGEN_HTML_EXTRA_FILES ${notebooks})
+  endif()
+  add_custom_target(reference_pages DEPENDS ${reference}/options.md ${notebooks})
 
   set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)
   set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/include)

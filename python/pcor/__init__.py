@@ -1,9 +1,9 @@
 """Corrections to the static and dynamic pressure that a research aircraft measures.
 
 Commands: `inspect`, `compare`, `refit`, `diagnose`, `improve`, `check`, `temperature`, `process`, `simulate`,
-`effects`, `add`, with the options of the tool `pcor`; `help(command)` lists them. Arrays: `open`, `Model`, `Loop`.
-Pressures are in hPa, temperatures in K (degC in files), speeds in m/s, angles in degrees, heights in metres. Delta-p is
-added to the measured static and subtracted from the measured dynamic pressure.
+`effects`, `add`, with the options of the tool `pcor`; `help(pcor.refit)` lists options and result fields. Arrays:
+`open`, `Model`, `Loop`. Pressures are in hPa, temperatures in K (degC in files), speeds in m/s, angles in degrees,
+heights in metres. Delta-p is added to the measured static pressure and subtracted from the measured dynamic pressure.
 """
 
 from ._commands import (add, check, compare, diagnose, effects, help, improve, inspect, process, refit, simulate,

@@ -1,4 +1,4 @@
-"""The tool itself: `python -m pcor refit ...`, and the command `pcor` of an environment."""
+"""The tool: `python -m pcor refit ...`, and the command `pcor` of an environment."""
 
 import os
 import sys

@@ -1,16 +1,18 @@
 """The sub-commands of the tool as functions. Options have the names of the tool, with underscores: `min_airspeed=80` is
-`--min-airspeed 80`, a list repeats the option, True is an option without a value, None and False are left out."""
+`--min-airspeed 80`. A list repeats the option, True is an option without a value, None and False omit the option."""
 
 from __future__ import annotations
 
 import os
 import tempfile
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any, Optional, Sequence, Union
 
 import xarray as xr
 
 from . import _flight
+from ._descriptions import descriptions
 from ._error import Error
 from ._flight import PathLike
 from ._model import Model
@@ -23,7 +25,7 @@ ModelLike = Union[PathLike, Model, Result]
 
 
 def _word(value: Any, folder: Path) -> str:
-    """A value as the tool takes it; what is in memory goes through a file in the folder."""
+    """The value as an argument of the tool. Models and flights in memory are written to files in the folder."""
     if isinstance(value, Result):
         if value.output is None:
             raise Error(f"the result of {value.command} is neither a model nor a flight", "usage")
@@ -61,22 +63,21 @@ def _call(command: str, inputs: Any, options: dict[str, Any], output: str = "") 
                 arguments.append(option)
             elif each is not None and each is not False:
                 arguments.append(f"{option}={_word(each, folder)}")
-    text = run([command, *arguments, "--json=-"], progress).stdout
-    return Result(command, arguments, text, files, written, progress)
+    return Result(command, arguments, files, written, progress)
 
 
 def inspect(flights: Flights, **options: Any) -> Result:
-    """What flights hold: aircraft, rates, the role of each variable, problems, and what their manoeuvres determine."""
+    """Shows the content of flights: aircraft, rates, roles of the variables, problems, manoeuvres."""
     return _call("inspect", flights, options)
 
 
 def compare(flights: Flights, *, model: Union[ModelLike, Sequence[ModelLike]], **options: Any) -> Result:
-    """The residual of models against measurements of delta-p, by flight regime, hPa."""
+    """Compares models with measurements of delta-p, by flight regime. Residuals are in hPa, reference minus model."""
     return _call("compare", flights, {"model": model, **options})
 
 
 def refit(flights: Flights, *, model: ModelLike, output: Optional[PathLike] = None, **options: Any) -> Result:
-    """Fits the free coefficients of a model. The result has the `fitted_model`; `output` keeps its file."""
+    """Fits the free coefficients of a model. `fitted_model` of the result is the new model; `output` is its file."""
     return _call("refit", flights, {"model": model, "output": output, **options}, "fitted.toml")
 
 
@@ -86,45 +87,59 @@ def diagnose(flights: Flights, *, model: ModelLike, **options: Any) -> Result:
 
 
 def improve(flights: Flights, *, model: ModelLike, output: Optional[PathLike] = None, **options: Any) -> Result:
-    """Refits, diagnoses and adds missing effects in turn. The result has the `fitted_model`."""
+    """Refits, diagnoses and adds missing effects in turn. `fitted_model` of the result is the new model."""
     return _call("improve", flights, {"model": model, "output": output, **options}, "best.toml")
 
 
 def check(flights: Flights, **options: Any) -> Result:
-    """Tests a model by what it was not fitted to: redundant systems, manoeuvres, layers."""
+    """Tests a model with data outside its fit: redundant systems, manoeuvres, layers."""
     return _call("check", flights, options)
 
 
 def temperature(flights: Flights, *, model: ModelLike, output: Optional[PathLike] = None, **options: Any) -> Result:
-    """Calibrates the temperature, K, by GPS heights and the hydrostatic equation. The result has the `fitted_model`."""
+    """Calibrates the temperature, K, with GPS heights and the hydrostatic equation. `fitted_model` of the result is the
+    new model."""
     return _call("temperature", flights, {"model": model, "output": output, **options}, "fitted.toml")
 
 
 def process(flights: Flights, *, output: Optional[PathLike] = None, **options: Any) -> Result:
-    """Corrects flights by the real-time loop, with quality flags and uncertainties. Of one flight the result has the
-    `dataset` with PCOR, PSXC, QCXC, MACHX, ATX, TASX and their units; several are written into the folder `output`."""
+    """Corrects flights with the real-time loop, with quality flags and uncertainties. For one flight, `dataset` of the
+    result has PCOR, PSXC, QCXC, MACHX, ATX, TASX with units; several flights are written to the folder `output`."""
     several = isinstance(flights, (list, tuple)) and len(flights) > 1
     return _call("process", flights, {"output": output, **options}, "corrected" if several else "corrected.nc")
 
 
 def simulate(scenario: PathLike, *, output: Optional[PathLike] = None, **options: Any) -> Result:
-    """Simulates a flight whose true pressures are known. The result has the `dataset`."""
+    """Simulates a flight with known true pressures. `dataset` of the result is the flight."""
     name = "-".join([Path(scenario).stem, *(str(seed) for seed in [options.get("seed")] if seed is not None)])
     return _call("simulate", scenario, {"output": output, **options}, f"{name}.nc")
 
 
 def effects(id: Optional[str] = None, **options: Any) -> Result:
-    """The catalogue of effects, or all that is known of one."""
+    """Lists the catalogue of effects, or describes one effect."""
     return _call("effects", id, options)
 
 
 def add(effects: Union[str, Sequence[str]], *, model: ModelLike, output: Optional[PathLike] = None,
         **options: Any) -> Result:
-    """Adds effects to a model, with neutral coefficients: some of the catalogue, or with `formula` one of your own.
-    The result has the `fitted_model`."""
+    """Adds effects to a model, with neutral coefficients: effects of the catalogue, or a new effect with `formula`.
+    `fitted_model` of the result is the new model."""
     return _call("add", effects, {"model": model, "output": output, **options}, "extended.toml")
 
 
 def help(command: str) -> str:
-    """The help of the tool for a command, with all its options."""
+    """The help of the tool for a command, with all options."""
     return run([command, "--help"]).stdout
+
+
+def _describe() -> None:
+    """Gives each command its docstring and its options by name, which editors complete."""
+    for name, (text, options) in descriptions.items():
+        command = globals()[name]
+        command.__doc__ = text
+        own = [each for each in signature(command).parameters.values() if each.kind is not Parameter.VAR_KEYWORD]
+        added = [Parameter(each, Parameter.KEYWORD_ONLY, default=None) for each in (*options, "progress")]
+        command.__signature__ = signature(command).replace(parameters=own + added)
+
+
+_describe()

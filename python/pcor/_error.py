@@ -1,4 +1,4 @@
-"""The one exception of the package."""
+"""The exception of the package."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from typing import Optional
 
 
 class Error(Exception):
-    """Work that cannot be done.
+    """Error of a command, a model or a flight.
 
-    `message` is one line for people: what is wrong, with values and units, and what to do about it. `code` is for
-    programs: "file", "variable", "unit", "model", "output", "usage" (options of a command), "crash" or "other".
-    `status` is the exit status of the tool and `command` its command line, where a command failed.
+    `message` is one line: the problem, with values and units, and the action to take. `code` is for programs: "file",
+    "variable", "unit", "model", "output", "usage" (options of a command), "crash" or "other". If a command failed,
+    `status` is the exit status of the tool and `command` is its command line.
     """
 
     def __init__(self, message: str, code: str = "other", status: Optional[int] = None,

@@ -15,7 +15,7 @@ from ._flight import PathLike, values
 from ._tool import data
 
 quantities: dict[str, tuple[str, str, bool]] = _pcor.quantities
-"""Unit, description and whether it is recorded (a role) of every quantity, by name."""
+"""Unit, description, and whether it is recorded (a role), of every quantity by name."""
 
 quality: dict[str, tuple[int, str]] = _pcor.quality
 """Bit and meaning of every quality flag, by name."""
@@ -29,7 +29,7 @@ standard_names = {
 
 
 def model_folders() -> list[Path]:
-    """Where models are found by name: the folders of the environment variable PCOR_MODELS, then the package's."""
+    """Folders in which models are found by name: those of the environment variable PCOR_MODELS, then the package."""
     own = [Path(folder) for folder in os.environ.get("PCOR_MODELS", "").split(":") if folder]
     return [*own, data / "models"]
 
@@ -41,14 +41,15 @@ def _find(source: str) -> Path:
         if (folder / f"{source}.toml").is_file():
             return folder / f"{source}.toml"
     known = sorted({path.stem for folder in model_folders() for path in folder.glob("*.toml")})
-    raise Error(f"there is no model file '{source}', and no model of that name; models by name: {', '.join(known)}",
+    raise Error(f"there is no model file or model named '{source}'; models by name: {', '.join(known)}",
                 "file")
 
 
 class Model:
-    """A law for delta-p, the correction that is added to the static and taken off the dynamic pressure.
+    """Model of delta-p, the correction that is added to the static and subtracted from the dynamic pressure.
 
-    `source` is a name ("c130-psfd-eq18"), the path of a model file, or the text of one.
+    `source` is a name ("c130-psfd-eq18"), the path of a model file, or the text of a model file. Raises `Error` with
+    code "file" if there is no such model, and "model" if the text is not valid.
     """
 
     _definition: _pcor.ModelDefinition
@@ -74,47 +75,49 @@ class Model:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """The coefficients, by names like "static-qp.a2"."""
+        """Coefficients by name, e.g. "static-qp.a2", in the units of the model file."""
         return self._definition.parameters
 
     @property
     def text(self) -> str:
-        """The text of the model file, which restores the model to the last bit; comments of a file are not kept."""
+        """Text of the model file, without comments; it restores the model exactly."""
         return self._definition.text()
 
     def with_parameters(self, parameters: Mapping[str, float]) -> "Model":
-        """This model with other values of some coefficients."""
+        """Copy of the model with other values of the named coefficients."""
         changed = Model.__new__(Model)
         changed.path = None
         changed._definition = self._definition.with_parameters(dict(parameters))
         return changed
 
     def save(self, path: PathLike) -> None:
-        """Writes the model file, whole or not at all."""
+        """Writes the model file atomically."""
         self._definition.save(os.fspath(path))
 
     def delta_p(self, flight: Optional[xr.Dataset] = None, *, roles: Optional[Mapping[str, str]] = None,
                 **recorded: Any) -> Union[np.ndarray, xr.DataArray]:
-        """Delta-p, hPa: as `correct`, of which it is the one result `static_defect`."""
+        """Delta-p, hPa, an array of the shape of the inputs: the result `static_defect` of `correct`."""
         return self.correct(flight, roles=roles, outputs=["static_defect"], **recorded)["static_defect"]
 
     def correct(self, flight: Optional[xr.Dataset] = None, *, roles: Optional[Mapping[str, str]] = None,
                 outputs: Optional[Iterable[str]] = None, out: Optional[Mapping[str, np.ndarray]] = None,
                 correct_with: str = "model", **recorded: Any) -> Union[dict[str, np.ndarray], xr.Dataset]:
-        """The corrected pressures and what follows from them, sample by sample, over whole arrays.
+        """Corrected pressures, and the quantities that follow from them, for arrays of samples.
 
-        Either `flight`, a dataset whose variables play the roles as the model says, or as `roles` does, {role:
-        variable}; their `units` are converted. Or the recorded quantities as arrays of one shape, by role, in hPa,
-        K, m/s, degrees, metres (`pcor.quantities`), and variables of the model's formulas by name:
+        Give either `flight`, a dataset whose variables have the roles that the model or `roles`, {role: variable},
+        states; units are converted by their attribute `units`. Or give recorded quantities as arrays of one shape by
+        role, in the units of `pcor.quantities`, and variables of formulas by name:
 
             model.correct(static_pressure=ps, dynamic_pressure=qc, recovery_temperature=tr)
 
-        Arrays of contiguous doubles are not copied. The results have the shape of the inputs: a dict of arrays, or
-        for a flight a dataset with units and CF names. `outputs` names them; the default is delta-p
-        ("static_defect"), the corrected pressures, Mach number, ambient temperature, airspeed, and what the laser
-        says, as far as the inputs allow. `out` has arrays to write results into, by name: contiguous doubles of that shape,
-        none of them an input; new memory costs half as much time as the computation. What cannot be computed is NaN; there are no quality flags, and models with
-        effects of rates of change need these as inputs. `pcor.process` has both.
+        Contiguous doubles are not copied. NaN is missing. The results have the shape of the inputs: a dict of arrays, or
+        for a flight a dataset with units and CF names. `outputs` are names of `pcor.quantities`; by default delta-p
+        ("static_defect"), corrected pressures, Mach number, ambient temperature, airspeed, and the same quantities by
+        laser, if the inputs determine them. Results are written into the arrays of `out`, by name, if given: contiguous
+        doubles of that shape that are not inputs. `correct_with` is "model" or "lams".
+
+        There are no quality flags; effects of rates of change need the rates as inputs; `pcor.process` computes both.
+        Raises `Error` if an input is absent, has another shape, or has a unit that cannot be converted.
         """
         if (flight is None) == (not recorded):
             raise Error("give either a flight or the recorded quantities as arrays", "usage")
@@ -134,6 +137,9 @@ class Model:
                             "no memory with them; make it by numpy.empty(shape)", "usage")
         results = batch.run(recorded, list(outputs) if outputs is not None else batch.outputs, out or {})
         return results if flight is None else _as_dataset(results, flight, names[0], self.name)
+
+    correct.__doc__ = f"{correct.__doc__}\n        Recorded quantities:\n" + "".join(
+        f"            {name}: {unit}, {text}\n" for name, (unit, text, is_recorded) in quantities.items() if is_recorded)
 
     def _recorded(self, flight: xr.Dataset, roles: Mapping[str, str]) -> tuple[list[str], dict[str, np.ndarray]]:
         names: list[str] = []
@@ -183,18 +189,18 @@ def _as_dataset(results: Mapping[str, np.ndarray], flight: xr.Dataset, like: str
 
 
 def model(source: Union[PathLike, Model]) -> Model:
-    """The model of that name, in that file, or with that text."""
+    """The model with this name, path or text: `Model(source)`."""
     return Model(source)
 
 
 class Loop:
-    """The sample loop of real time: one sample after another, with quality flags and uncertainties.
+    """Real-time loop: corrects sample by sample, with quality flags and uncertainties.
 
         loop = pcor.Loop("c130-psfd-eq18", rate=25)
         result = loop.run(0.04, static_pressure=700.0, dynamic_pressure=67.6, recovery_temperature=280.0)
 
-    `rate` is in samples per second; `recorded` names the roles, the default are those of the model. A model with
-    effects of rates of change gives the results of the sample `delay` runs ago.
+    `rate` is in samples per second; `recorded` names the roles, by default those of the model. If the model has effects
+    of rates of change, results belong to the sample of `delay` runs before.
     """
 
     def __init__(self, model: Union[PathLike, Model], rate: float, recorded: Optional[Iterable[str]] = None,
@@ -205,21 +211,21 @@ class Loop:
 
     @property
     def delay(self) -> int:
-        """How many runs after its own the results of a sample are there."""
+        """Number of runs between a sample and its results."""
         return self._loop.delay
 
     def run(self, time: float, **recorded: float) -> dict[str, float]:
-        """The results of the sample at `time`, s, by the names of `pcor.quantities`, and its `quality` bits.
+        """Results of the sample at `time`, s, by the names of `pcor.quantities`, and the `quality` bits.
 
-        Values are in hPa, K, m/s, degrees and metres, by role; one that is not given is missing.
+        Values are in the units of `pcor.quantities`, by role; a value that is not given is missing.
         """
         return self._loop.run(time, recorded)
 
     def reset(self) -> None:
-        """Forgets all earlier samples."""
+        """Forgets all previous samples."""
         self._loop.reset()
 
     @staticmethod
     def flags(bits: int) -> list[str]:
-        """The names of the quality flags that are set."""
+        """Names of the quality flags that are set."""
         return [name for name, (bit, _) in quality.items() if bits & bit]

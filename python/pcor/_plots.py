@@ -1,9 +1,10 @@
-"""The pictures of results, with matplotlib."""
+"""Pictures of results, with matplotlib."""
 
 from __future__ import annotations
 
 import base64
 import io
+import textwrap
 from pathlib import Path
 from typing import Any, Callable, Optional
 
@@ -25,8 +26,18 @@ def _regimes(result: Any, ax: Any, model: int = 0) -> None:
     ax.axvline(0, color="0.7", lw=0.8, zorder=0)
     ax.set_yticks(places, [row.name for row in rows])
     ax.invert_yaxis()
-    ax.set(xlabel=f"residual against {of.reference}, hPa", title=of.name)
+    ax.set(xlabel=f"residual against {of.reference}, hPa", title=textwrap.fill(of.name, 60))
     ax.legend(fontsize="small")
+
+
+def _time(result: Any, ax: Any, model: int = 0) -> None:
+    for of, residuals in zip(result.models[model].flights, result.residuals()):
+        residual = residuals[f"RESIDUAL_{model + 1}"]
+        used = residual.where(residuals.MASK == 0)
+        ax.plot(used[used.dims[0]], used, ".", ms=1, label=of.name)
+    ax.axhline(0, color="0.7", lw=0.8, zorder=0)
+    ax.set(xlabel="time, UTC", ylabel="residual, hPa", title=textwrap.fill(result.models[model].name, 60))
+    ax.legend(fontsize="small", markerscale=8)
 
 
 def _variable(result: Any, ax: Any, variable: str = "", model: int = 0, bins: int = 12) -> None:
@@ -54,9 +65,9 @@ def _variable(result: Any, ax: Any, variable: str = "", model: int = 0, bins: in
     edges = np.unique(np.quantile(allx, np.linspace(0, 1, bins + 1)))
     inside = np.clip(np.searchsorted(edges, allx, "right") - 1, 0, max(edges.size - 2, 0))
     means = [(allx[inside == i].mean(), ally[inside == i].mean()) for i in np.unique(inside)]
-    ax.plot(*np.transpose(means), "o-", label=f"mean of {len(means)} parts of equal size")
+    ax.plot(*np.transpose(means), "o-", label=f"means of {len(means)} bins with equal numbers of samples")
     ax.axhline(0, color="0.7", lw=0.8, zorder=0)
-    ax.set(ylabel="residual, hPa", title=result.models[model].name)
+    ax.set(ylabel="residual, hPa", title=textwrap.fill(result.models[model].name, 60))
     ax.legend(fontsize="small")
 
 
@@ -69,6 +80,7 @@ def _coefficients(result: Any, ax: Any) -> None:
     ax.plot([(start - value) / error for _, start, value, error in rows], places, "x", label="start")
     ax.set_yticks(places, [f"{name} = {value:.4g} ± {error:.2g}" for name, _, value, error in rows])
     ax.invert_yaxis()
+    ax.margins(y=0.3)  # room for the legend
     ax.set_xlabel("difference from the fitted value, standard errors")
     ax.legend(fontsize="small")
 
@@ -86,20 +98,32 @@ def _ladder(result: Any, ax: Any) -> None:
     ax.legend(fontsize="small")
 
 
-def _holdout(result: Any, ax: Any) -> None:
+def _flights(result: Any, ax: Any) -> None:
     places = np.arange(len(result.flights))
     ax.plot([flight.before.rms_hpa for flight in result.flights], places, "x", label="before")
     ax.plot([flight.after.rms_hpa for flight in result.flights], places, "o", label="after")
     ax.plot([flight.after.noise_rms_hpa for flight in result.flights], places, "k.", label="noise")
     ax.set_yticks(places, [f"{flight.name}{' (held out)' if flight.holdout else ''}" for flight in result.flights])
     ax.invert_yaxis()
+    ax.margins(y=0.3)  # room for the legend
     ax.set(xlabel="rms residual, hPa", xlim=(0, None))
     ax.legend(fontsize="small")
 
 
+def _parts(result: Any, ax: Any) -> None:
+    parts = [("residual", result.rms_given_hpa), ("noise", result.noise_rms_hpa),
+             *((finding.effect, finding.rms_hpa) for finding in result.findings)]
+    if result.unexplained.significant:
+        parts.append(("unexplained", result.unexplained.rms_hpa))
+    ax.barh([name for name, _ in parts], [rms or 0.0 for _, rms in parts], height=0.5)
+    ax.invert_yaxis()
+    ax.set(xlabel="rms, hPa", title=f"verdict: {result.verdict}")
+
+
 _pictures: dict[str, dict[str, Callable[..., None]]] = {
-    "compare": {"regimes": _regimes, "variable": _variable},
-    "refit": {"coefficients": _coefficients, "holdout": _holdout},
+    "compare": {"regimes": _regimes, "time": _time, "variable": _variable},
+    "refit": {"coefficients": _coefficients, "flights": _flights},
+    "diagnose": {"parts": _parts},
     "improve": {"ladder": _ladder},
 }
 
@@ -107,8 +131,8 @@ _pictures: dict[str, dict[str, Callable[..., None]]] = {
 def draw(result: Any, kind: Optional[str] = None, ax: Any = None, **options: Any) -> Any:
     pictures = _pictures.get(result.command, {})
     if not pictures or (kind is not None and kind not in pictures):
-        raise Error(f"{result.command} has no picture{f' of the kind {kind!r}' if kind else ''}"
-                    f"{'; it has ' + ', '.join(pictures) if pictures else ''}; report(path) has all", "usage")
+        raise Error(f"{result.command} has no picture {kind or ''}{'; choose ' + ' or '.join(pictures) if pictures else ''}; "
+                    "report(path) has all pictures", "usage")
     if ax is None:
         from matplotlib import pyplot
 
@@ -118,7 +142,7 @@ def draw(result: Any, kind: Optional[str] = None, ax: Any = None, **options: Any
 
 
 def as_html(result: Any) -> str:
-    """The first picture of the result as an image for a notebook; nothing where it has none."""
+    """The default picture of the result as an image for a notebook; empty if the command has no picture."""
     if result.command not in _pictures:
         return ""
     from matplotlib.figure import Figure

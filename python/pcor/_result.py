@@ -1,4 +1,4 @@
-"""What a command found."""
+"""Results of commands."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import html
 import json
 import tempfile
 from pathlib import Path
-from typing import Any, Callable, Optional
+from typing import Any, Optional
 
 import xarray as xr
 
@@ -17,8 +17,8 @@ from ._model import Model
 from ._tool import Progress, run
 
 
-class Fields(dict):
-    """A JSON object whose keys are attributes too: `result.models[0].rms_hpa`."""
+class Fields(dict[str, Any]):
+    """JSON object whose keys are also attributes: `result.models[0].rms_hpa`."""
 
     def __getattr__(self, name: str) -> Any:
         try:
@@ -31,7 +31,7 @@ class Fields(dict):
 
 
 def _rows(result: "Result", name: str) -> list[dict[str, Any]]:
-    """The rows of a table: the list of that name, or of a part of each model, flight or effect."""
+    """Rows of a table: the list `name` of the result or of each of its models, or one row per coefficient or role."""
     if name == "coefficients":
         return [{"effect": effect["id"], "parameter": parameter, "value": value,
                  "stderr": effect["stderr"].get(parameter), "start": effect.get("start", {}).get(parameter)}
@@ -48,7 +48,7 @@ def _rows(result: "Result", name: str) -> list[dict[str, Any]]:
 
 
 def _without_outputs(text: str) -> Any:
-    """A result without the names of what was written, which differ from run to run."""
+    """The result without the names of written files, which differ from run to run."""
     return json.loads(text, object_hook=lambda each: {key: value for key, value in each.items()
                                                       if key not in ("model", "output", "choices")})
 
@@ -56,39 +56,29 @@ def _without_outputs(text: str) -> Any:
 _tables = {"compare": "regimes", "refit": "coefficients", "diagnose": "findings", "improve": "steps",
            "check": "checks", "inspect": "roles", "effects": "effects"}
 
-_summaries: dict[str, Callable[[Any], str]] = {
-    "inspect": lambda r: "; ".join(f"{f.path}: {f.aircraft}, {f.begin} to {f.end}, {len(f.roles)} roles"
-                                   for f in r.flights),
-    "compare": lambda r: "; ".join(f"{m.name} against {m.reference}: rms {m.rms_hpa:.3f} hPa, bias {m.bias_hpa:+.3f} "
-                                   f"hPa, noise {m.noise_rms_hpa:.3f} hPa, {m.samples} samples" for m in r.models),
-    "refit": lambda r: f"rms {r.rms_before_hpa:.3f} hPa before, {r.rms_hpa:.3f} hPa after the fit, noise "
-                       f"{r.noise_rms_hpa:.3f} hPa, {r.samples} samples",
-    "diagnose": lambda r: f"verdict: {r.verdict}; " + ("missing: " + ", ".join(f.effect for f in r.findings)
-                                                       if r.findings else "no effect of the catalogue was found"),
-    "improve": lambda r: f"added: {', '.join(s.added for s in r.steps if s.added and not s.get('refused')) or 'nothing'}; "
-                         f"{r.why_stopped}",
-    "process": lambda r: "; ".join(f"{f.input}: {f.corrected} of {f.samples} samples corrected"
-                                   for f in r.get("flights", [r]) if f.state == "processed"),
-    "check": lambda r: "; ".join(f"{c.name}: {c.verdict}" for c in r.checks if c.ran),
-}
-
 
 class Result:
-    """The result of a command: the fields of the tool's JSON as attributes and items.
+    """Result of a command: the fields of the tool's JSON as attributes and items; an unknown number is None.
 
-    `to_json()` is the tool's JSON, `to_dict()` the same as plain Python; NaN is None there.
+    `text` is the text that the tool prints, `output` the path of the model or flight that the command wrote.
     """
 
-    def __init__(self, command: str, arguments: list[str], text: str, files: tempfile.TemporaryDirectory[str],
+    def __init__(self, command: str, arguments: list[str], files: tempfile.TemporaryDirectory[str],
                  output: Optional[Path], progress: Optional[Progress]):
         self.command = command
-        self.fields: Fields = json.loads(text, object_hook=Fields)
         self.output = output
         self._arguments = arguments
-        self._text = text
         self._files = files  # deleted with the result
         self._progress = progress
+        self._json, self.text = self._run(arguments)
+        self.fields: Fields = json.loads(self._json, object_hook=Fields)
         self._residuals: Optional[list[xr.Dataset]] = None
+
+    def _run(self, arguments: list[str]) -> tuple[str, str]:
+        """Runs the command. Returns the JSON and the text."""
+        path = Path(self._files.name) / "result.json"
+        lines = run([self.command, *arguments, f"--json={path}"], self._progress).stdout.splitlines()
+        return path.read_text(), "\n".join(line for line in lines if str(path) not in line)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "fields":
@@ -102,12 +92,13 @@ class Result:
         return [*super().__dir__(), *self.fields]
 
     def to_json(self) -> str:
-        """The JSON of the tool, to the last byte."""
-        return self._text
+        """The JSON of the tool, byte for byte."""
+        return self._json
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON of the tool as dicts and lists."""
-        return json.loads(self._text)
+        fields: dict[str, Any] = json.loads(self._json)
+        return fields
 
     @property
     def fitted_model(self) -> Model:
@@ -125,13 +116,13 @@ class Result:
             return flight.load()
 
     def report(self, path: PathLike) -> None:
-        """Writes the report, a self-contained HTML file. The command runs once more for it, on the same inputs."""
+        """Writes the report, a self-contained HTML file. The command runs again on the same inputs."""
         self._again(f"--report={path}")
 
     def residuals(self) -> list[xr.Dataset]:
-        """Residuals of a comparison: of each flight a dataset with RESIDUAL_1, PCOR_1, PCOR_REFERENCE_1, hPa, by time
-        for the first of `models`, RESIDUAL_2 ... for the others; MASK is 0 at the samples that take part. The
-        command runs once more for it."""
+        """Residuals of a comparison, hPa, one dataset per flight: RESIDUAL_1, PCOR_1 and PCOR_REFERENCE_1 over time for
+        the first of `models`, RESIDUAL_2 ... for the others. MASK is 0 where a sample is used. The command runs again.
+        """
         if self.command != "compare":
             raise Error(f"{self.command} gives no residuals; compare does", "usage")
         if self._residuals is None:
@@ -152,53 +143,42 @@ class Result:
             arguments = [word for word in self._arguments if not word.startswith("--output=")]
             if self.output is not None:
                 arguments.append(f"--output={folder}/{self.output.name}")
-            stdout = run([self.command, *arguments, "--json=-", option], self._progress).stdout
-        if _without_outputs(self._text) != _without_outputs(stdout):
-            raise Error("the inputs have changed since this result: it is not that of the report or the residuals; "
-                        "run the command again", "file")
+            again, _ = self._run([*arguments, option])
+        if _without_outputs(self._json) != _without_outputs(again):
+            raise Error("the inputs changed after this result, so report and residuals would not belong to it; run the "
+                        "command again", "file")
 
     def to_frame(self, table: Optional[str] = None) -> Any:
-        """A table of the result as a pandas.DataFrame: a list of the JSON by its name ("regimes", "bands", "flights",
-        "findings", "steps", "checks"), "coefficients" of a fit or "roles" of an inspection."""
-        import pandas  # type: ignore[import-untyped]
+        """Table of the result as a pandas.DataFrame: a list of the JSON by name ("regimes", "bands", "flights",
+        "findings", "steps", "checks"), "coefficients" of a fit, or "roles" of an inspection."""
+        import pandas
 
         name = table or _tables.get(self.command)
         if name is None:
-            raise Error(f"{self.command} has no table of its own; name one of {', '.join(self.fields)}", "usage")
+            raise Error(f"{self.command} has no default table; name one of {', '.join(self.fields)}", "usage")
         return pandas.DataFrame(_rows(self, name))
 
     def plot(self, kind: Optional[str] = None, **options: Any) -> Any:
-        """Draws a picture with matplotlib and returns its axes, those of `ax` if given.
+        """Draws a picture with matplotlib and returns its axes, which are `ax` if given. The first kind is the default.
 
-        "regimes": residual by regime (compare). "variable": residual against `variable`, a name in the flights
-        (compare). "coefficients": fitted coefficients beside their starts, in standard errors (refit). "ladder": rms
-        after every step (improve). "holdout": rms of each flight before and after (refit). The default is the first
-        that the command has.
+        compare: "regimes", residual by regime; "time", residual over time; "variable", residual against `variable`, a
+        name in the flights. refit: "coefficients", before and after the fit, in standard errors; "flights", rms of each
+        flight before and after. diagnose: "parts", rms of residual, noise, findings and unexplained structure.
+        improve: "ladder", rms after every step.
         """
         from . import _plots
 
         return _plots.draw(self, kind, **options)
 
-    def summary(self) -> str:
-        """The result in one line."""
-        line = _summaries.get(self.command)
-        return line(self.fields) if line else f"{self.command}: {', '.join(self.fields)}"
-
     def __repr__(self) -> str:
-        return f"<pcor.Result of {self.command}: {self.summary()}>"
+        return self.text
 
     def _repr_html_(self) -> str:
-        parts = [f"<p><b>pcor {self.command}</b>: {html.escape(self.summary())}</p>"]
+        picture = ""
         try:
             from . import _plots
 
-            parts.append(_plots.as_html(self))
-        except ImportError:
+            picture = _plots.as_html(self)
+        except ImportError:  # without matplotlib
             pass
-        try:
-            table = self.to_frame()
-            narrow = [name for name in table if not table[name].map(lambda cell: isinstance(cell, (dict, list))).any()]
-            parts.append(table[narrow[:8]].to_html(index=False, na_rep="", float_format="%.4g", max_rows=30))
-        except (ImportError, Error):
-            pass
-        return "".join(parts)
+        return f"<pre>{html.escape(self.text)}</pre>{picture}"

@@ -1,5 +1,5 @@
-"""Runs the tool. Each command is a process of its own: other threads of Python go on, an interrupt stops it without
-unfinished files, and a damaged flight that crashes the HDF5 library does not end the interpreter."""
+"""Runs the tool. Each command is a separate process: other threads of Python continue, an interrupt leaves no unfinished
+files, and a damaged flight that crashes the HDF5 library does not end the interpreter."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _here = Path(__file__).parent
 tool = _here / TOOL
 
 data = _here / DATA
-"""The folder of the models and scenarios that come with the package."""
+"""Folder of the models and scenarios of the package."""
 
 Progress = Callable[[str, int, int], None]
 
 
 class Run(NamedTuple):
-    """What a sub-command of the tool gave: its exit status, standard output and standard error."""
+    """Exit status, standard output and standard error of a sub-command."""
 
     status: int
     stdout: str
@@ -32,11 +32,13 @@ class Run(NamedTuple):
 
 
 class _Bar:
-    """A progress bar of tqdm for each task of a command; nothing where tqdm is not installed."""
+    """Progress bar of tqdm for each task of a command; no bar if tqdm is not installed."""
 
     def __init__(self) -> None:
         try:
-            from tqdm.auto import tqdm  # type: ignore[import-untyped]
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of notebooks without ipywidgets, where the bar is text
+                from tqdm.auto import tqdm  # type: ignore[import-untyped]
         except ImportError:
             tqdm = None
         self._tqdm = tqdm
@@ -61,9 +63,9 @@ class _Bar:
 def run(arguments: list[str], progress: Optional[Progress] = None) -> Run:
     """Runs a sub-command of the tool, such as `["refit", "first.nc", "-m", "model.toml", "-o", "fitted.toml"]`.
 
-    `progress(task, done, total)` is called twice a second while the command works, from another thread; without it
-    tqdm shows a bar, if installed. An interrupt (Ctrl-C) stops the command, which then leaves no unfinished files.
-    Raises `Error` where the exit status is not 0.
+    `progress(task, done, total)` is called twice a second from another thread; by default tqdm shows a bar, if
+    installed. An interrupt (Ctrl-C) stops the command, without unfinished files. Raises `Error` if the exit status is
+    not 0. Messages on standard error become warnings.
     """
     bar = _Bar()
     show = bar if progress is None else progress
@@ -79,13 +81,13 @@ def run(arguments: list[str], progress: Optional[Progress] = None) -> Run:
                         failure.update(event)
                     else:
                         show(event["task"], event["done"], event["total"])
-        except Exception as error:  # of the caller's `progress`; the closed pipe stops the command
+        except Exception as error:  # raised by `progress`; the closed pipe stops the command
             raised.append(error)
 
     receiver, sender = os.pipe()
     listener = threading.Thread(target=listen, args=(receiver,), daemon=True)
     try:
-        process = subprocess.Popen([str(tool), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        process = subprocess.Popen(["pcor", *arguments], executable=tool, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
                                    pass_fds=(sender,), env={**os.environ, "PCOR_EVENTS": str(sender)})
     except OSError as error:

@@ -14,7 +14,7 @@ os.environ.setdefault("MPLBACKEND", "agg")
 
 
 def run_tool(*words, folder=None):
-    return subprocess.run([str(tool), *map(str, words)], cwd=folder, capture_output=True, text=True)
+    return subprocess.run(["pcor", *map(str, words)], executable=tool, cwd=folder, capture_output=True, text=True)
 
 
 @pytest.fixture(scope="session")

@@ -1,16 +1,23 @@
+import ast
+import functools
+import html
+import inspect
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 import threading
-import time
+from pathlib import Path
 
 import pytest
 import xarray as xr
 from conftest import run_tool
 
 import pcor
+
+STUB = (Path(pcor.__file__).parent / "_commands.pyi").read_text()
 
 FLIGHTS = ["first.nc", "second.nc"]
 
@@ -39,18 +46,73 @@ def commands():
     ]
 
 
+@functools.cache
+def result_of(number):
+    return commands()[number][0]()
+
+
 @pytest.mark.parametrize("number", range(len(commands())), ids=[words[0] for _, words in commands()])
 def test_json_is_that_of_the_tool_byte_for_byte(in_folder, number):
-    call, words = commands()[number]
-    result = call()
+    result, words = result_of(number), commands()[number][1]
     expected = run_tool(*words, "--json", "-").stdout
     assert result.to_json() == expected
     assert result.to_dict() == json.loads(expected)
+    described = re.findall(r"^    ([a-z0-9_]+).*: [a-z]", getattr(pcor, words[0]).__doc__, flags=re.MULTILINE)
     for key, value in json.loads(expected).items():
         assert result[key] == value
-        assert key in dir(result)
-    assert result.command in repr(result)
-    assert words[0] in result._repr_html_()
+        assert key in dir(result) and key in described
+
+
+def test_text_is_that_of_the_tool(in_folder):
+    words = ["compare", *FLIGHTS, "-m", "model.toml"]
+    expected = run_tool(*words).stdout.rstrip("\n")
+    result = pcor.compare(FLIGHTS, model="model.toml")
+    assert repr(result) == result.text == expected
+    assert html.escape(expected) in result._repr_html_()
+
+
+def test_options_of_the_tool_are_those_of_the_functions():
+    # The completion for fish lists the same options from another source than the help.
+    offered = re.findall(r"__fish_seen_subcommand_from (\w+)' (?:-s \w )?-l (\S+) (.*)", run_tool("completion", "fish").stdout)
+    assert len({command for command, *_ in offered} - {"completion", "man"}) == 11
+    for command, option, meaning in offered:
+        name = {"try": "try_"}.get(option, option.replace("-", "_"))
+        if command not in ("completion", "man") and name not in ("help", "version", "json", "json_keys", "quiet"):
+            assert name in inspect.signature(getattr(pcor, command)).parameters
+            # a flag has no -r
+            stub = re.search(rf"^def {command}\(.*", STUB, flags=re.MULTILINE)[0]
+            assert f", {name}: " in stub and (f", {name}: Optional[bool]" in stub) == (" -r " not in f" {meaning}")
+
+
+def test_types_of_results_are_those_of_the_fields(in_folder):
+    """Reads the classes of the stub, and compares them with the values of a result."""
+    classes = {node.name: node for node in ast.parse(STUB).body if isinstance(node, ast.ClassDef)}
+    types = {"str": str, "float": (int, float), "bool": bool}
+    seen = set()
+
+    def compare(value, annotation):
+        kind, _, inner = annotation.partition("[")
+        if value is None:
+            return
+        if kind in types:
+            assert isinstance(value, types[kind]), (annotation, value)
+            seen.add(kind)
+        elif kind == "list":
+            for each in value:
+                compare(each, inner[:-1])
+        elif kind == "Named":
+            for each in value.values():
+                compare(each, inner[:-1])
+        else:
+            fields = {line.target.id: ast.unparse(line.annotation) for line in classes[kind].body
+                      if isinstance(line, ast.AnnAssign)}
+            for name, each in value.items():
+                if name not in ("output", "text"):  # attributes of Result
+                    compare(each, fields[name])
+
+    for number, (_, words) in enumerate(commands()):
+        compare(result_of(number).fields, words[0].capitalize())
+    assert seen == {*types}
 
 
 def test_temperature_calibrates_by_climbs(in_folder):
@@ -149,15 +211,21 @@ def test_pictures_are_drawn(in_folder):
     pytest.importorskip("matplotlib")
     comparison = pcor.compare(FLIGHTS, model="model.toml", reference="lams")
     assert len(comparison.plot().get_yticks()) == len([r for r in comparison.models[0].regimes if r.samples])
+    times = [line.get_xdata() for line in comparison.plot("time").get_lines()[:2]]
+    assert [len(time) for time in times] == [flight.Time.size for flight in comparison.residuals()]
     lines = comparison.plot("variable", variable="ENGTRQ").get_lines()
     x, y = lines[1].get_data()
     assert y[-1] > y[0] + 0.2  # the flights hide an effect that grows with the torque
     fit = pcor.refit(FLIGHTS, model="model.toml", holdout="third.nc")
     assert len(fit.plot("coefficients").get_yticks()) == 3
-    assert "held out" in fit.plot("holdout").get_yticklabels()[-1].get_text()
-    better = pcor.improve(FLIGHTS, model="model.toml", holdout="third.nc", trace_variables=True)
+    assert "held out" in fit.plot("flights").get_yticklabels()[-1].get_text()
+    better = result_of([words[0] for _, words in commands()].index("improve"))
     assert len(better.plot("ladder").get_xticks()) == len(better.steps) + 1
-    with pytest.raises(pcor.Error, match="no picture"):
+    diagnosis = pcor.diagnose(FLIGHTS, model=better)
+    bars = diagnosis.plot().patches
+    assert bars[0].get_width() == diagnosis.rms_given_hpa and bars[1].get_width() == diagnosis.noise_rms_hpa
+    assert "<img" in diagnosis._repr_html_()
+    with pytest.raises(pcor.Error, match="regimes"):
         better.plot("regimes")
 
 
@@ -186,7 +254,7 @@ def test_work_reports_progress_and_other_threads_run(in_folder):
 
     ticker = threading.Thread(target=tick)
     ticker.start()
-    pcor.improve(FLIGHTS, model="model.toml", trace_variables=True, progress=lambda *event: seen.append(event))
+    pcor.refit(FLIGHTS, model="model.toml", progress=lambda *event: seen.append(event))
     done.set()
     ticker.join()
     assert seen and all(0 <= done <= total for _, done, total in seen)
@@ -198,7 +266,7 @@ def test_error_of_a_progress_function_reaches_the_caller(in_folder):
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        pcor.improve(FLIGHTS, model="model.toml", trace_variables=True, progress=fail)
+        pcor.refit(FLIGHTS, model="model.toml", progress=fail)
 
 
 def test_interrupt_stops_the_command(in_folder):
@@ -208,7 +276,5 @@ def test_interrupt_stops_the_command(in_folder):
     process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
     process.stdout.readline()  # the work has begun
     process.send_signal(signal.SIGINT)  # as a notebook does, to Python alone
-    begin = time.monotonic()
     assert process.communicate(timeout=60)[0].strip() == "stopped"
-    assert time.monotonic() - begin < 5  # s; the whole command takes longer on a busy machine
-    assert not list(in_folder.glob("*stopped.toml*"))
+    assert not list(in_folder.glob("*stopped.toml*"))  # a command that runs to its end writes it

@@ -1,20 +1,40 @@
-"""The notebooks and the lines of docs/python.md are run."""
+"""Runs the notebooks and the Python lines of README.md and docs/python.md."""
 
 import os
 import re
+from pathlib import Path
 
 import pytest
 from conftest import SOURCE
 
 
+REAL_FLIGHT = "GOTEX-rf06-C130-2004.nc"
+
+
+def run_python_lines(page, count):
+    blocks = re.findall(r"^```python\n(.*?)^```", (SOURCE / page).read_text(), flags=re.MULTILINE | re.DOTALL)
+    assert len(blocks) == count
+    names = {}
+    exec(compile("".join(blocks), page, "exec"), names)
+    return names
+
+
 def test_lines_of_the_documentation_run(tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")
     monkeypatch.chdir(tmp_path)
-    text = (SOURCE / "docs/python.md").read_text()
-    blocks = re.findall(r"^```python\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
-    assert len(blocks) == 3
-    exec(compile("".join(blocks), "docs/python.md", "exec"), {})
+    run_python_lines("docs/python.md", 3)
     assert (tmp_path / "compare.html").stat().st_size > 10_000
+
+
+def test_lines_of_the_readme_run(tmp_path, monkeypatch):
+    real = Path(os.environ.get("PCOR_FLIGHTS", "")) / REAL_FLIGHT
+    if not real.is_file():
+        pytest.skip(f"{REAL_FLIGHT} is not in the folder PCOR_FLIGHTS")
+    monkeypatch.chdir(tmp_path)
+    Path(REAL_FLIGHT).symlink_to(real.resolve())
+    names = run_python_lines("README.md", 1)
+    assert names["fit"].rms_hpa < names["fit"].rms_before_hpa
+    assert names["corrected"].PSXC.attrs["units"] == "hPa"
 
 
 @pytest.mark.parametrize("name", ["real_flight", "own_effect"])
@@ -24,8 +44,5 @@ def test_notebook_runs(tmp_path, name):
     pytest.importorskip("matplotlib")
     import nbformat
 
-    if name == "real_flight" and not os.path.exists(
-            os.path.join(os.environ.get("PCOR_FLIGHTS", ""), "GOTEX-rf06-C130-2004.nc")):
-        pytest.skip("GOTEX-rf06-C130-2004.nc is not in the folder PCOR_FLIGHTS")
     notebook = nbformat.read(SOURCE / f"python/notebooks/{name}.ipynb", as_version=4)
     nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
