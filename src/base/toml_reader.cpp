@@ -102,6 +102,11 @@ double seconds_of(const toml::date_time& moment) {
 }
 
 toml::table TomlReader::parse(std::string_view text) const {
+  for (const std::string_view begin : {"CDF", "\x89HDF"}) {
+    if (text.substr(0, begin.size()) == begin)
+      fail(Place{1, 1},
+           "this is a netCDF file, and a text in TOML is required; check the order of the arguments");
+  }
   if (const std::optional<std::size_t> deep = place_of_deep_key(text)) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(*deep), '\n');
     fail(Place{static_cast<toml::source_index>(line), 1},

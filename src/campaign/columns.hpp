@@ -35,7 +35,7 @@ struct FlightColumns {
   Eigen::MatrixXf base;        ///< columns of the free coefficients of the models, hPa per unit
   Eigen::MatrixXf candidates;  ///< columns of the tested parameters of all candidates, one after another
   bool is_by_gps = false;      ///< against wind or height
-  GpsSystem gps{};             ///< by GPS: whitened rows, with the columns of `base` and `candidates`
+  GpsSystem gps{};             ///< GPS fits: whitened rows, with the columns of `base` and `candidates`
   /// Motion of the flight, for smooth functions and pictures; NaN everywhere if unknown.
   std::vector<std::pair<Quantity, std::vector<double>>> quantities{};
   std::vector<double> corrected_pressure{};  ///< corrected static pressure, hPa

@@ -19,8 +19,8 @@ struct GpsPrior {
 /// strength follows the flight; one of minutes; a random walk on the height; and a drift of the heading.
 /// Height: the D-value, a random walk on time and height; the error of GPS; the difference of measured and
 /// actual temperature, a few tenths of a kelvin, which changes slowly; and the noise of the static pressure,
-/// a few hundredths of an hPa in one sample. Without the last one that noise is taken for a walk of the
-/// D-value, the differences of heights from sample to sample get too much weight, and the noise that the
+/// a few hundredths of an hPa in one sample. Without the last one that noise is mistaken for a random walk of
+/// the D-value, the differences of heights from sample to sample get too much weight, and the noise that the
 /// law's columns share with them biases the level.
 ///
 /// Their sizes maximize the likelihood on the flight without the coefficients (`maximise`), with a prior for

@@ -132,8 +132,8 @@ FlightPart part_of(const FlightSet& flights, std::size_t number, const std::opti
   part.notes = part.flight->air.notes;
   if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
     part.notes.push_back(fmt::format(
-        "without a model the recovery factor of {} is assumed to be {:g}, the published value of such "
-        "thermometers; give another by a model (-m)",
+        "no model is given: the recovery factor of {} is assumed to be {:g}, the published value of such "
+        "thermometers; a model (-m) states another",
         its_model->variables.at(Quantity::recovery_temperature), its_model->model.recovery.coefficients[0]));
   }
   return part;

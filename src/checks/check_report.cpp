@@ -21,19 +21,6 @@ using namespace internal;
 
 namespace {
 
-/// Replaces "+-" of the terminal by "±".
-std::string typeset(std::string text) {
-  for (std::size_t at = text.find("+-"); at != std::string::npos; at = text.find("+-", at))
-    text.replace(at, 2, "±");
-  return text;
-}
-
-ReportTable typeset(ReportTable table) {
-  for (std::vector<std::string>& row : table.rows)
-    std::transform(row.begin(), row.end(), row.begin(), [](std::string& cell) { return typeset(cell); });
-  return table;
-}
-
 /// Converts "total-pressure" to the heading "Total pressure".
 std::string heading(std::string name) {
   if (name == "lams-temperature") return "LAMS temperature";
@@ -88,14 +75,14 @@ ReportTable verdicts(const Checks& checks) {
   table.headers = {"check", "verdict", "number", "tolerance", "result"};
   for (const CheckResult& result : checks.results) {
     if (!result.ran) {
-      table.rows.push_back({heading(result.name), "not run", "", "", typeset(sentence(result.reason))});
+      table.rows.push_back({heading(result.name), "not run", "", "", sentence(result.reason)});
       continue;
     }
     const TestStatistic& key = result.key;
     table.rows.push_back(
         {heading(result.name), std::string(to_string(result.verdict)),
-         fmt::format("{:+.3f} ± {:.3f} {} {}", key.value, key.standard_error, key.unit, key.what),
-         fmt::format("{:g} {}", key.matters, key.unit), typeset(sentence(result.finding))});
+         fmt::format("{:+.3f} ± {:.3f} {}, {}", key.value, key.standard_error, key.unit, key.what),
+         fmt::format("{:g} {}", key.matters, key.unit), sentence(result.finding)});
   }
   return table;
 }
@@ -143,6 +130,7 @@ ReportTable numbers_of(const CheckResult& result) {
     table.rows.back().push_back(fmt::format("{:.5g}", value));
   }
   if (!table.rows.empty()) table.rows.back().resize(table.headers.size());
+  table.is_folded = true;
   return table;
 }
 
@@ -160,7 +148,7 @@ std::vector<std::string> summary_of(const Checks& checks) {
                   count(CheckVerdict::inconsistent), count(CheckVerdict::inconclusive))};
   for (const CheckResult& result : checks.results) {
     if (result.ran && result.verdict == CheckVerdict::inconsistent)
-      summary.push_back(heading(result.name) + ": " + typeset(sentence(result.finding)));
+      summary.push_back(heading(result.name) + ": " + sentence(result.finding));
   }
   return summary;
 }
@@ -170,11 +158,14 @@ std::vector<std::string> summary_of(const Checks& checks) {
 Report check_report(const Checks& checks) {
   Report report = checks.pictures;
   std::vector<std::string> inconsistent;
+  std::size_t ran = 0;
   for (const CheckResult& result : checks.results) {
+    if (result.ran) ++ran;
     if (result.ran && result.verdict == CheckVerdict::inconsistent) inconsistent.push_back(result.name);
   }
   report.title = inconsistent.empty() ? "No check is inconsistent"
-                                      : fmt::format("Inconsistent: {}", fmt::join(inconsistent, ", "));
+                                      : fmt::format("{} of {} checks inconsistent: {}", inconsistent.size(),
+                                                    ran, fmt::join(inconsistent, ", "));
   report.subtitle = "Independent checks" + (checks.model.empty() ? "" : " of " + checks.model);
   report.summary = summary_of(checks);
   for (const CheckResult& result : checks.results)
@@ -199,15 +190,15 @@ Report check_report(const Checks& checks) {
     if (!result.ran) continue;
     ReportText text;
     text.title = fmt::format("{}: {}", heading(result.name), to_string(result.verdict));
-    text.paragraphs = {typeset(fmt::format("Decided by this number: {}.", result.decided)),
-                       typeset(sentence(result.finding)), "Limitations: " + result.cannot_see};
-    for (const std::string& note : result.notes) text.paragraphs.push_back(typeset(sentence(note)));
+    text.paragraphs = {fmt::format("Decided by this number: {}.", result.decided), sentence(result.finding),
+                       "Limitations: " + result.cannot_see};
+    for (const std::string& note : result.notes) text.paragraphs.push_back(sentence(note));
     report.items.emplace_back(std::move(text));
     for (const ReportItem& picture : result.pictures) {
       if (std::visit(shows, picture)) report.items.push_back(picture);
     }
     for (const ReportTable& table : result.tables) {
-      if (!table.rows.empty()) report.items.emplace_back(typeset(table));
+      if (!table.rows.empty()) report.items.emplace_back(table);
     }
     if (ReportTable numbers = numbers_of(result); !numbers.rows.empty())
       report.items.emplace_back(std::move(numbers));

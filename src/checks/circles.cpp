@@ -136,7 +136,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
                                             circle.flown.mean(air.airspeed)));
   }
   const Estimated hpa{mean_value(factors) * error.value, std::abs(mean_value(factors)) * error.error};
-  decide({judged(error, size_that_matters, "m/s", "of airspeed")}, result);
+  decide({judged(error, size_that_matters, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "
       "m/s, as if delta-p were off by {}.",

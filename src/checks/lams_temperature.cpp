@@ -258,8 +258,8 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
         name, "no thermometer is known to compare with the laser; a model names it as recovery_temperature");
   const Differences all = all_differences(flights);
   const auto clear = [&](std::size_t i) { return !all.in_cloud[i]; };
-  const Part outside = part_of(all, "out of cloud", clear);
-  const Part inside = part_of(all, "in cloud", [&](std::size_t i) { return all.in_cloud[i]; });
+  const Part outside = part_of(all, "clear air", clear);
+  const Part inside = part_of(all, "cloud", [&](std::size_t i) { return all.in_cloud[i]; });
   if (outside.fit.samples < min_samples)
     return not_run(name, "the laser and the thermometer have less than a minute out of cloud together");
 
@@ -267,7 +267,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   result.name = name;
   result.ran = true;
   const Estimated offset = outside.fit.coefficients[0];
-  decide({judged(offset, size_that_matters, "K", "between laser and thermometer")}, result);
+  decide({judged(offset, size_that_matters, "K", "laser minus thermometer")}, result);
   const std::vector<double> clear_values = location(all, clear);
   const double noise =
       noise_floor(clear_values, contiguous_segments(clear_values, all.time, all.step), all.step).rms;

@@ -155,7 +155,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
   result.name = "layers";
   result.ran = true;
   std::vector<TestStatistic> numbers{
-      judged({fit.offset, fit.offset_error}, size_that_matters, "K", "of the thermometer")};
+      judged({fit.offset, fit.offset_error}, size_that_matters, "K", "thermometer")};
   result.finding =
       fmt::format("Over {} layer{} the hydrostatic equation implies a thermometer correction of {}",
                   fit.layers, fit.layers == 1 ? "" : "s", with_error({fit.offset, fit.offset_error}, "K"));
@@ -177,8 +177,8 @@ CheckResult check_layers(const CheckedFlights& flights) {
     // An uncertain slope leaves the verdict to the mean.
     TestStatistic change =
         judged({fit.c1 * range, fit.c1_error * range}, size_that_matters, "K",
-               fmt::format("from {:.0f} to {:.0f} degC, by the slope with temperature",
-                           coldest - constants::ice_point, warmest - constants::ice_point));
+               fmt::format("change from {:.0f} to {:.0f} degC", coldest - constants::ice_point,
+                           warmest - constants::ice_point));
     result.numbers = {{"change_over_range_k", change.value},
                       {"change_over_range_stderr_k", change.standard_error}};
     if (change.verdict == CheckVerdict::inconsistent) numbers.push_back(std::move(change));
@@ -194,7 +194,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
                           with_error(slope, "K", 4));
     const double absolute = fit.correction_at(0.0);
     result.notes.push_back(
-        fmt::format("in the form of Cooper (2012), T_m + c0 + c1 T_m with absolute temperatures, c0 is {} "
+        fmt::format("the form of Cooper (2012) is T_m + c0 + c1 T_m with absolute temperatures; c0 is {} "
                     "and c1 {}; their errors are almost fully correlated",
                     with_error({absolute, fit.correction_error_at(0.0)}, "K"),
                     with_error({fit.c1, fit.c1_error}, "K/K", 4)));

@@ -90,8 +90,8 @@ std::string note_on_avionics() {
 }
 
 std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size) {
-  return {judged(fit.difference, size, "hPa", "between the systems"),
-          judged(fit.across, size, "hPa", "from the minimum to the maximum pressure, by the slope")};
+  return {judged(fit.difference, size, "hPa", "difference of the systems"),
+          judged(fit.across, size, "hPa", "change over the range of pressure")};
 }
 
 void add_numbers(const RedundantFit& fit, CheckResult& result) {

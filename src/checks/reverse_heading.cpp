@@ -155,7 +155,7 @@ ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
       "headings that are not opposite, the sum is minus twice the error of the airspeed; delta-p and "
       "temperature are the errors that alone would cause it. Errors of the pairs exclude changes of the wind "
       "between the legs.";
-  table.headers = {"first leg",     "sum, m/s",     "of the headings",
+  table.headers = {"first leg",     "sum, m/s",     "due to headings",
                    "airspeed, m/s", "delta-p, hPa", "temperature, K"};
   for (const Pair& pair : pairs) {
     const LegPair& result = pair.result;
@@ -257,7 +257,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   };
   const Estimated hpa = as_other(&LegPair::pressure_per_airspeed);
   const Estimated kelvin = as_other(&LegPair::temperature_per_airspeed);
-  decide({judged(error, size_that_matters, "m/s", "of airspeed")}, result);
+  decide({judged(error, size_that_matters, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "Over {} pair{} the tail winds of both legs add up to {} instead of zero: the true airspeed is too {} "
       "by {:.2f} +- {:.2f} m/s, as if delta-p were off by {} or the temperature by {}.",

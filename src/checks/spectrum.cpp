@@ -113,10 +113,10 @@ Estimated fall_of(const Spectrum& spectrum) {
 
 std::string in_words(const Estimated& fall) {
   if (fall.value - margin * fall.error > flattest_fall)
-    return "so the spectrum flattens towards a floor of noise or resolution";
+    return "the spectrum flattens towards a floor of noise or resolution";
   if (fall.value + margin * fall.error < flattest_fall)
-    return "so the spectrum still falls like turbulence (-5/3), and the noise is below this";
-  return "which is too uncertain to separate a noise floor from turbulence (-5/3)";
+    return "the spectrum still falls like turbulence (-5/3), and the noise is below this";
+  return "too uncertain to separate a noise floor from turbulence (-5/3)";
 }
 
 struct Octave {
@@ -204,7 +204,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   CheckResult result;
   result.name = name;
   result.ran = true;
-  decide({judged(floor, size_that_matters, "hPa", "of white noise")}, result);
+  decide({judged(floor, size_that_matters, "hPa", "white noise")}, result);
   const double step = coarsest_step(flights);
   if (step >= coarse_pressure) {
     withhold(fmt::format("the static pressure is recorded in steps of {:.2g} hPa, which cause {:.2g} hPa of "
@@ -217,7 +217,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
                   source->name, floor.value, floor.error);
   if (std::isfinite(per_speed))
     result.finding += fmt::format(" (equivalent to {:.2f} m/s of airspeed)", floor.value / per_speed);
-  result.finding += fmt::format("; over the last two octaves power varies as frequency to the {}, {}.",
+  result.finding += fmt::format("; over the last two octaves power varies as frequency to the {}: {}.",
                                 with_error(fall, ""), in_words(fall));
   const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
     return flight.air.step() != spectrum.step;

@@ -200,7 +200,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   const bool has_height = std::isfinite(height.value);
   const bool has_wind = std::isfinite(wind.value);
   const Estimated across = decisive(height, wind);
-  decide({judged(across, size_that_matters, "hPa", "from slow to fast")}, result);
+  decide({judged(across, size_that_matters, "hPa", "change from slow to fast")}, result);
   const auto average = [&](Trend Run::*trend, double Trend::*number) {
     std::vector<double> values;
     for (const Run& run : runs) values.push_back(run.*trend.*number);

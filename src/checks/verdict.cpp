@@ -21,21 +21,23 @@ double reach_of(const TestStatistic& key) {
 /// Reason for the verdict on a number.
 std::string reason_of(const TestStatistic& key) {
   const double magnitude = std::abs(key.value);
+  const auto within = [&](const char* words) {
+    return fmt::format("{:.3f} {} with two standard errors, {} the tolerance of {:g} {}",
+                       magnitude + likely * key.standard_error, key.unit, words, key.matters, key.unit);
+  };
   std::string why;
   if (key.verdict == CheckVerdict::inconsistent) {
     why = fmt::format("above the tolerance of {:g} {} and above three standard errors, {:.3f}", key.matters,
                       key.unit, significant * key.standard_error);
   } else if (key.verdict == CheckVerdict::consistent) {
-    why = fmt::format("with two standard errors {:.3f}, within the tolerance of {:g} {}",
-                      magnitude + likely * key.standard_error, key.matters, key.unit);
+    why = within("within");
   } else if (magnitude > key.matters) {
     why = fmt::format("above the tolerance of {:g} {}, but not above three standard errors, {:.3f}",
                       key.matters, key.unit, significant * key.standard_error);
   } else {
-    why = fmt::format("with two standard errors {:.3f}, not within the tolerance of {:g} {}",
-                      magnitude + likely * key.standard_error, key.matters, key.unit);
+    why = within("not within");
   }
-  return fmt::format("{:+.3f} +- {:.3f} {} {} is {}", key.value, key.standard_error, key.unit, key.what, why);
+  return fmt::format("{:+.3f} +- {:.3f} {}, {}: {}", key.value, key.standard_error, key.unit, key.what, why);
 }
 
 }  // namespace

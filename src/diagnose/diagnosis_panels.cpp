@@ -343,6 +343,7 @@ void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
                            cell(limit.rms, 3),
                            limit.note.empty() ? limit.title : limit.title + ": " + limit.note});
   }
+  limits.is_folded = true;
   panels.add_table(std::move(limits));
   ReportTable absorbed;
   absorbed.title = "Effects that the model's own coefficients imitate";
@@ -354,6 +355,7 @@ void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
   panels.add_table(std::move(absorbed));
   ReportTable not_testable;
   not_testable.title = "Effects that could not be tested";
+  not_testable.is_folded = true;
   not_testable.headers = {"effect", "what", "why"};
   for (const NotTestable& effect : diagnosis.not_testable)
     not_testable.rows.push_back({effect.effect, effect.title, effect.reason});
@@ -385,12 +387,16 @@ void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
                       [](const FlightDiagnosis& f) { return f.traced; });
 }
 
-void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
+void add_residual_in_time(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
   if (panels.report().time.empty()) return;
   panels.add_time("Residual in time",
                   "Static pressure of the reference less that of the model; regimes are shaded. Drag over a "
                   "time range, or choose a regime, and every picture shows its samples alone.",
                   residuals, "residual");
+}
+
+void add_residual_by_regime(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
+  if (panels.report().time.empty()) return;
   add_strip(panels.report());
   panels.add(RegimeTable{"By regime", "Bias and rms of the residual in each regime of the selected samples.",
                          residuals});

@@ -162,7 +162,10 @@ void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const 
 /// Variable with the most unexplained structure, if any.
 void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis);
 
-void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
+void add_residual_in_time(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
+
+/// Flight profile with its regimes, and the residuals in each regime.
+void add_residual_by_regime(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
 
 /// Periods, locations and distribution of the residuals.
 void add_distribution_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals);

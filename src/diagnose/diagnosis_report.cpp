@@ -121,7 +121,7 @@ ReportTable ranking_table(const Diagnosis& diagnosis) {
 ReportTable evidence_table(const std::vector<Finding>& findings) {
   ReportTable table;
   table.title = "Where the evidence lies";
-  table.caption = "The stretches that speak most for each effect.";
+  table.caption = "Time ranges with most of the evidence for each effect.";
   table.headers = {"effect", "flight", "begin (UTC)", "end", "share", "regimes"};
   for (const Finding& finding : findings) {
     for (const Evidence& evidence : finding.evidence) {
@@ -238,12 +238,13 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
     residuals.emplace_back("after");
   panels.measure_memory(diagnosis.flights,
                         [&](const F& f) -> const Series& { return found ? f.after : f.before; });
-  add_residual_panels(panels, residuals);
+  add_residual_in_time(panels, residuals);
   if (what_if != nullptr) {
     const std::vector<std::string> inputs =
         found ? inputs_of(diagnosis.findings.front().effect) : std::vector<std::string>{};
     panels.add_what_if(*what_if, "before", inputs, diagnosis.noise_rms_with_findings);
   }
+  add_residual_by_regime(panels, residuals);
   if (found) {
     add_findings(panels, diagnosis, residuals);
   } else {

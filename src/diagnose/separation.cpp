@@ -98,7 +98,7 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
 std::string general_advice(const std::string& id, const ModelEffect& effect) {
   const std::size_t place = effect_named(effect.id);
   if (place == catalogue_size) return "";
-  return fmt::format("to separate {} in general: {}", id, effect_info[place].manoeuvre);
+  return fmt::format("manoeuvres that separate {} in general: {}", id, effect_info[place].manoeuvre);
 }
 
 bool is_separated(const SeparationProblem& rivalry) {

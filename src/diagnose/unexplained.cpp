@@ -316,7 +316,7 @@ struct LineRival {
 /// Compares the most likely line in one variable with all chosen effects: marginal likelihoods, times
 /// the expected number of effects and of causes among the variables, shared by those that were tested. The
 /// line has a separate slope against each reference because the location of the cause is unknown; the shapes
-/// of the effects are uncertain. Inputs of an effect are no rivals of it.
+/// of the effects are uncertain. Inputs of an effect do not compete with it.
 LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested,
                     const EffectInputs& inputs) {
   constexpr double expected_effects = 0.5;

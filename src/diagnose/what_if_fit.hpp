@@ -21,9 +21,9 @@ using ResidualAt = std::function<std::vector<double>(const Eigen::VectorXd& valu
 using ResidualWith =
     std::function<ResidualAt(const FlightColumns& flight, const std::vector<std::size_t>& groups)>;
 
-/// What a what-if fits: columns and residual of some flights in units of the noise, weighted as a refit with
-/// the effects that were found weights them; unless said otherwise with all of these. A member of a team has
-/// the columns of its own flights, and all have the sums.
+/// Fit of a what-if: columns and residual of some flights in units of the noise, weighted as in a refit with
+/// the effects that were found, by default all of them. A member of a team has the columns of its flights;
+/// all members have the sums.
 class WhatIfFit {
  public:
   /// @param others samples that are not fitted
@@ -47,7 +47,8 @@ class WhatIfFit {
   struct Weights {
     std::vector<std::size_t> found;
     PartialSums parts;
-    Eigen::MatrixXd score_covariance;  ///< of the columns' products with the residual, by the noise
+    Eigen::MatrixXd
+        score_covariance;  ///< covariance, due to noise, of the columns' products with the residual
   };
 
   /// The first element is without findings, the last with all findings.

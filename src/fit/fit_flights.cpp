@@ -17,7 +17,7 @@ struct FlightCounts {
   std::size_t samples = 0;
   std::size_t offsets = 0;
   std::array<std::size_t, mask_count> masks{};
-  std::vector<bool> linear{};  ///< for each of the parameters whether the residual is linear in it
+  std::vector<bool> linear{};  ///< one per parameter: whether the residual is linear in it
   bool rows_are_linear = false;
 
   template <class Archive>

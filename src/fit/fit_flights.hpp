@@ -118,7 +118,7 @@ struct Reduction {
   /// Sums of the squares of the same derivatives absorbed by offsets.
   Eigen::VectorXd absorbed;
   double cost = 0.0;  ///< half the sum of the loss over the innovations
-  bool valid = true;  ///< false where some residual is not a number at these parameters
+  bool valid = true;  ///< false if some residual is not a number at these parameters
 
   /// Lengths of the derivatives, including the part absorbed by offsets.
   Eigen::VectorXd lengths() const;

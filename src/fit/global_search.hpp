@@ -11,7 +11,7 @@ namespace pcor::internal {
 /// trial, so only the others are searched. It minimises the sum of squares.
 ///
 /// @param values of all parameters @return those of the free ones
-/// @throws Error if a parameter to be searched has no bounds, or none is to be searched.
+/// @throws Error if a searched parameter has no bounds, or no parameter is searched.
 Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values,
                               const std::vector<std::size_t>& free);
 

@@ -34,11 +34,14 @@ DotPanel held_out_panel(const std::vector<FlightFit>& flights, std::size_t parts
 
 }  // namespace
 
-void add_held_out(Report& report, const std::vector<FlightFit>& flights) {
+void summarise_held_out(Report& report, const std::vector<FlightFit>& flights) {
   const std::optional<HeldOutPart> worst = worst_held_out(flights);
-  if (!worst) return;
-  if (worst->is_off()) report.summary.push_back(sentence(worst->text()));
-  report.items.emplace_back(held_out_panel(flights, worst->parts));
+  if (worst && worst->is_off()) report.summary.push_back(sentence(worst->text()));
+}
+
+void add_held_out(Report& report, const std::vector<FlightFit>& flights) {
+  if (const std::optional<HeldOutPart> worst = worst_held_out(flights))
+    report.items.emplace_back(held_out_panel(flights, worst->parts));
 }
 
 }  // namespace pcor::internal

@@ -7,8 +7,10 @@
 
 namespace pcor::internal {
 
-/// Adds the picture of the held-out parts to a report, and a sentence to its summary if one of them is
-/// biased. Does nothing if no part is held out.
+/// Adds a sentence to the summary of a report if a held-out part is biased.
+void summarise_held_out(Report& report, const std::vector<FlightFit>& flights);
+
+/// Adds the picture of the held-out parts to a report, if there are any.
 void add_held_out(Report& report, const std::vector<FlightFit>& flights);
 
 }  // namespace pcor::internal

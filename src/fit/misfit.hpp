@@ -26,7 +26,7 @@ class MisfitBasis {
   Eigen::VectorXd deviation_{};  // zero if a state is not recorded or constant
 };
 
-/// What the law lacks as a smooth function of the flight state: a sum of functions of attack ratio, sideslip
+/// Misfit of the law as a smooth function of the flight state: a sum of functions of attack ratio, sideslip
 /// ratio, q/p, climb rate, load factor and static pressure, the same on all flights. Each state is
 /// standardised over the flights, cut off at +-3 and has seven bumps, exp(-((z - c)/0.75)^2/2) with c = -3
 /// ... 3, whose heights are normal with one variance for each state. The variances are the most likely ones

@@ -77,10 +77,10 @@ FitTask task_of(const ModelDefinition& model, const References& references, cons
 /// Result of the stages of a fit.
 struct Fitted {
   Solution solution{};
-  std::vector<std::size_t> parameters{};              // in the order of the stages
+  std::vector<std::size_t> parameters{};              // sorted by stage
   std::vector<std::size_t> held{};                    // fixed parameters with an error stated in the files
   std::vector<int> stage_of{};                        // one per parameter
-  std::unique_ptr<FitFlights> flights{};              // with all samples and all parameters that were fitted
+  std::unique_ptr<FitFlights> flights{};              // all samples and all parameters that were fitted
   std::vector<std::unique_ptr<FitFlights>> stages{};  // samples of each stage but the last
   std::vector<FitEquations> equations{};
   bool has_converged = true;
@@ -425,7 +425,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   // Gusts are in the residual of the wind: a better law need not make it smaller.
   result.worse = why_worse(result, by_gps_alone ? infinity : sums.rms_of(sums.bulk_squares_before));
   result.least_squares_rms = gps ? result.rms : sums.rms_of(squares.least());
-  // Gusts and drifts of the wind are no faults of the model.
+  // Gusts and drifts of the wind are not errors of the model.
   if (!by_gps_alone) result.warnings = fit_warnings(result, compared.longest_run);
   if (gps) result.warnings.insert(result.warnings.begin(), gps->warnings.begin(), gps->warnings.end());
   result.notes = notes_of(result, task, fitted, covariance.by_noise, gps, compared);

@@ -26,7 +26,7 @@ ReportTable coefficient_table(const RefitResult& fit) {
   for (const FittedParameter& p : fit.parameters) {
     table.rows.push_back({p.name, fmt::format("{:.6g}", p.start), fmt::format("{:.6g}", p.value),
                           !p.fitted    ? "held"
-                          : p.at_bound ? "at its bound"
+                          : p.at_bound ? "bound"
                                        : fmt::format("{:.3g}", p.standard_error),
                           p.unit, p.fitted ? std::to_string(p.stage) : ""});
   }
@@ -80,7 +80,7 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   report.title = fmt::format("The refit changes the rms residual from {:.3f} to {:.3f} hPa; noise {:.3f} hPa",
                              fit.rms_before, fit.rms, fit.noise_rms);
   report.subtitle = fmt::format("Refit of {} to {}", unfitted_name(fit.model), fit.reference_text);
-  add_held_out(report, fit.flights);
+  summarise_held_out(report, fit.flights);
   for (const std::string& warning : fit.warnings) report.summary.push_back(sentence(warning));
   if (const std::string text = flaps_out_text(fit.flaps_out, "the fit"); !text.empty())
     report.summary.push_back(sentence(text));
@@ -99,6 +99,7 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   if (auto picture = coefficient_picture(fit.parameters, "before the fit", "after the fit"))
     report.items.emplace_back(std::move(*picture));
   report.items.emplace_back(coefficient_table(fit));
+  add_held_out(report, fit.flights);
   panels.add_panels();
   panels.add_pairs();
   if (fit.omissions.size() > 1) {

@@ -44,7 +44,7 @@ void require_samples(const FitFlights& flights, std::size_t free, bool is_stage)
                     "coefficients",
                     flights.samples(), unknown, mask_text(flights.masks())));
   }
-  // The noise is found from bins of four seconds; that of a stage is the noise of all samples.
+  // The noise is found from bins of four seconds; a stage has the noise of all samples.
   const std::size_t fewest = unknown + (is_stage ? 1 : min_free_bins);
   const std::size_t bins = flights.bins();
   if (bins < fewest) {

@@ -51,7 +51,7 @@ std::vector<std::string> fit_warnings(const RefitResult& result, const OutlierRu
   if (longest.duration() >= max_chance) {
     warnings.push_back(fmt::format(
         "{}: from {} to {} {} samples in a row are off by {:+.2f} hPa in the mean, each beyond {:.1f} "
-        "deviations of the noise, so they are no outliers: the model lacks what happened there, or a sensor "
+        "deviations of the noise, so they are not outliers: an effect is missing there, or a sensor "
         "failed",
         longest.flight, utc_text(longest.begin, "%H:%M:%S"), utc_text(longest.end, "%H:%M:%S"),
         longest.samples, longest.mean, tukey_width));

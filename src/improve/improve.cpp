@@ -304,10 +304,9 @@ class Climb {
     if (!offer) return;
     const std::string& id = offer->effect;
     const Comparison& out = offer->out_of_fit;
-    const std::string figures = fmt::format(
-        "{} the rms is {} with it and {} without it (its squared residuals fall by {:.0f} +- {:.0f} in "
-        "units of the noise)",
-        offer->held_out, shown(out.rms_after), shown(out.rms_before), out.gain, out.gain_error);
+    const std::string figures =
+        fmt::format("rms {} with it and {} without it (chi2 changes by {:+.0f} +- {:.0f}) on {}",
+                    shown(out.rms_after), shown(out.rms_before), -out.gain, out.gain_error, offer->held_out);
     if (!out.is_better() || !(out.rms_after <= unnamed_limit * out.rms_before)) {
       result_.why_stopped += fmt::format("; {} was tried and dropped: {}", id, figures);
       return;
@@ -359,10 +358,10 @@ class Climb {
     const double growth = whole.rms_after / whole.rms_before;
     if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";
     return fmt::format(
-        "{} the rms of the best model is {:.4f} times the rms of the given model (its squared residuals are "
-        "larger by {:.0f} +- {:.0f} in units of the noise)",
-        loop_.has_holdout ? "on held-out samples" : "on these flights", growth, -whole.gain,
-        whole.gain_error);
+        "{}: the rms of the best model is {:.4f} times the rms of the given model (chi2 changes by {:+.0f} "
+        "+- "
+        "{:.0f})",
+        loop_.has_holdout ? "held-out samples" : "these flights", growth, -whole.gain, whole.gain_error);
   }
 
   void climb_on() {

@@ -74,7 +74,7 @@ DotPanel ladder_picture(const Improvement& improvement) {
       "significant although bars overlap.";
   panel.axis = "rms residual";
   panel.unit = "hPa";
-  panel.series = {"in the fit", held_out_series(improvement)};
+  panel.series = {"fitted", held_out_series(improvement)};
   const double noise = improvement.steps.back().noise_rms;
   if (std::isfinite(noise)) panel.lines = {{fmt::format("noise, {:.3f} hPa", noise), noise}};
   const double fitted = independent_samples(improvement, false);

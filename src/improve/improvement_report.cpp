@@ -45,8 +45,8 @@ Flights shown_flights(const Improvement& improvement) {
   return flights;
 }
 
-/// Residuals of the initial, refitted and final model over time.
-void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement) {
+/// Residuals of the initial, refitted and final model; the names of those that are known.
+std::vector<std::string> add_ladder_columns(DiagnosisPanels& panels, const Improvement& improvement) {
   const auto before = [](const FlightDiagnosis& flight) { return flight.before; };
   std::vector<std::string> columns;
   const auto add = [&](const char* name, const std::string& title, auto residual) {
@@ -56,11 +56,19 @@ void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement)
   add("ladder-given", "residual, given model", &ImprovedFlight::given);
   add("ladder-refitted", "residual, refitted", &ImprovedFlight::refitted);
   add("ladder-best", "residual, best model", &ImprovedFlight::best);
+  return columns;
+}
+
+/// Residuals of the models over time, averaged so that noise does not hide the slow changes.
+void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement,
+                        std::vector<std::string> columns) {
   if (columns.empty()) return;
-  std::string held_out = "Nothing was held out.";
+  constexpr double averaging_time = 60.0;  // s
+  std::string caption = fmt::format("Means over {:g} s.", averaging_time);
   const std::vector<std::string> names = held_out_names(improvement);
-  if (!names.empty()) held_out = fmt::format("Held out: {}.", join_list(names));
-  panels.add_time("The ladder in time", held_out, columns, "residual");
+  if (!names.empty()) caption += fmt::format(" Held out: {}.", join_list(names));
+  panels.add(TimePanel{"The ladder in time", std::move(caption), std::move(columns), "residual", "",
+                       averaging_time});
 }
 
 ReportTable ladder_table(const Improvement& improvement) {
@@ -82,13 +90,19 @@ ReportTable ladder_table(const Improvement& improvement) {
 }
 
 void summarise(Report& report, const Improvement& improvement) {
-  add_held_out(report, improvement.fit.flights);
+  summarise_held_out(report, improvement.fit.flights);
   const ImproveStep& first = improvement.steps.front();
   const ImproveStep& last = improvement.steps.back();
+  const char* const outside = improvement.holdout_is_flights ? "held-out samples" : "parts outside the fit";
   report.summary.push_back(
-      fmt::format("On {} the rms residual changes from {} to {} hPa; the noise is {} hPa.",
-                  improvement.holdout_is_flights ? "held-out samples" : "stretches outside the fit",
-                  hpa(first.rms_holdout), hpa(last.rms_holdout), hpa(last.noise_rms)));
+      improvement.steps.size() == 1
+          ? fmt::format(
+                "The rms residual is {} hPa, with the coefficients fitted again {} hPa, and {} hPa on {}; "
+                "the noise is {} hPa.",
+                hpa(improvement.given_rms_train), hpa(last.rms_train), hpa(last.rms_holdout), outside,
+                hpa(last.noise_rms))
+          : fmt::format("On {} the rms residual changes from {} to {} hPa; the noise is {} hPa.", outside,
+                        hpa(first.rms_holdout), hpa(last.rms_holdout), hpa(last.noise_rms)));
   for (const ImproveStep& step : improvement.steps) {
     if (step.added.empty()) continue;
     std::string text = fmt::format("Added: {}; the rms residual becomes {} hPa.",
@@ -184,22 +198,25 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
   }
   panels.measure_memory(top.flights, [](const FlightDiagnosis& f) -> const Series& { return f.before; });
   name_held_out(report, improvement);
+  const std::vector<std::string> ladder = add_ladder_columns(panels, improvement);
   panels.add(ladder_picture(improvement));
+  if (what_if != nullptr) {
+    const ModelEffect& last = improvement.fit.model.model.effects.back();
+    panels.add_what_if(*what_if, "ladder-refitted", added > 0 ? inputs_of(last) : std::vector<std::string>{},
+                       steps.back().noise_rms);
+  }
+  add_held_out(report, improvement.fit.flights);
   if (auto coefficients = coefficients_picture(improvement, start)) panels.add(std::move(*coefficients));
   if (!rungs.empty())
     panels.add_plane("Remaining residual over Mach number and pressure",
                      "Residual at the top of the ladder: one colour over a region is a bias there.",
                      rungs.back());
   panels.add_table(ladder_table(improvement));
-  add_ladder_in_time(panels, improvement);
-  if (what_if != nullptr) {
-    const ModelEffect& last = improvement.fit.model.model.effects.back();
-    panels.add_what_if(*what_if, "ladder-refitted", added > 0 ? inputs_of(last) : std::vector<std::string>{},
-                       steps.back().noise_rms);
-  }
-  add_residual_panels(panels, rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()});
-  for (std::size_t i = 1; i < steps.size(); ++i) add_rung(panels, improvement, i);
+  add_ladder_in_time(panels, improvement, ladder);
   const std::vector<std::string> ends = rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()};
+  add_residual_in_time(panels, ends);
+  add_residual_by_regime(panels, ends);
+  for (std::size_t i = 1; i < steps.size(); ++i) add_rung(panels, improvement, i);
   add_distribution_panels(panels, ends);
   panels.add_responses(ends, reads_laser(top));
   if (!rungs.empty()) add_unexplained(panels, top, rungs.back());

@@ -95,12 +95,12 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
     if (surface.effect == id) offer.degrees_of_freedom = surface.degrees_of_freedom;
   }
   if (!options.holdout.empty() || options.training_share < 1.0) {
-    offer.held_out = "on held-out samples";
+    offer.held_out = "held-out samples";
     models.with.file = offer.fit.model;
     offer.out_of_fit =
         comparison_of(try_models(flights, {models.without, models.with}, references, options), 0, 1, true);
   } else {
-    offer.held_out = "on five blocks, each with coefficients of the other four";
+    offer.held_out = "five blocks, each with coefficients of the other four";
     offer.out_of_fit = out_of_blocks(flights, models, references, options);
   }
   return offer;

@@ -17,8 +17,8 @@ struct SurfaceOffer {
 };
 
 /// Fits a model with a surface of attack and Mach number, and compares it with the model without it on
-/// held-out flights or parts; without these, on five contiguous blocks of the flights, each with fits to the
-/// other four. Empty if the flights do not record the axes.
+/// held-out flights or parts; if nothing is held out, on five contiguous blocks of the flights, each with
+/// fits to the other four. Empty if the flights do not record the axes.
 std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialModel& model,
                                           const References& references, const RefitOptions& options);
 

@@ -72,8 +72,8 @@ std::vector<std::pair<std::string, std::string>> origin_attributes(const std::fi
           {"pcor_model_aircraft", model.model.aircraft},
           {"pcor_model_coefficients", coefficients_text(model)},
           {"pcor_correction", changes_no_pressure(model, options) ? "none: the model changes no pressure"
-                              : options.correct_with == CorrectWith::lams ? "by LAMS"
-                                                                          : "by the model"},
+                              : options.correct_with == CorrectWith::lams ? "LAMS"
+                                                                          : "model"},
           {"pcor_model_toml", text},
           {model_hash_attribute, sha256_of_text(text)},
           {"pcor_options", chosen},

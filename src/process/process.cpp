@@ -349,10 +349,10 @@ void Processing::note_archive() {
   });
   if (changes_no_pressure(file_, options_)) {
     note(
-        "the model changes no pressure: all its coefficients are zero, so the pressures of the output are {} "
-        "and {} "
-        "{}; pcor refit finds coefficients where the flight determines them",
-        static_pressure, dynamic_pressure, is_corrected ? "as the archive corrected them" : "as recorded");
+        "the model changes no pressure: all its coefficients are zero, so the pressures of the output are "
+        "the {} "
+        "{} and {}; pcor refit finds coefficients if the flight determines them",
+        is_corrected ? "archived" : "recorded", static_pressure, dynamic_pressure);
   } else if (is_corrected) {
     note("{} and {} were corrected by the archive; the model corrects the remaining error", static_pressure,
          dynamic_pressure);

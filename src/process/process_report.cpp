@@ -92,29 +92,15 @@ class Outputs {
   std::vector<ReportColumn> columns_;
 };
 
-/// Columns of delta-p plus and minus its standard uncertainty.
-void add_bounds(Report& report) {
-  const ReportColumn* const defect = column_named(report.columns, "PCOR");
-  const ReportColumn* const uncertainty = column_named(report.columns, "PCOR_uncertainty");
-  if (defect == nullptr || uncertainty == nullptr) return;
-  ReportColumn lower{"PCOR_lower", "minus one standard uncertainty", "hPa", defect->values};
-  ReportColumn upper{"PCOR_upper", "plus one standard uncertainty", "hPa", defect->values};
-  for (std::size_t i = 0; i < defect->values.size(); ++i) {
-    lower.values[i] -= uncertainty->values[i];
-    upper.values[i] += uncertainty->values[i];
-  }
-  add_if_present(report, std::move(lower));
-  add_if_present(report, std::move(upper));
-}
-
 void add_pictures(Report& report) {
-  add_bounds(report);
-  add_if_present(report, TimePanel{"Delta-p in time",
-                                   "Correction added to the static pressure and subtracted from the dynamic "
-                                   "pressure, with its standard uncertainty if the model states one. Drag "
-                                   "over a time range to restrict all figures to it.",
-                                   {"PCOR", "PCOR_lower", "PCOR_upper"},
-                                   "delta-p"});
+  add_if_present(report,
+                 TimePanel{"Delta-p in time",
+                           "Correction added to the static pressure and subtracted from the dynamic "
+                           "pressure; the band is its standard uncertainty, if the model states one. "
+                           "Drag over a time range to restrict all figures to it.",
+                           {"PCOR"},
+                           "delta-p",
+                           meet(report.columns, {"PCOR", "PCOR_uncertainty"}) ? "PCOR_uncertainty" : ""});
   if (has_column(report, "PCOR")) {
     std::vector<std::string> states;
     for (const char* name : {"MACHX", "QCXC", "PSXC"}) {

@@ -54,9 +54,8 @@ std::string criterion_of(Regime regime, const RegimeCriteria& c) {
           "airspeed below {} m/s, until the take-off roll ({} m/s, at most {} s earlier) and from landing on",
           c.flying_speed, c.roll_speed, c.take_off_time);
     case Regime::take_off:
-      return fmt::format(
-          "from the start of the roll to {} m above the field, at most {} s after {} m/s were reached",
-          c.take_off_height, c.take_off_time, c.flying_speed);
+      return fmt::format("start of the roll to {} m above the field, at most {} s after {} m/s were reached",
+                         c.take_off_height, c.take_off_time, c.flying_speed);
     case Regime::climb:
       return climb("above", c.climb_rate, c);
     case Regime::descent:

@@ -96,8 +96,40 @@ function linePaths(samples, values, x, y) {
   return paths.map((one) => one.length > 2 ? one : [one[0] - 1.5, one[1], one[0] + 1.5, one[1]]);
 }
 
+// Means over periods of `seconds`, at every sample that has a value.
+function periodMeans(samples, values, seconds) {
+  const means = new Float64Array(values.length).fill(NaN);
+  for (let first = 0, end = 0; first < samples.count; first = end) {
+    const period = Math.floor(samples.position[first] / seconds);
+    let sum = 0, count = 0;
+    for (; end < samples.count && Math.floor(samples.position[end] / seconds) === period; ++end)
+      if (!Number.isNaN(values[end])) { sum += values[end]; ++count; }
+    for (let i = first; i < end; ++i) if (!Number.isNaN(values[i])) means[i] = sum / count;
+  }
+  return means;
+}
+
+// Strokes from value - error to value + error, one for each pixel, and their width.
+function bandPaths(samples, {values}, {values: errors}, x, y) {
+  const paths = [];
+  let path = null;
+  for (let i = 0; i < samples.count; ++i) {
+    const [low, high] = [values[i] - errors[i], values[i] + errors[i]].map(y);
+    if (!samples.selected[i] || !Number.isFinite(low)) continue;
+    const at = Math.floor(x(samples.position[i])) + 0.5;
+    if (path?.[0] !== at) paths.push(path = [at, low, at, high]);
+    path[1] = Math.max(path[1], low);
+    path[3] = Math.min(path[3], high);
+  }
+  const [from, to] = samples.view;
+  return {paths, width: Math.max(1, (x(to) - x(from)) / Math.max(samples.nearest(to) - samples.nearest(from), 1))};
+}
+
 function drawTime(pen, width, height, item, samples, theme) {
-  const columns = curvesOf(samples, item, theme);
+  const recorded = curvesOf(samples, item, theme);
+  const columns = item.averagingTime
+    ? recorded.map((column) => ({...column, values: periodMeans(samples, column.values, item.averagingTime)})) : recorded;
+  const error = samples.columns.get(item.uncertainty);
   const entries = columns.map(({title, colour}) => ({label: title, colour}));
   const key = item.columns.length > 1;
   cover(pen, width, height, theme);
@@ -107,7 +139,9 @@ function drawTime(pen, width, height, item, samples, theme) {
   const [from, to] = samples.view;
   const x = scale(from, to, box.x, box.x + box.width);
   const found = columns.map((column) => samples.indices([column]));
-  const range = limits(valuesOf(samples, columns));
+  const ends = error ? [-1, 1].flatMap((sign) => samples.indices([columns[0], error], samples.every)
+    .map((i) => columns[0].values[i] + sign * error.values[i])) : [];
+  const range = limits(valuesOf(samples, columns).concat(ends));
   range.to += samples.intervals.length ? 0.09 * (range.to - range.from) : 0;
   Object.assign(range, item.vertical);
   const y = scale(range.from, range.to, box.y + box.height, box.y);
@@ -124,15 +158,22 @@ function drawTime(pen, width, height, item, samples, theme) {
       const right = Math.min(x(flight.offset + flight.duration), box.x + box.width);
       if (textWidth(flight.name, fontSize) < right - left) pen.text(left + 2, box.y - 5, flight.name, small(theme));
     }
-  pen.clip(box, () => columns.forEach(({values, colour}) => pen.lines(linePaths(samples, values, x, y), colour, 1.25)));
+  pen.clip(box, () => {
+    if (error) {
+      const band = bandPaths(samples, columns[0], error, x, y);
+      pen.lines(band.paths, columns[0].colour, band.width, [], 0.25);
+    }
+    columns.forEach(({values, colour}) => pen.lines(linePaths(samples, values, x, y), colour, 1.25));
+  });
   tellBeyond(pen, box, range.beyond, theme);
   return {
     points: found.reduce((sum, indices) => sum + indices.length, 0),
     plot: box,
     place: (i) => ({x: x(samples.position[i]), y: y(columns[0].values[i])}),
     up: (pixel) => range.from + (box.y + box.height - pixel) / box.height * (range.to - range.from),
-    alternative: `Lines over time, from ${clock(begin)} to ${clock(end)} UTC: ${listText(columns.map(({label}) => label))}`,
-    table: statisticsTable(samples, columns),
+    alternative: `Lines over time, from ${clock(begin)} to ${clock(end)} UTC: ${listText(columns.map(({label}) => label))}` +
+      `${error ? `, in a band of the ${error.label}` : ''}`,
+    table: statisticsTable(samples, error ? [...recorded, error] : recorded),
   };
 }
 

@@ -84,11 +84,18 @@ class Samples {
       for (const flight of this.flights) {
         const from = Math.max(begin - flight.start, 0), to = Math.min(end - flight.start, flight.duration);
         if (to < from) continue;
-        this.intervals.push({name, begin: flight.offset + from, end: flight.offset + to});
+        this.shade(name, flight.offset + from, flight.offset + to);
         for (let i = flight.first; i < flight.end; ++i)
           if (this.time[i] >= begin && this.time[i] < end) this.regimes.get(name)[i] = 1;
       }
     }
+  }
+
+  // Adds an interval, joined with one of the same name that it overlaps: flights may cover the same time.
+  shade(name, begin, end) {
+    const known = this.intervals.find((one) => one.name === name && one.begin <= end && one.end >= begin);
+    if (!known) this.intervals.push({name, begin, end});
+    else Object.assign(known, {begin: Math.min(known.begin, begin), end: Math.max(known.end, end)});
   }
 
   // Flight and time (s since 1970) at a position on the time axis.

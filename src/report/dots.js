@@ -26,8 +26,24 @@ function dotsHeight(rows, series) {
   return 76 + rows * Math.max(30, 8 + markHeight * series);
 }
 
+// Ends of dots with their bars; if a quarter of the rows at most would stretch the axis more than four times, they
+// are beyond it.
+function endsOfRows(rows, always) {
+  const endsOf = (some) => some.flatMap(({dots}) => dots).filter(({value}) => Number.isFinite(value))
+    .flatMap(({value, error}) => [value - error, value + error]);
+  const all = endsOf(rows), middle = median(Float64Array.from(all));
+  const distance = (row) => Math.max(0, ...endsOf([row]).map((end) => Math.abs(end - middle)));
+  const outermost = [...rows].sort((a, b) => distance(b) - distance(a));
+  const length = (ends) => Math.max(...ends, ...always) - Math.min(...ends, ...always);
+  for (let beyond = 1; beyond <= rows.length / 4; ++beyond) {
+    const others = endsOf(outermost.slice(beyond));
+    if (others.length && length(all) > 4 * length(others)) return others;
+  }
+  return all;
+}
+
 // Rows {label, dots: [{value, error}, ...], text, tone, mark}: an axis below that covers `reach`, or
-// otherwise all dots with their bars, a band of small values, and lines.
+// otherwise the dots with their bars, a band of small values, and lines. Arrows mark dots beyond the axis.
 function drawRows(pen, width, height, {rows, series, lines = [], band = null, axis, reach}, theme) {
   cover(pen, width, height, theme);
   const colours = series.map((label, s) => theme.series[s % theme.series.length]);
@@ -44,9 +60,8 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
   const right = below ? 14 : words + 20;
   const box = plotBox(width, height, {left, right, top});
   const finite = rows.flatMap(({dots}) => dots.filter(({value}) => Number.isFinite(value)));
-  const range = limits(reach ?? finite.map(({value}) => value),
-    [...(reach ?? finite.flatMap(({value, error}) => [value - error, value + error])), ...lines.map(({value}) => value),
-      ...(band ? [band.from, band.to] : [])].filter(Number.isFinite));
+  const always = [...lines.map(({value}) => value), ...(band ? [band.from, band.to] : [])];
+  const range = limits([], [...(reach ?? endsOfRows(rows, always)), ...always].filter(Number.isFinite));
   if (range.from > 0 && range.from < 0.5 * range.to) range.from = 0;
   const x = scale(range.from, range.to, box.x, box.x + box.width);
   if (band) pen.rect(x(band.from), box.y, x(band.to) - x(band.from), box.height, theme.frame, 0.22);
@@ -70,6 +85,12 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
       if (!Number.isFinite(value)) return;
       const y = middle + (s - (dots.length - 1) / 2) * Math.min(markHeight, room / dots.length);
       const colour = tones[tone]?.colour(theme) ?? colours[s];
+      const side = Math.sign(value - Math.min(Math.max(value, range.from), range.to));
+      if (side) {
+        const tip = side < 0 ? box.x + 2 : box.x + box.width - 2;
+        pen.lines([[tip - 6 * side, y - 5, tip, y, tip - 6 * side, y + 5], [tip - 16 * side, y, tip, y]], colour, 2);
+        return;
+      }
       pen.clip({...box, x: box.x - 6, width: box.width + 12}, () => {
         if (error > 0) {
           const [low, high] = [x(value - error), x(value + error)];

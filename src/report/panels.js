@@ -34,6 +34,9 @@ const uses = {
 
 const overTime = ({kind}) => kind === 'time' || kind === 'strip';
 
+// Whether a picture shows numbers that do not belong to samples, so that it does not follow the selection.
+const ofAllSamples = ({kind}) => ['bars', 'curves', 'dots'].includes(kind);
+
 const titleSize = 13;
 
 // Title broken into lines, and their total height.
@@ -66,6 +69,8 @@ class Panel {
     this.switches = this.makeSwitches();
     if (item.wind?.length) this.addBarbs(tools);
     if (this.switches.length) this.picture.before(make('div', {class: 'chips', role: 'group', 'aria-label': 'Curves'}, ...this.switches));
+    this.whole = make('p', {class: 'hint whole', hidden: ''}, 'This picture shows all samples.');
+    this.picture.after(this.whole);
     section.append(make('details', {}, make('summary', {}, 'Numbers'), make('div', {'class': 'scroll', 'tabindex': '0', 'role': 'group', 'aria-label': `Numbers of ${item.title}`}, this.numbers)));
   }
 
@@ -128,6 +133,7 @@ class Panel {
       button.setAttribute('aria-pressed', String(!this.item.hidden.has(this.item.columns[i])));
       button.querySelector('.swatch').style.background = theme.series[i % theme.series.length];
     });
+    this.whole.hidden = !samples.isFiltered || !ofAllSamples(this.item);
     this.empty.hidden = points > 0;
     this.empty.textContent = samples.selectedCount ? 'No selected sample has a value here' : 'No sample is selected';
     this.point(this.report.cursor);
@@ -152,7 +158,7 @@ class Panel {
   // Columns of the readout.
   get told() {
     const {kind, columns, choice, choices, x, y, latitude, longitude, colour} = this.item;
-    if (kind === 'time' || kind === 'strip') return columns;
+    if (overTime(this.item)) return this.item.uncertainty ? [...columns, this.item.uncertainty] : columns;
     if (kind === 'binned') return [choice ?? choices[0], ...columns];
     return [x, y, latitude, longitude, colour].filter((name) => name);
   }

@@ -1,7 +1,7 @@
 // One drawing interface for two outputs: a canvas for the screen and PNG, text for SVG.
 //
 //   rect(x, y, width, height, fill, opacity)
-//   lines(paths, stroke, width, dash)      each path is x, y, x, y, ... in one array
+//   lines(paths, stroke, width, dash, opacity)  each path is x, y, x, y, ... in one array
 //   dots(xy, size, fill, opacity)          squares around x, y, x, y, ...; one per pixel
 //   text(x, y, words, {fill, size, align: start | middle | end, weight, turn: degrees})
 //   clip(box, draw)                        limits drawing to the box {x, y, width, height}
@@ -39,8 +39,9 @@ class CanvasPen {
     this.context.globalAlpha = 1;
   }
 
-  lines(paths, stroke, width = 1, dash = []) {
+  lines(paths, stroke, width = 1, dash = [], opacity = 1) {
     const {context} = this;
+    context.globalAlpha = opacity;
     context.beginPath();
     for (const path of paths) {
       context.moveTo(path[0], path[1]);
@@ -52,6 +53,7 @@ class CanvasPen {
     context.setLineDash(dash);
     context.stroke();
     context.setLineDash([]);
+    context.globalAlpha = 1;
   }
 
   dots(xy, size, fill, opacity = 1) {
@@ -116,14 +118,15 @@ class SvgPen {
         `fill="${fill}"${opacity < 1 ? ` fill-opacity="${opacity}"` : ''}/>`);
   }
 
-  lines(paths, stroke, width = 1, dash = []) {
+  lines(paths, stroke, width = 1, dash = [], opacity = 1) {
     const d = paths.map((path) => {
       let words = '';
       for (let i = 0; i < path.length; i += 2) words += `${i ? 'L' : 'M'}${short(path[i])} ${short(path[i + 1])}`;
       return words;
     }).join('');
     if (!d) return;
-    this.parts.push(`<path d="${d}" fill="none" stroke="${stroke}" stroke-width="${width}" stroke-linejoin="round"` +
+    this.parts.push(`<path d="${d}" fill="none" stroke="${stroke}" stroke-width="${short(width)}" stroke-linejoin="round"` +
+        `${opacity < 1 ? ` stroke-opacity="${opacity}"` : ''}` +
         `${dash.length ? ` stroke-dasharray="${dash.join(' ')}"` : ''}/>`);
   }
 

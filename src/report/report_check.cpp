@@ -67,7 +67,11 @@ struct CheckItem {
     if (!columns.any(panel.title, panel.columns)) fail_empty(panel.title);
   }
 
-  void operator()(const TimePanel& panel) const { any_of(panel); }
+  void operator()(const TimePanel& panel) const {
+    any_of(panel);
+    if (!panel.uncertainty.empty() && !columns.meet(panel.title, {panel.columns.front(), panel.uncertainty}))
+      fail_empty(panel.title);
+  }
 
   void operator()(const BinnedPanel& panel) const {
     if (panel.bins == 0) fail("panel '" + panel.title + "' has no bins; give at least one");

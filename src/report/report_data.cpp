@@ -101,7 +101,10 @@ class AlongAxes {
 
   bool has(const std::string& name) const { return along_.count(name) > 0 && up_.count(name) == 0; }
 
-  void operator()(const TimePanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
+  void operator()(const TimePanel& panel) {
+    up_.insert(panel.columns.begin(), panel.columns.end());
+    up_.insert(panel.uncertainty);
+  }
   void operator()(const BinnedPanel& panel) {
     along_.insert(panel.x_choices.begin(), panel.x_choices.end());
     up_.insert(panel.y.begin(), panel.y.end());
@@ -209,7 +212,11 @@ struct ItemJson {
   const Report& report;
 
   json operator()(const TimePanel& panel) const {
-    return {{"title", panel.title}, {"columns", panel.columns}, {"axis", panel.axis}};
+    return {{"title", panel.title},
+            {"columns", panel.columns},
+            {"axis", panel.axis},
+            {"uncertainty", panel.uncertainty},
+            {"averagingTime", panel.averaging_time}};
   }
   json operator()(const BinnedPanel& panel) const {
     return {{"title", panel.title},

@@ -49,13 +49,21 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
+// Escaped text, with ± instead of the +- of the terminal.
+std::string typeset(std::string_view text) {
+  std::string shown = escaped(text);
+  for (std::size_t at = shown.find("+-"); at != std::string::npos; at = shown.find("+-", at))
+    shown.replace(at, 2, "±");
+  return shown;
+}
+
 // Empty for an empty text.
 std::string element(std::string_view tag, std::string_view text) {
-  return text.empty() ? "" : fmt::format("<{0}>{1}</{0}>\n", tag, escaped(text));
+  return text.empty() ? "" : fmt::format("<{0}>{1}</{0}>\n", tag, typeset(text));
 }
 
 std::string element(std::string_view tag, std::string_view kind, std::string_view text) {
-  return text.empty() ? "" : fmt::format(R"(<{0} class="{1}">{2}</{0}>)", tag, kind, escaped(text)) + "\n";
+  return text.empty() ? "" : fmt::format(R"(<{0} class="{1}">{2}</{0}>)", tag, kind, typeset(text)) + "\n";
 }
 
 // Whether a cell is a number, optionally with its error or unit: "-1.2e-3", "0.3 ± 0.1", "12 %".
@@ -65,12 +73,21 @@ bool is_numeric(const std::string& cell) {
   return end != cell.c_str() && (*end == '\0' || *end == ' ');
 }
 
-// A cell with more characters may take several lines.
-constexpr std::size_t max_on_a_line = 60;
+constexpr std::size_t max_number = 24;     // characters of a number with its error and unit
+constexpr std::size_t max_on_a_line = 60;  // a cell with more characters may take several lines
+constexpr std::size_t max_columns_narrow =
+    3;                                     // a table with more columns shows rows as lists in narrow windows
+constexpr std::size_t max_rows_open = 30;  // a table with more rows is folded
+
+std::string folded(std::string_view words, const std::string& content) {
+  return fmt::format("<details class=\"fold\"><summary>{}</summary>\n{}</details>\n", words, content);
+}
 
 std::string table(const ReportTable& table) {
   const auto kind = [](const std::string& cell) {
-    return is_numeric(cell) ? R"( class="number")" : cell.size() > max_on_a_line ? R"( class="words")" : "";
+    return cell.size() <= max_number && is_numeric(cell) ? R"( class="number")"
+           : cell.size() > max_on_a_line                 ? R"( class="words")"
+                                                         : "";
   };
   std::string head, body;
   for (std::size_t i = 0; i < table.headers.size(); ++i)
@@ -79,16 +96,22 @@ std::string table(const ReportTable& table) {
                                                    kind(table.rows.front()[i]), escaped(table.headers[i]));
   for (const auto& row : table.rows) {
     body += "<tr>";
-    for (const std::string& cell : row) body += fmt::format("<td{}>{}</td>", kind(cell), escaped(cell));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      body += fmt::format(R"(<td{} data-header="{}">{}</td>)", kind(row[i]), escaped(table.headers[i]),
+                          typeset(row[i]));
     body += "</tr>\n";
   }
-  return fmt::format(R"(<div class="scroll" tabindex="0" role="group" aria-label="{}"><table>
+  const std::string html =
+      fmt::format(R"(<div class="scroll" tabindex="0" role="group" aria-label="{}"><table{}>
 <thead><tr>{}</tr></thead>
 <tbody>
 {}</tbody>
 </table></div>
 )",
-                     escaped(table.title), head, body);
+                  escaped(table.title),
+                  table.headers.size() > max_columns_narrow ? R"( class="list-if-narrow")" : "", head, body);
+  const bool is_folded = table.is_folded || table.rows.size() > max_rows_open;
+  return is_folded ? folded(fmt::format("{} rows", table.rows.size()), html) : html;
 }
 
 // Content of an item without the browser's script: its caption, its table, its text.
@@ -141,10 +164,6 @@ std::string info(const std::vector<std::pair<std::string, std::string>>& info) {
   return html + "</dl>\n";
 }
 
-std::string folded(std::string_view words, const std::string& content) {
-  return fmt::format("<details class=\"fold\"><summary>{}</summary>\n{}</details>\n", words, content);
-}
-
 std::string summary(const std::vector<std::string>& sentences) {
   constexpr std::size_t shown = 2;
   std::string first, more;
@@ -160,12 +179,16 @@ std::string head(const Report& report) {
       "<header>\n" + element("h1", report.title) + element("p", "subtitle", report.subtitle) + "</header>\n";
   if (!report.summary.empty())
     html += R"(<section class="summary" aria-label="Summary">)" + summary(report.summary) + "</section>\n";
-  // The command follows its purpose: "To apply it: pcor process ...".
-  if (const std::size_t colon = report.next.rfind(": "); colon != std::string::npos)
+  // A command follows its purpose: "To apply it: pcor process ...".
+  if (!report.next.empty()) {
+    const std::string_view next = report.next;
+    const std::size_t colon = next.rfind(": ");
+    const std::size_t end = colon == std::string_view::npos ? next.size() : colon + 1;
     html +=
-        fmt::format("<section class=\"next\" aria-label=\"Next step\"><p>{} <code>{}</code></p></section>\n",
-                    escaped(std::string_view(report.next).substr(0, colon + 1)),
-                    escaped(std::string_view(report.next).substr(colon + 2)));
+        fmt::format("<section class=\"next\" aria-label=\"Next step\"><p>{}{}</p></section>\n",
+                    escaped(next.substr(0, end)),
+                    end == next.size() ? "" : fmt::format(" <code>{}</code>", escaped(next.substr(end + 1))));
+  }
   if (!report.info.empty())
     html += R"(<section aria-label="Facts">)" + folded("Model, flights and notes", info(report.info)) +
             "</section>\n";

@@ -79,7 +79,10 @@ function selfTest(report) {
   panels.forEach((panel, i) => {
     const {title, kind} = panel.item;
     const part = half[i] / before[i];
-    if (['bars', 'curves', 'dots'].includes(kind)) expect(part === 1, `'${title}' follows a selection of samples that it does not show`);
+    if (ofAllSamples(panel.item)) {
+      expect(part === 1, `'${title}' follows a selection of samples that it does not show`);
+      expect(panel.whole.checkVisibility(), `'${title}' does not state that it shows all samples`);
+    }
     else if (before[i] > Math.max(few, 0.9 * samples.count))
       expect(part > 0.2 && part < 0.8, `selecting half leaves '${title}' ${half[i]} of ${before[i]} points`);
     expect(!half[i] || pixelsHalf[i] > Math.min(half[i], 20), `'${title}' is blank with half of the samples`);

@@ -131,6 +131,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
     pen.dots(places.flatMap((i) => [x(at.get(i)), y(at.get(i))]), 1.5, theme.frame, 0.6);
     for (const l of order) pen.dots(dots[l], 3.5, mixed(colours, l / (levels - 1)));
     if (item.barbs) drawBarbs();
+    const along = places.filter((_, n) => n % Math.ceil(places.length / 1000) === 0).map((i) => [x(at.get(i)), y(at.get(i))]);
     const taken = [[box.x, box.x + 60 + bar / perPixel, box.y + 20]];  // left, right and line of each name
     for (const flight of samples.flights) {
       const first = places.find((i) => i >= flight.first && i < flight.end);
@@ -138,12 +139,15 @@ function drawTrack(pen, width, height, item, samples, theme) {
       const [px, py] = [x(at.get(first)), y(at.get(first))];
       pen.lines([[px - 5, py - 5, px + 5, py - 5, px + 5, py + 5, px - 5, py + 5, px - 5, py - 5]], theme.ink, 1.5);
       const words = `${flight.name} ${clock(samples.time[first], false)}`.trim();
-      // Right or left of the mark, or below it if neither side has room.
+      // A place near the mark that covers the fewest samples of the track and no other name.
       const width = textWidth(words, fontSize), end = box.x + box.width - 2;
-      const sides = [px + 9, px - 9 - width].filter((x) => x > box.x && x + width < end);
-      const left = sides[0] ?? Math.max(end - width, box.x + 2);
-      let line = sides.length ? py + 4 : py + 19;
-      while (taken.some(([from, to, at]) => from < left + width && to > left && Math.abs(at - line) < 13)) line += 13;
+      const lefts = [px + 9, px - 9 - width, px - width / 2].map((x) => Math.max(Math.min(x, end - width), box.x + 2));
+      const cost = ([left, line]) =>
+        along.filter(([x, y]) => x > left - 3 && x < left + width + 3 && y > line - 13 && y < line + 5).length +
+        (line < box.y + 12 || line > box.y + box.height - 4 ? along.length : 0) +
+        (taken.some(([from, to, at]) => from < left + width && to > left && Math.abs(at - line) < 13) ? along.length : 0);
+      const [left, line] = [4, 20, -13, 34, -27, 48, -41, 62, -55].flatMap((down) => lefts.map((left) => [left, py + down]))
+        .reduce((best, each) => cost(each) < cost(best) ? each : best);
       taken.push([left, left + width, line]);
       pen.text(left, line, words, {...small(theme), fill: theme.ink});
     }

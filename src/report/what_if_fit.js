@@ -1,8 +1,8 @@
 // Least squares of a what-if from the sums that the report keeps, independent of the page. A coefficient is
 // its number; values are changes from the start, at which the residual equals its column.
 
-const leastPivot = 1e-11;  // relative pivot of a column after the previous ones; a smaller one is collinear
-                           // with them
+const leastPivot = 1e-11;  // relative pivot of a column after the previous ones; a smaller one means
+                           // collinear
 
 // Sums of products of (columns, residual), restored from their lower triangle.
 function wholeSums({products, samples}, width) {

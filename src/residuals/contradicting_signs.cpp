@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include <pcor/base/message.hpp>
 #include <pcor/physics/constants.hpp>
 #include "numerics/missing.hpp"
 
@@ -140,10 +141,10 @@ std::vector<std::string> contradicting_signs(const FlightSamples& samples, doubl
   for (const Pair& pair : signs.pairs()) {
     const double correlation = signs.correlation(pair);
     if (!(correlation < -min_correlation)) continue;
-    contradictions.push_back(
+    contradictions.push_back(warning_note(
         fmt::format("{} and {} have opposite signs (correlation {:.2f}); invert the wrong one in the [units] "
                     "of the model, {}",
-                    pair.first_name, pair.second_name, correlation, pair.turn));
+                    pair.first_name, pair.second_name, correlation, pair.turn)));
   }
   return contradictions;
 }

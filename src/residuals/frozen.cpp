@@ -1,5 +1,7 @@
 #include "residuals/frozen.hpp"
 
+#include <pcor/base/message.hpp>
+
 #include "roles/frozen.hpp"
 
 namespace pcor::internal {
@@ -13,7 +15,7 @@ void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, doub
     const std::vector<Segment> frozen = find_frozen(values, flying, always_varies(quantity));
     for (const Segment& span : frozen) read.frozen.push_back({quantity, span.first, span.count});
     if (!frozen.empty())
-      samples.notes.push_back(frozen_text(variable, quantity, values, samples.time, frozen));
+      samples.notes.push_back(warning_note(frozen_text(variable, quantity, values, samples.time, frozen)));
   }
 }
 

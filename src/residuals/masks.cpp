@@ -17,17 +17,17 @@ namespace pcor {
 
 const std::array<MaskInfo, mask_count> mask_info{{
     {"used", "used"},
-    {"excluded", "in times excluded by the user"},
-    {"missing", "without a value required by the model"},
-    {"ground", "on the ground"},
+    {"excluded", "excluded by the user"},
+    {"missing", "missing a value of the model"},
+    {"ground", "ground"},
     {"low_speed", "below the minimum airspeed (--min-airspeed)"},
-    {"regime", "in an excluded regime (--exclude)"},
-    {"frozen", "with a frozen sensor"},
-    {"reference_missing", "without a value of the reference"},
-    {"laser_unlocked", "with a laser airspeed far from the prediction by the pressures"},
-    {"burst", "in a burst of a few seconds, in which a pressure and the residual jump"},
-    {"impossible", "with an undefined delta-p for these values and coefficients"},
-    {"flaps", "with flaps out (--max-flaps)"},
+    {"regime", "excluded regime (--exclude)"},
+    {"frozen", "frozen sensor"},
+    {"reference_missing", "missing a value of the reference"},
+    {"laser_unlocked", "laser airspeed far from the prediction by the pressures"},
+    {"burst", "burst of a few seconds, in which a pressure and the residual jump"},
+    {"impossible", "undefined delta-p for these values and coefficients"},
+    {"flaps", "flaps out (--max-flaps)"},
 }};
 
 std::string mask_text(const std::array<std::size_t, mask_count>& counts) {

@@ -18,7 +18,7 @@ using Row = Eigen::Matrix<double, terms, 1>;
 
 constexpr double max_misfit_of_height = 0.02;  // rms in ln p: 160 m
 constexpr double max_misfit_of_radome = 0.05;  // rms, fraction of the mean dynamic pressure
-constexpr double max_departure = 3.0;          // of one sample, in units of the largest rms
+constexpr double max_departure = 3.0;          // largest departure of a sample, in units of the largest rms
 
 // Gaussian in time, s: several times the memory of the noise of transducers, about a minute.
 constexpr double slow_part = 300.0;

@@ -31,7 +31,7 @@ std::vector<double> predicted_by_height(std::vector<double> static_pressure,
 ///
 /// A column of a fit that is computed from the tested pressures correlates with the residual, since it
 /// contains the same noise. The coefficients of a prediction come from the whole flight, so hardly any of
-/// this noise is left. Rates of change stay as recorded: a centred rate of noise does not correlate with the
+/// this noise remains. Rates of change stay as recorded: a centred rate of noise does not correlate with the
 /// noise itself. A pressure altitude predicts nothing: it is one of the tested pressures.
 ///
 /// @param recorded the same samples with the pressures as recorded

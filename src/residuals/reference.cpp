@@ -25,10 +25,10 @@ using Pointer = std::shared_ptr<const Reference>;
 
 Pointer read_lams(const std::string&, const ModelDefinition& model) {
   if (model.variables.count(Quantity::lams_airspeed) == 0) {
-    throw Error(
-        fmt::format("model '{}' has no lams_airspeed; give it its variable in the table [variables], or "
-                    "another reference: --reference static:OTHER.toml or --reference pressure:VARIABLE",
-                    model.model.name));
+    throw Error(fmt::format(
+        "model '{}' has no lams_airspeed; name its variable in the table [variables], or give another "
+        "--reference: static:OTHER.toml, pressure:VARIABLE, height or wind",
+        model.model.name));
   }
   return lams_reference();
 }

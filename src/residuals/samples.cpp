@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <pcor/base/error.hpp>
+#include <pcor/base/message.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/realtime/chain.hpp>
@@ -31,6 +32,8 @@ namespace pcor {
 using namespace internal;
 
 namespace {
+
+constexpr double considerable_share = 0.1;  // fraction of the samples of a flight
 
 /// True airspeed from the measured pressures, m/s: within 2 %, for regimes and masks.
 std::vector<double> measured_airspeed(const ModelSamples& samples) {
@@ -133,15 +136,20 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
     return;
   }
   samples.flaps_by_lift = lift->out;
-  const std::string times = times_of(*lift, samples.time);
-  samples.notes.push_back(
-      times.empty()
-          ? fmt::format("flaps not recorded; inferred as retracted during the whole flight (scatter of the "
-                        "angle of attack {:.1f} %)",
-                        100.0 * lift->deviation)
-          : fmt::format("flaps not recorded; inferred as extended {} (angle of attack {:.0f} % below the "
-                        "clean-wing value, scatter {:.1f} %). Use --max-flaps 100 to include these samples",
-                        times, 100.0 * lift->deficit, 100.0 * lift->deviation));
+  const auto out = std::count(lift->out.begin(), lift->out.end(), true);
+  if (out == 0) {
+    samples.notes.push_back(
+        fmt::format("flaps not recorded; inferred as retracted during the whole flight (scatter of the angle "
+                    "of attack {:.1f} %)",
+                    100.0 * lift->deviation));
+    return;
+  }
+  std::string note = fmt::format(
+      "flaps not recorded; inferred as extended in {} samples, {} (angle of attack {:.0f} % below the "
+      "clean-wing value, scatter {:.1f} %). Use --max-flaps 100 to include these samples",
+      out, times_of(*lift, samples.time), 100.0 * lift->deficit, 100.0 * lift->deviation);
+  const double share = static_cast<double>(out) / static_cast<double>(lift->out.size());
+  samples.notes.push_back(share > considerable_share ? warning_note(note) : std::move(note));
 }
 
 /// Reads recorded inputs at some rate.
@@ -278,7 +286,7 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
     samples.notes.push_back(
         fmt::format("unknown aircraft {}: regimes are found by the criteria of the C-130, whose speed runs "
                     "are slower than those of a jet; --intervals adds or removes regimes",
-                    samples.aircraft.empty() ? "of this flight" : "'" + samples.aircraft + "'"));
+                    samples.aircraft.empty() ? "(no name)" : "'" + samples.aircraft + "'"));
   }
   samples.intervals = find_regimes(samples.motion, criteria.value_or(RegimeCriteria::c130()));
   if (options.intervals && options.intervals->is_for(flight.path())) {

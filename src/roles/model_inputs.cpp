@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include <pcor/base/error.hpp>
+#include <pcor/base/message.hpp>
 #include <pcor/base/suggest.hpp>
 #include <pcor/base/utc.hpp>
 #include "base/quoting.hpp"
@@ -32,9 +33,9 @@ void note_other_unit(const VariableInfo& variable, const QuantityInfo& role, con
       is_convertible(variable.units, unit) &&
       is_same(UnitConversion::between(variable.units, unit, {}), UnitConversion::between(stated, unit, {}));
   if (!same) {
-    notes.push_back(fmt::format(
+    notes.push_back(warning_note(fmt::format(
         "{} is taken as {}, as stated by the model or the aircraft's data; the unit in the file is {}",
-        variable.name, quote(stated), quote(variable.units)));
+        variable.name, quote(stated), quote(variable.units))));
   }
 }
 
@@ -127,7 +128,7 @@ void note_left_out(const ModelInput& input, const RejectedCounts& left_out, std:
   note(left_out.impossible, fmt::format("outside {:g} to {:g}{}, which is impossible",
                                         input.conversion.least(), input.conversion.greatest(), unit));
   note(left_out.invalid, "outside the range that the file states as valid");
-  note(left_out.enormous, "beyond 1e30, which marks missing values");
+  note(left_out.enormous, "above 1e30, which marks missing values");
 }
 
 std::vector<std::string> notes_on_law(const Flight& flight, const ModelDefinition& file) {
@@ -136,14 +137,15 @@ std::vector<std::string> notes_on_law(const Flight& flight, const ModelDefinitio
   const LawInfo& law = file.law;
   if (!law.holds_on(day)) {
     const bool early = day < law.valid_from;
-    notes.push_back(
+    notes.push_back(warning_note(
         fmt::format("the law holds {} {}, the flight is of {}; look for a model of its time in data/models",
-                    early ? "from" : "until", early ? law.valid_from : law.valid_to, day));
+                    early ? "from" : "until", early ? law.valid_from : law.valid_to, day)));
   }
   const std::string& expected = file.model.aircraft;
   const std::string actual = flight.aircraft();
   if (!expected.empty() && !actual.empty() && !is_of_aircraft(file, flight)) {
-    notes.push_back(fmt::format("the model is of the aircraft '{}', the flight of '{}'", expected, actual));
+    notes.push_back(
+        warning_note(fmt::format("the model is of the aircraft '{}', the flight of '{}'", expected, actual)));
   }
   return notes;
 }

@@ -338,7 +338,9 @@ const std::vector<FaultInfo>& fault_info() {
       {"sensor-response", Target::variable, {{"tau", "s"}}, sensor_response},
       {"unknown",
        Target::instrument,
-       {{"strength", "hPa, m/s or K"}, {"centre", "of the variable", 0.0}, {"scale", "of the variable", 1.0}},
+       {{"strength", "hPa, m/s or K"},
+        {"centre", "unit of the variable", 0.0},
+        {"scale", "unit of the variable", 1.0}},
        unknown},
   };
   return info;

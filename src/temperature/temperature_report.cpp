@@ -195,8 +195,8 @@ Report temperature_report(const TemperatureResult& result) {
     report.time.insert(report.time.end(), flight.time.begin(), flight.time.end());
   }
   report.columns = {
-      {"before", "without correction", "m", joined(result, &FlightHeights::before)},
-      {"after", "with the correction", "m", joined(result, &FlightHeights::after)},
+      {"before", "uncorrected", "m", joined(result, &FlightHeights::before)},
+      {"after", "corrected", "m", joined(result, &FlightHeights::after)},
       {"height", "geopotential height by GPS", "m", joined(result, &FlightHeights::height)},
       {"temperature", "temperature", "°C", joined(result, &FlightHeights::temperature)},
       {"innovation", "innovation", "std. deviations", joined(result, &FlightHeights::innovation)}};

@@ -39,6 +39,13 @@ std::string repeated(const std::string& text, std::size_t times) {
   return all;
 }
 
+TEST(TomlReader, NetcdfFileIsNamed) {
+  for (const char* text : {"CDF\x01 and more", "\x89HDF\r\n"}) {
+    EXPECT_THAT([&] { AnyReader().parse(text); },
+                testing::ThrowsMessage<Error>(testing::HasSubstr("some.toml:1:1: this is a netCDF file")));
+  }
+}
+
 // Beyond, toml++ overflows the stack: at 20000 tables in each other.
 TEST(TomlReader, RefusesDeepKeys) {
   EXPECT_NO_THROW(AnyReader().parse(repeated("a.", 16) + "a = 1"));

@@ -347,7 +347,7 @@ TEST_F(CheckTest, MissingInputsAreReported) {
 TEST_F(CheckTest, NoteOfSeveralFlightsIsPrintedOnce) {
   const Checks checks = check({fly(head + aloft, 1), fly(head + aloft, 2)}, std::nullopt);
   EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("recovery factor")).Times(1));
-  EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("flight1.nc, flight2.nc: without a model")));
+  EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("flight1.nc, flight2.nc: no model is given")));
 }
 
 TEST_F(CheckTest, TakesNoSingleLeg) {

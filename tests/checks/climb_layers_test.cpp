@@ -423,7 +423,7 @@ TEST(LayersOfARealFlight, HaveErrorsForTheGpsOfItsTime) {
   const auto path = std::filesystem::path(folder) / "GOTEX-rf06-C130-2004.nc";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   ModelDefinition model;
-  model.model.name = "as recorded";
+  model.model.name = "recorded";
   model.variables = {{Quantity::static_pressure, "PSXC"},
                      {Quantity::dynamic_pressure, "QCXC"},
                      {Quantity::ambient_temperature, "ATX"},

@@ -29,18 +29,17 @@ TEST(Verdict, OneThatIsInconsistentIsEnough) {
 
 TEST(Verdict, SaysWhichNumberDecided) {
   CheckResult result;
-  decide({judged({-0.9, 0.5}, 0.3, "K", "of the thermometer"), judged({2.8, 0.9}, 0.3, "K", "by the slope")},
-         result);
+  decide({judged({-0.9, 0.5}, 0.3, "K", "thermometer"), judged({2.8, 0.9}, 0.3, "K", "slope")}, result);
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
-  EXPECT_EQ(result.key.what, "by the slope");
-  EXPECT_EQ(result.decided.find("+2.800 +- 0.900 K by the slope is "), 0U);
+  EXPECT_EQ(result.key.what, "slope");
+  EXPECT_EQ(result.decided.find("+2.800 +- 0.900 K, slope: "), 0U);
   EXPECT_NE(result.decided.find("2.700"), std::string::npos);
   ASSERT_EQ(result.judged.size(), 2U);
   EXPECT_EQ(result.judged[0].verdict, CheckVerdict::inconclusive);
 
   decide({judged({0.01, 0.02}, 0.3, "hPa", "one"), judged({0.0, 0.1}, 0.3, "hPa", "other")}, result);
   EXPECT_EQ(result.key.what, "other");  // it may be 0.2 hPa, the first one 0.05 hPa
-  EXPECT_EQ(result.decided.find("+0.000 +- 0.100 hPa other is "), 0U);
+  EXPECT_EQ(result.decided.find("+0.000 +- 0.100 hPa, other: "), 0U);
   EXPECT_NE(result.decided.find("0.200"), std::string::npos);
 
   decide({judged({0.5, 0.1}, 0.3, "hPa", "between")}, result);

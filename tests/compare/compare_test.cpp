@@ -293,7 +293,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   ComparedModel absent = laser_contender();
   absent.references = {pcor::pressure_reference("PS_B")};
   EXPECT_THAT(message_of({flight_file()}, absent), testing::AllOf(HasSubstr("PS_B"), HasSubstr("PS_A")));
-  EXPECT_THAT(message_of({}, laser_contender()), HasSubstr("at least one flight"));
+  EXPECT_THAT(message_of({}, laser_contender()), HasSubstr("one flight"));
 }
 
 TEST(ComparisonReport, HasTheFiguresAndStaysSmall) {

@@ -438,7 +438,7 @@ TEST(Diagnose, EffectIsAssignedToOneOfTwoSystems) {
   const Finding& finding = diagnosis.findings[0];
   EXPECT_EQ(finding.id(), "reference:PS_A+QC_A:total-lag");
   EXPECT_THAT(finding.title, HasSubstr("PS_A+QC_A"));
-  EXPECT_GT(finding.rms, 0.1) << "in the reference that has it";
+  EXPECT_GT(finding.rms, 0.1) << "the reference that has it";
   for (const pcor::UpperLimit& limit : diagnosis.limits) EXPECT_GT(limit.rms, 0.0) << limit.effect;
 }
 

@@ -81,7 +81,7 @@ TEST(GpsDiagnosis, GainsWithoutEffectAreThoseOfChance) {
       }
     }
     // The mean of 36 is 1 +- 0.24; the columns of a flight are not independent, which doubles it.
-    EXPECT_NEAR(sum / count, 1.0, 1.0) << (with_height ? "with height" : "wind alone");
+    EXPECT_NEAR(sum / count, 1.0, 1.0) << (with_height ? "wind and height" : "wind alone");
   }
 }
 

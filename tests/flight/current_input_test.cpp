@@ -34,7 +34,7 @@ TEST(FileInHand, CountsTheTimeThatIsWorkedOnIt) {
   while (current_input_seconds() < before + 0.01) {
   }
   const FileInHand again(path);
-  EXPECT_LT(current_input_seconds(), 0.01) << "from the beginning";
+  EXPECT_LT(current_input_seconds(), 0.01) << "restarted";
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ class MemoryFile final : public FlightFile {
  private:
   const Variable& at(int variable) const { return variables_.at(static_cast<std::size_t>(variable)); }
 
-  std::filesystem::path path_{"in memory"};
+  std::filesystem::path path_{"memory"};
   std::vector<Variable> variables_{
       {"Time", "seconds since 2004-02-18 00:00:00 +0000", {60.0, 61.0, 62.0}},
       {"PSFD", "mb", {700.0, 700.1, 700.2, -1.0, 700.4, 700.5}},

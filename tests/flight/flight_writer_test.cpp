@@ -271,7 +271,7 @@ TEST_F(FlightWriterTest, TheFileSaysWhatItIs) {
   EXPECT_THAT(file.text("", "date_created"), MatchesRegex("20..-..-..T..:..:..Z"));
   EXPECT_EQ(file.text("", "title"), "GOTEX rf06 N130AR");
   EXPECT_EQ(file.text("", "source"), "airborne observations");
-  EXPECT_EQ(file.text("", "Aircraft"), "N130AR") << "without the trailing NUL";
+  EXPECT_EQ(file.text("", "Aircraft"), "N130AR") << "trailing NUL removed";
   EXPECT_EQ(file.text("", "platform"), "N130AR");
   EXPECT_EQ(file.text("", "time_coverage_start"), "2004-02-18T14:22:00Z");
   EXPECT_EQ(file.text("", "time_coverage_end"), "2004-02-18T14:22:02Z");
@@ -339,11 +339,11 @@ TEST_F(FlightWriterTest, CopiesAreIdenticalForEveryFileKind) {
       EXPECT_EQ(after.shape(name), before.shape(name)) << name;
       EXPECT_EQ(after.values(name), before.values(name)) << name;
     }
-    EXPECT_EQ(after.text("PSFD", "units"), "mbar") << "without the trailing NUL";
-    EXPECT_EQ(after.text("TASX", "units"), "m/s") << "in the spelling of UDUNITS";
+    EXPECT_EQ(after.text("PSFD", "units"), "mbar") << "trailing NUL removed";
+    EXPECT_EQ(after.text("TASX", "units"), "m/s") << "spelling of UDUNITS";
     EXPECT_EQ(after.text("TASX", "long_name"), "TASX") << "CF wants one";
     EXPECT_THAT(after.numbers("PSFD", "CalibrationCoefficients"), ElementsAre(0, 1));
-    EXPECT_EQ(after.attribute_type("COUNT", "missing_value"), NC_SHORT) << "of the variable's type";
+    EXPECT_EQ(after.attribute_type("COUNT", "missing_value"), NC_SHORT) << "type of the variable";
     EXPECT_THAT(after.values("PSXC"), ElementsAre(849, 850, 851));
   }
 }
@@ -486,7 +486,7 @@ TEST_F(FlightWriterTest, NonTextAttributeNameIsReported) {
   const Flight flight(input);
   FlightWriter writer(output, flight, {});
   EXPECT_THAT(message_of<Error>([&] { writer.copy("PSFD"); }),
-              HasSubstr("of PSFD has a name that netCDF does not allow"));
+              HasSubstr("PSFD has a name that netCDF does not allow"));
 }
 
 TEST_F(FlightWriterTest, FlagsMustBeWholeNumbers) {

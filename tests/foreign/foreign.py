@@ -127,7 +127,7 @@ def main():
     parser = argparse.ArgumentParser(prog="foreign.py", description=__doc__.split("\n")[0])
     parser.add_argument("tool", help="the program pcor")
     parser.add_argument("--share", default="3/10", metavar="K/N", help="the K-th of N shares of the cases")
-    parser.add_argument("--salt", default="x", help="of the simulator: other flights")
+    parser.add_argument("--salt", default="x", help="salt of the simulator: another value simulates other flights")
     parser.add_argument("--jobs", type=int, default=2, metavar="N")
     options = parser.parse_args()
     simulator = folder_of_simulator()

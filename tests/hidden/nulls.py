@@ -116,7 +116,7 @@ def main():
     parser.add_argument("--cases", type=int, default=200, metavar="N")
     parser.add_argument("--first", type=int, default=0, metavar="K", help="number of the first case")
     parser.add_argument("--seed", type=int, default=1, metavar="S", help="other flights")
-    parser.add_argument("--reference", action="append", default=[], metavar="REF", help="as for the tool")
+    parser.add_argument("--reference", action="append", default=[], metavar="REF", help="reference, see pcor compare --help")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="processes side by side")
     parser.add_argument("--keep", metavar="FOLDER", help="files of the cases with a wrong claim or an error")
     options = parser.parse_args()

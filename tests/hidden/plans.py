@@ -26,7 +26,7 @@ CLIMB = {"C-130": 6, "GV": 10}
 TAKE_OFF_SPEED = {"C-130": 100, "GV": 140}
 KINDS = ("manoeuvres", "long", "steady", "short")
 # Factors applied to the coefficients of a user's law before the fit.
-STARTS = {"right": 1.0, "neutral": 0.0, "halved": 0.5, "doubled": 2.0, "of the other sign": -1.0}
+STARTS = {"right": 1.0, "neutral": 0.0, "halved": 0.5, "doubled": 2.0, "negated": -1.0}
 SECOND = {"static-constant": ("a0", 0.002047), "static-alpha": ("a1", 0.008890), "static-qp": ("a2", 0.07119)}
 
 ROLES = {

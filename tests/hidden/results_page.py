@@ -111,8 +111,8 @@ def targets(cases):
     seen_pairs = [case for case in pairs if is_visible(case)]
     seen_outside = [case for case in outside if is_visible(case)]
     two = of_kind(cases, "two systems")
-    own = [case for case in two if "of the other" not in case["name"] and is_visible(case)]
-    other = [case for case in two if "of the other" in case["name"]]
+    own = [case for case in two if "the other" not in case["name"] and is_visible(case)]
+    other = [case for case in two if "the other" in case["name"]]
     beside = of_kind(cases, "other")
     static = [growth(case) for case in flown if case["static"] and case["snr"] >= 0.8]
     every = [case for case in cases if "error" not in case and case["kind"] != "null"]

@@ -304,7 +304,7 @@ TEST_F(Improve, DropsWhatCannotBeFitted) {
 }
 
 TEST_F(Improve, UnfittableModelIsReported) {
-  loop_.refit = [](const TrialModel&) -> RefitResult { throw pcor::Error("no sample is left"); };
+  loop_.refit = [](const TrialModel&) -> RefitResult { throw pcor::Error("no sample remains"); };
   EXPECT_THROW(run(), pcor::Error);
 }
 
@@ -376,7 +376,7 @@ TEST_F(Improve, StopsAfterAsManyStepsAsAreAllowed) {
   loop_.max_steps = 2;
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag", "static-mach"));
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("as many as were allowed"));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("many as were allowed"));
 }
 
 TEST_F(Improve, TellsTheNoiseOfEveryFitAsTheFitDoes) {

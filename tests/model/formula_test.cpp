@@ -318,7 +318,7 @@ TEST(FormulaError, KeepsMessagesShortAndOnOneLine) {
 
 TEST(FormulaError, MayBeIgnored) {
   EXPECT_FALSE(Formula::parse("1 +", {}));
-  FormulaError error{7, "as it was"};
+  FormulaError error{7, "unchanged"};
   EXPECT_TRUE(Formula::parse("1", {}, &error));
   EXPECT_EQ(error.column, 7U);
 }

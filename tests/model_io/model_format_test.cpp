@@ -211,8 +211,8 @@ TEST(ModelFormat, StatesTheLimitsOfFormulas) {
   std::string text;
   for (const std::string& line : reference()) text += line + ' ';
   EXPECT_THAT(text,
-              HasSubstr(fmt::format("at most {} numbers, names and operations", Formula::max_instructions)));
-  EXPECT_THAT(text, HasSubstr(fmt::format("at most {} variables", extra_capacity)));
+              HasSubstr(fmt::format("most {} numbers, names and operations", Formula::max_instructions)));
+  EXPECT_THAT(text, HasSubstr(fmt::format("most {} variables", extra_capacity)));
 }
 
 // An example is a whole file, or a part that is valid with the two pressures.

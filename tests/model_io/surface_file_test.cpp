@@ -14,7 +14,7 @@ using testing::ThrowsMessage;
 
 ModelDefinition with_surface() {
   ModelDefinition file;
-  file.model.name = "with a surface";
+  file.model.name = "surface";
   file.variables = {{Quantity::static_pressure, "PSFD"},
                     {Quantity::dynamic_pressure, "QCF"},
                     {Quantity::radome_dynamic_pressure, "QCR"},

@@ -19,11 +19,11 @@ using testing::StrEq;
 
 constexpr int max_seconds = 1;
 
-/// "here" in the process that called it, otherwise "in a copy".
+/// "here" in the process that called it, otherwise "copy".
 class Place {
  public:
   bool is_here() const { return ::getpid() == here_; }
-  std::string operator()() const { return is_here() ? "here" : "in a copy"; }
+  std::string operator()() const { return is_here() ? "here" : "copy"; }
 
  private:
   int here_ = ::getpid();
@@ -33,8 +33,8 @@ TEST(InACopy, ReturnsWhatTheWorkReturns) {
   const Place place;
   const auto results =
       in_a_copy(3, max_seconds, [&](std::size_t i) { return std::to_string(i) + " " + place(); });
-  EXPECT_THAT(results, ElementsAre(Optional(StrEq("0 in a copy")), Optional(StrEq("1 in a copy")),
-                                   Optional(StrEq("2 in a copy"))));
+  EXPECT_THAT(results,
+              ElementsAre(Optional(StrEq("0 copy")), Optional(StrEq("1 copy")), Optional(StrEq("2 copy"))));
   EXPECT_TRUE(in_a_copy(0, max_seconds, [](std::size_t) { return ""; }).empty());
 }
 
@@ -66,7 +66,7 @@ TEST(InACopy, WhatNoCrashEndsIsDoneHere) {
       if (i == 0 && !place.is_here()) std::raise(signal);
       return place();
     });
-    EXPECT_THAT(results, ElementsAre(Optional(StrEq("here")), Optional(StrEq("in a copy"))));
+    EXPECT_THAT(results, ElementsAre(Optional(StrEq("here")), Optional(StrEq("copy"))));
   }
   const auto too_long =
       in_a_copy(1, max_seconds, [&](std::size_t) { return place() + std::string(10001, '.'); });
@@ -94,7 +94,7 @@ TEST(InACopy, HasNoHandlersOfSignalsAndIgnoresWhatIsIgnored) {
   });
   std::signal(SIGTERM, stop);
   std::signal(SIGHUP, hang_up);
-  EXPECT_THAT(results, ElementsAre(Optional(StrEq("here")), Optional(StrEq("in a copy"))));
+  EXPECT_THAT(results, ElementsAre(Optional(StrEq("here")), Optional(StrEq("copy"))));
   EXPECT_EQ(handled, 0);
 }
 

@@ -161,7 +161,7 @@ class Processes(unittest.TestCase):
                 file["PSFD"].units = "furlong"
 
     def test_a_flight_that_cannot_be_read_ends_all_with_the_message_of_one_process(self):
-        for how in ["missing", "truncated", "of a wrong unit"]:
+        for how in ["missing", "truncated", "wrong unit"]:
             for bad in self.flights[:4]:
                 with self.subTest(how=how, flight=bad):
                     shutil.copy(self.flights_folder / bad, self.path)

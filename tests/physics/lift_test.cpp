@@ -12,7 +12,7 @@ constexpr double rounding = 1e-12;
 TEST(LoadFactor, IsOneInLevelFlightAndTwoInATurnOfSixtyDegrees) {
   EXPECT_NEAR(load_factor(0.0, 0.0), 1.0, rounding);
   EXPECT_NEAR(load_factor(0.0, 60.0), 2.0, rounding);
-  EXPECT_NEAR(load_factor(0.0, -60.0), 2.0, rounding) << "to either side";
+  EXPECT_NEAR(load_factor(0.0, -60.0), 2.0, rounding) << "either side";
 }
 
 TEST(LoadFactor, IsNothingInFreeFall) { EXPECT_NEAR(load_factor(-9.80665, 20.0), 0.0, rounding); }

@@ -475,7 +475,7 @@ TEST(Calibration, WithoutItsInputTakesTheTemperatureAway) {
     EXPECT_TRUE(std::isnan(s[Quantity::ambient_temperature]));
     EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
     EXPECT_TRUE(std::isnan(s[Quantity::lams_static_defect]));
-    EXPECT_FALSE(std::isnan(s[Quantity::corrected_static_pressure])) << "which needs no temperature";
+    EXPECT_FALSE(std::isnan(s[Quantity::corrected_static_pressure])) << "needs no temperature";
   }
 }
 

@@ -483,7 +483,7 @@ TEST(NimbusSystem, CountsTheSamplesOfAHostWithoutTime) {
     expect_same(table.low("PSXC"), static_cast<double>(table.low("PSXC_R")));
     expect_same(table.high("PSXC", 7), static_cast<double>(table.high("PSXC_R", 7)));
   }
-  EXPECT_FALSE(std::isnan(table.low("PSXC"))) << "without steps in time there is no gap";
+  EXPECT_FALSE(std::isnan(table.low("PSXC"))) << "no gap if time has no steps";
   System::reset();
   table.compute(36012.0, raw_value);
   EXPECT_THAT(table.low("PSXC"), IsNan());

@@ -58,7 +58,7 @@ TEST(Wetness, DriesAtOnceInNoTime) {
 
 TEST(Wetness, BeginsAsItIsOutsideOrInside) {
   Wetness wetness(1.0, 10.0);
-  EXPECT_EQ(wetness(cloud), 1.0) << "in cloud for long";
+  EXPECT_EQ(wetness(cloud), 1.0) << "long in cloud";
   EXPECT_GT(wetness(0.0), 0.9);
   wetness.reset();
   EXPECT_EQ(wetness(0.0), 0.0) << "nothing is known of the cloud before";

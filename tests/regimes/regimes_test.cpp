@@ -330,8 +330,8 @@ TEST(Regimes, HaveCriteriaByTheRegistrationOfTheAircraft) {
 TEST(Regimes, AreFoundAsTheirWordsSay) {
   EXPECT_THAT(pcor::criterion_of(Regime::turn), HasSubstr("roll beyond 10 deg to one side for 10 s"));
   EXPECT_THAT(pcor::criterion_of(Regime::descent), HasSubstr("vertical speed below -1.5 m/s"));
-  EXPECT_THAT(pcor::criterion_of(Regime::reverse_heading), HasSubstr("of 2 to 5 min"));
-  EXPECT_THAT(pcor::criterion_of(Regime::speed_run, RegimeCriteria::gv()), HasSubstr("by 0.3 m/s2"));
+  EXPECT_THAT(pcor::criterion_of(Regime::reverse_heading), HasSubstr("2 to 5 min"));
+  EXPECT_THAT(pcor::criterion_of(Regime::speed_run, RegimeCriteria::gv()), HasSubstr("0.3 m/s2"));
 }
 
 // Every number of the search criteria appears in the words for some regime: another number gives other
@@ -664,7 +664,7 @@ TEST(Regimes, OfTheFlightOf2004ArePlausible) {
   const std::vector<Interval> ground = of(Regime::ground, found);
   ASSERT_THAT(ground, SizeIs(2));
   EXPECT_NEAR(ground[1].begin, first + 2990.0, 10.0);
-  EXPECT_GE(of(Regime::climb, found).size(), 2U) << "to 2400 m and to 2900 m";
+  EXPECT_GE(of(Regime::climb, found).size(), 2U) << "2400 m and 2900 m";
   EXPECT_GE(of(Regime::descent, found).size(), 2U);
   EXPECT_GE(of(Regime::level, found).size(), 2U);
   EXPECT_GE(of(Regime::turn, found).size(), 3U);

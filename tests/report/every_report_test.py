@@ -96,6 +96,43 @@ class EveryReport(unittest.TestCase):
                     self.assertGreater(result["panels"], 1)
                     self.assertEqual(self.browser.errors, [])
 
+    def test_no_text_is_clipped_or_overlaps_wide_and_narrow(self):
+        faults_of = (SOURCE / "tests/report/text_boxes.js").read_text()
+        for command in COMMANDS:
+            for width in (1400, 420):
+                with self.subTest(command=command, width=width):
+                    self.browser.resize(width)
+                    self.browser.open(page(command))
+                    self.assertEqual(self.browser.value(f"({faults_of})({str(width < 600).lower()})"), [])
+
+    def test_the_text_test_finds_clipped_and_overlapping_text(self):
+        faults_of = (SOURCE / "tests/report/text_boxes.js").read_text()
+        self.browser.resize(1400)
+        self.browser.open(page("compare"))
+        self.browser.value("""document.querySelector('.subtitle').style.marginTop = '-2rem';
+          document.querySelector('.next code').style.cssText = 'display: block; width: 3rem; overflow: hidden; white-space: nowrap';
+          heights.track = () => 30; 1""")
+        faults = "\n".join(self.browser.value(f"({faults_of})(false)"))
+        for fault in ("page: .* overlap", "page: .* is clipped", "picture 'Residual on the map': .* is clipped"):
+            self.assertRegex(faults, fault)
+
+    def test_an_uncertainty_is_a_band(self):
+        self.browser.open(page("process"))
+        self.assertIn('stroke-opacity="0.25"', self.browser.value("pcorReport.svg(0)"))
+
+    def test_a_row_far_from_the_others_does_not_set_the_axis(self):
+        self.browser.open(page("check"))
+        ends = "(values) => endsOfRows(values.map((value) => ({dots: [{value, error: 0.5}]})), [-1, 1])"
+        self.assertEqual(self.browser.value(f"Math.min(...({ends})([1, 2, 0, -20]))"), -0.5)
+        self.assertEqual(self.browser.value(f"Math.min(...({ends})([1, 2, 0, -5]))"), -5.5)
+
+    def test_what_if_is_within_one_screen_of_the_top(self):
+        self.browser.resize(1400, 1000)
+        for command in ("diagnose", "improve"):
+            with self.subTest(command=command):
+                self.browser.open(page(command))
+                self.assertLess(self.browser.value("document.querySelector('.what-if').getBoundingClientRect().top"), 1000)
+
     def test_the_first_screen_has_a_picture_and_the_next_command(self):
         self.browser.resize(1400, 1000)
         for command in COMMANDS:

@@ -146,7 +146,7 @@ class ReportInBrowser(unittest.TestCase):
     def test_pictures_of_before_go_and_other_files_stay(self):
         folder = self.folder / "again"
         folder.mkdir()
-        (folder / "captions.txt").write_text("07-of-another-run: A title. What it shows.\n../08-outside: A title.\n")
+        (folder / "captions.txt").write_text("07-of-another-run: A title. A caption.\n../08-outside: A title.\n")
         for name in ("07-of-another-run.svg", "07-of-another-run.png", "09-mine.png", "notes.txt"):
             (folder / name).write_text("")
         (self.folder / "08-outside.svg").write_text("")

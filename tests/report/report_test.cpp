@@ -177,10 +177,29 @@ TEST(Report, EscapesEveryText) {
   EXPECT_EQ(data_of(html)["columns"][0]["name"], "</script><script>\"'&é\\xff");
 }
 
+TEST(Report, LongTableIsFolded) {
+  Report report = report_of(3, 1);
+  for (const std::size_t rows : {30U, 31U}) {
+    report.items = {ReportTable{"Rows", "", {"a"}, {rows, {"1"}}}};
+    EXPECT_EQ(report_html(report).find("<details class=\"fold\">") != std::string::npos, rows > 30);
+  }
+}
+
+TEST(Report, UncertaintiesInTextHaveTheSignOfPrint) {
+  Report report = report_of(3, 1);
+  report.summary = {"1.0 +- 0.1 hPa"};
+  report.next = "To apply it: pcor add --formula 'k +-1'";
+  const std::string html = report_html(report);
+  EXPECT_THAT(html, HasSubstr("<li>1.0 ± 0.1 hPa</li>"));
+  EXPECT_THAT(html, HasSubstr("<code>pcor add --formula &#39;k +-1&#39;</code>"));
+}
+
 TEST(Report, RefusesAnUnknownColumn) {
   Report report = report_of(3, 1);
   report.items = {TimePanel{"Lines", "", {"c0", "absent"}}};
   EXPECT_THAT(reason(report), HasSubstr("panel 'Lines' shows column 'absent'"));
+  report.items = {TimePanel{"Lines", "", {"c0"}, "", "absent"}};
+  EXPECT_THAT(reason(report), HasSubstr("'absent'"));
   report.items = {BinnedPanel{"Bins", "", {"c0"}, {"c0", "absent"}}};
   EXPECT_THAT(reason(report), HasSubstr("'absent'"));
 }
@@ -204,7 +223,7 @@ TEST(Report, RefusesCurvesThatCannotBeDrawn) {
   report.items = {CurvePanel{"Curves", "", {{"a", {1, 2}, {1, 2}, {1}}}, "x", "y"}};
   EXPECT_THAT(reason(report), HasSubstr("1 errors"));
   report.items = {CurvePanel{"Curves", "", {{"a", {0, 2}, {1, 2}}}, "x", "y", "", "", true}};
-  EXPECT_THAT(reason(report), HasSubstr("at or below zero on a logarithmic axis"));
+  EXPECT_THAT(reason(report), HasSubstr("below zero on a logarithmic axis"));
 }
 
 TEST(Report, RefusesAnEmptyPanel) {

@@ -165,7 +165,7 @@ std::vector<pcor::ReportItem> items() {
                "negligible"},
       DotPanel{"The ladder",
                "With the noise as a line.",
-               {"in the fit", "held out: rf03"},
+               {"fitted", "held out: rf03"},
                {{"given model", {{0.91, 0.02}, {0.94, 0.03}}, "0.910 and 0.940"},
                 {"refitted", {{0.52, 0.01}, {0.55, 0.02}}, "0.520 and 0.550"},
                 {"+ static-lag", {{0.27, 0.01}, {nan, 0.0}}, "0.270 and –"}},

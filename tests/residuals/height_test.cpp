@@ -64,7 +64,7 @@ TEST(Height, SeesAZeroOfTheStaticPressureGrowWithHeight) {
   const std::vector<double> left = residuals(flight, made::air_model({{"psfd-bias", 1.0}}));
   const std::vector<double>& p = *flight.model.find(Quantity::static_pressure);
   for (const std::size_t i : {200U, 900U, 1500U})
-    EXPECT_NEAR(left[i], pressure_of_height(p[i]) * 300.0 / p[i], 5e-4) << "to second order; " << i;
+    EXPECT_NEAR(left[i], pressure_of_height(p[i]) * 300.0 / p[i], 5e-4) << "second order; " << i;
 }
 
 TEST(Height, HasTheDerivativesOfItsResiduals) {

@@ -72,7 +72,7 @@ TEST(MovingColumns, ChangeAsTheirSlopeSays) {
   const double* const column = samples->model.find(Quantity::airspeed_rate)->data();
   pcor::internal::find_moving_columns(model.model, parameters_with(model, 0.5 + step).data(), samples->time,
                                       samples->step, samples->model);
-  EXPECT_EQ(samples->model.find(Quantity::airspeed_rate)->data(), column) << "which others point to";
+  EXPECT_EQ(samples->model.find(Quantity::airspeed_rate)->data(), column) << "others point to it";
   double largest = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (!std::isfinite(before[i]) || !std::isfinite(column[i])) continue;

@@ -48,7 +48,7 @@ TEST(Reference, OfAnotherTextIsRefusedWithThoseThatThereAre) {
 TEST(Reference, OfALaserThatTheModelDoesNotNameIsRefused) {
   const std::string message = message_of("lams", without_laser());
   EXPECT_THAT(message, HasSubstr("lams_airspeed"));
-  EXPECT_THAT(message, HasSubstr("--reference static:OTHER.toml"));
+  EXPECT_THAT(message, HasSubstr("static:OTHER.toml"));
 }
 
 TEST(Reference, SaysWhatItReadsForItself) {

@@ -270,7 +270,7 @@ TEST(HeightRecord, KnowsWhetherTheFlightComesBack) {
 TEST(HeightRecord, SaysWhatIsWrongWithTheHeight) {
   pcor::internal::FlightAir feet = made::air({});
   for (double& height : feet.geopotential_height) height /= 0.3048;
-  EXPECT_THAT(message_for(feet), HasSubstr("in feet"));
+  EXPECT_THAT(message_for(feet), HasSubstr("feet"));
   EXPECT_THAT(message_for(feet), HasSubstr("[units] altitude = \"ft\""));
 
   pcor::internal::FlightAir rising = made::air({});

@@ -202,6 +202,8 @@ class OtherAircraft(unittest.TestCase):
                 self.assertTrue(any(words in note for note in found), found)
                 self.assertIn(words, self.run_tool("compare", turned, "-m", "c130-psfd-eq18", "--reference",
                                                     "pressure:TRUE_PS", "--verbose").stdout)
+                short = self.run_tool("compare", turned, "-m", "c130-psfd-eq18", "--reference", "pressure:TRUE_PS").stdout
+                self.assertRegex(short, r"(?m)^note 1: .*warning: ")
 
     def test_names_that_differ_by_case_are_two(self):
         """The exact name is used; another case is not a variable, and the message lists the existing names."""

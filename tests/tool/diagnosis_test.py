@@ -203,8 +203,8 @@ class Diagnose(DiagnosisTest):
         self.done("simulate", scenario, "-o", self.path / "flight.nc", "--quiet")
         self.model()
         text = self.done("diagnose", "flight.nc", "-m", "model.toml", "--no-file-variables", cwd=self.path).stdout
-        self.assertIn("\ntotal-lag was found alike on the other system, which a model file cannot represent: it is added "
-                      "without this part.\nTo add it and fit: " + str(TOOL) + " add total-lag ", text)
+        self.assertIn("\ntotal-lag was found alike on the other system, which a model file cannot represent: it is added without "
+                      "this part.\nTo add it and fit: " + str(TOOL) + " add total-lag ", text)
         self.run_as_printed(text)
 
     def test_a_formula_is_a_candidate(self):
@@ -311,7 +311,7 @@ class BadInput(DiagnosisTest):
         self.both(flights=(ONE, GV), words=["N130AR", "N677F", "one.nc", "gv.nc"])
 
     def test_no_laser_in_the_model(self):
-        self.both(model=PUBLISHED, words=["lams_airspeed", "--reference static:"])
+        self.both(model=PUBLISHED, words=["lams_airspeed", "--reference", "static:"])
 
     def test_no_laser_in_the_flight(self):
         self.both(model=self.model(replace('"VLAMS"', '"VLAMX"')), words=["one.nc", "VLAMX", "lams_airspeed"])
@@ -448,7 +448,7 @@ class WhatTakesPart(DiagnosisTest):
         improved = self.improve(model=fitted)["steps"][0]
         told = {"compare": (compared["rms_hpa"], compared["noise_rms_hpa"], compared["samples"]),
                 "diagnose": (diagnosed["rms_given_hpa"], diagnosed["noise_rms_hpa"], diagnosed["samples"]),
-                "of that flight": tuple(refit["flights"][0]["after"][key]
+                "flight": tuple(refit["flights"][0]["after"][key]
                                         for key in ("rms_hpa", "noise_rms_hpa", "samples"))}
         for command, (rms, noise, samples) in told.items():
             with self.subTest(command):

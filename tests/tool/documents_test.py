@@ -104,6 +104,10 @@ class Commands(unittest.TestCase):
                 self.check_output(path.name, "\n".join(outputs), content)
             elif language == "toml" and 'id = "my-thrust"' in content:
                 self.assertIn(re.sub(r" +#.*", "", content), (self.folder / "my-model.toml").read_text())
+            elif language == "toml" and content.startswith("[variables]\n"):
+                (self.folder / "part.toml").write_text('format = "pcor-model/1"\nname = "part of a model"\n' + content.replace(
+                    "[variables]\n", '[variables]\nstatic_pressure = "PSFD"\ndynamic_pressure = "QCF"\nrecovery_temperature = "TTRR"\n'))
+                self.run_command("pcor add static-qp -m part.toml -o extended.toml")
 
 
 def page_test(path):
@@ -140,6 +144,14 @@ class Text(unittest.TestCase):
                 if language == "cpp":
                     self.assertIn(content, sources, path.name)
 
+    def test_build_files_are_those_of_examples(self):
+        lines = {re.sub(r"\(\w+ PRIVATE", "(my_program PRIVATE", line)
+                 for path in (SOURCE / "examples").rglob("CMakeLists.txt") for line in path.read_text().splitlines()}
+        for path in PAGES:
+            for language, content in blocks(path.read_text()):
+                if language == "cmake":
+                    self.assertLessEqual({re.sub(r" +#.*", "", line) for line in content.splitlines()}, lines, path.name)
+
     def test_set_up_commands_are_those_of_continuous_integration(self):
         for command in ("tools/demo", "tools/check"):
             self.assertTrue(os.access(SOURCE / command, os.X_OK), command)
@@ -167,6 +179,8 @@ class Text(unittest.TestCase):
         first = (SOURCE / "README.md").read_text().split("## For the developer")[0]
         self.assertLessEqual(len(first.split()), 400)
         self.assertLess(sum(len(path.read_text().split()) for path in (SOURCE / "docs").glob("*.md")), 12000)
+        changes = (SOURCE / "CHANGELOG.md").read_text().split("\n## ")[1]
+        self.assertLessEqual(len(changes.split()), 800)
 
 
 if __name__ == "__main__":

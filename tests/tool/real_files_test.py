@@ -234,7 +234,7 @@ class Simulated(Case):
                                                            "o.nc").stdout)
         with netCDF4.Dataset(self.path / "o.nc") as output:
             self.assertIn("none", output.pcor_correction)
-            self.assertIn("as the archive corrected them", output.pcor_notes)
+            self.assertIn("archived", output.pcor_notes)
 
     def test_no_dynamic_pressure(self):
         names = {name: there for name, there in self.PLAIN.items() if name != "dynamic_pressure"}

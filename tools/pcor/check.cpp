@@ -60,10 +60,10 @@ ModelDefinition read_second(const Options& options) {
   return is_pair(text) ? *read_reference(text, {})->model() : read_model(second_model(options));
 }
 
-/// Text like "-0.154 +- 0.024 hPa between the systems; tolerance 0.3".
+/// Text like "-0.154 +- 0.024 hPa, difference of the systems; tolerance 0.3".
 std::string key_number(const CheckResult& result) {
   const TestStatistic& key = result.key;
-  return fmt::format("{:+.3f} +- {:.3f} {} {}; tolerance {:g}", key.value, key.standard_error, key.unit,
+  return fmt::format("{:+.3f} +- {:.3f} {}, {}; tolerance {:g}", key.value, key.standard_error, key.unit,
                      key.what, key.matters);
 }
 

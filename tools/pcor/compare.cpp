@@ -74,7 +74,7 @@ void print_short(const Comparison& comparison) {
   }
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models)
-      say("{} against {}: bias {:+.3f}, rms {:.3f} hPa\n", is_single ? "all" : model.name, further.reference,
+      say("{}, {}: bias {:+.3f}, rms {:.3f} hPa\n", is_single ? "all" : model.name, further.reference,
           model.all.bias, model.all.rms);
   }
   say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));

@@ -44,7 +44,6 @@ std::string next_step(const Options& options) {
 }
 
 void print(const Improvement& improvement, const ChosenReferences& references, const Options& options) {
-  print_fit_summary(improvement.fit);
   if (is_verbose()) {
     print_references(references);
     say("reference: {}\n", improvement.fit.reference_text);
@@ -77,6 +76,7 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
     say("held out: five parts of the flights, one at a time, without outliers; hold out whole flights with "
         "--holdout\n");
   }
+  print_fit_summary(improvement.fit);
   if (is_verbose()) {
     say("\n");
     for (const ImproveStep& step : improvement.steps) {

@@ -36,6 +36,21 @@ std::string command(const std::string& name, const Inspection& flight, const std
   return fmt::format("{} {} {}{}", program(), name, shell_path(flight.path), options);
 }
 
+/// Reference for a published law: the laser, otherwise a second static system that has a published law,
+/// otherwise the last of the flight's references; empty if there is none.
+std::string reference_for(const Inspection& flight, const ModelCandidate& law) {
+  const std::vector<std::string>& references = flight.references;
+  if (std::find(references.begin(), references.end(), "lams") != references.end()) return "lams";
+  const auto pressure_of = [](const ModelCandidate& each) {
+    return each.model.variables.at(Quantity::static_pressure);
+  };
+  const auto other = std::find_if(flight.laws.begin(), flight.laws.end(), [&](const ModelCandidate& each) {
+    return each.fits() && pressure_of(each) != pressure_of(law);
+  });
+  if (other != flight.laws.end()) return "static:" + other->path.stem().string();
+  return references.empty() ? "" : references.back();
+}
+
 /// Up to three commands to paste, in order, that produce a corrected flight and a report.
 std::vector<std::string> next_commands(const Options& options, const Inspection& flight) {
   const std::string stamp =
@@ -51,10 +66,10 @@ std::vector<std::string> next_commands(const Options& options, const Inspection&
     const std::string law = " -m " + shell_quote(fits->path.stem().string());
     std::vector<std::string> commands{command("process", flight, law + stamp + output),
                                       command("check", flight, law + stamp + " --report check.html")};
-    if (!flight.references.empty())
-      commands.push_back(command("compare", flight,
-                                 fmt::format("{}{} --reference {} --report compare.html", law, stamp,
-                                             shell_quote(flight.references.back()))));
+    if (const std::string best = reference_for(flight, *fits); !best.empty())
+      commands.push_back(
+          command("compare", flight,
+                  fmt::format("{}{} --reference {} --report compare.html", law, stamp, shell_quote(best))));
     return commands;
   }
   std::vector<std::string> commands;

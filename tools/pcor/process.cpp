@@ -98,7 +98,7 @@ void print_flags(const Flags& flagged) {
   }
 }
 
-/// Next step for the first processed flight; empty without one.
+/// Next step for the first processed flight; empty if no flight was processed.
 std::string next_step(const std::vector<ProcessedFlight>& flights) {
   const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
     return each.state == FlightState::processed;
@@ -395,7 +395,7 @@ std::function<void()> add_process(CLI::App& program) {
   command
       ->add_option("--uncertainty", options->uncertainty,
                    "write the standard uncertainties of results: total, only the systematic or only the "
-                   "random part, or none (default: total if the model states any)")
+                   "random part, or no uncertainty with none (default: total if the model states any)")
       ->check(CLI::IsMember({"total", "systematic", "random", "none"}));
   command->add_option("--suffix", options->suffix, "add S to the names of the derived variables")
       ->type_name("S");

@@ -123,8 +123,8 @@ bool is_of_surface(const RefitResult& result, const std::string& parameter) {
 
 /// Coefficients except those of surfaces; without --verbose only the fitted ones, at most `max_rows`.
 void print_coefficients(const RefitResult& result, std::size_t max_rows) {
-  say("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error",
-      "by jackknife", "unit");
+  say("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error", "jackknife",
+      "unit");
   std::size_t rows = 0, omitted = 0;
   for (const FittedParameter& p : result.parameters) {
     if (is_of_surface(result, p.name) || (!is_verbose() && !p.fitted)) continue;
@@ -133,7 +133,7 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
       continue;
     }
     const std::string error = !p.fitted                      ? "held"
-                              : p.at_bound                   ? "at bound"
+                              : p.at_bound                   ? "bound"
                               : std::isnan(p.standard_error) ? "unknown"
                                                              : fmt::format("{:.3g}", p.standard_error);
     const std::string jackknife =

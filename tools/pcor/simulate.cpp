@@ -28,9 +28,8 @@ std::string command_line(const Options& options, std::uint64_t seed) {
                      shell_path(options.output), seed);
 }
 
-void print(const SimulationSummary& summary, const Options& options) {
-  say("{}, {}, {} to {} UTC: {} records, seed {}\n\n", summary.name, summary.aircraft,
-      utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.seed);
+void print_legs(const SimulationSummary& summary) {
+  say("\n");
   say("{:<16} {:>8}  {:>8} {:>8} {:>8} {:>12} {:>12}\n", "leg", "begin", "end", "m", "hPa", "TAS m/s",
       "alpha deg");
   for (const LegFlown& leg : summary.legs) {
@@ -39,8 +38,16 @@ void print(const SimulationSummary& summary, const Options& options) {
         fmt::format("{:.0f} to {:.0f}", leg.min_speed, leg.max_speed),
         fmt::format("{:.1f} to {:.1f}", leg.min_attack, leg.max_attack));
   }
-  if (!summary.effects.empty()) say("\nsimulated errors: {}\n", fmt::join(summary.effects, ", "));
-  say("\n{} {} variables, and the true values as TRUE_..., to {}\n", wrote(options.output),
+  say("\n");
+}
+
+void print(const SimulationSummary& summary, const Options& options) {
+  say("{}, {}, {} to {} UTC: {} records, {} legs, seed {}\n", summary.name, summary.aircraft,
+      utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.legs.size(),
+      summary.seed);
+  if (is_verbose()) print_legs(summary);
+  if (!summary.effects.empty()) say("simulated errors: {}\n", fmt::join(summary.effects, ", "));
+  say("{} {} variables, and the true values as TRUE_..., to {}\n", wrote(options.output),
       summary.variables.size(), options.output);
   say_written({options.common.json});
   say("To see where a model fails on it: {} compare {} -m MODEL.toml\n", program(),

@@ -160,7 +160,7 @@ const std::string& first_used(const TemperatureResult& result, const Options& op
 
 std::string next_step(const TemperatureResult& result, const Options& options) {
   if (!result.worse.empty())
-    return "The correction is not yet significant: add flights that climb and descend by 3 km and more, "
+    return "The correction is not yet significant; add flights that climb and descend by 3 km and more, "
            "there and back along the same track";
   return fmt::format("To apply it: {} process {} -m {} -o corrected.nc", program(),
                      shell_path(first_used(result, options)), shell_path(options.output));

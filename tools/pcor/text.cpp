@@ -172,8 +172,10 @@ void finish_text() {
   unfinished_line().clear();
 }
 
-void say_notes(const std::vector<std::string>& notes) {
+void say_notes(const std::vector<std::string>& all) {
   constexpr std::size_t max_notes = 3, max_width = 120;
+  std::vector<std::string> notes = all;
+  std::stable_partition(notes.begin(), notes.end(), is_warning_note);
   if (is_verbose()) {
     for (const std::string& note : notes) say("\nNote: {}.\n", note);
     say("\n");

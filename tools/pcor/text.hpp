@@ -35,14 +35,15 @@ void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
 /// Prints an error in one line on standard error, on the first rank only. Failures to write are ignored.
 void tell(const std::string& message);
 
-/// Prints the unfinished line kept by `say`.
+/// Prints the unfinished line that `say` keeps.
 void finish_text();
 
 /// Whether commands print all details: false until `say_everything`, by --verbose.
 bool is_verbose();
 void say_everything();
 
-/// Prints notes without full stops as numbered, shortened lines, at most three; all in full if `is_verbose`.
+/// Prints notes without full stops as numbered, shortened lines, warnings first, at most three; all in full
+/// if `is_verbose`.
 void say_notes(const std::vector<std::string>& notes);
 
 /// Registers a file that exists before the run, for `say_written`.

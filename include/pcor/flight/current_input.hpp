@@ -4,8 +4,8 @@ namespace pcor {
 
 /// Path of the flight currently being read; nullptr if no flight is being read.
 ///
-/// The HDF5 library may crash or hang on a damaged file. For signal handlers, to report the file; does not
-/// allocate.
+/// The HDF5 library may crash or not return on a damaged file. For signal handlers, to report the file; does
+/// not allocate.
 const char* current_input_path() noexcept;
 
 /// True if another flight was read before. A damaged file may silently corrupt the memory of the HDF5

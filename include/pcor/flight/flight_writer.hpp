@@ -63,10 +63,10 @@ struct NewFlight {
 /// coordinates. A flight with both is a CF trajectory, with a variable `trajectory_id`. Attributes of copied
 /// variables name only variables that are in the output.
 ///
-/// Data go to a hidden file in the directory of the output, which `finish` renames; a failure before that
-/// leaves an existing output unchanged. First `define` and `copy` every variable, then `write` each defined
-/// variable completely, by blocks, then `finish`. The netCDF format is that of the input, netCDF-4 for inputs
-/// in another format, or `NewFlight::kind`.
+/// Data are written to a hidden file in the directory of the output, which `finish` renames; a failure before
+/// that leaves an existing output unchanged. First `define` and `copy` every variable, then `write` each
+/// defined variable completely, by blocks, then `finish`. The netCDF format is that of the input, netCDF-4
+/// for inputs in another format, or `NewFlight::kind`.
 ///
 /// Time is an integer `Time`, seconds since the midnight before the first record, or a double if the times
 /// are not whole seconds. Every error names the output and is one line; after an error, do not write further.

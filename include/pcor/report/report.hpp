@@ -35,6 +35,9 @@ struct TimePanel {
   std::string caption;
   std::vector<std::string> columns;
   std::string axis{};  ///< label of the vertical axis without unit; composed from the columns if empty
+  /// Column with the standard uncertainty of the first column, drawn as a band; no band if empty.
+  std::string uncertainty{};
+  double averaging_time = 0.0;  ///< s; lines show means over periods of this length; 0: every sample
 };
 
 /// Columns against a column chosen by the reader: samples in the background, and the mean of each bin with
@@ -276,12 +279,14 @@ struct WhatIfPanel {
   WhatIfCommands commands{};
 };
 
-/// Table of text and numbers; cells that are numbers are aligned.
+/// Table of text and numbers; cells that are numbers are aligned. The page folds a table of more than 30
+/// rows.
 struct ReportTable {
   std::string title;
   std::string caption;
   std::vector<std::string> headers;
   std::vector<std::vector<std::string>> rows;
+  bool is_folded = false;  ///< true: folded with any number of rows
 };
 
 struct ReportText {
@@ -299,7 +304,7 @@ struct Report {
   std::string title;  ///< the result in one sentence
   std::string subtitle;
   std::vector<std::string> summary;  ///< sentences; the page folds those after the second
-  std::string next;                  ///< "To apply it: pcor process ..."; may be empty
+  std::string next;                  ///< "To apply it: pcor process ...", or a sentence; may be empty
   std::vector<std::pair<std::string, std::string>>
       info;                                ///< name and value, e.g. "Model"; folded on the page
   std::vector<double> time;                ///< sample times, s since 1970 UTC
