@@ -98,7 +98,7 @@ class Results(CheckTest):
                 self.assertEqual(number["verdict"], expected, check["name"])
             key = check["key"]
             self.assertIn(key, check["judged"])
-            sentence = f"{key['value']:+.3f} +- {key['stderr']:.3f} {key['unit']} {key['what']} is "
+            sentence = f"{key['value']:+.3f} +- {key['stderr']:.3f} {key['unit']}, {key['what']}: "
             self.assertTrue(check["decided"].startswith(sentence), check["decided"])
             self.assertIn(f"  {check['verdict']}: {check['decided']}.\n", text)
             if "uncorrected" not in check["decided"]:

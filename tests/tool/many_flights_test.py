@@ -471,7 +471,7 @@ class ModelsByDate(ManyFlights):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(f"wrote {report}", result.stdout)
         page = report.read_text()
-        rows = re.findall(r"<tr><td>(\w+\.nc)</td><td>(.*?)</td><td[^>]*>(\w+)", page)
+        rows = re.findall(r"<tr><td[^>]*>(\w+\.nc)</td><td[^>]*>(.*?)</td><td[^>]*>(\w+)", page)
         self.assertEqual([(name, state) for name, _, state in rows],
                          [("early.nc", "processed"), ("bad.nc", "unreadable"), ("late.nc", "processed")])
         self.assertTrue(rows[0][1].startswith("early C-130"))

@@ -521,7 +521,7 @@ class Iterate(TemperatureTest):
         self.assertTrue(result["converged"])
 
     def test_needs_a_laser_or_a_reference(self):
-        self.refuse("--iterate", words=["lams_airspeed", "--reference pressure:"])
+        self.refuse("--iterate", words=["lams_airspeed", "--reference", "pressure:"])
 
     def test_a_reference_needs_iterate(self):
         self.refuse("--reference", "lams", words=["--reference", "--iterate"])
