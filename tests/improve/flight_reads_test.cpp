@@ -71,8 +71,8 @@ TEST(FlightReads, OfAnImprovementAreOneForEachSetOfRoles) {
   // Inputs of the model, inputs of it and all candidates, and both again with the effect that is added.
   for (const auto& [path, reads] : counts->reads) EXPECT_LE(reads, 4U) << path;
   EXPECT_EQ(counts->reads.size(), 3U);
-  // The residuals of the laser are not linear: a fit builds them again for each evaluation of a flight, and keeps
-  // none of them in memory.
+  // The residuals of the laser are not linear: a fit builds them again for each evaluation of a flight, and
+  // keeps none of them in memory.
   EXPECT_LE(counts->residuals, 160U);
 }
 
