@@ -89,8 +89,8 @@ class GpsSolver {
   }
 
   GpsFit solve() {
-    constexpr int rounds_with_noise = 2;
-    constexpr int rounds = 4;
+    constexpr int rounds_with_noise = 3;
+    constexpr int rounds = 5;
     for (int round = 0; round < rounds; ++round) {
       read(round < rounds_with_noise, round == rounds - 2);
       step();
