@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/hydrostatic.hpp>
@@ -86,14 +85,27 @@ Air air_of(const FlightSamples& samples, const ModelOnSamples& law, const double
   return air;
 }
 
+/// A steep low-pass: what a Gaussian of 1 s removes is filtered again, several times. 100 % of an oscillation
+/// of 6 s remain, 87 % of one of 4 s; one Gaussian would leave 58 and 29 %, and a coefficient found in such
+/// manoeuvres would be as much too large.
+Series without_noise(const Series& values, double step) {
+  constexpr double deviation = 1.0;  // s
+  constexpr int rounds = 6;
+  Series smooth(values.size(), 0.0);
+  for (int round = 0; round < rounds; ++round) {
+    Series left = values;
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] -= smooth[i];
+    left = low_passed(left, deviation / step);
+    for (std::size_t i = 0; i < left.size(); ++i) smooth[i] += left[i];
+  }
+  return smooth;
+}
+
 /// Removes the sensor noise from the inputs of effects other than pressures and temperatures, above all flow
 /// angles. The residual contains the same noise, multiplied by the coefficient, and a column that contained
 /// it would make the coefficient too small: by 2 % for 0.03 hPa in ADIFR, several standard errors in an hour
-/// of calm air. What a Gaussian of 1 s removes is filtered again, twice: 99 % of an oscillation of 9 s
-/// remain, the fastest manoeuvre, where one Gaussian would leave 78 % and make the coefficient too large.
+/// of calm air.
 void low_pass_angles(ModelSamples& samples, double step) {
-  constexpr double deviation = 1.0;  // s
-  constexpr int rounds = 3;
   for (auto& [quantity, values] : samples.columns) {
     switch (quantity) {
       case Quantity::static_pressure:
@@ -105,16 +117,8 @@ void low_pass_angles(ModelSamples& samples, double step) {
       case Quantity::time:
       case Quantity::date:
         break;
-      default: {
-        Series smooth(values.size(), 0.0);
-        for (int round = 0; round < rounds; ++round) {
-          Series left = values;
-          for (std::size_t i = 0; i < left.size(); ++i) left[i] -= smooth[i];
-          left = low_passed(left, deviation / step);
-          for (std::size_t i = 0; i < left.size(); ++i) smooth[i] += left[i];
-        }
-        values = std::move(smooth);
-      }
+      default:
+        values = without_noise(values, step);
     }
   }
 }
@@ -471,10 +475,12 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
   result.rise.resize(size, 0.0);
   ModelSamples calm = samples.model;
   low_pass_angles(calm, samples.step);
-  for (const Quantity input :
-       {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature}) {
-    if (Series* const values = calm.find(input)) *values = low_passed(*values, 5.0 / samples.step);
+  for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+    Series& values = *calm.find(pressure);
+    values = without_noise(values, samples.step);
   }
+  if (Series* const values = calm.find(Quantity::recovery_temperature))
+    *values = low_passed(*values, 5.0 / samples.step);
   const ModelOnSamples calm_law(file, calm);
   Differentiation differentiate(calm_law, calm, parameters, wanted, effects);
   const Eigen::Index count = differentiate.count();

@@ -120,3 +120,13 @@ TEST(GpsDiagnosis, FindsHiddenEffect) {
   EXPECT_NEAR(estimate.value, 0.01, 0.0015);
   EXPECT_GT(diagnosis.findings[0].gain, 2.0 * diagnosis.findings[0].gain_error);
 }
+
+TEST(GpsDiagnosis, NamesNoSecondEffectBesideALaser) {
+  const std::string effect = "\n[[effect]]\nid = \"static-beta-odd\"\nb1 = 0.01\n";
+  const References references{pcor::lams_reference(), pcor::wind_reference(law())};
+  const pcor::Diagnosis diagnosis = pcor::diagnose({flight(26, effect)}, law(), references);
+  ASSERT_THAT(diagnosis.findings, testing::SizeIs(1));
+  EXPECT_EQ(diagnosis.findings[0].effect.id, "static-beta-odd");
+  const pcor::Estimate& estimate = diagnosis.findings[0].estimates.front();
+  EXPECT_NEAR(estimate.value, 0.01, 4.0 * estimate.standard_error);
+}
