@@ -475,12 +475,11 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
   result.rise.resize(size, 0.0);
   ModelSamples calm = samples.model;
   low_pass_angles(calm, samples.step);
-  for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
-    Series& values = *calm.find(pressure);
-    values = without_noise(values, samples.step);
+  // Even little noise of the pressures biases columns like that of an offset of the transducer.
+  for (const Quantity input :
+       {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature}) {
+    if (Series* const values = calm.find(input)) *values = low_passed(*values, 5.0 / samples.step);
   }
-  if (Series* const values = calm.find(Quantity::recovery_temperature))
-    *values = low_passed(*values, 5.0 / samples.step);
   const ModelOnSamples calm_law(file, calm);
   Differentiation differentiate(calm_law, calm, parameters, wanted, effects);
   const Eigen::Index count = differentiate.count();
