@@ -238,7 +238,8 @@ bool find_outliers(const WhiteRows& white, const GpsPrior& prior, Eigen::VectorX
   const auto columns = white.rows.leftCols(count);
   Eigen::MatrixXd matrix = columns.transpose() * columns;
   matrix.diagonal() += prior.deviation.cwiseAbs2().cwiseInverse();
-  const Eigen::VectorXd best = matrix.ldlt().solve(columns.transpose() * white.rows.col(count));
+  const Eigen::VectorXd best = matrix.ldlt().solve(columns.transpose() * white.rows.col(count) +
+                                                   prior.mean.cwiseQuotient(prior.deviation.cwiseAbs2()));
   const Eigen::VectorXd news = white.rows.col(count) - columns * best;
   bool any = false;
   for (Eigen::Index i = 0; i < news.size(); ++i) {

@@ -327,10 +327,10 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
 WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const References& all_references,
                const std::vector<WhatIfCandidate>& wanted, const WhatIfOptions& options) {
   const FlightSet files = flights.with(options.holdout);
-  // A refit by the wind does not minimise one residual per sample.
+  // A refit by GPS does not minimise one residual per sample.
   References references = in_order_of_diagnosis(all_references);
   references.erase(std::remove_if(references.begin(), references.end(),
-                                  [](const auto& each) { return gps_kind(*each) == GpsKind::wind; }),
+                                  [](const auto& each) { return gps_kind(*each).has_value(); }),
                    references.end());
   if (references.empty()) return {};
   std::vector<std::string> notes;  // reported by the diagnosis

@@ -116,7 +116,17 @@ TEST(GpsDiagnosis, FindsHiddenEffect) {
   ASSERT_THAT(diagnosis.findings, testing::SizeIs(1));
   EXPECT_EQ(diagnosis.findings[0].effect.id, "static-beta-odd");
   const pcor::Estimate& estimate = diagnosis.findings[0].estimates.front();
-  // Columns are low-passed by 1 s, which reduces oscillations of 9 s to 0.8. A refit iterates.
-  EXPECT_NEAR(estimate.value, 0.01 / 0.8, 3.0 * estimate.standard_error);
+  // An effect of 5 hPa is not linear: the first step of the iterations of a refit is up to 15 % too long.
+  EXPECT_NEAR(estimate.value, 0.01, 0.0015);
   EXPECT_GT(diagnosis.findings[0].gain, 2.0 * diagnosis.findings[0].gain_error);
+}
+
+TEST(GpsDiagnosis, NamesNoSecondEffectBesideALaser) {
+  const std::string effect = "\n[[effect]]\nid = \"static-beta-odd\"\nb1 = 0.01\n";
+  const References references{pcor::lams_reference(), pcor::wind_reference(law())};
+  const pcor::Diagnosis diagnosis = pcor::diagnose({flight(26, effect)}, law(), references);
+  ASSERT_THAT(diagnosis.findings, testing::SizeIs(1));
+  EXPECT_EQ(diagnosis.findings[0].effect.id, "static-beta-odd");
+  const pcor::Estimate& estimate = diagnosis.findings[0].estimates.front();
+  EXPECT_NEAR(estimate.value, 0.01, 4.0 * estimate.standard_error);
 }

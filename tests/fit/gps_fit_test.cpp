@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <pcor/campaign/chosen_references.hpp>
+#include <pcor/effects/catalogue.hpp>
 #include <pcor/fit/refit.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include <pcor/simulate/simulate.hpp>
 
 #include <cmath>
@@ -146,6 +148,27 @@ TEST(GpsFit, NamesACoefficientAtItsBound) {
   EXPECT_THAT(result.notes, Contains(HasSubstr("static-alpha.a1 is at its bound")));
   // The others make up for it: delta-p changes by less than the attack term that is missing.
   EXPECT_LT(std::abs(error_of(result)), 0.9 * pressure * -ratio * (0.021279816 - 0.014));
+}
+
+// The columns of the fit contain half of an oscillation of 3 s, so its steps are twice too long.
+TEST(GpsFit, WarnsIfItDoesNotConverge) {
+  const std::string effect = "\n[[effect]]\nid = \"static-beta-odd\"\nb1 = 0.01\n";
+  const std::string yaw = "kind = \"yaw\"";
+  ModelDefinition model = law();
+  model = pcor::add_effects(model, {pcor::neutral_effect("static-beta-odd")});
+  for (const bool is_fast : {false, true}) {
+    std::string text = text_of("c130-eq18") + effect;
+    for (std::size_t at = text.find(yaw); is_fast && at != std::string::npos; at = text.find(yaw, at + 1))
+      text.insert(at + yaw.size(), "\nperiod = 3\ncycles = 40");
+    const pcor::test::TemporaryDirectory directory;
+    pcor::simulate_flight(pcor::parse_scenario(text, "yaw"), directory / "yaw.nc");
+    const RefitResult result = fit(directory / "yaw.nc", model, {"wind"});
+    const auto warned = Contains(HasSubstr("did not converge"));
+    if (is_fast)
+      EXPECT_THAT(result.warnings, warned);
+    else
+      EXPECT_THAT(result.warnings, testing::Not(warned));
+  }
 }
 
 TEST(GpsFit, UsesGusts) {

@@ -109,6 +109,13 @@ class Processes(unittest.TestCase):
              "--training-share", "0.8", "--force"],
             ["fitted.toml", "fitted.json"], [2, 4])
 
+    def test_refit_compare_and_diagnose_by_wind_and_height_are_so_too(self):
+        by_gps = ["-m", MODEL, "--reference", "wind", "--reference", "height"]
+        self.assert_alike(["refit", *self.flights[:3], *by_gps, "-o", "fitted.toml", "--json", "fitted.json"],
+                          ["fitted.toml", "fitted.json"], [2, 3])
+        self.assert_alike(["compare", *self.flights[:3], *by_gps, "--json", "compare.json"], ["compare.json"], [2])
+        self.assert_alike(["diagnose", *self.flights[:3], *by_gps, "--json", "diagnose.json"], ["diagnose.json"], [2])
+
     def test_compare_is_so_too(self):
         self.assert_alike(
             ["compare", *self.flights[:3], "-m", MODEL, "--report", "compare.html", "--json", "compare.json",
