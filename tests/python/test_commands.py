@@ -270,7 +270,9 @@ def test_error_of_a_progress_function_reaches_the_caller(in_folder):
 
 
 def test_interrupt_stops_the_command(in_folder):
-    program = ("import pcor\ntry:\n pcor.improve(['first.nc', 'second.nc'], model='model.toml', trace_variables=True,"
+    # A shell starts background jobs, and their children, with SIGINT ignored.
+    program = ("import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+               "import pcor\ntry:\n pcor.improve(['first.nc', 'second.nc'], model='model.toml', trace_variables=True,"
                "output='stopped.toml', progress=lambda *event: print(flush=True))\n"
                "except KeyboardInterrupt:\n print('stopped')")
     process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
