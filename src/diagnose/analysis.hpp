@@ -99,8 +99,8 @@ class Analysis {
   HeldOut held_out(const std::vector<std::size_t>& groups) const;
 
   /// Most likely drift of a flight after base and `groups`, one value per record, hPa.
-  /// @param coefficients of least squares: those of the noise model may move along collinear columns as the
-  /// drift allows
+  /// @param coefficients of least squares; coefficients of the noise model may move along collinear columns
+  /// as the drift allows
   std::vector<double> drift(std::size_t flight, const std::vector<std::size_t>& groups,
                             const Eigen::VectorXd& coefficients) const;
 

@@ -273,6 +273,7 @@ void overrule(Diagnosis& diagnosis, const std::string& variable) {
 /// Notes on the variables the residual is correlated with that seem to be an input, without a name in the
 /// model, of an effect that was not tested.
 void note_unnamed_inputs(const FlightSet& files, const ModelDefinition& model, Diagnosis& diagnosis) {
+  if (diagnosis.unexplained.variables.empty()) return;
   for (const NotTestable& effect : diagnosis.not_testable) {
     const std::size_t known = effect_named(effect.effect);
     if (known == catalogue_size) continue;
@@ -384,9 +385,10 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
         "with "
         "GPS looks like it; give a laser or a second system as a further reference");
   } else {
-    structure =
-        find_unexplained(analysis, files, model, references, inputs_of(diagnosis.findings, set.extended),
-                         options, rms_after, diagnosis.noise_rms_with_findings);
+    structure = find_unexplained(
+        analysis, files, model, references, inputs_of(diagnosis.findings, set.extended), options, rms_after,
+        diagnosis.noise_rms_with_findings,
+        rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].drift; }));
   }
   diagnosis.unexplained = std::move(structure.found);
   note_unnamed_inputs(files, set.extended, diagnosis);

@@ -400,7 +400,7 @@ std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vec
 UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet& files,
                                       const ModelDefinition& model, const References& references,
                                       const EffectInputs& inputs, const DiagnoseOptions& options,
-                                      double residual_rms, double noise_rms) {
+                                      double residual_rms, double noise_rms, double drift_rms) {
   UnexplainedStructure result;
   Unexplained& found = result.found;
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
@@ -423,9 +423,7 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   }
   const Tested& shown = result.overrules ? *beside_base : beside_all;
 
-  const Eigen::VectorXd refitted = analysis.least_squares(chosen);
-  found.drift_rms =
-      rms_of(analysis.share(), [&](std::size_t f) { return analysis.drift(f, chosen, refitted); });
+  found.drift_rms = drift_rms;
   const bool drifts =
       analysis.drift_gain() > min_drift_gain && found.drift_rms > std::max(usual_drift, noise_rms);
   found.steps = steps_between(analysis, chosen);

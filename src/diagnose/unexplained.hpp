@@ -30,10 +30,10 @@ struct UnexplainedStructure {
 /// Tests whether structure remains in any variable of the files.
 ///
 /// @param references in the order of the analysis
-/// @param residual_rms and @param noise_rms after the chosen effects, hPa
+/// @param residual_rms, @param noise_rms and @param drift_rms after the chosen effects, hPa
 UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet& files,
                                       const ModelDefinition& model, const References& references,
                                       const EffectInputs& inputs, const DiagnoseOptions& options,
-                                      double residual_rms, double noise_rms);
+                                      double residual_rms, double noise_rms, double drift_rms);
 
 }  // namespace pcor::internal

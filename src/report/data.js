@@ -91,7 +91,7 @@ class Samples {
     }
   }
 
-  // Adds an interval, joined with one of the same name that it overlaps: flights may cover the same time.
+  // Adds an interval, joined with an overlapping interval of its regime: flights may cover the same time.
   shade(name, begin, end) {
     const known = this.intervals.find((one) => one.name === name && one.begin <= end && one.end >= begin);
     if (!known) this.intervals.push({name, begin, end});

@@ -72,7 +72,7 @@ TEST(FlightReads, OfAnImprovementAreOneForEachSetOfRoles) {
   for (const auto& [path, reads] : counts->reads) EXPECT_LE(reads, 4U) << path;
   EXPECT_EQ(counts->reads.size(), 3U);
   // The residuals of the laser are not linear: a fit builds them again for each evaluation of a flight, and
-  // keeps none of them in memory.
+  // does not keep them in memory.
   EXPECT_LE(counts->residuals, 160U);
 }
 

@@ -130,18 +130,18 @@ void print_others(const Diagnosis& diagnosis, bool all) {
   print_list("not testable", not_testable, all);
 }
 
-/// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
-/// for findings that one command cannot add.
-/// Options of a fit like that of the diagnosis, after the flights and references.
-std::string with_fit_options(std::string flights, const Options& options) {
+/// Arguments of a fit with the options of the diagnosis. @param flights arguments with the flights
+std::string fit_command_line(std::string flights, const Options& options) {
   if (options.trust_reference) flights += " --trust-reference";
   flights += command_line(options.held);
   if (options.training_share < 1.0) flights += fmt::format(" --training-share {}", options.training_share);
   return flights;
 }
 
+/// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
+/// for findings that one command cannot add.
 std::string next_command(const Diagnosis& diagnosis, const Options& options) {
-  const std::string flights = with_fit_options(advised_command_line(options.comparison), options);
+  const std::string flights = fit_command_line(advised_command_line(options.comparison), options);
   const std::string model = shell_path(options.model);
   if (diagnosis.verdict == Verdict::silent) {
     return fmt::format("To apply the model: {} process {} -m {} -o corrected.nc", program(),
@@ -254,7 +254,7 @@ void run(const Options& options) {
       tried = what_if(flights, model, references.used, what_if_candidates(diagnosis, diagnose_with.formulas),
                       {diagnose_with, {}, true, diagnosis.own});
       add_commands(tried, options.model, options.comparison.flights.front(),
-                   with_fit_options(command_line(options.comparison), options));
+                   fit_command_line(command_line(options.comparison), options));
     }
   }
   if (!is_speaker()) return;

@@ -37,7 +37,7 @@ std::string command(const std::string& name, const Inspection& flight, const std
 }
 
 /// Reference for a published law: the laser, otherwise a second static system that has a published law,
-/// otherwise the last of the flight's references; empty if there is none.
+/// otherwise the last of the flight's references; empty if the flight has no reference.
 std::string reference_for(const Inspection& flight, const ModelCandidate& law) {
   const std::vector<std::string>& references = flight.references;
   if (std::find(references.begin(), references.end(), "lams") != references.end()) return "lams";
