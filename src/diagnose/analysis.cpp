@@ -59,7 +59,7 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
   first_bins_ = part(binned_.bins, 0, flights_.size());
   const Eigen::Index columns_count = binned_.columns.front().cols();
   for (const Eigen::VectorXd& effect : added) {
-    added_.push_back(Eigen::VectorXd::Zero(columns_count));
+    added_.emplace_back(Eigen::VectorXd::Zero(columns_count));
     added_.back().head(base_) = effect;
   }
   for (std::size_t f = 0; f < flight_count(); ++f) {
@@ -241,7 +241,7 @@ std::vector<Eigen::MatrixXd> Analysis::find_shape_uncertainty(const std::vector<
     group.shape_first = first - base_;
     group.shape_count = shape_columns;
     first += shape_columns;
-    effects.push_back(Eigen::VectorXd::Zero(coefficients_.size()));
+    effects.emplace_back(Eigen::VectorXd::Zero(coefficients_.size()));
     effects.back().segment(base_ + group.first, group.count) =
         coefficients_.segment(base_ + group.first, group.count);
   }

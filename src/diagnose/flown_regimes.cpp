@@ -98,7 +98,7 @@ RegimeSums sums_of(const WhitenedSystem& scores, std::size_t number, const Fligh
 
 std::vector<FlownRegime> flown_regimes(const WhitenedSystem& scores,
                                        const std::function<FlightInBins(std::size_t flight)>& flight) {
-  RegimeSums sums = scores.share.sum_of_each_flight<RegimeSums>(
+  auto sums = scores.share.sum_of_each_flight<RegimeSums>(
       [&](std::size_t f) { return sums_of(scores, f, flight(f)); });
   std::vector<FlownRegime> regimes;
   for (std::size_t r = 0; r < regime_count; ++r) {

@@ -147,11 +147,11 @@ double StructureTest::minus_likelihood(const Whitened& flights, double taken) co
 }
 
 VariableValues StructureTest::values_of(const std::vector<const double*>& values) const {
-  return VariableValues(share_, [&](std::size_t f) {
-    std::vector<double> of_flight;
-    for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back(values[f][record]);
-    return of_flight;
-  });
+  return {share_, [&](std::size_t f) {
+            std::vector<double> of_flight;
+            for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back(values[f][record]);
+            return of_flight;
+          }};
 }
 
 bool StructureTest::add(const std::string& name, const std::vector<const double*>& values, double turn) {

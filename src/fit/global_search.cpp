@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include <pcor/base/error.hpp>
 #include "numerics/decompositions.hpp"
@@ -19,8 +20,8 @@ constexpr int trials_per_dimension = 500;
 /// Least squares of a trial: searched parameters as given, linear ones solved for.
 class Trial {
  public:
-  Trial(FitFlights& flights, const Eigen::VectorXd& values, const std::vector<std::size_t>& free)
-      : flights_(flights), free_(free), parameters_(values) {
+  Trial(FitFlights& flights, Eigen::VectorXd values, const std::vector<std::size_t>& free)
+      : flights_(flights), free_(free), parameters_(std::move(values)) {
     for (std::size_t k = 0; k < free.size(); ++k) {
       (flights.is_linear()[free[k]] ? linear_ : searched_).push_back(as_index(k));
     }

@@ -221,14 +221,12 @@ class Solver {
     }
   }
 
-  /// Minimises that loss; true if the deviation that scales it is then unchanged. Residuals that are not
-  /// linear are solved by Ceres. Least squares with the weights of the step before do not increase the loss
-  /// of linear residuals (Huber and Ronchetti 2009, Robust Statistics, section 7.8); a step that increases it
-  /// is halved.
+  /// Minimises that loss; true if the deviation that scales it is then unchanged.
   bool settles_with(Loss loss) {
-    constexpr int max_steps = 200;
     const ScaledLoss scaled(loss, solution_.deviation);
-    if (!flights_.rows_are_linear()) {
+    if (flights_.rows_are_linear()) {
+      reweight(scaled);
+    } else {
       const auto reduce = [&](const Eigen::VectorXd& unknowns) {
         Eigen::VectorXd values = solution_.values;
         values(free_) = unknowns;
@@ -238,11 +236,21 @@ class Solver {
       minimise({reduce, solution_.deviation * prior_.rows, prior_.centre, lower_, upper_}, unknowns_);
       spread();
     }
+    const double before = solution_.deviation;
+    find_deviation();
+    return std::abs(solution_.deviation - before) < 1e-3 * before;
+  }
+
+  /// Minimises the loss of linear residuals: least squares with the weights of the step before do not
+  /// increase it (Huber and Ronchetti 2009, Robust Statistics, section 7.8); a step that increases it is
+  /// halved.
+  void reweight(const ScaledLoss& loss) {
+    constexpr int max_steps = 200;
     Eigen::VectorXd best = unknowns_;
     double least = infinity;
     for (int step = 0; step < max_steps; ++step) {
       const Eigen::VectorXd now = unknowns_;
-      const auto [cost, length] = linear_step(scaled);
+      const auto [cost, length] = linear_step(loss);
       if (!std::isfinite(cost) && !std::isfinite(least)) {
         throw Error(
             "the fit found no coefficients: from their values in the model the residuals are not numbers; "
@@ -257,9 +265,6 @@ class Solver {
       least = cost;
       if (length < 1e-6 * solution_.deviation) break;
     }
-    const double before = solution_.deviation;
-    find_deviation();
-    return std::abs(solution_.deviation - before) < 1e-3 * before;
   }
 
   FitFlights& flights_;
