@@ -63,9 +63,8 @@ template <class Arch>
   const Register r = xsimd::fnma(n, Register(detail::ln2_low), xsimd::fnma(n, Register(detail::ln2_high), x));
   const Bits exponent = (xsimd::bitwise_cast<Bits>(shifted) + Bits(std::uint64_t{1023})) << 52;
   const Register result = detail::polynomial(r, series) * xsimd::bitwise_cast<Register>(exponent);
-  const Register infinity(std::numeric_limits<double>::infinity());
-  return xsimd::select(x < Register(-708.0), Register(0.0),
-                       xsimd::select(x > Register(709.0), infinity, result));
+  const Register inf(std::numeric_limits<double>::infinity());
+  return xsimd::select(x < Register(-708.0), Register(0.0), xsimd::select(x > Register(709.0), inf, result));
 }
 
 /// ln x within 2 units in the last place; minus infinity at zero and for x too small for a normal number.
@@ -89,11 +88,11 @@ template <class Arch>
   const Register rest =
       xsimd::fma(n, Register(detail::ln2_low), s * square * detail::polynomial(square, series));
   const Register result = xsimd::fma(n, Register(detail::ln2_high), s + s + rest);
-  const Register infinity(std::numeric_limits<double>::infinity());
-  const auto normal = (x >= Register(std::numeric_limits<double>::min())) & (x < infinity);
+  const Register inf(std::numeric_limits<double>::infinity());
+  const auto normal = (x >= Register(std::numeric_limits<double>::min())) & (x < inf);
   if (xsimd::all(normal)) return result;
-  const Register nan(std::numeric_limits<double>::quiet_NaN());
-  const Register special = xsimd::select(x < Register(0.0), nan, xsimd::select(x < infinity, -infinity, x));
+  const Register quiet_nan(std::numeric_limits<double>::quiet_NaN());
+  const Register special = xsimd::select(x < Register(0.0), quiet_nan, xsimd::select(x < inf, -inf, x));
   return xsimd::select(normal, result, special);
 }
 

@@ -22,8 +22,8 @@
 namespace pcor::internal {
 namespace {
 
-constexpr int jet_width = 3;
-using Jet = ceres::Jet<double, jet_width>;
+constexpr int effect_jet_width = 3;
+using EffectJet = ceres::Jet<double, effect_jet_width>;
 
 /// Evaluation of a candidate: its derivatives with respect to some of the tested parameters.
 struct Evaluation {
@@ -31,7 +31,7 @@ struct Evaluation {
   Eigen::Index place = 0;        // index among the locations of all candidates
   std::size_t first_column = 0;  // first column of the parameters
   std::size_t width = 0;
-  std::vector<Jet> parameters{};
+  std::vector<EffectJet> parameters{};
   Quantity memory = Quantity::count;  // history input of the candidate,
   std::vector<double> remembered{};   // replaces the column of the samples; empty if unknown
 };
@@ -67,10 +67,10 @@ std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t r
           remembered(evaluation.memory, inputs, samples.time, samples.step, candidate.memory);
     }
     const std::vector<double>& neutral = candidate.effect.parameters;
-    for (std::size_t first = 0; first < candidate.tested.size(); first += jet_width) {
+    for (std::size_t first = 0; first < candidate.tested.size(); first += effect_jet_width) {
       evaluation.first_column = set.first_column(c) + first;
-      evaluation.width = std::min<std::size_t>(jet_width, candidate.tested.size() - first);
-      evaluation.parameters = std::vector<Jet>(neutral.begin(), neutral.end());
+      evaluation.width = std::min<std::size_t>(effect_jet_width, candidate.tested.size() - first);
+      evaluation.parameters = std::vector<EffectJet>(neutral.begin(), neutral.end());
       for (std::size_t k = 0; k < evaluation.width; ++k)
         evaluation.parameters[candidate.tested[first + k].place].v[as_index(k)] = 1.0;
       evaluations.push_back(evaluation);
@@ -160,7 +160,7 @@ void put_candidates(const Chain& chain, const ModelSamples& inputs,
       const bool remembers = !each.remembered.empty();
       const double usual = remembers ? state[each.memory] : 0.0;
       if (remembers) state[each.memory] = each.remembered[sample];
-      const Jet value = chain.effect_value(each.effect, state, each.parameters.data());
+      const EffectJet value = chain.effect_value(each.effect, state, each.parameters.data());
       if (remembers) state[each.memory] = usual;
       const double at_place = at_places.cols() == 0 ? 1.0 : at_places(as_index(k), each.place);
       for (std::size_t p = 0; p < each.width; ++p)

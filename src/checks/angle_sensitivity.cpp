@@ -15,7 +15,7 @@ namespace pcor::internal {
 namespace {
 
 /// Smallest relevant change of the residual over the swing of an angle, hPa.
-constexpr double size_that_matters = 0.3;
+constexpr double min_swing_change = 0.3;
 
 /// Peak-to-peak range of a sine in standard deviations.
 const double ends_of_sine = 2.0 * std::sqrt(2.0);
@@ -241,14 +241,13 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   const Totals totals = totals_of(manoeuvres);
   const AngleReference witness = *witness_of(*manoeuvres.front().flown.flight, check.witnesses);
   std::vector<TestStatistic> numbers{
-      judged(totals.across, size_that_matters, "hPa", "change across the swing")};
+      judged(totals.across, min_swing_change, "hPa", "change across the swing")};
   result.finding = fmt::format(
       "Over {} {}{} the residual against {} changes by {} of {}, {} from one end of the swing to the other.",
       manoeuvres.size(), info_of(check.regime).name, manoeuvres.size() == 1 ? "" : "s", to_string(witness),
       with_error(totals.slope, "hPa/deg", 3), check.angle, with_error(totals.across, "hPa"));
   if (check.with_square) {
-    numbers.push_back(
-        judged(totals.bent, size_that_matters, "hPa", "quadratic part at the end of the swing"));
+    numbers.push_back(judged(totals.bent, min_swing_change, "hPa", "quadratic part at the end of the swing"));
     result.finding += fmt::format(" With its square the residual changes by {}, {} at the end of the swing.",
                                   with_error(totals.bend, "hPa/deg2", 4), with_error(totals.bent, "hPa"));
   }

@@ -12,7 +12,7 @@ namespace pcor::internal {
 namespace {
 
 /// Tolerance as for the reverse heading, m/s.
-constexpr double size_that_matters = 0.3;
+constexpr double min_circle_error = 0.3;
 
 /// A smaller turn cannot separate the wind from the airspeed.
 constexpr double min_turn = 300.0;  // deg
@@ -136,7 +136,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
                                             circle.flown.mean(air.airspeed)));
   }
   const Estimated hpa{mean_value(factors) * error.value, std::abs(mean_value(factors)) * error.error};
-  decide({judged(error, size_that_matters, "m/s", "airspeed")}, result);
+  decide({judged(error, min_circle_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "
       "m/s, as if delta-p were off by {}.",

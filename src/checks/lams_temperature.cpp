@@ -13,7 +13,7 @@ namespace pcor::internal {
 namespace {
 
 /// Smallest relevant difference, K: the typical error of the thermometer (memo, after eq. 22).
-constexpr double size_that_matters = 0.3;
+constexpr double min_temperature_difference = 0.3;
 constexpr double boundary_layer = 1000.0;  // m above the field
 constexpr double altitude_band = 1000.0;   // m
 constexpr std::size_t min_in_cloud = 30;   // minimum number of samples to estimate a scatter
@@ -179,7 +179,7 @@ std::size_t look_at_clouds(const FlightAir& air, double outside, ReportTable& ta
     std::string remark;
     if (missing > suspect_share)
       remark = "laser mostly missing: an iced window";
-    else if (judge(change, size_that_matters) == CheckVerdict::inconsistent)
+    else if (judge(change, min_temperature_difference) == CheckVerdict::inconsistent)
       remark = "suspect";
     table.rows.push_back({air.samples->name, utc_text(interval.begin), utc_text(interval.end, "%H:%M:%S"),
                           fmt::format("{:.0f}", 100.0 * missing),
@@ -267,7 +267,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   result.name = name;
   result.ran = true;
   const Estimated offset = outside.fit.coefficients[0];
-  decide({judged(offset, size_that_matters, "K", "laser minus thermometer")}, result);
+  decide({judged(offset, min_temperature_difference, "K", "laser minus thermometer")}, result);
   const std::vector<double> clear_values = location(all, clear);
   const double noise =
       noise_floor(clear_values, contiguous_segments(clear_values, all.time, all.step), all.step).rms;
@@ -287,7 +287,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
     result.numbers.emplace_back("cloud_offset_stderr_k", in_cloud_offset.error);
     const Estimated change{in_cloud_offset.value - offset.value,
                            std::hypot(in_cloud_offset.error, offset.error)};
-    if (judge(change, size_that_matters) == CheckVerdict::inconsistent) {
+    if (judge(change, min_temperature_difference) == CheckVerdict::inconsistent) {
       result.notes.emplace_back(
           "the difference changes in cloud: the thermometer is wet (reads low), or the laser's window is "
           "iced or drops scatter its light");

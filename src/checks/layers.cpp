@@ -14,7 +14,7 @@ namespace pcor::internal {
 namespace {
 
 /// Smallest relevant error of the thermometer, K: the typical error (memo, after eq. 22).
-constexpr double size_that_matters = 0.3;
+constexpr double min_thermometer_error = 0.3;
 
 /// A line with a larger error at 0 degC, K, is not reported.
 constexpr double max_useful_error = 1.0;
@@ -155,7 +155,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
   result.name = "layers";
   result.ran = true;
   std::vector<TestStatistic> numbers{
-      judged({fit.offset, fit.offset_error}, size_that_matters, "K", "thermometer")};
+      judged({fit.offset, fit.offset_error}, min_thermometer_error, "K", "thermometer")};
   result.finding =
       fmt::format("Over {} layer{} the hydrostatic equation implies a thermometer correction of {}",
                   fit.layers, fit.layers == 1 ? "" : "s", with_error({fit.offset, fit.offset_error}, "K"));
@@ -176,7 +176,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
     const double range = warmest - coldest;
     // An uncertain slope leaves the verdict to the mean.
     TestStatistic change =
-        judged({fit.c1 * range, fit.c1_error * range}, size_that_matters, "K",
+        judged({fit.c1 * range, fit.c1_error * range}, min_thermometer_error, "K",
                fmt::format("change from {:.0f} to {:.0f} degC", coldest - constants::ice_point,
                            warmest - constants::ice_point));
     result.numbers = {{"change_over_range_k", change.value},

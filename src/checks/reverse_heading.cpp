@@ -15,7 +15,7 @@ namespace {
 
 /// Smallest relevant error of the airspeed, m/s: the error of the GV in the memo's tests with manoeuvres,
 /// about 0.3 hPa.
-constexpr double size_that_matters = 0.3;
+constexpr double min_airspeed_error = 0.3;
 
 /// Pilots aim at headings opposite within five degrees.
 constexpr double aimed_heading = 5.0;  // deg
@@ -257,7 +257,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   };
   const Estimated hpa = as_other(&LegPair::pressure_per_airspeed);
   const Estimated kelvin = as_other(&LegPair::temperature_per_airspeed);
-  decide({judged(error, size_that_matters, "m/s", "airspeed")}, result);
+  decide({judged(error, min_airspeed_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "Over {} pair{} the tail winds of both legs add up to {} instead of zero: the true airspeed is too {} "
       "by {:.2f} +- {:.2f} m/s, as if delta-p were off by {} or the temperature by {}.",

@@ -17,7 +17,7 @@ namespace pcor::internal {
 namespace {
 
 /// Largest acceptable noise of delta-p, hPa: the rms of the memo's fits (eq. 18 and 20).
-constexpr double size_that_matters = 0.3;
+constexpr double max_noise = 0.3;
 constexpr std::size_t segment_length = 256;  // samples
 constexpr std::size_t min_segments = 8;      // minimum for a slope with an error
 constexpr double flattest_fall = -0.8;       // half of -5/3: nearer to a white floor than to turbulence
@@ -204,7 +204,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   CheckResult result;
   result.name = name;
   result.ran = true;
-  decide({judged(floor, size_that_matters, "hPa", "white noise")}, result);
+  decide({judged(floor, max_noise, "hPa", "white noise")}, result);
   const double step = coarsest_step(flights);
   if (step >= coarse_pressure) {
     withhold(fmt::format("the static pressure is recorded in steps of {:.2g} hPa, which cause {:.2g} hPa of "

@@ -13,7 +13,7 @@ namespace pcor::internal {
 namespace {
 
 /// Smallest relevant error of delta-p from the slow to the fast end of a run, hPa.
-constexpr double size_that_matters = 0.3;
+constexpr double min_run_change = 0.3;
 
 /// Changes between the slow and the fast end of a run that are too slow for its samples to show as noise: the
 /// wind on the scale of a run, m/s, half the change between the legs of a reverse heading; and the error of a
@@ -95,7 +95,7 @@ std::vector<Estimated> errors_of(const std::vector<Run>& runs, Trend Run::*trend
 /// accurate one decides.
 Estimated decisive(const Estimated& height, const Estimated& wind) {
   for (const Estimated& each : {height, wind}) {
-    if (judge(each, size_that_matters) == CheckVerdict::inconsistent) return each;
+    if (judge(each, min_run_change) == CheckVerdict::inconsistent) return each;
   }
   return !(height.error <= wind.error) && std::isfinite(wind.error) ? wind : height;
 }
@@ -200,7 +200,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   const bool has_height = std::isfinite(height.value);
   const bool has_wind = std::isfinite(wind.value);
   const Estimated across = decisive(height, wind);
-  decide({judged(across, size_that_matters, "hPa", "change from slow to fast")}, result);
+  decide({judged(across, min_run_change, "hPa", "change from slow to fast")}, result);
   const auto average = [&](Trend Run::*trend, double Trend::*number) {
     std::vector<double> values;
     for (const Run& run : runs) values.push_back(run.*trend.*number);

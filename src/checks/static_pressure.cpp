@@ -10,7 +10,7 @@ namespace {
 
 /// Smallest relevant difference of two corrected static pressures, hPa: the rms difference of the memo's eq.
 /// 18 and LAMS.
-constexpr double size_that_matters = 0.3;
+constexpr double min_static_difference = 0.3;
 
 bool has_second(const CheckedFlight& flight) { return flight.second.has_value(); }
 
@@ -40,7 +40,7 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   CheckResult result;
   result.name = "static-pressure";
   result.ran = true;
-  decide(judged_of(fit, size_that_matters), result);
+  decide(judged_of(fit, min_static_difference), result);
   result.finding = fmt::format(
       "The static pressure of {} minus static pressure of the model is {} on average, with slope {:.6f} +- "
       "{:.6f} and rms {:.3f} hPa about the orthogonal line.",

@@ -10,7 +10,7 @@ namespace {
 
 /// Smallest relevant difference of two total pressures, hPa: twice the combined uncertainty of the
 /// transducers of two pairs (memo, Background: 0.1 hPa of PSF, 0.05 hPa of QCF).
-constexpr double size_that_matters = 0.3;
+constexpr double min_total_difference = 0.3;
 
 bool has_two(const CheckedFlight& flight) { return flight.measured.size() > 1; }
 
@@ -54,7 +54,7 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   CheckResult result;
   result.name = "total-pressure";
   result.ran = true;
-  decide(judged_of(fit, size_that_matters), result);
+  decide(judged_of(fit, min_total_difference), result);
   result.finding = fmt::format(
       "The total pressure of {} minus total pressure of {} is {} on average, with slope {:.6f} +- {:.6f} and "
       "rms {:.3f} hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter "

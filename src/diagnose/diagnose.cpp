@@ -43,7 +43,7 @@ std::string description_of(const References& references) {
 }
 
 /// Inputs of the effects of findings on either system; an angle is also read as its differential pressure.
-EffectInputs inputs_of(const std::vector<Finding>& findings, const ModelDefinition& model) {
+EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefinition& model) {
   EffectInputs inputs;
   const auto read = [&](Quantity quantity) {
     inputs.quantities.insert(quantity);
@@ -386,8 +386,8 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
         "GPS looks like it; give a laser or a second system as a further reference");
   } else {
     structure = find_unexplained(
-        analysis, files, model, references, inputs_of(diagnosis.findings, set.extended), options, rms_after,
-        diagnosis.noise_rms_with_findings,
+        analysis, files, model, references, effect_inputs(diagnosis.findings, set.extended), options,
+        rms_after, diagnosis.noise_rms_with_findings,
         rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].drift; }));
   }
   diagnosis.unexplained = std::move(structure.found);

@@ -12,13 +12,13 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::ptrdiff_t most = 32;
+constexpr std::ptrdiff_t max_dates = 32;
 
 /// Equidistant dates in a range.
 void add_some(std::vector<double>& tried, std::vector<double>::const_iterator first,
               std::vector<double>::const_iterator last) {
   const std::ptrdiff_t count = last - first;
-  const std::ptrdiff_t some = std::min(count, most);
+  const std::ptrdiff_t some = std::min(count, max_dates);
   for (std::ptrdiff_t k = 0; k < some; ++k) tried.push_back(first[(2 * k + 1) * count / (2 * some)]);
 }
 
@@ -42,7 +42,7 @@ StepDates::StepDates(std::vector<double> begins) : begins_(std::move(begins)) {
   if (!begins_.empty()) begins_.erase(begins_.begin());
   add_some(tried_, begins_.begin(), begins_.end());
   // Few flights before or after a step: a date far from the step would leave little.
-  const std::size_t half_a_distance = begins_.size() / (2 * most);
+  const std::size_t half_a_distance = begins_.size() / (2 * max_dates);
   for (std::size_t few = 1; few < half_a_distance; few *= 2) {
     tried_.push_back(begins_[few - 1]);
     tried_.push_back(begins_[begins_.size() - few]);

@@ -19,7 +19,7 @@ constexpr std::size_t max_columns = 6;
 constexpr std::size_t fine_columns = 24;
 constexpr std::size_t bins_per_column = 40;
 constexpr double max_missing = 0.1;
-constexpr double min_left = 1e-3;   // part of a direction remaining after the model
+constexpr double min_direction_left = 1e-3;  // part of a direction remaining after the model
 constexpr Eigen::Index draws = 99;  // draws for each of the two ways of removing the dependence on variables
 /// Fractions of the drift rms that may remain after a variable explains part of it.
 constexpr std::array<double, 3> parts_of_drift{1.0, 0.4, 0.0};
@@ -222,7 +222,7 @@ StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, co
   drawn -= solution.transpose() * flights.model_with_drawn;
 
   Taken taken;
-  if (own(0, 0) > min_left * before[0]) {
+  if (own(0, 0) > min_direction_left * before[0]) {
     taken.line_score = score[0];
     taken.line_information = own(0, 0);
     taken.line = score[0] * score[0] / own(0, 0);
@@ -231,7 +231,7 @@ StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, co
   const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * own * scale.asDiagonal());
   Eigen::MatrixXd turn(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    if (!(solver.eigenvalues()[k] > min_left)) continue;
+    if (!(solver.eigenvalues()[k] > min_direction_left)) continue;
     turn.col(taken.freedom++) =
         scale.asDiagonal() * solver.eigenvectors().col(k) / std::sqrt(solver.eigenvalues()[k]);
   }

@@ -110,7 +110,7 @@ class Heights {
   Eigen::MatrixXd left_;
 };
 
-constexpr double least = 1e-3;  // size of a bump over the rms of the residual, practically zero
+constexpr double min_bump = 1e-3;  // size of a bump over the rms of the residual, practically zero
 
 /// Akaike weight of the model with the misfit relative to the model without (Burnham and Anderson 2002, Model
 /// selection and multimodel inference, section 2.9); variances above the minimum count as parameters. There
@@ -118,7 +118,7 @@ constexpr double least = 1e-3;  // size of a bump over the rms of the residual, 
 double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& variance, double rms) {
   double parameters = 0.0;
   for (Eigen::Index s = 0; s < states; ++s) {
-    if (variance[s * bumps] > 4.0 * least * least * rms * rms) parameters += 1.0;
+    if (variance[s * bumps] > 4.0 * min_bump * min_bump * rms * rms) parameters += 1.0;
   }
   return 1.0 / (1.0 + std::exp(parameters - posterior.gain));
 }
@@ -140,7 +140,7 @@ Eigen::VectorXd variances_of(const Heights& heights, double rms) {
       const double before = variance[first];
       const double determined = bumps - posterior.covariance.diagonal().segment(first, bumps).sum() / before;
       const double found = posterior.mean.segment(first, bumps).squaredNorm() / std::max(determined, 1e-6);
-      const double now = std::clamp(found, square(least * rms), square(most * rms));
+      const double now = std::clamp(found, square(min_bump * rms), square(most * rms));
       variance.segment(first, bumps).setConstant(now);
       change = std::max(change, std::abs(std::log(now / before)));
     }

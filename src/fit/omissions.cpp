@@ -9,7 +9,7 @@
 namespace pcor::internal {
 namespace {
 
-constexpr int max_steps = 8;
+constexpr int max_omissions = 8;
 
 }  // namespace
 
@@ -94,7 +94,7 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
     }
     Eigen::VectorXd x = solution.values(parameters);
     // A linear problem needs one step from the fit to least squares; otherwise a few.
-    for (int round = 0; round < (squares.is_linear() ? 1 : max_steps) && !others.empty(); ++round) {
+    for (int round = 0; round < (squares.is_linear() ? 1 : max_omissions) && !others.empty(); ++round) {
       const Eigen::MatrixXd rows = round == 0 ? rows_of_fit : rows_at(changed);
       const Eigen::MatrixXd columns = rows(Eigen::all, others);
       Eigen::VectorXd right = columns * x - rows.col(size);

@@ -25,7 +25,7 @@ struct Format {
   std::unique_ptr<FlightFile> (*open)(const std::filesystem::path&);
 };
 
-constexpr Format formats[] = {
+constexpr Format known_formats[] = {
     {is_netcdf,
      [](const std::filesystem::path& path) -> std::unique_ptr<FlightFile> {
        return std::make_unique<NetcdfFile>(path);
@@ -54,7 +54,7 @@ void require_readable(const std::filesystem::path& path) {
 std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) {
   require_readable(path);
   const FileInHand in_hand(path);
-  for (const Format& format : formats) {
+  for (const Format& format : known_formats) {
     if (format.is_of(path)) return format.open(path);
   }
   if (path.extension() == ".gz")

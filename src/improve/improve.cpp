@@ -303,7 +303,7 @@ class Climb {
     }
     if (!offer) return;
     const std::string& id = offer->effect;
-    const Comparison& out = offer->out_of_fit;
+    const TrialComparison& out = offer->out_of_fit;
     const std::string figures =
         fmt::format("rms {} with it and {} without it (chi2 changes by {:+.0f} +- {:.0f}) on {}",
                     shown(out.rms_after), shown(out.rms_before), -out.gain, out.gain_error, offer->held_out);
@@ -332,8 +332,8 @@ class Climb {
   void compare_with_the_given() {
     std::vector<TrialFlight> tried =
         loop_.try_models({given_, {refitted_}, {result_.model, delivered_.alike}, top()});
-    const Comparison train = comparison_of(tried, 0, 2, false);
-    const Comparison holdout = comparison_of(tried, 0, 2, true);
+    const TrialComparison train = comparison_of(tried, 0, 2, false);
+    const TrialComparison holdout = comparison_of(tried, 0, 2, true);
     if (result_.model.law.rms_hpa) result_.model.law.rms_hpa = train.rms_after;
     result_.given_rms_train = train.rms_before;
     result_.rms_train = train.rms_after;
@@ -353,7 +353,7 @@ class Climb {
   }
 
   /// Whether the whole ladder increased the residual, by a large or significant amount.
-  std::string why_worse(const Comparison& whole) const {
+  std::string why_worse(const TrialComparison& whole) const {
     constexpr double much = 1.02;
     const double growth = whole.rms_after / whole.rms_before;
     if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";
@@ -458,8 +458,8 @@ class Climb {
       return fmt::format("{} was tried, but cannot be fitted: {}", id, error.what());
     }
     const std::vector<TrialFlight> tried = loop_.try_models({top(), {fit.model, model.alike}});
-    const Comparison fitted = comparison_of(tried, 0, 1, false);
-    const Comparison held_out = comparison_of(tried, 0, 1, true);
+    const TrialComparison fitted = comparison_of(tried, 0, 1, false);
+    const TrialComparison held_out = comparison_of(tried, 0, 1, true);
     if (fitted.rms_after > fit_limit * fitted.rms_before && !fitted.is_better()) {
       return fmt::format("{} was tried and dropped: rms of the fit {} with it, {} without it", id,
                          shown(fitted.rms_after), shown(fitted.rms_before));
@@ -469,7 +469,7 @@ class Climb {
     // more samples than before (flaps out), both models are compared on these samples.
     const bool same_samples = fit.samples == result_.fit.samples;
     const bool in_turn = !loop_.has_holdout && same_samples;
-    const Comparison& judged = loop_.has_holdout ? held_out : fitted;
+    const TrialComparison& judged = loop_.has_holdout ? held_out : fitted;
     const double before = in_turn ? result_.steps.back().rms_holdout : judged.rms_before;
     const double after = in_turn ? step.rms_holdout : judged.rms_after;
     const bool better = in_turn ? after <= before && candidate.is_sure : judged.is_better();

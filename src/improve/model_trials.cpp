@@ -156,14 +156,14 @@ std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<
   return tried;
 }
 
-bool Comparison::is_better() const {
+bool TrialComparison::is_better() const {
   return gain > sure_gain * gain_error || (!is_worse() && first_gain > sure_gain * first_gain_error);
 }
-bool Comparison::is_worse() const { return gain < -sure_gain * gain_error; }
+bool TrialComparison::is_worse() const { return gain < -sure_gain * gain_error; }
 
-Comparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
-                         bool held_out) {
-  Comparison result;
+TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
+                              bool held_out) {
+  TrialComparison result;
   double squares_before = 0.0;
   double squares_after = 0.0;
   double samples = 0.0;

@@ -58,7 +58,7 @@ std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDef
 inline constexpr double sure_gain = 1.645;
 
 /// Residuals of two models on the same samples.
-struct Comparison {
+struct TrialComparison {
   double rms_before = 0.0;  ///< first reference, hPa; NaN if there are no samples
   double rms_after = 0.0;
   /// Decrease of the squared residuals with all references, in units of the noise, and its error from the
@@ -75,8 +75,8 @@ struct Comparison {
 };
 
 /// Comparison of model `after` with model `before` on held-out or fitted samples.
-Comparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
-                         bool held_out);
+TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
+                              bool held_out);
 
 /// Corrected static pressures of a model at the samples of the fit, hPa, in the order of the flights.
 std::vector<double> static_pressures_of(const std::vector<TrialFlight>& flights, std::size_t model);

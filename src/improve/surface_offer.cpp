@@ -11,7 +11,7 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t blocks = 5;
+constexpr std::size_t held_out_blocks = 5;
 
 struct Pair {
   TrialModel without;
@@ -28,7 +28,7 @@ RefitResult fitted(const FlightSet& flights, const TrialModel& model, const Refe
 Exclusion block_of(const TrialFlight& flight, std::size_t block) {
   const std::vector<double>& time = flight.samples->time;
   const std::vector<std::size_t>& used = flight.fitted;
-  const auto at = [&](std::size_t number) { return used.size() * number / blocks; };
+  const auto at = [&](std::size_t number) { return used.size() * number / held_out_blocks; };
   const double begin = time[used[at(block)]];
   const double end = at(block + 1) < used.size() ? time[used[at(block + 1)]] : time[used.back()] + 1.0;
   const double half = 0.5 * flight.samples->step;
@@ -36,16 +36,16 @@ Exclusion block_of(const TrialFlight& flight, std::size_t block) {
 }
 
 /// The residuals without and with the surface on five blocks, each with coefficients of the other four.
-Comparison out_of_blocks(const FlightSet& flights, const Pair& models, const References& references,
-                         const RefitOptions& options) {
+TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, const References& references,
+                              const RefitOptions& options) {
   const std::vector<TrialFlight> outline =
       try_models(flights, {models.without, models.with}, references, options);
   std::vector<TrialModel> trials;
-  for (std::size_t block = 0; block < blocks; ++block) {
+  for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
     if (!without_block.mask.intervals) without_block.mask.intervals.emplace();
     for (const TrialFlight& flight : outline) {
-      if (flight.first_reference && flight.fitted.size() >= blocks)
+      if (flight.first_reference && flight.fitted.size() >= held_out_blocks)
         without_block.mask.intervals->exclude.push_back(block_of(flight, block));
     }
     for (const TrialModel* const model : {&models.without, &models.with})
@@ -57,7 +57,7 @@ Comparison out_of_blocks(const FlightSet& flights, const Pair& models, const Ref
     TrialFlight& flight = tried[f];
     const TrialFlight& first = tried[f % per_reference];
     std::vector<std::vector<double>> out(2, std::vector<double>(flight.samples->time.size(), nan));
-    for (std::size_t block = 0; block < blocks && first.fitted.size() >= blocks; ++block) {
+    for (std::size_t block = 0; block < held_out_blocks && first.fitted.size() >= held_out_blocks; ++block) {
       const Exclusion span = block_of(first, block);
       for (const std::size_t i : flight.fitted) {
         const double time = flight.samples->time[i];

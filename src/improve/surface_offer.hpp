@@ -12,8 +12,8 @@ struct SurfaceOffer {
   std::string effect{};             ///< id of the surface
   double degrees_of_freedom = 0.0;  ///< number of its coefficients that the flights determine
   RefitResult fit{};
-  Comparison out_of_fit{};  ///< comparison without and with the surface
-  std::string held_out{};   ///< description of these samples
+  TrialComparison out_of_fit{};  ///< comparison without and with the surface
+  std::string held_out{};        ///< description of these samples
 };
 
 /// Fits a model with a surface of attack and Mach number, and compares it with the model without it on

@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t min_flight = 30;
 
 // Maximum distance of the start of a phase from the change of the smoothed vertical speed, s.
-constexpr std::size_t reach = 90;
-constexpr std::size_t min_side = 15;
+constexpr std::size_t boundary_reach = 90;
+constexpr std::size_t min_phase_side = 15;
 
 struct PhaseRun {
   Regime phase;
@@ -116,9 +116,9 @@ void sharpen(std::vector<PhaseRun>& runs, const std::vector<double>& vertical_sp
     Run& before = runs[i - 1].run;
     Run& after = runs[i].run;
     const std::size_t boundary = after.first;
-    const Run around{boundary - std::min(reach, before.length() / 2),
-                     boundary + std::min(reach, after.length() / 2)};
-    before.end = after.first = best_step(vertical_speed, around, min_side, boundary);
+    const Run around{boundary - std::min(boundary_reach, before.length() / 2),
+                     boundary + std::min(boundary_reach, after.length() / 2)};
+    before.end = after.first = best_step(vertical_speed, around, min_phase_side, boundary);
   }
 }
 

@@ -11,11 +11,11 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double longest = 20.0;   // s
-constexpr double min_noise = 0.2;  // hPa: gusts change the defect of a port as well, by less than 1 hPa
-constexpr double limit = 5.0;      // robust standard deviations: exceeded by 6 in 10 million normal samples
-constexpr double margin = 3.0;     // s
-constexpr double beside = 3.0;     // robust standard deviations, for samples near a jump beyond the limit
+constexpr double longest = 20.0;    // s
+constexpr double min_noise = 0.2;   // hPa: gusts change the defect of a port as well, by less than 1 hPa
+constexpr double jump_limit = 5.0;  // robust standard deviations: exceeded by 6 in 10 million normal samples
+constexpr double margin = 3.0;      // s
+constexpr double near_jump = 3.0;   // robust standard deviations, for samples near a jump beyond the limit
 
 /// Deviation of each sample from the mean of its neighbours; NaN at the ends and next to gaps.
 std::vector<double> departures_of(const std::vector<double>& values, const std::vector<double>& time,
@@ -56,7 +56,7 @@ std::vector<std::size_t> find_bursts(const std::vector<double>& residual,
   std::vector<std::size_t> jumps;
   for (std::size_t i = 0; i < both.size(); ++i) {
     both[i] = std::min(both[i], of_pressures[i]);
-    if (both[i] > beside) jumps.push_back(i);
+    if (both[i] > near_jump) jumps.push_back(i);
   }
   const auto beyond = static_cast<std::size_t>(std::lround(margin / step));
   std::vector<std::size_t> bursts;
@@ -68,7 +68,7 @@ std::vector<std::size_t> find_bursts(const std::vector<double>& residual,
     if (time[end - 1] - time[begin] > longest + 2.0 * step) continue;
     double greatest = 0.0;
     for (std::size_t i = begin; i < end; ++i) greatest = std::max(greatest, both[i]);
-    if (greatest < limit) continue;
+    if (greatest < jump_limit) continue;
     const std::size_t from = bursts.empty() ? 0 : bursts.back() + 1;
     const std::size_t to = std::min(end + beyond, residual.size());
     for (std::size_t i = std::max(from, begin - std::min(begin, beyond)); i < to; ++i) bursts.push_back(i);

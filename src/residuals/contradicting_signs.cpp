@@ -32,7 +32,7 @@ Series rise_of(const Series& values, const Series& time, double step, bool is_an
 }
 
 /// Two series that increase and decrease together, with their names in a sentence.
-struct Pair {
+struct SignPair {
   std::string_view first_name;
   Series first;
   std::string_view second_name;
@@ -41,15 +41,15 @@ struct Pair {
   std::string_view turn;  ///< setting in the [units] of a model that inverts one of them
 };
 
-class Signs {
+class SignAgreement {
  public:
-  Signs(const FlightSamples& samples, double min_airspeed)
+  SignAgreement(const FlightSamples& samples, double min_airspeed)
       : samples_(samples), motion_(samples.motion), min_airspeed_(min_airspeed) {}
 
-  std::vector<Pair> pairs() const {
+  std::vector<SignPair> pairs() const {
     const Series altitude = rise(motion_.altitude);
     const Series heading = rise(motion_.heading, true);
-    std::vector<Pair> all;
+    std::vector<SignPair> all;
     all.push_back({"the vertical speed", motion_.vertical_speed, "the change of altitude", altitude, 5.0,
                    R"(vertical_speed = "-1 m s-1" or altitude = "-1 m")"});
     if (const Series* const pressure = samples_.model.find(Quantity::static_pressure))
@@ -70,7 +70,7 @@ class Signs {
   }
 
   /// Correlation between -1 and 1; NaN if too little moved, or one was not recorded.
-  double correlation(const Pair& pair) const {
+  double correlation(const SignPair& pair) const {
     if (pair.first.size() != pair.second.size()) return nan;
     double count = 0.0;
     double a = 0.0;
@@ -137,8 +137,8 @@ class Signs {
 std::vector<std::string> contradicting_signs(const FlightSamples& samples, double min_airspeed) {
   std::vector<std::string> contradictions;
   if (samples.motion.airspeed.empty()) return contradictions;
-  const Signs signs(samples, min_airspeed);
-  for (const Pair& pair : signs.pairs()) {
+  const SignAgreement signs(samples, min_airspeed);
+  for (const SignPair& pair : signs.pairs()) {
     const double correlation = signs.correlation(pair);
     if (!(correlation < -min_correlation)) continue;
     contradictions.push_back(warning_note(

@@ -37,7 +37,7 @@ constexpr double likely = 0.9;
 constexpr double robust_limit = 4.0;         // deviations
 constexpr double sea_level_density = 1.225;  // kg/m3, standard atmosphere
 constexpr std::size_t min_fast = 15;         // pieces
-constexpr int rounds = 10;
+constexpr int max_rounds = 10;
 
 struct FlapSpeed {
   std::string_view registration;
@@ -221,7 +221,7 @@ double evidence_of(const Deficit& deficit, double airspeed, double flap_speed) {
 /// Probability of the state out at each piece: forward and backward over all of them.
 std::vector<double> probabilities_of_out(const std::vector<Piece>& pieces,
                                          const std::vector<double>& evidence) {
-  using Pair = Eigen::Vector2d;  // states: in, out
+  using States = Eigen::Vector2d;  // states: in, out
   const auto transition = [&pieces](std::size_t to) {
     const double time = pieces[to].time - pieces[to - 1].time;
     const double leaves_in = -std::expm1(-time / time_in);
@@ -230,17 +230,18 @@ std::vector<double> probabilities_of_out(const std::vector<Piece>& pieces,
     matrix << 1.0 - leaves_in, leaves_in, leaves_out, 1.0 - leaves_out;
     return matrix;
   };
-  const auto likelihood = [&evidence](std::size_t i) { return Pair(1.0, std::exp(evidence[i])); };
-  std::vector<Pair> forward(pieces.size());
+  const auto likelihood = [&evidence](std::size_t i) { return States(1.0, std::exp(evidence[i])); };
+  std::vector<States> forward(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Pair before = i == 0 ? Pair(time_in, time_out) : Pair(transition(i).transpose() * forward[i - 1]);
+    const States before =
+        i == 0 ? States(time_in, time_out) : States(transition(i).transpose() * forward[i - 1]);
     forward[i] = before.cwiseProduct(likelihood(i));
     forward[i] /= forward[i].sum();
   }
   std::vector<double> probabilities(pieces.size());
-  Pair backward(1.0, 1.0);
+  States backward(1.0, 1.0);
   for (std::size_t i = pieces.size(); i-- > 0;) {
-    const Pair both = forward[i].cwiseProduct(backward);
+    const States both = forward[i].cwiseProduct(backward);
     probabilities[i] = both[1] / both.sum();
     if (i == 0) break;
     backward = transition(i) * likelihood(i).cwiseProduct(backward);
@@ -260,7 +261,7 @@ std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, cons
   if (std::count(weights.begin(), weights.end(), 1.0) < static_cast<std::ptrdiff_t>(min_fast)) return {};
   std::vector<double> out(pieces.size());
   std::vector<Deficit> deficits(pieces.size());
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     const LiftLaw law(pieces, weights);
     if (!law.rises()) return {};
     std::vector<double> evidence(pieces.size());

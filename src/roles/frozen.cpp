@@ -15,14 +15,14 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::size_t min_samples = 20;
-constexpr std::size_t min_values = 50;  // minimum number of samples to estimate the noise
+constexpr std::size_t min_noise_values = 50;  // minimum number of samples to estimate the noise
 constexpr std::size_t neighbours = 20;
 constexpr std::size_t left_out = 2;
 constexpr double more_than_near = 20.0;
 constexpr double more_than_half = 5.0;
 constexpr double more_than_most = 10.0;
-constexpr double noisy = 3.0;        // steps of resolution in a second difference
-constexpr std::size_t around = 300;  // samples on either side
+constexpr double noisy = 3.0;              // steps of resolution in a second difference
+constexpr std::size_t noise_window = 300;  // samples on either side
 constexpr std::size_t told = 3;
 
 /// The stretches of one value.
@@ -41,7 +41,7 @@ std::vector<Segment> runs_of(const std::vector<double>& values, const std::vecto
 }
 
 /// The smallest step of a series.
-double resolution_of(const std::vector<double>& values) {
+double smallest_step(const std::vector<double>& values) {
   double resolution = infinity;
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double step = std::abs(values[i] - values[i - 1]);
@@ -65,8 +65,8 @@ bool is_noisy(const std::vector<double>& values, std::size_t first, std::size_t 
 /// Before a run and after it.
 bool is_noisy_around(const std::vector<double>& values, const Segment& run, double resolution) {
   const std::size_t after = run.first + run.count;
-  return is_noisy(values, run.first - std::min(run.first, around), run.first, resolution) &&
-         is_noisy(values, after, std::min(after + around, values.size()), resolution);
+  return is_noisy(values, run.first - std::min(run.first, noise_window), run.first, resolution) &&
+         is_noisy(values, after, std::min(after + noise_window, values.size()), resolution);
 }
 
 /// The length of run that the share `part` of the samples does not exceed.
@@ -107,10 +107,10 @@ std::vector<Segment> find_frozen(const std::vector<double>& values, const std::v
   const std::vector<Segment> runs = runs_of(values, looked_at);
   const auto same = [&](const Segment& run) { return values[run.first] == values[runs.front().first]; };
   if (always_varies && !runs.empty() && std::all_of(runs.begin(), runs.end(), same)) return runs;
-  if (runs.size() < min_values) return {};
+  if (runs.size() < min_noise_values) return {};
   const auto is_long = [](const Segment& run) { return run.count >= min_samples; };
   if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
-  const double resolution = resolution_of(values);
+  const double resolution = smallest_step(values);
   const double of_half = usual_length(runs, 0.5);
   const double of_most = usual_length(runs, 0.9);
   std::vector<Segment> frozen;

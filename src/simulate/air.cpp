@@ -9,7 +9,6 @@ namespace {
 
 constexpr double dry_gas_constant = constants::gas_constant_dry_air;
 constexpr double vapor_gas_constant = constants::gas_constant_water_vapor;
-constexpr double pascal_per_hpa = 100.0;
 
 // Magnus's law, Alduchov and Eskridge (1996).
 constexpr double magnus_scale = 6.1094;  // hPa

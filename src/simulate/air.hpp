@@ -2,6 +2,8 @@
 
 namespace pcor::internal::simulate {
 
+inline constexpr double pascal_per_hpa = 100.0;
+
 /// The physics of moist air on the truth side, written independently of pcor/physics: a mixture of dry air
 /// and vapour by their mass fractions.
 

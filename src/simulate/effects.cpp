@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <pcor/physics/constants.hpp>
 #include <pcor/physics/geodesy.hpp>
 
 #include "simulate/air.hpp"
@@ -12,8 +13,6 @@ namespace {
 
 using Effect = Scenario::Effect;
 using Law = Scenario::Law;
-
-constexpr double radians = constants::radians_per_degree;
 constexpr double seconds_per_hour = 3600.0;
 
 double number(const Effect& effect, const std::string& key) { return effect.parameters.at(key); }
@@ -27,9 +26,9 @@ void add(Series& series, const Truth& truth, Value value) {
 
 bool in_cloud(const Truth& truth, std::size_t i) { return truth.liquid_water[i] > 0.0; }
 
-template <double Law::*term>
+template <double Law::*Term>
 void add_to_law(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
-  system->law.*term += effect.parameters.begin()->second;
+  system->law.*Term += effect.parameters.begin()->second;
 }
 
 // l = q k theta^n, theta the angle between the flow and the pitot's axis. Memo footnote 3: below 0.2 % of q
@@ -107,7 +106,6 @@ void ground_effect(const Effect& effect, const Truth& truth, SystemFaults* syste
 // temperature of the bay: dp = rho (f_normal below + f_forward behind), with the specific forces f measured
 // by an accelerometer.
 void line_head(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  constexpr double pascal_per_hpa = 100.0;
   const double below = number(effect, "below");
   const double behind = number(effect, "behind");
   add(system->static_head, truth, [&](std::size_t i) {
@@ -126,7 +124,7 @@ void load_factor(const Effect& effect, const Truth& truth, SystemFaults* system,
 void roll_static(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
   const double defect = number(effect, "defect");
   add(system->static_defect, truth,
-      [&](std::size_t i) { return defect * std::sin(radians * truth.roll[i]); });
+      [&](std::size_t i) { return defect * std::sin(constants::radians_per_degree * truth.roll[i]); });
 }
 
 void static_transonic(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {

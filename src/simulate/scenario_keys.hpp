@@ -17,7 +17,7 @@ struct Domain {
   std::string_view unit;
 };
 
-inline constexpr double any = 1e9;
+inline constexpr double unlimited = 1e9;
 
 /// Number of a table: key, destination and domain.
 template <class Object>
@@ -64,10 +64,10 @@ inline constexpr std::array<NumberKey<Scenario::Cloud>, 4> cloud_keys{{
 }};
 
 inline constexpr std::array<NumberKey<Scenario::Noise>, 4> noise_keys{{
-    {"rms", &Scenario::Noise::rms, {0.0, any, ""}},
-    {"bias", &Scenario::Noise::bias, {-any, any, ""}},
+    {"rms", &Scenario::Noise::rms, {0.0, unlimited, ""}},
+    {"bias", &Scenario::Noise::bias, {-unlimited, unlimited, ""}},
     {"memory", &Scenario::Noise::memory, {0.0, 1e5, "s"}},
-    {"resolution", &Scenario::Noise::resolution, {0.0, any, ""}},
+    {"resolution", &Scenario::Noise::resolution, {0.0, unlimited, ""}},
 }};
 
 inline constexpr std::array<NumberKey<Scenario::Lams>, 6> lams_keys{{
@@ -86,12 +86,12 @@ inline constexpr std::array<NumberKey<Scenario::Avionics>, 2> avionics_keys{{
 
 inline constexpr std::array<NumberKey<Scenario::Outliers>, 2> outlier_keys{{
     {"fraction", &Scenario::Outliers::fraction, {0.0, 1.0, ""}},
-    {"size", &Scenario::Outliers::size, {0.0, any, ""}},
+    {"size", &Scenario::Outliers::size, {0.0, unlimited, ""}},
 }};
 
 inline constexpr std::array<NumberKey<Scenario::Gap>, 2> gap_keys{{
-    {"start", &Scenario::Gap::start, {0.0, any, "s"}},
-    {"duration", &Scenario::Gap::duration, {0.0, any, "s"}},
+    {"start", &Scenario::Gap::start, {0.0, unlimited, "s"}},
+    {"duration", &Scenario::Gap::duration, {0.0, unlimited, "s"}},
 }};
 
 /// A term of a law and the id under which a scenario has it.
@@ -141,7 +141,7 @@ inline Domain parameter_domain(std::string_view key) {
   if (key == "tau" || key == "drying") return {0.0, 600.0, "s"};
   if (key == "seconds") return {-60.0, 60.0, "s"};
   if (key == "fraction") return {-1.0, 1.0, ""};
-  if (key == "scale") return {-any, any, ""};
+  if (key == "scale") return {-unlimited, unlimited, ""};
   return {-1e6, 1e6, ""};
 }
 

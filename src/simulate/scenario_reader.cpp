@@ -246,7 +246,8 @@ class Reader final : TomlReader {
       if (entry.node->is_table())
         each(*entry.node->as_table(), "the noise of " + entry.key, numbers(found->second, noise_keys));
       else
-        found->second = {number(entry, {0.0, any, ""}), 0.0, found->second.memory, found->second.resolution};
+        found->second = {number(entry, {0.0, unlimited, ""}), 0.0, found->second.memory,
+                         found->second.resolution};
     }
   }
 

@@ -11,8 +11,6 @@
 namespace pcor::internal::simulate {
 namespace {
 
-constexpr double radians = constants::radians_per_degree;
-
 double at(const Series& series, std::size_t i) { return series.empty() ? 0.0 : series[i]; }
 
 /// Fading factor of a law at a dynamic pressure, hPa: no defect without flow.
@@ -155,7 +153,7 @@ Series read_lams(const Scenario& scenario, const Faults& faults, const Truth& tr
   const Scenario::Lams& lams = scenario.lams;
   const std::size_t steps = truth.size();
   const double clear = std::isnan(lams.clear_above) ? aircraft.clear_above : lams.clear_above;
-  const double azimuth = radians * (lams.azimuth + faults.lams_azimuth);
+  const double azimuth = constants::radians_per_degree * (lams.azimuth + faults.lams_azimuth);
   const double kept = lams.mismatch_memory > 0.0 ? std::exp(-time_step / lams.mismatch_memory) : 0.0;
   const double mismatch =
       scenario.noise_on ? lams.mismatch / std::sqrt(variance_of_mean(kept, internal_rate)) : 0.0;
@@ -164,9 +162,9 @@ Series read_lams(const Scenario& scenario, const Faults& faults, const Truth& tr
   Drift signal(scenario.seed, "lams signal");
   Series speed(steps);
   for (std::size_t i = 0; i < steps; ++i) {
-    const double elevation = radians * (lams.elevation + at(faults.lams_elevation, i));
-    const double attack = radians * truth.attack[i];
-    const double sideslip = radians * truth.sideslip[i];
+    const double elevation = constants::radians_per_degree * (lams.elevation + at(faults.lams_elevation, i));
+    const double attack = constants::radians_per_degree * truth.attack[i];
+    const double sideslip = constants::radians_per_degree * truth.sideslip[i];
     const double beam[3] = {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                             -std::sin(elevation)};
     const double motion[3] = {std::cos(attack) * std::cos(sideslip), std::sin(sideslip),

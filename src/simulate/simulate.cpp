@@ -27,7 +27,7 @@ using namespace simulate;
 constexpr int slow = 1;  // samples a second
 
 /// A variable of the file with its values.
-struct Column {
+struct RecordedVariable {
   OutputVariable variable;
   std::vector<double> values;
 };
@@ -48,7 +48,7 @@ class Recording {
     write_truth();
   }
 
-  std::vector<Column>& columns() { return columns_; }
+  std::vector<RecordedVariable>& columns() { return columns_; }
 
  private:
   std::vector<double>& record(const std::string& name, const std::string& units, const std::string& what,
@@ -189,7 +189,7 @@ class Recording {
   const AircraftInfo& aircraft_;
   Faults faults_;
   Recorder recorder_;
-  std::vector<Column> columns_;
+  std::vector<RecordedVariable> columns_;
 };
 
 /// The records that are in the file: all but those of gaps without a variable.
@@ -206,8 +206,8 @@ std::vector<std::size_t> kept_records(const Scenario& scenario, std::size_t reco
   return kept;
 }
 
-std::vector<double> select(const std::vector<double>& values, const std::vector<std::size_t>& records,
-                           std::size_t rate) {
+std::vector<double> values_at(const std::vector<double>& values, const std::vector<std::size_t>& records,
+                              std::size_t rate) {
   std::vector<double> selected;
   selected.reserve(records.size() * rate);
   for (const std::size_t record : records) {
@@ -270,7 +270,7 @@ SimulationSummary simulate_flight(const Scenario& scenario, const std::filesyste
                                   const SimulateOptions& options) {
   const FlownPlan plan = fly(scenario);
   Recording recording(scenario, plan.truth);
-  std::vector<Column>& columns = recording.columns();
+  std::vector<RecordedVariable>& columns = recording.columns();
 
   const std::vector<std::size_t> kept =
       kept_records(scenario, plan.truth.size() / static_cast<std::size_t>(internal_rate));
@@ -290,7 +290,7 @@ SimulationSummary simulate_flight(const Scenario& scenario, const std::filesyste
   NewFlight flight;
   flight.first_time = summary.first_time;
   FlightWriter writer(output, flight, description_of(scenario, summary, options.history));
-  for (const Column& column : columns) {
+  for (const RecordedVariable& column : columns) {
     writer.define(column.variable);
     const bool truth = column.variable.category == truth_category;
     (truth ? summary.truth : summary.variables).push_back(column.variable.name);
@@ -301,7 +301,7 @@ SimulationSummary simulate_flight(const Scenario& scenario, const std::filesyste
   writer.write_time_stamps(all, times.data());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::vector<double> values =
-        select(columns[i].values, kept, static_cast<std::size_t>(columns[i].variable.rate));
+        values_at(columns[i].values, kept, static_cast<std::size_t>(columns[i].variable.rate));
     writer.write(i, all, values.data());
     if (options.progress) options.progress(i + 1, columns.size());
   }

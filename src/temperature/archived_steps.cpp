@@ -14,7 +14,7 @@
 namespace pcor::internal {
 namespace {
 
-constexpr const char* variable = "HYDSTEP";
+constexpr const char* steps_variable = "HYDSTEP";
 constexpr const char* calibration_attribute = "temperature_calibration";
 constexpr const char* model_attribute = "model";
 
@@ -23,11 +23,11 @@ using Coefficients = std::array<double, 3>;
 [[noreturn]] void refuse_without(const Flight& flight, const char* what, const char* attribute) {
   throw Error(fmt::format(
       "{}: {} does not state {} (attribute {}); write the file again with pcor process --hydrostatic",
-      flight.path().string(), variable, what, attribute));
+      flight.path().string(), steps_variable, what, attribute));
 }
 
 std::string attribute_of(const Flight& flight, const std::string& wanted) {
-  for (const auto& [name, text] : flight.variable(variable).attributes) {
+  for (const auto& [name, text] : flight.variable(steps_variable).attributes) {
     if (name == wanted) return text;
   }
   return "";
@@ -65,19 +65,19 @@ double uncorrected(double corrected, const Coefficients& a) {
 }  // namespace
 
 std::vector<double> archived_steps(const Flight& flight, const ModelDefinition& model, FlightAir& air) {
-  if (!flight.has(variable)) {
+  if (!flight.has(steps_variable)) {
     throw Error(
         fmt::format("{}: there is no {}; write it with pcor process --hydrostatic, or leave out --archived",
-                    flight.path().string(), variable));
+                    flight.path().string(), steps_variable));
   }
   require_same_model(flight, model);
-  const UnitConversion conversion = flight.conversion(variable, "m/K");
-  const auto rate = static_cast<std::size_t>(flight.variable(variable).rate);
+  const UnitConversion conversion = flight.conversion(steps_variable, "m/K");
+  const auto rate = static_cast<std::size_t>(flight.variable(steps_variable).rate);
   std::vector<double> steps(air.size(), 0.0);
   std::vector<double> values;
   for (const RecordBlock block : blocks_of(flight.records())) {
     values.resize(block.count * rate);
-    flight.read(variable, block, conversion, values.data());
+    flight.read(steps_variable, block, conversion, values.data());
     for (std::size_t i = 0; i < values.size(); ++i) {
       // From the mean over a record to that over the next: a step within a record is in its later samples
       // only, and the rest of it comes with the next record.

@@ -13,9 +13,9 @@
 
 using pcor::ModelDefinition;
 using pcor::internal::coefficients_in;
-using pcor::internal::Comparison;
 using pcor::internal::comparison_of;
 using pcor::internal::static_pressures_of;
+using pcor::internal::TrialComparison;
 using pcor::internal::TrialFlight;
 using pcor::internal::TrialModel;
 using pcor::internal::try_models;
@@ -80,7 +80,7 @@ TEST(Union, KeepsTheShapeOfAnAbsentEffect) {
 
 TEST(Trials, AModelIsNeitherBetterNorWorseThanItself) {
   const std::vector<TrialFlight> flights = tried({{law()}, {law()}}, {pcor::lams_reference()});
-  const Comparison same = comparison_of(flights, 0, 1, false);
+  const TrialComparison same = comparison_of(flights, 0, 1, false);
   EXPECT_EQ(same.gain, 0.0);
   EXPECT_EQ(same.rms_before, same.rms_after);
   EXPECT_FALSE(same.is_better() || same.is_worse());
@@ -90,14 +90,14 @@ TEST(Trials, AModelIsNeitherBetterNorWorseThanItself) {
 TEST(Trials, TheTruthIsBetterAndTheRestWorseByTheSame) {
   const std::vector<TrialFlight> flights =
       tried({{law()}, {with("static-mach", 0.02)}}, {pcor::lams_reference()});
-  const Comparison there = comparison_of(flights, 1, 0, false);
+  const TrialComparison there = comparison_of(flights, 1, 0, false);
   EXPECT_TRUE(there.is_better());
   EXPECT_GT(there.rms_before, there.rms_after);
   EXPECT_TRUE(comparison_of(flights, 0, 1, false).is_worse());
 }
 
 TEST(Trials, NoisyFurtherReferencesAreIgnored) {
-  Comparison comparison;
+  TrialComparison comparison;
   comparison.gain = 97.0;
   comparison.gain_error = 141.0;
   EXPECT_FALSE(comparison.is_better() || comparison.is_worse());

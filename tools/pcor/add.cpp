@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <memory>
 #include <string>
 
@@ -19,7 +21,7 @@
 namespace pcor::tool {
 namespace {
 
-struct Options {
+struct AddArguments {
   CommonOptions common;
   std::vector<std::string> effects;
   std::string model;
@@ -32,7 +34,7 @@ struct Options {
 };
 
 /// User-defined effect. @throws Error if the options do not define one.
-ModelEffect own_effect(const Options& options, const std::vector<std::string>& variables) {
+ModelEffect own_effect(const AddArguments& options, const std::vector<std::string>& variables) {
   if (options.effects.size() != 1) {
     throw Error(fmt::format("--formula defines one effect, but {} are named: {}; give one name",
                             options.effects.size(), fmt::join(options.effects, ", ")));
@@ -50,7 +52,7 @@ ModelEffect own_effect(const Options& options, const std::vector<std::string>& v
   return effect;
 }
 
-std::vector<ModelEffect> wanted_effects(const Options& options, const FlightSet& flights,
+std::vector<ModelEffect> wanted_effects(const AddArguments& options, const FlightSet& flights,
                                         const ModelDefinition& model) {
   const Flight* const flight = flights.empty() ? nullptr : &flights[0];
   if (!options.formula.empty())
@@ -72,7 +74,7 @@ std::vector<Quantity> new_roles(const ModelDefinition& model, const ModelDefinit
   return roles;
 }
 
-void print(const ModelDefinition& model, const ModelDefinition& extended, const Options& options) {
+void print(const ModelDefinition& model, const ModelDefinition& extended, const AddArguments& options) {
   say("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
   for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i) {
     const ModelEffect& effect = extended.model.effects[i];
@@ -123,13 +125,16 @@ void describe(const Extension& self, Field& field) {
 Extension extension_of(const ModelDefinition& model, const ModelDefinition& extended,
                        const std::string& output) {
   const std::vector<ModelEffect>& effects = extended.model.effects;
-  Extension result{{effects.begin() + model.model.effects.size(), effects.end()}, {}, output};
+  Extension result{
+      {std::next(effects.begin(), static_cast<std::ptrdiff_t>(model.model.effects.size())), effects.end()},
+      {},
+      output};
   for (const Quantity role : new_roles(model, extended))
     result.variables.emplace_back(info_of(role).name, extended.variables.at(role));
   return result;
 }
 
-void run(const Options& options) {
+void run(const AddArguments& options) {
   const std::vector<std::filesystem::path> inputs{options.model, options.flight};
   refuse_overwriting({options.output, options.common.json}, inputs);
   require_writable(options.output);
@@ -159,7 +164,7 @@ CLI::Validator is_place() {
 }  // namespace
 
 std::function<void()> add_add(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AddArguments>();
   CLI::App* command = program.add_subcommand(
       "add", "Add effects with neutral coefficients to a model, for a subsequent refit");
   command

@@ -19,7 +19,7 @@
 namespace pcor::tool {
 namespace {
 
-struct Options {
+struct CheckArguments {
   CommonOptions common;
   ComparisonOptions flights;
   std::string model;
@@ -50,12 +50,12 @@ CLI::Validator is_second_system() {
 }
 
 /// File of the second system's model; empty if not given.
-std::string second_model(const Options& options) {
+std::string second_model(const CheckArguments& options) {
   if (options.reference.empty() || is_pair(options.reference)) return "";
   return options.reference.substr(options.reference.find(':') + 1);
 }
 
-ModelDefinition read_second(const Options& options) {
+ModelDefinition read_second(const CheckArguments& options) {
   const std::string& text = options.reference;
   return is_pair(text) ? *read_reference(text, {})->model() : read_model(second_model(options));
 }
@@ -88,8 +88,8 @@ void print(const ReportTable& table) {
   if (rows < table.rows.size()) say("    and {} more in --json and --report\n", table.rows.size() - rows);
 }
 
-/// Options as on a command line, for the suggested commands.
-std::string command_line(const Options& options) {
+/// CheckArguments as on a command line, for the suggested commands.
+std::string command_line(const CheckArguments& options) {
   std::string line = advised_command_line(options.flights);
   if (!options.model.empty()) line += " -m " + shell_path(options.model);
   return line;
@@ -103,7 +103,7 @@ std::size_t count_of(const Checks& checks, CheckVerdict verdict) {
 
 /// Suggested next step: first for a fault that a refit cannot correct, then for the temperature, then for the
 /// model.
-std::string next_step(const Checks& checks, const Options& options, bool has_laser) {
+std::string next_step(const Checks& checks, const CheckArguments& options, bool has_laser) {
   const auto fails = [&](const std::string& name) {
     return std::any_of(checks.results.begin(), checks.results.end(), [&](const CheckResult& result) {
       return result.name == name && result.ran && result.verdict == CheckVerdict::inconsistent;
@@ -158,7 +158,7 @@ void print_details(const Checks& checks) {
   }
 }
 
-void print(const Checks& checks, const Options& options, bool has_laser) {
+void print(const Checks& checks, const CheckArguments& options, bool has_laser) {
   if (!checks.model.empty()) say("{}\n", checks.model);
   say("{:<18} {:<14} {}\n", "check", "verdict", "number");
   std::vector<std::string> not_run;
@@ -197,7 +197,7 @@ FlightTable flight_table(const FlightSet& flights, const std::optional<ModelDefi
   return table;
 }
 
-std::vector<std::string> models_of(const Options& options) {
+std::vector<std::string> models_of(const CheckArguments& options) {
   std::vector<std::string> models;
   for (const std::string& model : {options.model, second_model(options)}) {
     if (!model.empty()) models.push_back(model);
@@ -205,7 +205,7 @@ std::vector<std::string> models_of(const Options& options) {
   return models;
 }
 
-void run(const Options& options) {
+void run(const CheckArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.flights);
   inputs.insert(inputs.end(), {options.model, second_model(options)});
   refuse_overwriting({options.common.json, options.common.report, options.common.figures, options.table},
@@ -244,7 +244,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_check(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckArguments>();
   CLI::App* command = program.add_subcommand(
       "check",
       "Test the corrected pressures independently of the fit: redundant systems, manoeuvres, layers");

@@ -22,7 +22,7 @@
 namespace pcor::tool {
 namespace {
 
-struct Options {
+struct CompareArguments {
   CommonOptions common;
   ComparisonOptions comparison;
   std::vector<std::string> models;
@@ -118,7 +118,7 @@ void print_further(const Comparison& comparison, bool with_names) {
 
 /// Output file for the residual of flight `number`: the given file, or a file next to it with the flight's
 /// name.
-std::filesystem::path residual_file(const Options& options, std::size_t number) {
+std::filesystem::path residual_file(const CompareArguments& options, std::size_t number) {
   const std::filesystem::path wanted = options.residuals;
   if (options.comparison.flights.size() == 1) return wanted;
   const std::filesystem::path flight = options.comparison.flights[number];
@@ -126,7 +126,8 @@ std::filesystem::path residual_file(const Options& options, std::size_t number) 
          (wanted.stem().string() + "-" + flight.stem().string() + wanted.extension().string());
 }
 
-void print_in_full(const Comparison& comparison, const ChosenReferences& references, const Options& options) {
+void print_in_full(const Comparison& comparison, const ChosenReferences& references,
+                   const CompareArguments& options) {
   print_references(references);
   if (comparison.is_static_pressure) {
     say("residual = static pressure of the reference ({}) minus static pressure of the model\n",
@@ -149,7 +150,7 @@ void print_in_full(const Comparison& comparison, const ChosenReferences& referen
 
 /// Next step: the model with the smallest rms is applied or refitted.
 std::string next_step(const Comparison& comparison, const std::vector<ComparedModel>& contenders,
-                      const Options& options) {
+                      const CompareArguments& options) {
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
@@ -176,7 +177,7 @@ std::string next_step(const Comparison& comparison, const std::vector<ComparedMo
 }
 
 void print(const Comparison& comparison, const std::vector<ComparedModel>& contenders,
-           const ChosenReferences& references, const Options& options) {
+           const ChosenReferences& references, const CompareArguments& options) {
   if (is_verbose())
     print_in_full(comparison, references, options);
   else
@@ -247,7 +248,7 @@ void describe(const ComparisonWithGps& self, Field& field) {
 
 /// Mean error of delta-p of each model by GPS, if requested.
 Levels levels_by_gps(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
-                     const Options& options) {
+                     const CompareArguments& options) {
   Levels levels(contenders.size());
   if (options.comparison.references.empty())
     return levels;  // all available references are used: GPS takes seconds
@@ -271,13 +272,13 @@ void print(const Levels& levels, const std::vector<ComparedModel>& contenders) {
   }
 }
 
-std::string history_of(const Options& options) {
+std::string history_of(const CompareArguments& options) {
   std::string line = "pcor " PCOR_VERSION " compare " + command_line(options.comparison);
   for (const std::string& model : options.models) line += " -m " + shell_path(model);
   return line + " --residuals " + shell_path(options.residuals);
 }
 
-void run(const Options& options) {
+void run(const CompareArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.insert(inputs.end(), options.models.begin(), options.models.end());
   std::vector<std::filesystem::path> outputs{options.common.json, options.common.report, options.table};
@@ -349,7 +350,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_compare(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareArguments>();
   CLI::App* command =
       program.add_subcommand("compare", "Compare a model with a measurement of delta-p, by flight regime");
   add_comparison_options(*command, options->comparison);

@@ -22,7 +22,7 @@
 namespace pcor::tool {
 namespace {
 
-struct Options {
+struct DiagnoseArguments {
   CommonOptions common;
   ComparisonOptions comparison;
   CandidateOptions candidates;
@@ -131,7 +131,7 @@ void print_others(const Diagnosis& diagnosis, bool all) {
 }
 
 /// Arguments of a fit with the options of the diagnosis. @param flights arguments with the flights
-std::string fit_command_line(std::string flights, const Options& options) {
+std::string fit_command_line(std::string flights, const DiagnoseArguments& options) {
   if (options.trust_reference) flights += " --trust-reference";
   flights += command_line(options.held);
   if (options.training_share < 1.0) flights += fmt::format(" --training-share {}", options.training_share);
@@ -140,7 +140,7 @@ std::string fit_command_line(std::string flights, const Options& options) {
 
 /// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
 /// for findings that one command cannot add.
-std::string next_command(const Diagnosis& diagnosis, const Options& options) {
+std::string next_command(const Diagnosis& diagnosis, const DiagnoseArguments& options) {
   const std::string flights = fit_command_line(advised_command_line(options.comparison), options);
   const std::string model = shell_path(options.model);
   if (diagnosis.verdict == Verdict::silent) {
@@ -198,7 +198,8 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
                      advised_command_line(options.comparison), model);
 }
 
-void print_in_full(const Diagnosis& diagnosis, const ChosenReferences& references, const Options& options) {
+void print_in_full(const Diagnosis& diagnosis, const ChosenReferences& references,
+                   const DiagnoseArguments& options) {
   say("\n");
   print_references(references);
   say("reference: {}\n", diagnosis.reference);
@@ -210,7 +211,7 @@ void print_in_full(const Diagnosis& diagnosis, const ChosenReferences& reference
   print_others(diagnosis, options.full);
 }
 
-void print(const Diagnosis& diagnosis, const ChosenReferences& references, const Options& options) {
+void print(const Diagnosis& diagnosis, const ChosenReferences& references, const DiagnoseArguments& options) {
   say("{}.\n", verdict_text(diagnosis));
   if (is_verbose() || options.full) {
     print_in_full(diagnosis, references, options);
@@ -223,7 +224,7 @@ void print(const Diagnosis& diagnosis, const ChosenReferences& references, const
   say("{}\n", next_command(diagnosis, options));
 }
 
-void run(const Options& options) {
+void run(const DiagnoseArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);
@@ -271,7 +272,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_diagnose(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DiagnoseArguments>();
   CLI::App* command =
       program.add_subcommand("diagnose", "Find the physical effects that a fitted model lacks");
   add_comparison_options(*command, options->comparison);

@@ -15,7 +15,7 @@
 namespace pcor::tool {
 namespace {
 
-struct Options {
+struct EffectsArguments {
   CommonOptions common;
   std::string id;
 };
@@ -166,7 +166,7 @@ void print_all() {
   say("\n");
 }
 
-void run(const Options& options) {
+void run(const EffectsArguments& options) {
   refuse_overwriting({options.common.json}, {});
   JsonResult json(options.common);
   if (const EffectWithoutTrace* const effect = find_without_trace(options.id)) {
@@ -196,7 +196,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_effects(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EffectsArguments>();
   CLI::App* command =
       program.add_subcommand("effects", "List the catalogue of effects, or describe one of them");
   command->add_option("id", options->id, "an effect, e.g. static-lag")->type_name("ID");

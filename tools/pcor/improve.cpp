@@ -23,7 +23,7 @@
 namespace pcor::tool {
 namespace {
 
-struct Options {
+struct ImproveArguments {
   CommonOptions common;
   ComparisonOptions comparison;
   CandidateOptions candidates;
@@ -38,12 +38,13 @@ struct Options {
   bool trust_reference = false;
 };
 
-std::string next_step(const Options& options) {
+std::string next_step(const ImproveArguments& options) {
   return fmt::format("To apply it: {} process {} -m {} -o corrected.nc", program(),
                      shell_path(options.comparison.flights.front()), shell_path(options.output));
 }
 
-void print(const Improvement& improvement, const ChosenReferences& references, const Options& options) {
+void print(const Improvement& improvement, const ChosenReferences& references,
+           const ImproveArguments& options) {
   if (is_verbose()) {
     print_references(references);
     say("reference: {}\n", improvement.fit.reference_text);
@@ -91,7 +92,7 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
   say("{}\n", next_step(options));
 }
 
-ImproveOptions improve_options(const Options& options, const ModelDefinition& model,
+ImproveOptions improve_options(const ImproveArguments& options, const ModelDefinition& model,
                                const CommandFlights& of) {
   ImproveOptions improve_with;
   improve_with.refit.mask = mask_options(options.comparison);
@@ -104,7 +105,7 @@ ImproveOptions improve_options(const Options& options, const ModelDefinition& mo
   return improve_with;
 }
 
-void run(const Options& options) {
+void run(const ImproveArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);
@@ -155,7 +156,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_improve(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ImproveArguments>();
   CLI::App* command = program.add_subcommand(
       "improve", "Refit, diagnose and add missing effects repeatedly, until no effect is missing");
   add_comparison_options(*command, options->comparison);

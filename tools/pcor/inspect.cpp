@@ -23,7 +23,7 @@
 namespace pcor::tool {
 namespace {
 
-struct Options {
+struct InspectArguments {
   CommonOptions common;
   std::vector<std::string> flights;
   std::string model;
@@ -52,7 +52,7 @@ std::string reference_for(const Inspection& flight, const ModelCandidate& law) {
 }
 
 /// Up to three commands to paste, in order, that produce a corrected flight and a report.
-std::vector<std::string> next_commands(const Options& options, const Inspection& flight) {
+std::vector<std::string> next_commands(const InspectArguments& options, const Inspection& flight) {
   const std::string stamp =
       options.timestamp_alignment == "begin" ? "" : " --time-stamp " + options.timestamp_alignment;
   const std::string output = " -o corrected.nc --report corrected.html";
@@ -284,7 +284,7 @@ bool is_readable(const Inspection& flight) { return flight.unreadable.empty(); }
 
 /// Inspects the flights one after the other. With several flights, an unreadable one does not stop the
 /// others.
-std::vector<Inspection> look(const Options& options, bool text) {
+std::vector<Inspection> look(const InspectArguments& options, bool text) {
   const std::vector<std::filesystem::path> laws = named_models();
   const TimestampAlignment timestamp_alignment =
       options.timestamp_alignment == "middle" ? TimestampAlignment::middle : TimestampAlignment::begin;
@@ -345,7 +345,7 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
   file.commit();
 }
 
-void run(const Options& options) {
+void run(const InspectArguments& options) {
   std::vector<std::filesystem::path> inputs(options.flights.begin(), options.flights.end());
   refuse_overwriting({options.model, options.common.json, options.common.report, options.common.figures},
                      inputs);
@@ -381,7 +381,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_inspect(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InspectArguments>();
   CLI::App* command = program.add_subcommand(
       "inspect",
       "Show the content of a flight: aircraft, rates, roles of its variables, missing inputs, manoeuvres");

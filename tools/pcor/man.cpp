@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t max_line = 78;
 
-struct Options {
+struct ManArguments {
   std::string command;
   std::string folder;
 };
@@ -133,7 +133,7 @@ void write_page(const std::filesystem::path& path, const std::string& page) {
   if (!stream) throw Error(fmt::format("{}: cannot be written; make its folder first", path.string()));
 }
 
-void run(const CLI::App& program, const Options& options) {
+void run(const CLI::App& program, const ManArguments& options) {
   set_program("pcor");  // the examples assume an installed program
   if (!options.folder.empty()) {
     const std::filesystem::path folder = options.folder;
@@ -158,7 +158,7 @@ void run(const CLI::App& program, const Options& options) {
 }  // namespace
 
 std::function<void()> add_man(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ManArguments>();
   CLI::App* command = program.add_subcommand("man", "Print a manual page in troff");
   command->group("");  // hidden in the help, because it is for packagers
   command->add_option("command", options->command, "sub-command (default: the page of the program)");

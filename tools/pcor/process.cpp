@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ProcessArguments {
   CommonOptions common;
   std::vector<std::string> inputs;
   std::string model;
@@ -47,7 +47,7 @@ struct Options {
 };
 
 /// Command that makes one output alone.
-std::string command_line(const ProcessTask& task, const Options& options) {
+std::string command_line(const ProcessTask& task, const ProcessArguments& options) {
   std::string line =
       fmt::format("pcor " PCOR_VERSION " process {} {} {} -o {}", shell_path(task.input.string()),
                   options.models.empty() ? "-m" : "--models", shell_path(options.model + options.models),
@@ -198,7 +198,7 @@ UncertaintyPart part_named(const std::string& name) {
 
 /// Several flights are written to a folder, which is created; a single one if the output is an existing
 /// folder.
-bool wants_folder(const Options& options) {
+bool wants_folder(const ProcessArguments& options) {
   std::error_code code;
   if (fs::is_directory(options.output, code)) return true;
   const bool is_there = fs::exists(options.output, code);
@@ -211,7 +211,7 @@ bool wants_folder(const Options& options) {
   return true;
 }
 
-std::vector<ProcessTask> tasks_of(const Options& options, bool folder) {
+std::vector<ProcessTask> tasks_of(const ProcessArguments& options, bool folder) {
   const std::vector<fs::path> flights(options.inputs.begin(), options.inputs.end());
   std::vector<ProcessTask> tasks = folder ? tasks_in_folder(flights, options.output)
                                           : std::vector<ProcessTask>{{flights.front(), options.output, {}}};
@@ -251,7 +251,7 @@ class OutputFolder {
   bool is_new_ = false;
 };
 
-ProcessOptions process_options(const Options& options) {
+ProcessOptions process_options(const ProcessArguments& options) {
   ProcessOptions process;
   process.correct_with = options.correct_with == "lams" ? CorrectWith::lams : CorrectWith::model;
   process.timestamp_alignment =
@@ -279,7 +279,7 @@ std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, 
 }
 
 /// One model for all flights, or a selection for each flight.
-ModelSelector models_of(const Options& options) {
+ModelSelector models_of(const ProcessArguments& options) {
   if (!options.models.empty()) {
     return [models = models_in(options.models), &options](const fs::path& flight) {
       return model_for_flight(models, flight, options.common);
@@ -289,7 +289,7 @@ ModelSelector models_of(const Options& options) {
   return [model = read_model_for(options.model, flights, options.common)](const fs::path&) { return model; };
 }
 
-void run(const Options& options) {
+void run(const ProcessArguments& options) {
   const bool folder = wants_folder(options);
   const std::vector<ProcessTask> tasks = tasks_of(options, folder);
   const bool many = tasks.size() > 1;
@@ -353,7 +353,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_process(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ProcessArguments>();
   CLI::App* command =
       program.add_subcommand("process", "Correct flights: run every sample through the real-time loop");
   command->add_option("input", options->inputs, "the flights, netCDF files")->required()->type_name("IN.nc");

@@ -26,7 +26,7 @@
 namespace pcor::tool {
 namespace {
 
-struct Options {
+struct RefitArguments {
   CommonOptions common;
   ComparisonOptions comparison;
   std::string model;
@@ -75,7 +75,7 @@ FitStage parse_stage(const std::string& text) {
   return stage;
 }
 
-RefitOptions refit_options(const Options& options, const FlightSet& holdout) {
+RefitOptions refit_options(const RefitArguments& options, const FlightSet& holdout) {
   RefitOptions refit;
   refit.mask = mask_options(options.comparison);
   refit.loss = *loss_named(options.loss);
@@ -205,7 +205,7 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
   print_further(result.further);
 }
 
-std::string next_step(const Options& options) {
+std::string next_step(const RefitArguments& options) {
   if (options.reference_output.empty()) {
     return fmt::format("To see where the errors are largest: {} compare {} -m {} -m {}", program(),
                        advised_command_line(options.comparison), shell_path(options.model),
@@ -226,7 +226,7 @@ std::string next_step(const Options& options) {
 /// Comparison of the model before and after the fit, for the report.
 Comparison before_against_after(const RefitResult& result, const ModelDefinition& model,
                                 const References& references, const FlightSet& flights,
-                                const Options& options) {
+                                const RefitArguments& options) {
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
   References fitted = references;
@@ -246,7 +246,7 @@ Comparison before_against_after(const RefitResult& result, const ModelDefinition
 
 /// Row for each flight, with the coefficients fitted to it alone.
 FlightTable flight_table(const RefitResult& all, const ModelDefinition& model, const References& references,
-                         const FlightSet& flights, RefitOptions with, const Options& options) {
+                         const FlightSet& flights, RefitOptions with, const RefitArguments& options) {
   std::vector<std::string> columns{"flight",         "held_out",       "reference",
                                    "samples",        "rms_before_hpa", "bias_after_hpa",
                                    "bias_error_hpa", "rms_after_hpa",  "noise_rms_hpa"};
@@ -293,7 +293,7 @@ FlightTable flight_table(const RefitResult& all, const ModelDefinition& model, c
 
 /// Writes the fitted models. @throws Error, before any file is written, if they are refused.
 void deliver_models(RefitResult& result, const std::vector<std::filesystem::path>& inputs,
-                    const Options& options) {
+                    const RefitArguments& options) {
   refuse_worse(result.worse, options.force, result.model);
   deliver(result.model, options.output, inputs);
   if (!result.reference) return;
@@ -307,7 +307,7 @@ void put_static_systems_first(std::vector<std::string>& references) {
                         [](const std::string& each) { return each.rfind("static:", 0) == 0; });
 }
 
-void run(const Options& options) {
+void run(const RefitArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
@@ -371,7 +371,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_refit(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RefitArguments>();
   CLI::App* command = program.add_subcommand("refit", "Fit the free coefficients of a model to measurements");
   add_comparison_options(*command, options->comparison);
   command->add_option("-m,--model", options->model, "the model to fit")->required()->type_name("MODEL.toml");

@@ -16,14 +16,14 @@ namespace pcor::tool {
 
 namespace {
 
-struct Options {
+struct SimulateArguments {
   CommonOptions common;
   std::string scenario;
   std::string output;
   std::optional<std::uint64_t> seed{};
 };
 
-std::string command_line(const Options& options, std::uint64_t seed) {
+std::string command_line(const SimulateArguments& options, std::uint64_t seed) {
   return fmt::format("pcor " PCOR_VERSION " simulate {} -o {} --seed {}", shell_path(options.scenario),
                      shell_path(options.output), seed);
 }
@@ -41,7 +41,7 @@ void print_legs(const SimulationSummary& summary) {
   say("\n");
 }
 
-void print(const SimulationSummary& summary, const Options& options) {
+void print(const SimulationSummary& summary, const SimulateArguments& options) {
   say("{}, {}, {} to {} UTC: {} records, {} legs, seed {}\n", summary.name, summary.aircraft,
       utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.legs.size(),
       summary.seed);
@@ -54,7 +54,7 @@ void print(const SimulationSummary& summary, const Options& options) {
       shell_path(options.output));
 }
 
-void run(const Options& options) {
+void run(const SimulateArguments& options) {
   refuse_overwriting({options.output, options.common.json}, {options.scenario});
   JsonResult json(options.common);
   Scenario scenario = read_scenario(options.scenario);
@@ -77,7 +77,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_simulate(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateArguments>();
   CLI::App* command = program.add_subcommand("simulate", "Simulate a flight whose true pressures are known");
   command
       ->add_option("scenario", options->scenario,

@@ -19,7 +19,7 @@
 namespace pcor::tool {
 namespace {
 
-struct Options {
+struct TemperatureArguments {
   CommonOptions common;
   ComparisonOptions comparison;
   std::string model;
@@ -35,7 +35,7 @@ struct Options {
   bool iterate = false;
 };
 
-TemperatureOptions temperature_options(const Options& options) {
+TemperatureOptions temperature_options(const TemperatureArguments& options) {
   TemperatureOptions result;
   result.mask = mask_options(options.comparison);
   if (options.degree != "auto") result.degree = std::stoi(options.degree);
@@ -152,13 +152,13 @@ void print(const IterativeCalibration& result) {
 }
 
 /// First used flight, as named by the user.
-const std::string& first_used(const TemperatureResult& result, const Options& options) {
+const std::string& first_used(const TemperatureResult& result, const TemperatureArguments& options) {
   const auto used = std::find_if(result.flights.begin(), result.flights.end(),
                                  [](const FlightHeights& flight) { return flight.left_out.empty(); });
   return options.comparison.flights.at(static_cast<std::size_t>(used - result.flights.begin()));
 }
 
-std::string next_step(const TemperatureResult& result, const Options& options) {
+std::string next_step(const TemperatureResult& result, const TemperatureArguments& options) {
   if (!result.worse.empty())
     return "The correction is not yet significant; add flights that climb and descend by 3 km and more, "
            "there and back along the same track";
@@ -166,7 +166,7 @@ std::string next_step(const TemperatureResult& result, const Options& options) {
                      shell_path(first_used(result, options)), shell_path(options.output));
 }
 
-void run(const Options& options) {
+void run(const TemperatureArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   refuse_overwriting({options.output, options.common.json, options.common.report, options.common.figures},
@@ -225,7 +225,7 @@ void run(const Options& options) {
 }  // namespace
 
 std::function<void()> add_temperature(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TemperatureArguments>();
   CLI::App* command = program.add_subcommand(
       "temperature", "Calibrate the temperature by GPS heights and the hydrostatic equation");
   add_comparison_options(*command, options->comparison);
