@@ -9,10 +9,10 @@
 
 namespace pcor::test {
 
-/// Number of seeds: 20, or the value of PCOR_SEEDS in the environment.
+/// Number of seeds: 10, or the value of PCOR_SEEDS in the environment.
 inline std::size_t number_of_seeds() {
   const char* wanted = std::getenv("PCOR_SEEDS");
-  return wanted == nullptr ? 20 : std::stoul(wanted);
+  return wanted == nullptr ? 10 : std::stoul(wanted);
 }
 
 /// The probabilities that a normal error is within two and three standard errors.
