@@ -43,6 +43,7 @@ class Plausibility {
       : flight_(flight), model_(model), time_(record_times(flight)) {}
 
   std::vector<Problem> run() {
+    limits();
     pressure();
     temperature_against_height();
     dynamic_against_airspeed();
@@ -70,6 +71,29 @@ class Plausibility {
     std::vector<double> values;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) values.push_back(of(a[i], b[i]));
     return median(std::move(values));
+  }
+
+  /// Values beyond the limits of a role are missing: usually their unit is not the stated one.
+  void limits() {
+    for (const auto& [role, variable] : model_.variables) {
+      const QuantityInfo& info = info_of(role);
+      if (!has_values(flight_, variable, std::string(info.unit), stated_unit(role))) continue;
+      const UnitConversion conversion =
+          flight_.conversion(variable, std::string(info.unit), "", stated_unit(role));
+      const ReadValues read = read_values(flight_, variable, believed(conversion, info));
+      const auto impossible = static_cast<double>(read.left_out.impossible);
+      const auto present = static_cast<double>(
+          std::count_if(read.values.begin(), read.values.end(), [](double x) { return !std::isnan(x); }));
+      if (impossible > present)
+        add(variable, fmt::format("share of values beyond {:g} to {:g} {}", info.least, info.most, info.unit),
+            impossible / (impossible + present), "1",
+            "these values are missing; state the unit of the variable in the [units] of the model");
+    }
+  }
+
+  std::string stated_unit(Quantity role) const {
+    const auto stated = model_.units.find(role);
+    return stated == model_.units.end() ? "" : stated->second;
   }
 
   void pressure() {

@@ -44,10 +44,10 @@ void describe(const InspectedRole& self, Field& field) {
   field("why", self.why, "evidence, if the name is not one of the aircraft");
 }
 
-/// Defect or coarse resolution of a variable.
+/// Defect or coarse resolution of a variable, or its contradiction of another one.
 struct Problem {
   std::string variable;
-  std::string kind;   ///< "jump", "recorded in steps"
+  std::string kind;   ///< "jump", "recorded in steps", "temperature against height"
   std::string times;  ///< UTC
   double number = 0.0;
   std::string unit;
@@ -57,7 +57,7 @@ struct Problem {
 template <class Field>
 void describe(const Problem& self, Field& field) {
   field("variable", self.variable, "variable of the flight");
-  field("kind", self.kind, "jump, or recorded in steps");
+  field("kind", self.kind, "jump, recorded in steps, or contradiction of another variable");
   field("times", self.times, "times of the problem, UTC");
   field("number", self.number, "size of the problem", "see unit");
   field("unit", self.unit, "unit of the number");
@@ -115,7 +115,8 @@ struct Inspection {
   std::map<std::string, std::vector<InspectedCandidate>> candidates{};
   std::vector<std::string> not_used{};  ///< variables without a role that are not candidates either
   std::vector<Problem> problems{};
-  /// References to which a model can be fitted, as for `--reference`: "wind" and "height"; may be empty.
+  /// References to which a model can be fitted, as for `--reference`: "lams", "pressure:PS_A", "wind"; may be
+  /// empty.
   std::vector<std::string> references{};
   std::string why_no_model{};          ///< reason why the flight has no model; empty if it has one
   bool has_results = false;            ///< true: its inputs have names used for results of `process`

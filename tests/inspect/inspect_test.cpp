@@ -1,0 +1,105 @@
+#include <pcor/inspect/inspect.hpp>
+
+#include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
+#include <pcor/simulate/simulate.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace {
+
+using pcor::InspectedRole;
+using pcor::Inspection;
+using pcor::MissingRole;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Field;
+using testing::IsEmpty;
+using testing::Not;
+
+const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
+
+testing::Matcher<const InspectedRole&> role(const std::string& name, const std::string& variable) {
+  return AllOf(Field(&InspectedRole::role, name), Field(&InspectedRole::variable, variable));
+}
+
+/// A C-130 of one hour whose static pressure is constant, with the given further variables.
+std::filesystem::path flight_with(const pcor::test::TemporaryDirectory& folder,
+                                  const std::vector<std::pair<std::string, std::string>>& variables) {
+  const std::filesystem::path path = folder / "flight.nc";
+  pcor::test::NetcdfMaker maker(path);
+  maker.text(NC_GLOBAL, "Platform", "N130AR");
+  maker.time(pcor::test::sequence(0, 60));
+  for (const auto& [name, unit] : variables)
+    maker.series(name, unit, pcor::test::sequence(name[0] == 'P' ? 700.0 : 60.0, 60));
+  return path;
+}
+
+}  // namespace
+
+TEST(Inspect, FindsVariablesAndRegimesOfASimulatedFlight) {
+  const pcor::test::TemporaryDirectory folder;
+  pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-short.toml"), folder / "flight.nc");
+  const Inspection inspection = pcor::inspect_flight(folder / "flight.nc");
+  EXPECT_THAT(inspection.roles, Contains(role("static_pressure", "PSFD")));
+  EXPECT_THAT(inspection.roles, Contains(role("dynamic_pressure", "QCF")));
+  EXPECT_THAT(inspection.problems, IsEmpty());
+  EXPECT_THAT(inspection.frozen, IsEmpty());
+  EXPECT_THAT(inspection.references, ElementsAre("lams"));
+  // The scenario has one pitch and one yaw manoeuvre.
+  for (const pcor::Regime regime : {pcor::Regime::pitch_manoeuvre, pcor::Regime::yaw_manoeuvre})
+    EXPECT_THAT(inspection.intervals, Contains(Field(&pcor::Interval::regime, regime)));
+  ASSERT_TRUE(inspection.model.has_value());
+  EXPECT_EQ(inspection.model->variables.at(pcor::Quantity::static_pressure), "PSFD");
+}
+
+TEST(Inspect, MissingRoleStatesSearchedNamesAndConsequence) {
+  const pcor::test::TemporaryDirectory folder;
+  const Inspection inspection = pcor::inspect_flight(flight_with(folder, {{"PSFD", "hPa"}, {"QCF", "hPa"}}));
+  const auto is = [](const char* name) { return Field(&MissingRole::role, name); };
+  ASSERT_THAT(inspection.missing, Contains(is("recovery_temperature")));
+  for (const MissingRole& missing : inspection.missing) {
+    if (missing.role != "recovery_temperature") continue;
+    EXPECT_THAT(missing.looked_for, Contains("TTX"));
+    EXPECT_THAT(missing.cost, Not(IsEmpty()));
+  }
+  EXPECT_THAT(inspection.missing, Not(Contains(is("static_pressure"))));
+}
+
+TEST(Inspect, FlightWithoutPressuresHasNoModelAndTheReason) {
+  const pcor::test::TemporaryDirectory folder;
+  const Inspection inspection = pcor::inspect_flight(flight_with(folder, {{"GGALT", "m"}}));
+  EXPECT_FALSE(inspection.model.has_value());
+  EXPECT_THAT(inspection.why_no_model, Not(IsEmpty()));
+  EXPECT_THAT(inspection.intervals, IsEmpty());
+}
+
+TEST(Inspect, UnreadableModelFileIsNamedInANoteAndOthersAreUsed) {
+  const pcor::test::TemporaryDirectory folder;
+  std::ofstream(folder / "broken.toml") << "not a model";
+  const Inspection inspection = pcor::inspect_flight(
+      flight_with(folder, {{"PSFD", "hPa"}, {"QCF", "hPa"}, {"ADIFR", "hPa"}, {"QCR", "hPa"}}),
+      {folder / "broken.toml", data / "models" / "c130-psfd-eq18.toml"});
+  EXPECT_THAT(inspection.notes, Contains(testing::HasSubstr("broken.toml")));
+  ASSERT_EQ(inspection.laws.size(), 1U);
+  EXPECT_EQ(inspection.laws.front().path.filename(), "c130-psfd-eq18.toml");
+}
+
+TEST(Inspect, FileThatIsNoFlightIsAFileError) {
+  const pcor::test::TemporaryDirectory folder;
+  std::ofstream(folder / "text.nc") << "text";
+  try {
+    pcor::inspect_flight(folder / "text.nc");
+    FAIL() << "no error";
+  } catch (const pcor::Error& error) {
+    EXPECT_EQ(error.code(), pcor::Error::Code::file);
+  }
+}
