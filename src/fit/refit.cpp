@@ -11,6 +11,7 @@
 #include "campaign/model_parameters.hpp"
 #include "fit/before_and_after.hpp"
 #include "fit/fit_covariance.hpp"
+#include "fit/fitted_coefficients.hpp"
 #include "fit/fitted_model.hpp"
 #include "fit/gps_fit.hpp"
 #include "fit/identifiability.hpp"
@@ -438,6 +439,22 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
 }
 
 }  // namespace
+
+ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const ModelDefinition& model,
+                                              const References& references, const RefitOptions& options) {
+  if (std::any_of(references.begin(), references.end(),
+                  [](const auto& reference) { return is_by_gps(*reference); }))
+    return refit(flights, model, references, options).model;
+  require_sense(flights, references, options);
+  FitTask task = task_of(model, references, options, flights);
+  const Fitted fitted = fit_in_stages(task);
+  ModelDefinition result = model;
+  Eigen::Index p = 0;
+  for (ModelEffect& effect : result.model.effects) {
+    for (double& value : effect.parameters) value = fitted.solution.values[p++];
+  }
+  return result;
+}
 
 RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const References& references,
                   const RefitOptions& options) {

@@ -6,6 +6,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/effects/static_surface.hpp>
 #include <pcor/roles/add_effects.hpp>
+#include "fit/fitted_coefficients.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -17,12 +18,6 @@ struct Pair {
   TrialModel without;
   TrialModel with;
 };
-
-RefitResult fitted(const FlightSet& flights, const TrialModel& model, const References& references,
-                   RefitOptions options) {
-  options.alike = model.alike;
-  return refit(flights, model.file, references, options);
-}
 
 /// Number `block` of the samples of a flight, from its begin to its end; s since 1970 UTC.
 Exclusion block_of(const TrialFlight& flight, std::size_t block) {
@@ -43,13 +38,14 @@ TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, cons
   std::vector<TrialModel> trials;
   for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
+    without_block.alike = models.without.alike;
     if (!without_block.mask.intervals) without_block.mask.intervals.emplace();
     for (const TrialFlight& flight : outline) {
       if (flight.first_reference && flight.fitted.size() >= held_out_blocks)
         without_block.mask.intervals->exclude.push_back(block_of(flight, block));
     }
     for (const TrialModel* const model : {&models.without, &models.with})
-      trials.push_back({fitted(flights, *model, references, without_block).model, model->alike});
+      trials.push_back({fitted_coefficients(flights, model->file, references, without_block), model->alike});
   }
   std::vector<TrialFlight> tried = try_models(flights, trials, references, options);
   const std::size_t per_reference = tried.size() / references.size();
@@ -90,7 +86,9 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
   }
   SurfaceOffer offer;
   offer.effect = id;
-  offer.fit = fitted(flights, models.with, references, options);
+  RefitOptions of_all = options;
+  of_all.alike = model.alike;
+  offer.fit = refit(flights, models.with.file, references, of_all);
   for (const SurfaceFit& surface : offer.fit.surfaces) {
     if (surface.effect == id) offer.degrees_of_freedom = surface.degrees_of_freedom;
   }
