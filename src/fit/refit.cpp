@@ -138,10 +138,12 @@ Fitted at_start(const FitTask& task, const std::vector<std::vector<std::size_t>>
   return fitted;
 }
 
-/// The size of surfaces and their coefficients, in turn.
+/// The size of surfaces and their coefficients, in turn. The noise hardly changes after three rounds.
 void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
   constexpr int max_rounds = 6;
-  for (int round = 0; round < max_rounds && find_roughness(flights, solution, task.surfaces); ++round)
+  constexpr int noise_rounds = 3;
+  for (int round = 0;
+       round < max_rounds && find_roughness(flights, solution, task.surfaces, round < noise_rounds); ++round)
     solution = solve(flights, std::move(solution), flights.setup().wanted);
 }
 

@@ -122,9 +122,10 @@ std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinit
   return surfaces;
 }
 
-bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces) {
+bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces,
+                    bool has_new_noise) {
   const std::vector<std::size_t>& wanted = flights.setup().wanted;
-  flights.measure_noise(solution.values);
+  if (has_new_noise) flights.measure_noise(solution.values);
   const double unit = solution.deviation * solution.deviation;
   const Products products = products_of(flights, solution.values);
   bool changed = false;
@@ -148,8 +149,8 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
     const double inflation =
         std::max(1.0, now.solve(found.noise).trace() / (unit * now.solve(found.information).trace()));
     changed = changed || std::abs(std::log(inflation / surface.inflation)) > 0.2;
-    // The noise is measured with the surface of the previous round: half steps make it converge.
-    surface.inflation = std::sqrt(inflation * surface.inflation);
+    // New noise is that of the residuals of the previous round: half steps make both converge.
+    surface.inflation = has_new_noise ? std::sqrt(inflation * surface.inflation) : inflation;
     const double weight = 1.0 / (surface.inflation * unit);
     const SurfaceRoughness before = surface;
     double best = -infinity;

@@ -46,6 +46,8 @@ std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinit
 /// the law fitted too. The likelihood is that of least squares over the inflation, so that memory and drift
 /// of the noise do not count as structure (Pauli, Racugno and Ventura 2011, Statistica Sinica 21, 149).
 /// False where size and inflation of all hardly changed.
-bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces);
+/// @param has_new_noise the noise is measured at the solution; otherwise it is that of the last measurement
+bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces,
+                    bool has_new_noise);
 
 }  // namespace pcor::internal
