@@ -86,7 +86,7 @@ class Plausibility {
           std::count_if(read.values.begin(), read.values.end(), [](double x) { return !std::isnan(x); }));
       if (impossible > present)
         add(variable, fmt::format("share of values beyond {:g} to {:g} {}", info.least, info.most, info.unit),
-            impossible / (impossible + present), "1",
+            100.0 * impossible / (impossible + present), "%",
             "these values are missing; state the unit of the variable in the [units] of the model");
     }
   }

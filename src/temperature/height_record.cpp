@@ -345,6 +345,12 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
   record.notes = air.notes;
   std::vector<Point> points = Integration(air, steps, options).run(record);
   mark_steps(points, record);
+  if (points.empty())
+    throw Error(
+        Error::Code::variable,
+        fmt::format("{}: no sample has pressures, temperature and height; 'pcor inspect' lists variables "
+                    "without usable values",
+                    name));
 
   record.way = way_known(air);
   const Way way(air);

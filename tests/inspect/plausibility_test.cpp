@@ -111,7 +111,7 @@ TEST(Plausibility, TemperatureInCelsiusLabelledKelvinIsFound) {
   const std::vector<Problem> problems =
       problems_after([](Recording& recording) { recording.units["ATX"] = "K"; });
   // 5 "K" is no temperature of air: all values are missing, and the contradiction is the share of them.
-  EXPECT_THAT(problems, Contains(problem("ATX", "1", 1.0, 0.0)));
+  EXPECT_THAT(problems, Contains(problem("ATX", "%", 100.0, 0.0)));
 }
 
 TEST(Plausibility, DynamicPressureOfHalfTheAirspeedIsFound) {

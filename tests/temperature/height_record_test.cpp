@@ -295,4 +295,15 @@ TEST(HeightRecord, SaysWhatIsWrongWithTheHeight) {
   EXPECT_THAT(message_for(cold), HasSubstr("thermometer"));
 }
 
+TEST(HeightRecord, ThermometerWithoutValuesIsAnErrorOfAVariable) {
+  pcor::internal::FlightAir air = made::air({});
+  std::fill(air.temperature.begin(), air.temperature.end(), std::numeric_limits<double>::quiet_NaN());
+  try {
+    record_of(air);
+    FAIL() << "no error";
+  } catch (const pcor::Error& error) {
+    EXPECT_EQ(error.code(), pcor::Error::Code::variable);
+  }
+}
+
 }  // namespace

@@ -169,8 +169,9 @@ void print_candidates(const Inspection& flight) {
 }
 
 void print(const Problem& problem) {
-  say("  {}: {}, {:.4g} {}, {} UTC; {}\n", problem.variable, problem.kind, problem.number, problem.unit,
-      problem.times, problem.action);
+  const std::string unit = problem.unit == "1" ? "" : " " + problem.unit;
+  say("  {}: {}, {:.4g}{}, {} UTC; {}\n", problem.variable, problem.kind, problem.number, unit, problem.times,
+      problem.action);
 }
 
 void print_problems(const Inspection& flight) {
