@@ -76,7 +76,7 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
   // Slow effects and slow drift compete for the same part of the residuals, so the noise is estimated from
   // two starts: with all candidate effects removed, and with no effect removed. The more likely result is
   // used.
-  const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1), rank_limit);
+  const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1));
   const double by_effects = search_from(start, true);
   const bool drifts =
       std::any_of(noise_.begin(), noise_.end(), [](const auto& each) { return each.drifts(); });
@@ -360,7 +360,7 @@ Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products, double rows,
   Eigen::MatrixXd normal = products.topLeftCorner(count, count);
   // Unit: variance of the rows.
   normal.diagonal() += products(count, count) / std::max(rows, 1.0) * precision;
-  return pseudo_solution(normal, products.col(count).head(count), rank_limit);
+  return pseudo_solution(normal, products.col(count).head(count));
 }
 
 Eigen::MatrixXd Analysis::rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& places) const {

@@ -49,7 +49,7 @@ Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Places& free, Eigen::Ve
   values(free).setZero();
   const Eigen::Index width = values.size();
   const Eigen::VectorXd right = sum.col(width).head(width) - sum.topLeftCorner(width, width) * values;
-  values(free) = pseudo_solution(sum(free, free), right(free), rank_limit);
+  values(free) = pseudo_solution(sum(free, free), right(free));
   return values;
 }
 
