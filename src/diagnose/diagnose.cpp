@@ -126,11 +126,7 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
     }
   } else {
     kept = flights_to_show(analysis.share().of_each_flight<FlightToShow>([&](std::size_t f) {
-      SquareSum sum;
-      for (const double value : flights[f].before) {
-        if (!std::isnan(value)) sum.add(value);
-      }
-      return FlightToShow{flights[f].samples->time.front(), sum.count > 0.0 ? sum.rms() : nan};
+      return FlightToShow{flights[f].samples->time.front(), square_sum_of(flights[f].before).rms()};
     }));
   }
   auto series = analysis.share().of_entries(kept).of_each_flight<FlightDiagnosis>(

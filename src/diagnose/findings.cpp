@@ -532,7 +532,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
   for (std::size_t i = 0; i < limits.size(); ++i) {
     SquareSum sum;
     for (const std::vector<SquareSum>& of_flight : of_flights) sum += of_flight[i];
-    limits[i].rms = std::sqrt(search.remaining(groups[i])) * std::sqrt(sum.squares / sum.count);
+    limits[i].rms = std::sqrt(search.remaining(groups[i])) * sum.rms();
   }
   std::sort(limits.begin(), limits.end(),
             [](const UpperLimit& a, const UpperLimit& b) { return a.rms > b.rms; });
