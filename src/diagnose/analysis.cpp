@@ -90,7 +90,6 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
 double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
   std::vector<std::size_t> chosen;
   Eigen::VectorXd estimate = start;
-  Eigen::MatrixXd covariance;
   for (int round = generous ? 0 : 1; round < max_rounds; ++round) {
     replace_outliers(chosen, estimate);
     if (round == 0)
@@ -107,7 +106,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
     result_ = search_->run(options);
     const bool stable = round > 1 && result_.chosen == chosen;
     chosen = result_.chosen;
-    search_->fit(chosen, estimate, covariance);
+    estimate = search_->fit(chosen).estimate;
     if (stable) break;
   }
   Eigen::Index columns = 0;
@@ -120,13 +119,7 @@ std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>
 }
 
 std::vector<Eigen::Index> Analysis::places_of(const std::vector<std::size_t>& groups) const {
-  std::vector<Eigen::Index> places;
-  for (Eigen::Index c = 0; c < base_; ++c) places.push_back(c);
-  for (const std::size_t group : groups) {
-    for (Eigen::Index k = 0; k < groups_[group].count; ++k)
-      places.push_back(base_ + groups_[group].first + k);
-  }
-  return places;
+  return internal::places_of(groups, groups_, base_);
 }
 
 std::vector<Eigen::MatrixXd> Analysis::all_columns_of(const std::vector<std::size_t>& groups) const {
@@ -222,13 +215,7 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
 
 void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
   coefficients_ = Eigen::VectorXd::Zero(binned_.columns.front().cols());
-  coefficients_.head(base_) = estimate.head(base_);
-  Eigen::Index place = base_;
-  for (const std::size_t group : groups) {
-    coefficients_.segment(base_ + groups_[group].first, groups_[group].count) =
-        estimate.segment(place, groups_[group].count);
-    place += groups_[group].count;
-  }
+  coefficients_(places_of(groups)) = estimate;
 }
 
 std::vector<Eigen::MatrixXd> Analysis::find_shape_uncertainty(const std::vector<std::size_t>& chosen) {

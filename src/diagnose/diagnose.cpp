@@ -77,10 +77,7 @@ EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefi
 /// Local flights; entries of the others are empty. @param refitted change of the base by least squares
 std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::VectorXd& refitted) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
-  const Search& search = analysis.search();
-  Eigen::VectorXd with;
-  Eigen::MatrixXd covariance;
-  search.fit(chosen, with, covariance);
+  const Eigen::VectorXd with = analysis.search().fit(chosen).estimate;
   const Eigen::VectorXd corrected = analysis.least_squares(chosen);
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(analysis);
   std::vector<FlightDiagnosis> flights(analysis.flights().size());
@@ -143,9 +140,7 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
 /// @param refitted their change
 std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoefficient>& base,
                              const Eigen::VectorXd& refitted) {
-  Eigen::VectorXd whitened;
-  Eigen::MatrixXd covariance;
-  analysis.search().fit({}, whitened, covariance);
+  const Eigen::MatrixXd covariance = analysis.search().fit({}).covariance;
   std::vector<Estimate> own;
   for (std::size_t b = 0; b < base.size(); ++b) {
     const Eigen::Index place = as_index(b);

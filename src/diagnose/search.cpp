@@ -86,6 +86,23 @@ std::vector<std::size_t> without(std::vector<std::size_t> set, std::size_t value
 
 }  // namespace
 
+std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base) {
+  std::vector<Eigen::Index> places(static_cast<std::size_t>(group.count));
+  std::iota(places.begin(), places.end(), base + group.first);
+  return places;
+}
+
+std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& some,
+                                    const std::vector<ColumnGroup>& groups, Eigen::Index base) {
+  std::vector<Eigen::Index> places(static_cast<std::size_t>(base));
+  std::iota(places.begin(), places.end(), Eigen::Index{0});
+  for (const std::size_t group : some) {
+    const std::vector<Eigen::Index> own = places_of(groups[group], base);
+    places.insert(places.end(), own.begin(), own.end());
+  }
+  return places;
+}
+
 Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups)
     : scores_(&scores), base_(base), groups_(groups) {
   const Eigen::Index columns = scores.columns();
@@ -148,7 +165,7 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
   score_ = turn.transpose() * left_score_;
 }
 
-std::vector<Eigen::Index> Search::places_of(const std::vector<std::size_t>& groups) const {
+std::vector<Eigen::Index> Search::directions_of(const std::vector<std::size_t>& groups) const {
   std::vector<Eigen::Index> places;
   for (const std::size_t group : groups) {
     for (Eigen::Index k = 0; k < turned_[group].cols(); ++k) places.push_back(begin_[group] + k);
@@ -167,7 +184,7 @@ std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set)
 
 Search::Conditional Search::given(const std::vector<std::size_t>& groups) const {
   Conditional result{information_, score_, squares_, 1.0};
-  std::vector<Eigen::Index> places = places_of(groups);
+  std::vector<Eigen::Index> places = directions_of(groups);
   const std::size_t count = places.size();
   const std::vector<Eigen::Index> shapes = shapes_of(groups);
   const Eigen::Index turned = information_.cols() - (left_.cols() - candidates_);
@@ -279,12 +296,7 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
           scale_.segment(base_ + own.first, own.count).asDiagonal() * turned_[group].col(kept - 1);
   }
   weight.segment(base_ + own.first, own.count) = found.estimate;
-  std::vector<Eigen::Index> rest(static_cast<std::size_t>(base_));
-  std::iota(rest.begin(), rest.end(), Eigen::Index{0});
-  for (const std::size_t other : without(others, group)) {
-    const ColumnGroup& columns_of = groups_[other];
-    for (Eigen::Index k = 0; k < columns_of.count; ++k) rest.push_back(base_ + columns_of.first + k);
-  }
+  const std::vector<Eigen::Index> rest = places_of(without(others, group), groups_, base_);
   const Eigen::VectorXd imitated = scores_->information(rest, Eigen::all).leftCols(columns) * weight;
   weight(rest) = -pseudo_solution(scores_->information(rest, rest), imitated);
   std::vector<Eigen::VectorXd> rows(scores_->rows.size());
@@ -312,17 +324,8 @@ double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen,
 }
 
 std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen) const {
-  Eigen::VectorXd estimate;
-  Eigen::MatrixXd covariance;
-  fit(chosen, estimate, covariance);
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(scores_->columns());
-  coefficients.head(base_) = estimate.head(base_);
-  Eigen::Index place = base_;
-  for (const std::size_t group : chosen) {
-    const ColumnGroup& columns = groups_[group];
-    coefficients.segment(base_ + columns.first, columns.count) = estimate.segment(place, columns.count);
-    place += columns.count;
-  }
+  coefficients(places_of(chosen, groups_, base_)) = fit(chosen).estimate;
   std::vector<Eigen::VectorXd> result(scores_->rows.size());
   for (std::size_t f = 0; f < result.size(); ++f) {
     if (scores_->share.owns(f)) result[f] = scores_->left(f, coefficients);
@@ -544,8 +547,7 @@ double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::
   return std::clamp(singular_values(across)[0], 0.0, 1.0);
 }
 
-void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estimate,
-                 Eigen::MatrixXd& covariance) const {
+SearchFit Search::fit(const std::vector<std::size_t>& chosen) const {
   std::vector<Eigen::Index> places(static_cast<std::size_t>(base_));  // positions among the scores' columns
   std::iota(places.begin(), places.end(), Eigen::Index{0});
   std::vector<Eigen::Index> out = places;  // positions among the estimates
@@ -571,10 +573,10 @@ void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estima
   }
   const Eigen::MatrixXd inverse =
       scale.asDiagonal() * pseudo_inverse(scaled, rank_limit) * scale.asDiagonal();
-  estimate = Eigen::VectorXd::Zero(size);
-  estimate(out) = inverse * scores_->information.col(scores_->columns())(places);
-  covariance = Eigen::MatrixXd::Zero(size, size);
-  covariance(out, out) = variance(chosen) * inverse;
+  SearchFit result{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+  result.estimate(out) = inverse * scores_->information.col(scores_->columns())(places);
+  result.covariance(out, out) = variance(chosen) * inverse;
+  return result;
 }
 
 double Search::variance(const std::vector<std::size_t>& chosen) const { return given(chosen).variance; }

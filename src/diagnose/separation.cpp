@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <pcor/effects/catalogue.hpp>
 #include "base/phrasing.hpp"
@@ -96,12 +95,6 @@ std::string general_advice(const std::string& id, const ModelEffect& effect) {
 
 bool is_separated(const SeparationProblem& rivalry) {
   return power_of(min_distinct(rivalry, rivalry.information)) >= enough_power;
-}
-
-std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base) {
-  std::vector<Eigen::Index> places(static_cast<std::size_t>(group.count));
-  std::iota(places.begin(), places.end(), base + group.first);
-  return places;
 }
 
 }  // namespace pcor::internal

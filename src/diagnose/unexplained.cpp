@@ -117,9 +117,7 @@ std::string worst_regime(const Analysis& analysis, const std::vector<std::vector
 /// Residuals of the flights of this process after the groups.
 std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
                                                  const std::vector<std::size_t>& groups) {
-  Eigen::VectorXd estimate;
-  Eigen::MatrixXd covariance;
-  analysis.search().fit(groups, estimate, covariance);
+  const Eigen::VectorXd estimate = analysis.search().fit(groups).estimate;
   std::vector<std::vector<double>> after;
   for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
     std::vector<double> left = analysis.flights()[f].given;
