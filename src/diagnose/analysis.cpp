@@ -293,8 +293,7 @@ WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more,
                                      Eigen::Index marginalized) const {
   std::vector<Eigen::MatrixXd> columns;
   for (std::size_t f = 0; f < more.size(); ++f) {
-    Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
-    both << binned_.columns[f].leftCols(base_), more[f];
+    columns.push_back(side_by_side(binned_.columns[f].leftCols(base_), more[f]));
   }
   WhitenedSystem scores = whiten(columns, false);
   take_out_common_noise(scores);
@@ -307,8 +306,7 @@ Competition Analysis::competition(const std::vector<std::size_t>& chosen,
   const std::vector<Eigen::MatrixXd> effects = all_columns_of(chosen);
   std::vector<Eigen::MatrixXd> more;
   for (std::size_t f = 0; f < rivals.size(); ++f) {
-    Eigen::MatrixXd& both = more.emplace_back(rivals[f].rows(), effects[f].cols() - base_ + rivals[f].cols());
-    both << effects[f].rightCols(effects[f].cols() - base_), rivals[f];
+    more.push_back(side_by_side(effects[f].rightCols(effects[f].cols() - base_), rivals[f]));
   }
   Competition result;
   result.system = scores_with(more, shape_columns * as_index(added_.size()));
@@ -356,9 +354,7 @@ Eigen::MatrixXd Analysis::rows_of_refit(std::size_t flight, const std::vector<Ei
     with_residual.push_back(scores_->columns());
     return scores_->rows[flight](Eigen::all, with_residual);
   }
-  Eigen::MatrixXd rows(binned_.columns[flight].rows(), as_index(places.size()) + 1);
-  rows << binned_.columns[flight](Eigen::all, places), binned_.residuals[flight];
-  return rows;
+  return side_by_side(binned_.columns[flight](Eigen::all, places), binned_.residuals[flight]);
 }
 
 Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) const {

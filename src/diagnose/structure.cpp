@@ -96,10 +96,7 @@ StructureTest::StructureTest(const FlightPartition& share, const std::vector<Bin
     : share_(share), bins_(&bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
   alone_ = std::numeric_limits<double>::infinity();
   std::vector<Eigen::MatrixXd> with_aside = columns;
-  for (std::size_t f = 0; f < aside.size(); ++f) {
-    with_aside[f].resize(columns[f].rows(), columns[f].cols() + aside[f].cols());
-    with_aside[f] << columns[f], aside[f];
-  }
+  for (std::size_t f = 0; f < aside.size(); ++f) with_aside[f] = side_by_side(columns[f], aside[f]);
   for (const double part : parts_of_drift) {
     if (part < 1.0 && !noise.drifts()) break;
     Whitened& flights = whitened_.emplace_back();
