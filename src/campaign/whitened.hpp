@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "campaign/binned_flights.hpp"
+#include "campaign/columns.hpp"
 #include "numerics/noise_model.hpp"
 #include "parallel/flight_partition.hpp"
 

@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "campaign/binned_flights.hpp"
 #include "campaign/columns.hpp"
 #include "campaign/whitened.hpp"
 #include "diagnose/flight_columns.hpp"

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "campaign/binned_flights.hpp"
+#include "campaign/columns.hpp"
 #include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
