@@ -43,13 +43,12 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   }
   const std::string& one = first->measured[0].name;
   const std::string& two = first->measured[1].name;
-  const Redundant totals = redundant(flights, total(0), total(1), comparable);
-  const RedundantFit fit = fit_of(totals);
+  const RedundantFit fit = fit_of(redundant(flights, total(0), total(1)));
   if (std::isnan(fit.ordinary.slope)) {
     return not_run("total-pressure",
                    fmt::format("{} and {} have too few values at the same time in the air", one, two));
   }
-  const RedundantFit statics = fit_of(redundant(flights, static_of(0), static_of(1), comparable));
+  const RedundantFit statics = fit_of(redundant(flights, static_of(0), static_of(1)));
 
   CheckResult result;
   result.name = "total-pressure";
@@ -64,28 +63,15 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   result.cannot_see =
       "The check does not detect static defects, which cancel in the total pressure, and losses common to "
       "both pitots, for example at large angles.";
-  add_numbers(fit, result);
+  show(flights, total(0), total(1), fit,
+       {"total pressure, " + one, "total pressure, " + two,
+        fmt::format("Total pressure of {} against {}", two, one), "Total pressures of the two systems",
+        "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
+        "pitots and the lines."},
+       result);
   result.numbers.emplace_back("static_mean_difference_hpa", statics.difference.value);
   result.numbers.emplace_back("static_mean_difference_stderr_hpa", statics.difference.error);
   result.numbers.emplace_back("static_scatter_hpa", statics.scatter);
-  result.tables.push_back(table_of(fit, fmt::format("Total pressure of {} against {}", two, one)));
-  if (std::any_of(flights.begin(), flights.end(), with_avionics)) result.notes.push_back(note_on_avionics());
-  const auto of_used = [](const SeriesOfFlight& series) {
-    return [series](const CheckedFlight& flight) { return masked(series(flight), comparable(flight)); };
-  };
-  result.columns.push_back(
-      column_of(flights, "total-pressure one", "total pressure, " + one, "hPa", of_used(total(0))));
-  result.columns.push_back(
-      column_of(flights, "total-pressure two", "total pressure, " + two, "hPa", of_used(total(1))));
-  PairPanel panel;
-  panel.title = "Total pressures of the two systems";
-  panel.caption =
-      "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
-      "pitots and the lines.";
-  panel.x = "total-pressure one";
-  panel.y = "total-pressure two";
-  panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};
-  result.pictures.emplace_back(std::move(panel));
   return result;
 }
 
