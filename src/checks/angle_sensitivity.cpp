@@ -31,8 +31,8 @@ std::vector<double> from_height(const Flown& flown) {
   std::vector<double> residual = flown.of(air.geopotential_height);
   const double scale =
       flown.mean(air.gas_constant) * flown.mean(air.temperature) / constants::standard_gravity;  // m
-  const double mean_pressure = mean_value(pressure);
-  const double mean_height = mean_value(residual);
+  const double mean_pressure = mean_of(pressure);
+  const double mean_height = mean_of(residual);
   for (std::size_t i = 0; i < residual.size(); ++i) {
     const double height = mean_height - scale * std::log(pressure[i] / mean_pressure);
     residual[i] = -pressure[i] / scale * (residual[i] - height);
@@ -71,8 +71,8 @@ Totals totals_of(const std::vector<AngleSensitivity>& manoeuvres) {
   const auto times = [](const Estimated& number, double factor) {
     return Estimated{factor * number.value, factor * number.error};
   };
-  totals.across = times(totals.slope, mean_value(swings));
-  totals.bent = times(totals.bend, mean_value(squares));
+  totals.across = times(totals.slope, mean_of(swings));
+  totals.bent = times(totals.bend, mean_of(squares));
   return totals;
 }
 

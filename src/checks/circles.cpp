@@ -135,7 +135,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
     factors.push_back(pressure_per_airspeed(circle.flown.mean(air.pressure), circle.flown.mean(air.mach),
                                             circle.flown.mean(air.airspeed)));
   }
-  const Estimated hpa{mean_value(factors) * error.value, std::abs(mean_value(factors)) * error.error};
+  const Estimated hpa{mean_of(factors) * error.value, std::abs(mean_of(factors)) * error.error};
   decide({judged(error, min_circle_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "

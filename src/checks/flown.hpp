@@ -8,6 +8,7 @@
 
 #include "checks/checks.hpp"
 #include "checks/verdict.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 
@@ -32,7 +33,6 @@ std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime);
 
 /// Minimum and maximum of the known values; NaN if all are missing.
 std::pair<double, double> range_of(const std::vector<double>& values);
-double mean_value(const std::vector<double>& values);
 double standard_deviation(const std::vector<double>& values);
 /// Values minus their mean.
 std::vector<double> less_mean(std::vector<double> values);

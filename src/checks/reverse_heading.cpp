@@ -119,7 +119,7 @@ Mean mean_over(const std::vector<Pair>& pairs) {
     squares += each.error * each.error + between_legs * between_legs;
   }
   const auto count = static_cast<double>(pairs.size());
-  mean.airspeed.value = mean_value(values);
+  mean.airspeed.value = mean_of(values);
   mean.from_assumption = std::sqrt(squares) / count;
   const double deviation = pairs.size() > 1 ? standard_deviation(values) : 0.0;
   const double scatter = deviation * deviation * count;
@@ -252,7 +252,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   const auto as_other = [&](double LegPair::*factor) {
     std::vector<double> factors;
     for (const Pair& pair : pairs) factors.push_back(pair.result.*factor);
-    const double usual = mean_value(factors);
+    const double usual = mean_of(factors);
     return Estimated{usual * error.value, std::abs(usual) * error.error};
   };
   const Estimated hpa = as_other(&LegPair::pressure_per_airspeed);

@@ -108,7 +108,7 @@ Estimated fall_of(const Spectrum& spectrum) {
   }
   if (slopes.size() < 2) return {nan, nan};
   const auto count = static_cast<double>(slopes.size());
-  return {mean_value(slopes), standard_deviation(slopes) / std::sqrt(count)};
+  return {mean_of(slopes), standard_deviation(slopes) / std::sqrt(count)};
 }
 
 std::string in_words(const Estimated& fall) {
@@ -136,7 +136,7 @@ std::vector<Octave> octaves_of(const Spectrum& spectrum) {
       for (std::size_t k = last / 2; k < last; ++k) sum += each[k] / (segment_length * spectrum.step);
       power.push_back(sum);
     }
-    const double rms = std::sqrt(mean_value(power));
+    const double rms = std::sqrt(mean_of(power));
     const double error =
         power.size() < 2 || !(rms > 0.0)
             ? 0.0
@@ -165,7 +165,7 @@ double pressure_per_speed(const CheckedFlights& flights) {
         sensitivities.push_back(-pressure_per_airspeed(air.pressure[i], air.mach[i], air.airspeed[i]));
     }
   }
-  return mean_value(sensitivities);
+  return mean_of(sensitivities);
 }
 
 /// Coarsest recording resolution of a static pressure, hPa.

@@ -204,7 +204,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   const auto average = [&](Trend Run::*trend, double Trend::*number) {
     std::vector<double> values;
     for (const Run& run : runs) values.push_back(run.*trend.*number);
-    return mean_value(values);
+    return mean_of(values);
   };
   result.finding = fmt::format("Over {} speed run{}", runs.size(), runs.size() == 1 ? "" : "s");
   if (has_height) {
