@@ -208,10 +208,9 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   const bool has_angle = std::any_of(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
     return has_value(check.angle_of(flight.air));
   });
-  if (!has_angle)
-    return not_run(check.name, fmt::format("no flight has the {} ({})", check.angle, check.variables));
+  if (!has_angle) return not_run(fmt::format("no flight has the {} ({})", check.angle, check.variables));
   const std::vector<Flown> flown = all_flown(flights, check.regime);
-  if (flown.empty()) return not_run(check.name, not_flown(flights, check.regime));
+  if (flown.empty()) return not_run(not_flown(flights, check.regime));
   CheckResult result;
   std::vector<AngleSensitivity> manoeuvres;
   bool has_witness = false;
@@ -230,14 +229,11 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   if (!has_witness) {
     const std::string height = height_problem(flown.front().flight->air);
     return not_run(
-        check.name,
         fmt::format("a {} was flown, but no reference is available: no laser (lams_airspeed), no second "
                     "static system (--reference static:OTHER.toml) and no GPS height with a temperature{}",
                     info_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
   }
-  if (manoeuvres.empty()) return not_run(check.name, result.notes.front());
-  result.name = check.name;
-  result.ran = true;
+  if (manoeuvres.empty()) return not_run(result.notes.front());
   const Totals totals = totals_of(manoeuvres);
   const AngleReference witness = *witness_of(*manoeuvres.front().flown.flight, check.witnesses);
   std::vector<TestStatistic> numbers{

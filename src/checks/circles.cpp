@@ -101,9 +101,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Circle>& circ
 }  // namespace
 
 CheckResult check_circles(const CheckedFlights& flights) {
-  const std::string name = "circles";
   if (const std::string missing = missing_for_tail_wind(flights); !missing.empty())
-    return not_run(name, "no flight " + missing);
+    return not_run("no flight " + missing);
   CheckResult result;
   std::vector<Circle> circles;
   for (Flown& flown : all_flown(flights, Regime::circle)) {
@@ -121,11 +120,9 @@ CheckResult check_circles(const CheckedFlights& flights) {
     }
   }
   if (circles.empty()) {
-    return not_run(name, result.notes.empty() ? not_flown(flights, Regime::circle)
-                                              : "no circle can be used: " + result.notes.front());
+    return not_run(result.notes.empty() ? not_flown(flights, Regime::circle)
+                                        : "no circle can be used: " + result.notes.front());
   }
-  result.name = name;
-  result.ran = true;
   const Estimated error = combined(errors_of(circles));
   const auto to_port = std::count_if(circles.begin(), circles.end(),
                                      [](const Circle& circle) { return circle.fit.turned < 0.0; });

@@ -130,9 +130,8 @@ const std::vector<double>& sideslip_of(const FlightAir& air) {
   return air.sideslip.empty() ? air.samples->motion.sideslip : air.sideslip;
 }
 
-CheckResult not_run(std::string name, std::string reason) {
+CheckResult not_run(std::string reason) {
   CheckResult result;
-  result.name = std::move(name);
   result.reason = std::move(reason);
   return result;
 }

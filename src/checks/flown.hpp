@@ -65,7 +65,7 @@ const std::vector<double>& attack_of(const FlightAir& air);
 /// Sideslip of a flight, deg, with the same precedence.
 const std::vector<double>& sideslip_of(const FlightAir& air);
 
-/// Result with the name of its check, and the reason why it was not run.
-CheckResult not_run(std::string name, std::string reason);
+/// Result with the reason why the check was not run.
+CheckResult not_run(std::string reason);
 
 }  // namespace pcor::internal

@@ -242,30 +242,27 @@ void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>&
 }  // namespace
 
 CheckResult check_lams_temperature(const CheckedFlights& flights) {
-  const std::string name = "lams-temperature";
   const bool has_laser = std::any_of(flights.begin(), flights.end(),
                                      [](const CheckedFlight& f) { return f.air.laser.has_value(); });
   if (!has_laser) {
-    return not_run(name,
-                   "no flight has a laser airspeed that a model names (-m; [variables] lams_airspeed, with "
-                   "attack and sideslip)");
+    return not_run(
+        "no flight has a laser airspeed that a model names (-m; [variables] lams_airspeed, with "
+        "attack and sideslip)");
   }
   const bool has_thermometer = std::any_of(flights.begin(), flights.end(), [](const CheckedFlight& f) {
     return f.air.laser && !f.air.temperature.empty();
   });
   if (!has_thermometer)
     return not_run(
-        name, "no thermometer is known to compare with the laser; a model names it as recovery_temperature");
+        "no thermometer is known to compare with the laser; a model names it as recovery_temperature");
   const Differences all = all_differences(flights);
   const auto clear = [&](std::size_t i) { return !all.in_cloud[i]; };
   const Part outside = part_of(all, "clear air", clear);
   const Part inside = part_of(all, "cloud", [&](std::size_t i) { return all.in_cloud[i]; });
   if (outside.fit.samples < min_samples)
-    return not_run(name, "the laser and the thermometer have less than a minute out of cloud together");
+    return not_run("the laser and the thermometer have less than a minute out of cloud together");
 
   CheckResult result;
-  result.name = name;
-  result.ran = true;
   const Estimated offset = outside.fit.coefficients[0];
   decide({judged(offset, min_temperature_difference, "K", "laser minus thermometer")}, result);
   const std::vector<double> clear_values = location(all, clear);

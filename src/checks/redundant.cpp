@@ -148,8 +148,8 @@ void show(const CheckedFlights& flights, const SeriesOfFlight& first, const Seri
   };
   panel.title = texts.picture;
   panel.caption = texts.caption;
-  panel.x = add_column(result.name + " one", texts.first, first);
-  panel.y = add_column(result.name + " two", texts.second, second);
+  panel.x = add_column(texts.name + " one", texts.first, first);
+  panel.y = add_column(texts.name + " two", texts.second, second);
   panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};
   result.pictures.emplace_back(std::move(panel));
 }

@@ -39,8 +39,9 @@ RedundantFit fit_of(const Redundant& both);
 /// Test statistics of a fit: the difference, and its change with the pressure.
 std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size);
 
-/// Titles of the two series, of the table and of the picture, and the caption of the picture.
+/// Name of the check, titles of the two series, of the table and of the picture, and its caption.
 struct RedundantTexts {
+  std::string name{};
   std::string first{};
   std::string second{};
   std::string table{};

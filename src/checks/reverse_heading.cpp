@@ -214,9 +214,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Pair>& pairs,
 }  // namespace
 
 CheckResult check_reverse_heading(const CheckedFlights& flights) {
-  const std::string name = "reverse-heading";
   if (const std::string missing = missing_for_tail_wind(flights); !missing.empty())
-    return not_run(name, "no flight " + missing);
+    return not_run("no flight " + missing);
   CheckResult result;
   std::vector<Pair> pairs;
   for (auto& [first, second] : pairs_of(flights, result.notes)) {
@@ -242,11 +241,9 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
     }
   }
   if (pairs.empty()) {
-    return not_run(name, result.notes.empty() ? not_flown(flights, Regime::reverse_heading)
-                                              : "no pair of legs can be used: " + result.notes.front());
+    return not_run(result.notes.empty() ? not_flown(flights, Regime::reverse_heading)
+                                        : "no pair of legs can be used: " + result.notes.front());
   }
-  result.name = name;
-  result.ran = true;
   const Mean mean = mean_over(pairs);
   const Estimated& error = mean.airspeed;
   const auto as_other = [&](double LegPair::*factor) {

@@ -179,8 +179,7 @@ double coarsest_step(const CheckedFlights& flights) {
 }  // namespace
 
 CheckResult check_spectrum(const CheckedFlights& flights) {
-  const std::string name = "spectrum";
-  if (flights.empty()) return not_run(name, "there is no flight");
+  if (flights.empty()) return not_run("there is no flight");
   const std::vector<Source> sources{{"delta-p from LAMS", laser_defect},
                                     {"the difference of the two static systems", second_system},
                                     {"the D-value, as a pressure,", d_value_as_pressure}};
@@ -192,9 +191,10 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
     if (spectrum.periodograms.size() >= min_segments) break;
   }
   if (spectrum.periodograms.size() < min_segments) {
-    return not_run(name, fmt::format("no flight has a laser, a second static system or a GPS height over {} "
-                                     "stretches of {} samples without a gap, in the air",
-                                     min_segments, segment_length));
+    return not_run(
+        fmt::format("no flight has a laser, a second static system or a GPS height over {} "
+                    "stretches of {} samples without a gap, in the air",
+                    min_segments, segment_length));
   }
   const std::vector<Octave> octaves = octaves_of(spectrum);
   const Estimated fall = fall_of(spectrum);
@@ -202,8 +202,6 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   const double per_speed = pressure_per_speed(flights);
 
   CheckResult result;
-  result.name = name;
-  result.ran = true;
   decide({judged(floor, max_noise, "hPa", "white noise")}, result);
   const double step = coarsest_step(flights);
   if (step >= coarse_pressure) {

@@ -37,22 +37,19 @@ SeriesOfFlight total(std::size_t number) {
 CheckResult check_total_pressure(const CheckedFlights& flights) {
   const auto first = std::find_if(flights.begin(), flights.end(), has_two);
   if (first == flights.end()) {
-    return not_run("total-pressure",
-                   "no flight has a second pair of pressures (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
-                   "PS_A/QC_A); --reference static:OTHER.toml names one");
+    return not_run(
+        "no flight has a second pair of pressures (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
+        "PS_A/QC_A); --reference static:OTHER.toml names one");
   }
   const std::string& one = first->measured[0].name;
   const std::string& two = first->measured[1].name;
   const RedundantFit fit = fit_of(redundant(flights, total(0), total(1)));
   if (std::isnan(fit.ordinary.slope)) {
-    return not_run("total-pressure",
-                   fmt::format("{} and {} have too few values at the same time in the air", one, two));
+    return not_run(fmt::format("{} and {} have too few values at the same time in the air", one, two));
   }
   const RedundantFit statics = fit_of(redundant(flights, static_of(0), static_of(1)));
 
   CheckResult result;
-  result.name = "total-pressure";
-  result.ran = true;
   decide(judged_of(fit, min_total_difference), result);
   result.finding = fmt::format(
       "The total pressure of {} minus total pressure of {} is {} on average, with slope {:.6f} +- {:.6f} and "
@@ -64,7 +61,7 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
       "The check does not detect static defects, which cancel in the total pressure, and losses common to "
       "both pitots, for example at large angles.";
   show(flights, total(0), total(1), fit,
-       {"total pressure, " + one, "total pressure, " + two,
+       {"total-pressure", "total pressure, " + one, "total pressure, " + two,
         fmt::format("Total pressure of {} against {}", two, one), "Total pressures of the two systems",
         "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
         "pitots and the lines."},
