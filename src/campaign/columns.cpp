@@ -297,6 +297,16 @@ void put_gps(GpsKind kind, const CandidateModels& set, const System& own, const 
   columns.gps.rows.rightCols(own_columns.cols() - free) = own_columns.rightCols(own_columns.cols() - free);
 }
 
+/// Base and candidate columns of a flight, in bins.
+Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins) {
+  const Eigen::Index base = flight.base.cols();
+  Eigen::MatrixXd columns(as_index(bins.size()), base + flight.candidates.cols());
+  for (Eigen::Index c = 0; c < base; ++c) columns.col(c) = bins.means(flight.base.col(c));
+  for (Eigen::Index c = 0; c < flight.candidates.cols(); ++c)
+    columns.col(base + c) = bins.means(flight.candidates.col(c));
+  return columns;
+}
+
 }  // namespace
 
 const std::vector<double>& FlightColumns::quantity(Quantity wanted) const {
@@ -314,15 +324,6 @@ void FlightColumns::keep_base(const std::vector<Eigen::Index>& kept) {
 void FlightColumns::keep_candidates(const std::vector<Eigen::Index>& kept) {
   gps.keep(kept, base.cols(), candidates.cols());
   candidates = Eigen::MatrixXf(candidates(Eigen::all, kept));
-}
-
-Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins) {
-  const Eigen::Index base = flight.base.cols();
-  Eigen::MatrixXd columns(as_index(bins.size()), base + flight.candidates.cols());
-  for (Eigen::Index c = 0; c < base; ++c) columns.col(c) = bins.means(flight.base.col(c));
-  for (Eigen::Index c = 0; c < flight.candidates.cols(); ++c)
-    columns.col(base + c) = bins.means(flight.candidates.col(c));
-  return columns;
 }
 
 FlightColumns outline_of(const FlightColumns& flight) {
@@ -421,6 +422,28 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
     columns.quantities.emplace_back(quantity, residuals.quantity(quantity, start));
   columns.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, start);
   return columns;
+}
+
+std::size_t BinnedFlights::first_count() const {
+  return static_cast<std::size_t>(std::count(reference.begin(), reference.end(), std::size_t{0}));
+}
+
+BinnedFlights in_bins(const FlightPartition& share, const std::vector<FlightColumns>& flights,
+                      const std::function<std::vector<double>(std::size_t flight)>& residual_of) {
+  BinnedFlights binned;
+  binned.bins.resize(flights.size());
+  binned.residuals.resize(flights.size());
+  binned.outlines = share.of_each_flight<NoiseFlight>([&](std::size_t f) {
+    const std::vector<double> residual = residual_of(f);
+    const Binning& bins = binned.bins[f] = bins_of(*flights[f].samples, flights[f].window, residual);
+    binned.residuals[f] = bins.means(residual);
+    return NoiseFlight{bins.size() > 0 ? bins.time().front() : 0.0, bins.size()};
+  });
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    binned.reference.push_back(flights[f].reference);
+    binned.columns.push_back(binned_columns(flights[f], binned.bins[f]));
+  }
+  return binned;
 }
 
 }  // namespace pcor::internal

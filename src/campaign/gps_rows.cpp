@@ -552,6 +552,12 @@ std::optional<GpsKind> gps_kind(const Reference& reference) {
   return std::nullopt;
 }
 
+Eigen::VectorXd gps_nuisance_deviations() {
+  return Eigen::VectorXd::NullaryExpr(gps_nuisance_count, [](Eigen::Index n) {
+    return gps_nuisances[static_cast<std::size_t>(n)].deviation;
+  });
+}
+
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
                  const std::vector<std::size_t>& wanted, const AddedEffects& effects) {

@@ -46,6 +46,9 @@ inline constexpr std::array<GpsNuisance, 11> gps_nuisances{{
 inline constexpr Eigen::Index gps_nuisance_count = gps_nuisances.size();
 inline constexpr Eigen::Index gps_shared_nuisances = 7;
 
+/// Standard deviations of the priors of all nuisances.
+Eigen::VectorXd gps_nuisance_deviations();
+
 /// Rows of one flight. Each has the derivatives with respect to the requested coefficients of the model and
 /// all nuisances, and the residual; NaN if a sample is excluded. Columns contain no gusts, and little noise:
 /// noise that a column shares with its row would bias the coefficient for any length of the flight.

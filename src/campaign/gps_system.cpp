@@ -8,14 +8,6 @@ namespace {
 
 constexpr Eigen::Index own_nuisances = gps_nuisance_count - gps_shared_nuisances;
 
-/// Standard deviations of the prior of all nuisances.
-Eigen::VectorXd nuisance_deviations() {
-  Eigen::VectorXd deviations(gps_nuisance_count);
-  for (Eigen::Index n = 0; n < gps_nuisance_count; ++n)
-    deviations[n] = gps_nuisances[static_cast<std::size_t>(n)].deviation;
-  return deviations;
-}
-
 /// The same rows without the columns of effects.
 GpsRows without_effects(const GpsRows& rows, Eigen::Index law) {
   GpsRows result = rows;
@@ -55,7 +47,7 @@ GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& usual) {
   GpsPrior prior{Eigen::VectorXd::Zero(law + gps_nuisance_count), Eigen::VectorXd(law + gps_nuisance_count)};
   for (Eigen::Index k = 0; k < law; ++k)
     prior.deviation[k] = gps_prior_in_typical_sizes * usual[static_cast<std::size_t>(k)];
-  prior.deviation.tail(gps_nuisance_count) = nuisance_deviations();
+  prior.deviation.tail(gps_nuisance_count) = gps_nuisance_deviations();
   const GpsRows own = without_effects(rows, law);
   Eigen::VectorXd outliers = Eigen::VectorXd::Zero(rows.rows.rows());
   GpsNoise noise(rows.kind);

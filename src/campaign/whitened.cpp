@@ -28,12 +28,6 @@ std::vector<std::size_t> few_of(const std::vector<NoiseFlight>& flights, std::si
 
 constexpr double block_time = 60.0;  // s
 
-Eigen::MatrixXd joined(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {
-  Eigen::MatrixXd all(columns.rows(), columns.cols() + 1);
-  all << columns, residual;
-  return all;
-}
-
 /// Rows' products with each other.
 SymmetricPart squares_of(const Eigen::MatrixXd& rows) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
@@ -77,10 +71,7 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const Bin
     const std::vector<std::size_t> few = few_of(flights.outlines, first, last);
     const auto rows_of = share.of_entries(few).of_each_flight<BinnedRows>(
         [&](std::size_t k) {
-          const Eigen::MatrixXd columns = fit.columns(few[k]);
-          BinnedRows some{flights.bins[few[k]], {columns.rows(), columns.cols() + 1}};
-          some.rows << columns, fit.left(few[k]);
-          return some;
+          return BinnedRows{flights.bins[few[k]], side_by_side(fit.columns(few[k]), fit.left(few[k]))};
         },
         fit.state);
     std::vector<Binning> bins;
@@ -109,6 +100,12 @@ NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vec
   first.level.clear();
   for (std::size_t f = 0; f < flights.first_count(); ++f) first.level.push_back(noise[f].level[0]);
   return first;
+}
+
+Eigen::MatrixXd side_by_side(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
+  Eigen::MatrixXd both(left.rows(), left.cols() + right.cols());
+  both << left, right;
+  return both;
 }
 
 double robust_deviation(Communicator& comm, const std::vector<Eigen::VectorXd>& values) {
@@ -240,7 +237,7 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
       scores.rows[f] = white[f].rows;
       scores.bin[f] = white[f].bin;
     } else {
-      scores.rows[f] = whitened(joined(columns[f], residuals[f]), bins[f], noise[f], 0);
+      scores.rows[f] = whitened(side_by_side(columns[f], residuals[f]), bins[f], noise[f], 0);
     }
     return RowCount{static_cast<std::size_t>(scores.rows[f].rows()), find_blocks(bins[f], scores.block[f])};
   });
@@ -252,15 +249,16 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
   sum_up(scores);
   scores.plain = scores.information;
   if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.drifts(); })) {
-    scores.plain = share
-                       .sum_of_each_flight<SymmetricPart>([&](std::size_t f) {
-                         NoiseModel still = noise[f];
-                         still.slow = {};
-                         return squares_of(noise[f].drifts() && !is_white(f)
-                                               ? whitened(joined(columns[f], residuals[f]), bins[f], still, 0)
-                                               : scores.rows[f]);
-                       })
-                       .matrix;
+    scores.plain =
+        share
+            .sum_of_each_flight<SymmetricPart>([&](std::size_t f) {
+              NoiseModel still = noise[f];
+              still.slow = {};
+              return squares_of(noise[f].drifts() && !is_white(f)
+                                    ? whitened(side_by_side(columns[f], residuals[f]), bins[f], still, 0)
+                                    : scores.rows[f]);
+            })
+            .matrix;
   }
   return scores;
 }

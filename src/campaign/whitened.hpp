@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "campaign/binned_flights.hpp"
+#include "campaign/columns.hpp"
 #include "numerics/noise_model.hpp"
 #include "parallel/flight_partition.hpp"
 
@@ -36,6 +36,9 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const Bin
 
 /// Common noise of the flights against the first reference, with the levels of the flights of this rank.
 NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vector<NoiseModel>& noise);
+
+/// Columns of two matrices with the same rows in one.
+Eigen::MatrixXd side_by_side(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right);
 
 /// Robust standard deviation of the values of all ranks together. @param values of the local flights
 double robust_deviation(Communicator& comm, const std::vector<Eigen::VectorXd>& values);

@@ -31,8 +31,8 @@ std::vector<double> from_height(const Flown& flown) {
   std::vector<double> residual = flown.of(air.geopotential_height);
   const double scale =
       flown.mean(air.gas_constant) * flown.mean(air.temperature) / constants::standard_gravity;  // m
-  const double mean_pressure = mean_value(pressure);
-  const double mean_height = mean_value(residual);
+  const double mean_pressure = mean_of(pressure);
+  const double mean_height = mean_of(residual);
   for (std::size_t i = 0; i < residual.size(); ++i) {
     const double height = mean_height - scale * std::log(pressure[i] / mean_pressure);
     residual[i] = -pressure[i] / scale * (residual[i] - height);
@@ -71,8 +71,8 @@ Totals totals_of(const std::vector<AngleSensitivity>& manoeuvres) {
   const auto times = [](const Estimated& number, double factor) {
     return Estimated{factor * number.value, factor * number.error};
   };
-  totals.across = times(totals.slope, mean_value(swings));
-  totals.bent = times(totals.bend, mean_value(squares));
+  totals.across = times(totals.slope, mean_of(swings));
+  totals.bent = times(totals.bend, mean_of(squares));
   return totals;
 }
 
@@ -208,10 +208,9 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   const bool has_angle = std::any_of(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
     return has_value(check.angle_of(flight.air));
   });
-  if (!has_angle)
-    return not_run(check.name, fmt::format("no flight has the {} ({})", check.angle, check.variables));
+  if (!has_angle) return not_run(fmt::format("no flight has the {} ({})", check.angle, check.variables));
   const std::vector<Flown> flown = all_flown(flights, check.regime);
-  if (flown.empty()) return not_run(check.name, not_flown(flights, check.regime));
+  if (flown.empty()) return not_run(not_flown(flights, check.regime));
   CheckResult result;
   std::vector<AngleSensitivity> manoeuvres;
   bool has_witness = false;
@@ -230,14 +229,11 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   if (!has_witness) {
     const std::string height = height_problem(flown.front().flight->air);
     return not_run(
-        check.name,
         fmt::format("a {} was flown, but no reference is available: no laser (lams_airspeed), no second "
                     "static system (--reference static:OTHER.toml) and no GPS height with a temperature{}",
                     info_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
   }
-  if (manoeuvres.empty()) return not_run(check.name, result.notes.front());
-  result.name = check.name;
-  result.ran = true;
+  if (manoeuvres.empty()) return not_run(result.notes.front());
   const Totals totals = totals_of(manoeuvres);
   const AngleReference witness = *witness_of(*manoeuvres.front().flown.flight, check.witnesses);
   std::vector<TestStatistic> numbers{

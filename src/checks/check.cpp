@@ -212,8 +212,9 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
   checks.notes = notes_of_flights(notes);
   for (const std::string& why : unusable) checks.notes.push_back("Not used: " + why);
   for (const NamedCheck& each : all_checks) {
-    checks.results.push_back(read.empty() ? not_run(each.name, fmt::format("{}", fmt::join(unusable, "; ")))
+    checks.results.push_back(read.empty() ? not_run(fmt::format("{}", fmt::join(unusable, "; ")))
                                           : each.run(read));
+    checks.results.back().name = each.name;
   }
   for (CheckResult& result : checks.results) add_note_on_small(result);
   checks.pictures = pictures_of(read);

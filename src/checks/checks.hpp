@@ -40,7 +40,7 @@ struct CheckedFlight {
 
 using CheckedFlights = std::vector<CheckedFlight>;
 
-/// Each check receives all flights, and returns a named result whether it was run or not.
+/// Each check receives all flights, and returns a result without its name, whether it was run or not.
 CheckResult check_total_pressure(const CheckedFlights& flights);
 CheckResult check_static_pressure(const CheckedFlights& flights);
 CheckResult check_reverse_heading(const CheckedFlights& flights);

@@ -101,9 +101,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Circle>& circ
 }  // namespace
 
 CheckResult check_circles(const CheckedFlights& flights) {
-  const std::string name = "circles";
   if (const std::string missing = missing_for_tail_wind(flights); !missing.empty())
-    return not_run(name, "no flight " + missing);
+    return not_run("no flight " + missing);
   CheckResult result;
   std::vector<Circle> circles;
   for (Flown& flown : all_flown(flights, Regime::circle)) {
@@ -121,11 +120,9 @@ CheckResult check_circles(const CheckedFlights& flights) {
     }
   }
   if (circles.empty()) {
-    return not_run(name, result.notes.empty() ? not_flown(flights, Regime::circle)
-                                              : "no circle can be used: " + result.notes.front());
+    return not_run(result.notes.empty() ? not_flown(flights, Regime::circle)
+                                        : "no circle can be used: " + result.notes.front());
   }
-  result.name = name;
-  result.ran = true;
   const Estimated error = combined(errors_of(circles));
   const auto to_port = std::count_if(circles.begin(), circles.end(),
                                      [](const Circle& circle) { return circle.fit.turned < 0.0; });
@@ -135,7 +132,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
     factors.push_back(pressure_per_airspeed(circle.flown.mean(air.pressure), circle.flown.mean(air.mach),
                                             circle.flown.mean(air.airspeed)));
   }
-  const Estimated hpa{mean_value(factors) * error.value, std::abs(mean_value(factors)) * error.error};
+  const Estimated hpa{mean_of(factors) * error.value, std::abs(mean_of(factors)) * error.error};
   decide({judged(error, min_circle_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "

@@ -22,7 +22,7 @@ std::vector<double> Flown::of(const std::vector<double>& series) const {
   return values;
 }
 
-double Flown::mean(const std::vector<double>& series) const { return mean_value(of(series)); }
+double Flown::mean(const std::vector<double>& series) const { return mean_of(of(series)); }
 
 std::string Flown::location() const {
   return fmt::format("{}, {} to {}", flight->air.samples->name, utc_text(interval.begin),
@@ -57,26 +57,15 @@ std::pair<double, double> range_of(const std::vector<double>& values) {
   return range;
 }
 
-double mean_value(const std::vector<double>& values) {
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    sum += value;
-    ++count;
-  }
-  return count > 0 ? sum / static_cast<double>(count) : nan;
-}
-
 double standard_deviation(const std::vector<double>& values) {
-  const double mean = mean_value(values);
+  const double mean = mean_of(values);
   std::vector<double> squares;
   for (const double value : values) squares.push_back((value - mean) * (value - mean));
-  return std::sqrt(mean_value(squares));
+  return std::sqrt(mean_of(squares));
 }
 
 std::vector<double> less_mean(std::vector<double> values) {
-  const double mean = mean_value(values);
+  const double mean = mean_of(values);
   for (double& value : values) value -= mean;
   return values;
 }
@@ -141,9 +130,8 @@ const std::vector<double>& sideslip_of(const FlightAir& air) {
   return air.sideslip.empty() ? air.samples->motion.sideslip : air.sideslip;
 }
 
-CheckResult not_run(std::string name, std::string reason) {
+CheckResult not_run(std::string reason) {
   CheckResult result;
-  result.name = std::move(name);
   result.reason = std::move(reason);
   return result;
 }

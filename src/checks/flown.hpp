@@ -8,6 +8,7 @@
 
 #include "checks/checks.hpp"
 #include "checks/verdict.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 
@@ -32,7 +33,6 @@ std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime);
 
 /// Minimum and maximum of the known values; NaN if all are missing.
 std::pair<double, double> range_of(const std::vector<double>& values);
-double mean_value(const std::vector<double>& values);
 double standard_deviation(const std::vector<double>& values);
 /// Values minus their mean.
 std::vector<double> less_mean(std::vector<double> values);
@@ -65,7 +65,7 @@ const std::vector<double>& attack_of(const FlightAir& air);
 /// Sideslip of a flight, deg, with the same precedence.
 const std::vector<double>& sideslip_of(const FlightAir& air);
 
-/// Result with the name of its check, and the reason why it was not run.
-CheckResult not_run(std::string name, std::string reason);
+/// Result with the reason why the check was not run.
+CheckResult not_run(std::string reason);
 
 }  // namespace pcor::internal

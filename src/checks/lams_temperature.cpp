@@ -155,40 +155,33 @@ std::vector<PeriodNoise> noise_by_period(const Differences& all) {
   return noise;
 }
 
-/// Tabulates the clouds of a flight, with the state of the laser there. Returns the number of suspect clouds.
-std::size_t look_at_clouds(const FlightAir& air, double outside, ReportTable& table) {
-  std::size_t suspect = 0;
-  const std::vector<double> difference = difference_of(air);
-  for (const Interval& interval : air.samples->intervals) {
-    if (interval.regime != Regime::cloud) continue;
-    std::vector<double> values;
-    std::vector<double> times;
-    std::size_t flown = 0;
-    for (std::size_t i = 0; i < air.size(); ++i) {
-      if (air.time()[i] < interval.begin || air.time()[i] >= interval.end || !air.flying[i]) continue;
-      ++flown;
-      values.push_back(difference[i]);
-      times.push_back(air.time()[i]);
-    }
-    if (flown < min_in_cloud) continue;
-    const auto known = static_cast<double>(
-        std::count_if(values.begin(), values.end(), [](double x) { return !std::isnan(x); }));
-    const double missing = 1.0 - known / static_cast<double>(flown);
-    const LeastSquares mean = mean_of(values, times, air.step());
+/// The clouds, with the state of the laser there; the last cell of a suspect one has a remark.
+ReportTable cloud_table(const CheckedFlights& flights, double outside) {
+  ReportTable table;
+  table.title = "Clouds";
+  table.caption = "ATLAMS minus the thermometer in each cloud of 30 samples or more.";
+  table.headers = {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"};
+  for (const Flown& cloud : all_flown(flights, Regime::cloud)) {
+    const FlightAir& air = cloud.flight->air;
+    if (!air.laser || air.temperature.empty() || cloud.places.size() < min_in_cloud) continue;
+    const std::vector<double> values = cloud.of(difference_of(air));
+    const auto missing = static_cast<double>(std::count_if(values.begin(), values.end(),
+                                                           [](double x) { return std::isnan(x); })) /
+                         static_cast<double>(values.size());
+    const LeastSquares mean = mean_of(values, cloud.time(), cloud.step());
     const Estimated change{mean.coefficients[0].value - outside, mean.coefficients[0].error};
     std::string remark;
     if (missing > suspect_share)
       remark = "laser mostly missing: an iced window";
     else if (judge(change, min_temperature_difference) == CheckVerdict::inconsistent)
       remark = "suspect";
-    table.rows.push_back({air.samples->name, utc_text(interval.begin), utc_text(interval.end, "%H:%M:%S"),
-                          fmt::format("{:.0f}", 100.0 * missing),
+    table.rows.push_back({air.samples->name, utc_text(cloud.interval.begin),
+                          utc_text(cloud.interval.end, "%H:%M:%S"), fmt::format("{:.0f}", 100.0 * missing),
                           std::isnan(change.value) ? "" : fmt::format("{:+.2f}", mean.coefficients[0].value),
                           std::isnan(change.value) ? "" : fmt::format("{:.2f}", mean.coefficients[0].error),
                           remark});
-    if (!remark.empty()) ++suspect;
   }
-  return suspect;
+  return table;
 }
 
 void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>& noise, CheckResult& result) {
@@ -242,30 +235,27 @@ void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>&
 }  // namespace
 
 CheckResult check_lams_temperature(const CheckedFlights& flights) {
-  const std::string name = "lams-temperature";
   const bool has_laser = std::any_of(flights.begin(), flights.end(),
                                      [](const CheckedFlight& f) { return f.air.laser.has_value(); });
   if (!has_laser) {
-    return not_run(name,
-                   "no flight has a laser airspeed that a model names (-m; [variables] lams_airspeed, with "
-                   "attack and sideslip)");
+    return not_run(
+        "no flight has a laser airspeed that a model names (-m; [variables] lams_airspeed, with "
+        "attack and sideslip)");
   }
   const bool has_thermometer = std::any_of(flights.begin(), flights.end(), [](const CheckedFlight& f) {
     return f.air.laser && !f.air.temperature.empty();
   });
   if (!has_thermometer)
     return not_run(
-        name, "no thermometer is known to compare with the laser; a model names it as recovery_temperature");
+        "no thermometer is known to compare with the laser; a model names it as recovery_temperature");
   const Differences all = all_differences(flights);
   const auto clear = [&](std::size_t i) { return !all.in_cloud[i]; };
   const Part outside = part_of(all, "clear air", clear);
   const Part inside = part_of(all, "cloud", [&](std::size_t i) { return all.in_cloud[i]; });
   if (outside.fit.samples < min_samples)
-    return not_run(name, "the laser and the thermometer have less than a minute out of cloud together");
+    return not_run("the laser and the thermometer have less than a minute out of cloud together");
 
   CheckResult result;
-  result.name = name;
-  result.ran = true;
   const Estimated offset = outside.fit.coefficients[0];
   decide({judged(offset, min_temperature_difference, "K", "laser minus thermometer")}, result);
   const std::vector<double> clear_values = location(all, clear);
@@ -320,15 +310,9 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   }
   result.tables.push_back(part_table(parts));
   result.tables.push_back(std::move(periods));
-  std::size_t suspect = 0;
-  ReportTable clouds;
-  clouds.title = "Clouds";
-  clouds.caption = "ATLAMS minus the thermometer in each cloud of 30 samples or more.";
-  clouds.headers = {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"};
-  for (const CheckedFlight& flight : flights) {
-    if (flight.air.laser && !flight.air.temperature.empty())
-      suspect += look_at_clouds(flight.air, offset.value, clouds);
-  }
+  ReportTable clouds = cloud_table(flights, offset.value);
+  const auto suspect = std::count_if(clouds.rows.begin(), clouds.rows.end(),
+                                     [](const auto& row) { return !row.back().empty(); });
   if (suspect > 0) {
     result.notes.push_back(
         fmt::format("{} of {} clouds are suspect: see the table of clouds", suspect, clouds.rows.size()));

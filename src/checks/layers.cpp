@@ -150,10 +150,8 @@ CheckResult check_layers(const CheckedFlights& flights) {
     all.push_back(std::move(found));
   }
   const LayerFit fit = fit_layers(all);
-  if (fit.layers == 0) return not_run("layers", trouble.empty() ? "there is no flight" : trouble);
+  if (fit.layers == 0) return not_run(trouble.empty() ? "there is no flight" : trouble);
 
-  result.name = "layers";
-  result.ran = true;
   std::vector<TestStatistic> numbers{
       judged({fit.offset, fit.offset_error}, min_thermometer_error, "K", "thermometer")};
   result.finding =

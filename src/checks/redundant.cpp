@@ -10,6 +10,16 @@
 namespace pcor::internal {
 namespace {
 
+/// The avionics delay and smooth their pressures by about half a second, which is 0.05 hPa at this rate,
+/// hPa/s.
+constexpr double fastest_of_avionics = 0.1;
+
+/// Whether one of the two systems is the avionics.
+bool with_avionics(const CheckedFlight& flight) {
+  return std::any_of(flight.measured.begin(), flight.measured.end(),
+                     [](const MeasuredPair& pair) { return pair.name.rfind("PS_A", 0) == 0; });
+}
+
 /// Airborne records at which the pressure changes no faster than `fastest_of_avionics`.
 std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>& pressure) {
   const std::vector<double>& time = flight.air.time();
@@ -22,55 +32,6 @@ std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>&
   return result;
 }
 
-}  // namespace
-
-Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second,
-                    const std::function<std::vector<bool>(const CheckedFlight&)>& used) {
-  Redundant both;
-  for (const CheckedFlight& flight : flights) {
-    const std::vector<double> a = first(flight);
-    const std::vector<double> b = second(flight);
-    if (a.empty() || b.empty()) continue;
-    const std::vector<bool> in_use = used(flight);
-    both.step = flight.air.step();
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const bool known = in_use[i] && std::isfinite(a[i]) && std::isfinite(b[i]);
-      both.first.push_back(known ? a[i] : nan);
-      both.second.push_back(known ? b[i] : nan);
-      both.time.push_back(flight.air.time()[i]);
-    }
-  }
-  return both;
-}
-
-RedundantFit fit_of(const Redundant& both) {
-  RedundantFit fit;
-  fit.ordinary = ordinary_fit(both.first, both.second);
-  fit.orthogonal = orthogonal_fit(both.first, both.second);
-  // For pressures that vary by hundreds of times their differences the two lines have the same errors.
-  const LeastSquares line = least_squares({std::vector<double>(both.first.size(), 1.0), both.first},
-                                          both.second, both.time, both.step);
-  for (LineFit* const each : {&fit.ordinary, &fit.orthogonal}) {
-    each->offset_error = line.coefficients[0].error;
-    each->slope_error = line.coefficients[1].error;
-  }
-  std::vector<double> difference(both.first.size());
-  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = both.second[i] - both.first[i];
-  const LeastSquares mean = mean_of(difference, both.time, both.step);
-  fit.difference = mean.coefficients.front();
-  fit.scatter = mean.rms;
-  fit.samples = mean.samples;
-  const auto [least, greatest] = range_of(both.first);
-  fit.across = {(fit.orthogonal.slope - 1.0) * (greatest - least),
-                fit.orthogonal.slope_error * (greatest - least)};
-  return fit;
-}
-
-bool with_avionics(const CheckedFlight& flight) {
-  return std::any_of(flight.measured.begin(), flight.measured.end(),
-                     [](const MeasuredPair& pair) { return pair.name.rfind("PS_A", 0) == 0; });
-}
-
 std::vector<bool> comparable(const CheckedFlight& flight) {
   if (!with_avionics(flight)) return flight.air.flying;
   const MeasuredPair& pair = flight.measured.front();
@@ -81,17 +42,6 @@ std::vector<bool> comparable(const CheckedFlight& flight) {
   std::vector<bool> both(one.size());
   for (std::size_t i = 0; i < both.size(); ++i) both[i] = one[i] && two[i];
   return both;
-}
-
-std::string note_on_avionics() {
-  return fmt::format(
-      "The avionics smooth their pressures; samples with a pressure change above {} hPa/s are excluded",
-      fastest_of_avionics);
-}
-
-std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size) {
-  return {judged(fit.difference, size, "hPa", "difference of the systems"),
-          judged(fit.across, size, "hPa", "change over the range of pressure")};
 }
 
 void add_numbers(const RedundantFit& fit, CheckResult& result) {
@@ -128,6 +78,80 @@ ReportTable table_of(const RedundantFit& fit, const std::string& title) {
   row("ordinary", fit.ordinary);
   row("orthogonal", fit.orthogonal);
   return table;
+}
+
+}  // namespace
+
+Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first,
+                    const SeriesOfFlight& second) {
+  Redundant both;
+  for (const CheckedFlight& flight : flights) {
+    const std::vector<double> a = first(flight);
+    const std::vector<double> b = second(flight);
+    if (a.empty() || b.empty()) continue;
+    const std::vector<bool> in_use = comparable(flight);
+    both.step = flight.air.step();
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const bool known = in_use[i] && std::isfinite(a[i]) && std::isfinite(b[i]);
+      both.first.push_back(known ? a[i] : nan);
+      both.second.push_back(known ? b[i] : nan);
+      both.time.push_back(flight.air.time()[i]);
+    }
+  }
+  return both;
+}
+
+RedundantFit fit_of(const Redundant& both) {
+  RedundantFit fit;
+  fit.ordinary = ordinary_fit(both.first, both.second);
+  fit.orthogonal = orthogonal_fit(both.first, both.second);
+  // For pressures that vary by hundreds of times their differences the two lines have the same errors.
+  const LeastSquares line = least_squares({std::vector<double>(both.first.size(), 1.0), both.first},
+                                          both.second, both.time, both.step);
+  for (LineFit* const each : {&fit.ordinary, &fit.orthogonal}) {
+    each->offset_error = line.coefficients[0].error;
+    each->slope_error = line.coefficients[1].error;
+  }
+  std::vector<double> difference(both.first.size());
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = both.second[i] - both.first[i];
+  const LeastSquares mean = mean_of(difference, both.time, both.step);
+  fit.difference = mean.coefficients.front();
+  fit.scatter = mean.rms;
+  fit.samples = mean.samples;
+  const auto [least, greatest] = range_of(both.first);
+  fit.across = {(fit.orthogonal.slope - 1.0) * (greatest - least),
+                fit.orthogonal.slope_error * (greatest - least)};
+  return fit;
+}
+
+std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size) {
+  return {judged(fit.difference, size, "hPa", "difference of the systems"),
+          judged(fit.across, size, "hPa", "change over the range of pressure")};
+}
+
+void show(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second,
+          const RedundantFit& fit, const RedundantTexts& texts, CheckResult& result) {
+  add_numbers(fit, result);
+  if (std::any_of(flights.begin(), flights.end(), with_avionics)) {
+    result.notes.push_back(fmt::format(
+        "The avionics smooth their pressures; samples with a pressure change above {} hPa/s are excluded",
+        fastest_of_avionics));
+  }
+  result.tables.push_back(table_of(fit, texts.table));
+  PairPanel panel;
+  const auto add_column = [&](const std::string& name, const std::string& title,
+                              const SeriesOfFlight& series) {
+    result.columns.push_back(column_of(flights, name, title, "hPa", [&series](const CheckedFlight& flight) {
+      return masked(series(flight), comparable(flight));
+    }));
+    return name;
+  };
+  panel.title = texts.picture;
+  panel.caption = texts.caption;
+  panel.x = add_column(texts.name + " one", texts.first, first);
+  panel.y = add_column(texts.name + " two", texts.second, second);
+  panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};
+  result.pictures.emplace_back(std::move(panel));
 }
 
 }  // namespace pcor::internal

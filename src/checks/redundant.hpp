@@ -27,36 +27,31 @@ struct RedundantFit {
   std::size_t samples = 0;  ///< number of samples used
 };
 
-/// Pair of the first and the second series at the records that are `used`, over all flights. Both may be
-/// empty for a flight.
 using SeriesOfFlight = std::function<std::vector<double>(const CheckedFlight&)>;
-Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second,
-                    const std::function<std::vector<bool>(const CheckedFlight&)>& used);
+
+/// Two series at the airborne records at which both systems measure the same air, over all flights: with the
+/// avionics, PS_A/QC_A, records at which neither static nor total pressure changes faster than 0.1 hPa/s over
+/// five seconds (memo, Supporting Evidence for Accuracy of p_t). Both may be empty for a flight.
+Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second);
 
 RedundantFit fit_of(const Redundant& both);
-
-/// Whether one of the two systems is the avionics, PS_A/QC_A.
-bool with_avionics(const CheckedFlight& flight);
-
-/// The avionics delay and smooth their pressures by about half a second, which is 0.05 hPa at this rate,
-/// hPa/s.
-inline constexpr double fastest_of_avionics = 0.1;
-
-/// Airborne records at which both systems measure the same air: with avionics, records at which neither
-/// static nor total pressure changes faster than `fastest_of_avionics` over five seconds (memo, Supporting
-/// Evidence for Accuracy of p_t).
-std::vector<bool> comparable(const CheckedFlight& flight);
-
-/// Note on the use of the avionics.
-std::string note_on_avionics();
 
 /// Test statistics of a fit: the difference, and its change with the pressure.
 std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size);
 
-/// Adds the numbers of a fit to the JSON result, numbers of the interface first.
-void add_numbers(const RedundantFit& fit, CheckResult& result);
+/// Name of the check, titles of the two series, of the table and of the picture, and its caption.
+struct RedundantTexts {
+  std::string name{};
+  std::string first{};
+  std::string second{};
+  std::string table{};
+  std::string picture{};
+  std::string caption{};
+};
 
-/// Table of the two fits.
-ReportTable table_of(const RedundantFit& fit, const std::string& title);
+/// Adds the numbers of a fit, numbers of the interface first, its table and its picture, and a note on the
+/// avionics.
+void show(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second,
+          const RedundantFit& fit, const RedundantTexts& texts, CheckResult& result);
 
 }  // namespace pcor::internal

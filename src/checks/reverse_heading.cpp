@@ -119,7 +119,7 @@ Mean mean_over(const std::vector<Pair>& pairs) {
     squares += each.error * each.error + between_legs * between_legs;
   }
   const auto count = static_cast<double>(pairs.size());
-  mean.airspeed.value = mean_value(values);
+  mean.airspeed.value = mean_of(values);
   mean.from_assumption = std::sqrt(squares) / count;
   const double deviation = pairs.size() > 1 ? standard_deviation(values) : 0.0;
   const double scatter = deviation * deviation * count;
@@ -214,9 +214,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Pair>& pairs,
 }  // namespace
 
 CheckResult check_reverse_heading(const CheckedFlights& flights) {
-  const std::string name = "reverse-heading";
   if (const std::string missing = missing_for_tail_wind(flights); !missing.empty())
-    return not_run(name, "no flight " + missing);
+    return not_run("no flight " + missing);
   CheckResult result;
   std::vector<Pair> pairs;
   for (auto& [first, second] : pairs_of(flights, result.notes)) {
@@ -242,17 +241,15 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
     }
   }
   if (pairs.empty()) {
-    return not_run(name, result.notes.empty() ? not_flown(flights, Regime::reverse_heading)
-                                              : "no pair of legs can be used: " + result.notes.front());
+    return not_run(result.notes.empty() ? not_flown(flights, Regime::reverse_heading)
+                                        : "no pair of legs can be used: " + result.notes.front());
   }
-  result.name = name;
-  result.ran = true;
   const Mean mean = mean_over(pairs);
   const Estimated& error = mean.airspeed;
   const auto as_other = [&](double LegPair::*factor) {
     std::vector<double> factors;
     for (const Pair& pair : pairs) factors.push_back(pair.result.*factor);
-    const double usual = mean_value(factors);
+    const double usual = mean_of(factors);
     return Estimated{usual * error.value, std::abs(usual) * error.error};
   };
   const Estimated hpa = as_other(&LegPair::pressure_per_airspeed);

@@ -108,7 +108,7 @@ Estimated fall_of(const Spectrum& spectrum) {
   }
   if (slopes.size() < 2) return {nan, nan};
   const auto count = static_cast<double>(slopes.size());
-  return {mean_value(slopes), standard_deviation(slopes) / std::sqrt(count)};
+  return {mean_of(slopes), standard_deviation(slopes) / std::sqrt(count)};
 }
 
 std::string in_words(const Estimated& fall) {
@@ -136,7 +136,7 @@ std::vector<Octave> octaves_of(const Spectrum& spectrum) {
       for (std::size_t k = last / 2; k < last; ++k) sum += each[k] / (segment_length * spectrum.step);
       power.push_back(sum);
     }
-    const double rms = std::sqrt(mean_value(power));
+    const double rms = std::sqrt(mean_of(power));
     const double error =
         power.size() < 2 || !(rms > 0.0)
             ? 0.0
@@ -165,7 +165,7 @@ double pressure_per_speed(const CheckedFlights& flights) {
         sensitivities.push_back(-pressure_per_airspeed(air.pressure[i], air.mach[i], air.airspeed[i]));
     }
   }
-  return mean_value(sensitivities);
+  return mean_of(sensitivities);
 }
 
 /// Coarsest recording resolution of a static pressure, hPa.
@@ -179,8 +179,7 @@ double coarsest_step(const CheckedFlights& flights) {
 }  // namespace
 
 CheckResult check_spectrum(const CheckedFlights& flights) {
-  const std::string name = "spectrum";
-  if (flights.empty()) return not_run(name, "there is no flight");
+  if (flights.empty()) return not_run("there is no flight");
   const std::vector<Source> sources{{"delta-p from LAMS", laser_defect},
                                     {"the difference of the two static systems", second_system},
                                     {"the D-value, as a pressure,", d_value_as_pressure}};
@@ -192,9 +191,10 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
     if (spectrum.periodograms.size() >= min_segments) break;
   }
   if (spectrum.periodograms.size() < min_segments) {
-    return not_run(name, fmt::format("no flight has a laser, a second static system or a GPS height over {} "
-                                     "stretches of {} samples without a gap, in the air",
-                                     min_segments, segment_length));
+    return not_run(
+        fmt::format("no flight has a laser, a second static system or a GPS height over {} "
+                    "stretches of {} samples without a gap, in the air",
+                    min_segments, segment_length));
   }
   const std::vector<Octave> octaves = octaves_of(spectrum);
   const Estimated fall = fall_of(spectrum);
@@ -202,8 +202,6 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   const double per_speed = pressure_per_speed(flights);
 
   CheckResult result;
-  result.name = name;
-  result.ran = true;
   decide({judged(floor, max_noise, "hPa", "white noise")}, result);
   const double step = coarsest_step(flights);
   if (step >= coarse_pressure) {

@@ -175,12 +175,11 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Run>& runs, C
 }  // namespace
 
 CheckResult check_speed_run(const CheckedFlights& flights) {
-  const std::string name = "speed-run";
   if (std::none_of(flights.begin(), flights.end(),
                    [](const CheckedFlight& flight) { return !flight.air.airspeed.empty(); }))
-    return not_run(name, "no flight " + missing_for_tail_wind(flights));
+    return not_run("no flight " + missing_for_tail_wind(flights));
   std::vector<Flown> flown = all_flown(flights, Regime::speed_run);
-  if (flown.empty()) return not_run(name, not_flown(flights, Regime::speed_run));
+  if (flown.empty()) return not_run(not_flown(flights, Regime::speed_run));
   std::vector<Run> runs;
   for (const Flown& each : flown) {
     Run run = run_of(each);
@@ -188,13 +187,11 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   }
   if (runs.empty()) {
     const std::string wind = missing_for_tail_wind(flights);
-    return not_run(name, fmt::format("the speed runs have neither a DVALUE ({}) nor a tail wind{}",
-                                     height_problem(flown.front().flight->air),
-                                     wind.empty() ? "" : " (no flight " + wind + ")"));
+    return not_run(fmt::format("the speed runs have neither a DVALUE ({}) nor a tail wind{}",
+                               height_problem(flown.front().flight->air),
+                               wind.empty() ? "" : " (no flight " + wind + ")"));
   }
   CheckResult result;
-  result.name = name;
-  result.ran = true;
   const Estimated height = combined(errors_of(runs, &Run::height));
   const Estimated wind = combined(errors_of(runs, &Run::wind));
   const bool has_height = std::isfinite(height.value);
@@ -204,7 +201,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   const auto average = [&](Trend Run::*trend, double Trend::*number) {
     std::vector<double> values;
     for (const Run& run : runs) values.push_back(run.*trend.*number);
-    return mean_value(values);
+    return mean_of(values);
   };
   result.finding = fmt::format("Over {} speed run{}", runs.size(), runs.size() == 1 ? "" : "s");
   if (has_height) {

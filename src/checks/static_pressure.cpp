@@ -27,19 +27,16 @@ std::vector<double> other(const CheckedFlight& flight) {
 CheckResult check_static_pressure(const CheckedFlights& flights) {
   const auto first = std::find_if(flights.begin(), flights.end(), has_second);
   if (first == flights.end()) {
-    return not_run("static-pressure",
-                   "no flight has a second static system (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
-                   "PS_A/QC_A); --reference static:OTHER.toml names one with its correction");
+    return not_run(
+        "no flight has a second static system (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
+        "PS_A/QC_A); --reference static:OTHER.toml names one with its correction");
   }
-  const RedundantFit fit = fit_of(redundant(flights, own, other, comparable));
+  const RedundantFit fit = fit_of(redundant(flights, own, other));
   if (std::isnan(fit.ordinary.slope)) {
     return not_run(
-        "static-pressure",
         fmt::format("{} and the model have too few values at the same time in the air", first->second_name));
   }
   CheckResult result;
-  result.name = "static-pressure";
-  result.ran = true;
   decide(judged_of(fit, min_static_difference), result);
   result.finding = fmt::format(
       "The static pressure of {} minus static pressure of the model is {} on average, with slope {:.6f} +- "
@@ -57,23 +54,13 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   result.cannot_see =
       "The check does not detect errors common to both systems: errors of the reference of both fits (the "
       "scale of LAMS, the temperature), and effects that act equally on both ports.";
-  add_numbers(fit, result);
-  if (std::any_of(flights.begin(), flights.end(), with_avionics)) result.notes.push_back(note_on_avionics());
-  result.tables.push_back(table_of(
-      fit, fmt::format("Static pressure of {} against static pressure of the model", first->second_name)));
-  result.columns.push_back(column_of(flights, "static-pressure one", "static pressure of the model", "hPa",
-                                     [](const CheckedFlight& f) { return masked(own(f), comparable(f)); }));
-  result.columns.push_back(column_of(flights, "static-pressure two",
-                                     "static pressure of " + first->second_name, "hPa",
-                                     [](const CheckedFlight& f) { return masked(other(f), comparable(f)); }));
-  PairPanel panel;
-  panel.title = first->second_corrected ? "Corrected static pressures of the two systems"
-                                        : "Static pressure of the model and of an uncorrected second system";
-  panel.caption = "The line is an orthogonal fit.";
-  panel.x = "static-pressure one";
-  panel.y = "static-pressure two";
-  panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};
-  result.pictures.emplace_back(std::move(panel));
+  show(flights, own, other, fit,
+       {"static-pressure", "static pressure of the model", "static pressure of " + first->second_name,
+        fmt::format("Static pressure of {} against static pressure of the model", first->second_name),
+        first->second_corrected ? "Corrected static pressures of the two systems"
+                                : "Static pressure of the model and of an uncorrected second system",
+        "The line is an orthogonal fit."},
+       result);
   return result;
 }
 

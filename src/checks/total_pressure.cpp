@@ -37,23 +37,19 @@ SeriesOfFlight total(std::size_t number) {
 CheckResult check_total_pressure(const CheckedFlights& flights) {
   const auto first = std::find_if(flights.begin(), flights.end(), has_two);
   if (first == flights.end()) {
-    return not_run("total-pressure",
-                   "no flight has a second pair of pressures (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
-                   "PS_A/QC_A); --reference static:OTHER.toml names one");
+    return not_run(
+        "no flight has a second pair of pressures (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
+        "PS_A/QC_A); --reference static:OTHER.toml names one");
   }
   const std::string& one = first->measured[0].name;
   const std::string& two = first->measured[1].name;
-  const Redundant totals = redundant(flights, total(0), total(1), comparable);
-  const RedundantFit fit = fit_of(totals);
+  const RedundantFit fit = fit_of(redundant(flights, total(0), total(1)));
   if (std::isnan(fit.ordinary.slope)) {
-    return not_run("total-pressure",
-                   fmt::format("{} and {} have too few values at the same time in the air", one, two));
+    return not_run(fmt::format("{} and {} have too few values at the same time in the air", one, two));
   }
-  const RedundantFit statics = fit_of(redundant(flights, static_of(0), static_of(1), comparable));
+  const RedundantFit statics = fit_of(redundant(flights, static_of(0), static_of(1)));
 
   CheckResult result;
-  result.name = "total-pressure";
-  result.ran = true;
   decide(judged_of(fit, min_total_difference), result);
   result.finding = fmt::format(
       "The total pressure of {} minus total pressure of {} is {} on average, with slope {:.6f} +- {:.6f} and "
@@ -64,28 +60,15 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   result.cannot_see =
       "The check does not detect static defects, which cancel in the total pressure, and losses common to "
       "both pitots, for example at large angles.";
-  add_numbers(fit, result);
+  show(flights, total(0), total(1), fit,
+       {"total-pressure", "total pressure, " + one, "total pressure, " + two,
+        fmt::format("Total pressure of {} against {}", two, one), "Total pressures of the two systems",
+        "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
+        "pitots and the lines."},
+       result);
   result.numbers.emplace_back("static_mean_difference_hpa", statics.difference.value);
   result.numbers.emplace_back("static_mean_difference_stderr_hpa", statics.difference.error);
   result.numbers.emplace_back("static_scatter_hpa", statics.scatter);
-  result.tables.push_back(table_of(fit, fmt::format("Total pressure of {} against {}", two, one)));
-  if (std::any_of(flights.begin(), flights.end(), with_avionics)) result.notes.push_back(note_on_avionics());
-  const auto of_used = [](const SeriesOfFlight& series) {
-    return [series](const CheckedFlight& flight) { return masked(series(flight), comparable(flight)); };
-  };
-  result.columns.push_back(
-      column_of(flights, "total-pressure one", "total pressure, " + one, "hPa", of_used(total(0))));
-  result.columns.push_back(
-      column_of(flights, "total-pressure two", "total pressure, " + two, "hPa", of_used(total(1))));
-  PairPanel panel;
-  panel.title = "Total pressures of the two systems";
-  panel.caption =
-      "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
-      "pitots and the lines.";
-  panel.x = "total-pressure one";
-  panel.y = "total-pressure two";
-  panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};
-  result.pictures.emplace_back(std::move(panel));
   return result;
 }
 

@@ -61,6 +61,7 @@ TestStatistic judged(const Estimated& number, double size, std::string unit, std
 }
 
 void decide(std::vector<TestStatistic> numbers, CheckResult& result) {
+  result.ran = true;
   result.verdict = numbers.front().verdict;
   for (const TestStatistic& number : numbers) result.verdict = together(result.verdict, number.verdict);
   const TestStatistic* decisive = nullptr;

@@ -20,8 +20,8 @@ CheckVerdict together(CheckVerdict a, CheckVerdict b);
 /// Number with its verdict, unit and description.
 TestStatistic judged(const Estimated& number, double size, std::string unit, std::string what);
 
-/// Sets the verdict of a check from several numbers. The deciding number, with the largest ratio to its
-/// tolerance, becomes the key number, and `decided` states the reason.
+/// Sets the verdict of a check that was run from several numbers. The deciding number, with the largest ratio
+/// to its tolerance, becomes the key number, and `decided` states the reason.
 void decide(std::vector<TestStatistic> numbers, CheckResult& result);
 
 /// Sets a verdict to inconclusive, for any number, with the given `reason`.

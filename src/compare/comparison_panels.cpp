@@ -9,7 +9,7 @@
 #include <pcor/base/utc.hpp>
 #include "base/phrasing.hpp"
 #include "numerics/missing.hpp"
-#include "report/present_columns.hpp"
+#include "report/columns.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
 #include "residuals/wind.hpp"

@@ -1,7 +1,6 @@
 #include "diagnose/advice.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "diagnose/separation.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -39,20 +38,12 @@ void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
       const std::size_t place = found.tested[k].place;
       rivalry.size[as_index(k)] = finding.effect.parameters[place] - found.effect.parameters[place];
     }
-    std::vector<Eigen::Index> beside(static_cast<std::size_t>(analysis.base()));
-    std::iota(beside.begin(), beside.end(), Eigen::Index{0});
-    for (const std::size_t other : analysis.result().chosen) {
-      if (other == winner) continue;
-      for (const Eigen::Index place : places_of(analysis.groups()[other], analysis.base()))
-        beside.push_back(place);
-    }
     std::vector<std::string> rivals;
     for (const Alias& alias : finding.aliases) {
       rivals.push_back(alias.effect);
-      std::vector<Eigen::Index>& rest = rivalry.rests.emplace_back(beside);
-      const std::size_t rival = number_of(candidates, alias.effect);
-      for (const Eigen::Index place : places_of(analysis.groups()[rival], analysis.base()))
-        rest.push_back(place);
+      std::vector<std::size_t> instead = analysis.result().chosen;
+      instead[i] = number_of(candidates, alias.effect);
+      rivalry.rests.push_back(places_of(instead, analysis.groups(), analysis.base()));
     }
     const Plan best = best_plan(regimes, rivalry);
     finding.advice.sentence = text_of(best, finding.id(), finding.effect, rivals);

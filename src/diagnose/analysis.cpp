@@ -76,7 +76,7 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
   // Slow effects and slow drift compete for the same part of the residuals, so the noise is estimated from
   // two starts: with all candidate effects removed, and with no effect removed. The more likely result is
   // used.
-  const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1), rank_limit);
+  const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1));
   const double by_effects = search_from(start, true);
   const bool drifts =
       std::any_of(noise_.begin(), noise_.end(), [](const auto& each) { return each.drifts(); });
@@ -90,7 +90,6 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
 double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
   std::vector<std::size_t> chosen;
   Eigen::VectorXd estimate = start;
-  Eigen::MatrixXd covariance;
   for (int round = generous ? 0 : 1; round < max_rounds; ++round) {
     replace_outliers(chosen, estimate);
     if (round == 0)
@@ -107,7 +106,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
     result_ = search_->run(options);
     const bool stable = round > 1 && result_.chosen == chosen;
     chosen = result_.chosen;
-    search_->fit(chosen, estimate, covariance);
+    estimate = search_->fit(chosen).estimate;
     if (stable) break;
   }
   Eigen::Index columns = 0;
@@ -120,13 +119,7 @@ std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>
 }
 
 std::vector<Eigen::Index> Analysis::places_of(const std::vector<std::size_t>& groups) const {
-  std::vector<Eigen::Index> places;
-  for (Eigen::Index c = 0; c < base_; ++c) places.push_back(c);
-  for (const std::size_t group : groups) {
-    for (Eigen::Index k = 0; k < groups_[group].count; ++k)
-      places.push_back(base_ + groups_[group].first + k);
-  }
-  return places;
+  return internal::places_of(groups, groups_, base_);
 }
 
 std::vector<Eigen::MatrixXd> Analysis::all_columns_of(const std::vector<std::size_t>& groups) const {
@@ -222,13 +215,7 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
 
 void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
   coefficients_ = Eigen::VectorXd::Zero(binned_.columns.front().cols());
-  coefficients_.head(base_) = estimate.head(base_);
-  Eigen::Index place = base_;
-  for (const std::size_t group : groups) {
-    coefficients_.segment(base_ + groups_[group].first, groups_[group].count) =
-        estimate.segment(place, groups_[group].count);
-    place += groups_[group].count;
-  }
+  coefficients_(places_of(groups)) = estimate;
 }
 
 std::vector<Eigen::MatrixXd> Analysis::find_shape_uncertainty(const std::vector<std::size_t>& chosen) {
@@ -306,8 +293,7 @@ WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more,
                                      Eigen::Index marginalized) const {
   std::vector<Eigen::MatrixXd> columns;
   for (std::size_t f = 0; f < more.size(); ++f) {
-    Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
-    both << binned_.columns[f].leftCols(base_), more[f];
+    columns.push_back(side_by_side(binned_.columns[f].leftCols(base_), more[f]));
   }
   WhitenedSystem scores = whiten(columns, false);
   take_out_common_noise(scores);
@@ -320,8 +306,7 @@ Competition Analysis::competition(const std::vector<std::size_t>& chosen,
   const std::vector<Eigen::MatrixXd> effects = all_columns_of(chosen);
   std::vector<Eigen::MatrixXd> more;
   for (std::size_t f = 0; f < rivals.size(); ++f) {
-    Eigen::MatrixXd& both = more.emplace_back(rivals[f].rows(), effects[f].cols() - base_ + rivals[f].cols());
-    both << effects[f].rightCols(effects[f].cols() - base_), rivals[f];
+    more.push_back(side_by_side(effects[f].rightCols(effects[f].cols() - base_), rivals[f]));
   }
   Competition result;
   result.system = scores_with(more, shape_columns * as_index(added_.size()));
@@ -360,7 +345,7 @@ Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products, double rows,
   Eigen::MatrixXd normal = products.topLeftCorner(count, count);
   // Unit: variance of the rows.
   normal.diagonal() += products(count, count) / std::max(rows, 1.0) * precision;
-  return pseudo_solution(normal, products.col(count).head(count), rank_limit);
+  return pseudo_solution(normal, products.col(count).head(count));
 }
 
 Eigen::MatrixXd Analysis::rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& places) const {
@@ -369,9 +354,7 @@ Eigen::MatrixXd Analysis::rows_of_refit(std::size_t flight, const std::vector<Ei
     with_residual.push_back(scores_->columns());
     return scores_->rows[flight](Eigen::all, with_residual);
   }
-  Eigen::MatrixXd rows(binned_.columns[flight].rows(), as_index(places.size()) + 1);
-  rows << binned_.columns[flight](Eigen::all, places), binned_.residuals[flight];
-  return rows;
+  return side_by_side(binned_.columns[flight](Eigen::all, places), binned_.residuals[flight]);
 }
 
 Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) const {

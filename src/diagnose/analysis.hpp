@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "campaign/binned_flights.hpp"
 #include "campaign/columns.hpp"
 #include "campaign/whitened.hpp"
 #include "diagnose/flight_columns.hpp"
@@ -54,6 +53,7 @@ class Analysis {
   const FlightPartition& whole_share() const { return share_; }
   const std::vector<FlightColumns>& flights() const { return flights_; }
   std::size_t flight_count() const { return binned_.bins.size(); }
+  std::size_t reference_count() const { return binned_.reference.back() + 1; }
   const FlightColumns& flight(std::size_t number) const {
     return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
   }

@@ -164,6 +164,17 @@ bool is_built_alike(EffectLocation location) {
          location == EffectLocation::pitot;
 }
 
+/// Reason why an effect cannot be tested with a model; empty if it can. @param dates on which steps are tried
+std::string why_not_testable(const EffectInfo& info, bool is_moist, const std::vector<double>& dates) {
+  if (info.location == EffectLocation::ambient_temperature)
+    return "not separable from temp-offset with the laser; the hydrostatic height determines it (pcor "
+           "temperature)";
+  if (info.constants == GasConstants::dry && is_moist) return "the model uses the constants of moist air";
+  if (info.constants == GasConstants::moist && !is_moist) return "the model uses the constants of dry air";
+  if (reads_date(info) && dates.empty()) return "it needs flights at two times";
+  return "";
+}
+
 /// Inserts after each candidate its variants: the same effect on both systems for tubes and
 /// lines, and other times for the need.
 void add_derived_ones(CandidateSet& set, bool two_systems) {
@@ -349,30 +360,12 @@ CandidateSet find_candidates(const ModelDefinition& model, const std::vector<Mod
   for (const EffectInfo& info : effect_info) {
     if (has_effect(model, info.id)) continue;
     if (trust_reference && is_of_laser(info.location)) continue;
-    if (info.location == EffectLocation::ambient_temperature) {
-      set.not_testable.push_back({std::string(info.id), std::string(info.title),
-                                  "not separable from temp-offset with the laser; the hydrostatic height "
-                                  "determines it (pcor temperature)"});
-      continue;
-    }
-    if (info.constants == GasConstants::dry && model.model.moist) {
-      set.not_testable.push_back(
-          {std::string(info.id), std::string(info.title), "the model uses the constants of moist air"});
-      continue;
-    }
-    if (info.constants == GasConstants::moist && !model.model.moist) {
-      set.not_testable.push_back(
-          {std::string(info.id), std::string(info.title), "the model uses the constants of dry air"});
-      continue;
-    }
     Candidate candidate = candidate_of(info);
-    if (reads_date(info)) {
-      if (dates.empty()) {
-        set.not_testable.push_back({candidate.effect.id, candidate.title, "it needs flights at two times"});
-        continue;
-      }
-      candidate.effect.parameters[1] = dates.front();
+    if (std::string why = why_not_testable(info, model.model.moist, dates); !why.empty()) {
+      set.not_testable.push_back({candidate.effect.id, candidate.title, std::move(why)});
+      continue;
     }
+    if (reads_date(info)) candidate.effect.parameters[1] = dates.front();
     consider(candidate);
   }
   set.base = base_of(model);

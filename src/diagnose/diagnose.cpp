@@ -74,14 +74,10 @@ EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefi
   return inputs;
 }
 
-/// Local flights; entries of the others are empty.
-std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
+/// Local flights; entries of the others are empty. @param refitted change of the base by least squares
+std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::VectorXd& refitted) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
-  const Search& search = analysis.search();
-  Eigen::VectorXd with;
-  Eigen::MatrixXd covariance;
-  search.fit(chosen, with, covariance);
-  const Eigen::VectorXd refitted = analysis.least_squares({});
+  const Eigen::VectorXd with = analysis.search().fit(chosen).estimate;
   const Eigen::VectorXd corrected = analysis.least_squares(chosen);
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(analysis);
   std::vector<FlightDiagnosis> flights(analysis.flights().size());
@@ -126,11 +122,7 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
     }
   } else {
     kept = flights_to_show(analysis.share().of_each_flight<FlightToShow>([&](std::size_t f) {
-      SquareSum sum;
-      for (const double value : flights[f].before) {
-        if (!std::isnan(value)) sum.add(value);
-      }
-      return FlightToShow{flights[f].samples->time.front(), sum.count > 0.0 ? sum.rms() : nan};
+      return FlightToShow{flights[f].samples->time.front(), square_sum_of(flights[f].before).rms()};
     }));
   }
   auto series = analysis.share().of_entries(kept).of_each_flight<FlightDiagnosis>(
@@ -145,15 +137,14 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
 }
 
 /// Model coefficients of least squares, as a refit has them, with the errors by the noise.
-std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoefficient>& base) {
-  Eigen::VectorXd whitened;
-  Eigen::MatrixXd covariance;
-  analysis.search().fit({}, whitened, covariance);
-  const Eigen::VectorXd change = analysis.least_squares({});
+/// @param refitted their change
+std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoefficient>& base,
+                             const Eigen::VectorXd& refitted) {
+  const Eigen::MatrixXd covariance = analysis.search().fit({}).covariance;
   std::vector<Estimate> own;
   for (std::size_t b = 0; b < base.size(); ++b) {
     const Eigen::Index place = as_index(b);
-    own.push_back({base[b].name, base[b].unit, base[b].value + change[place],
+    own.push_back({base[b].name, base[b].unit, base[b].value + refitted[place],
                    std::sqrt(std::max(0.0, covariance(place, place)))});
   }
   return own;
@@ -369,8 +360,9 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
   diagnosis.not_testable = std::move(set.not_testable);
-  diagnosis.own = own_of(analysis, set.base);
-  diagnosis.flights = flights_of(analysis);
+  const Eigen::VectorXd refitted = analysis.least_squares({});
+  diagnosis.own = own_of(analysis, set.base, refitted);
+  diagnosis.flights = flights_of(analysis, refitted);
   using Series = const std::vector<double>&;
   diagnosis.residual_rms =
       rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].before; });

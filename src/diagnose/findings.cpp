@@ -210,12 +210,8 @@ bool corrects_static_pressure(const Candidate& candidate) {
 /// columns of both.
 Eigen::VectorXd static_estimate(const Analysis& analysis, const std::vector<Candidate>& candidates,
                                 const std::vector<std::size_t>& groups) {
-  Eigen::VectorXd with;
-  Eigen::VectorXd alone;
-  Eigen::MatrixXd covariance;
-  analysis.search().fit(groups, with, covariance);
-  analysis.search().fit({}, alone, covariance);
-  with.head(analysis.base()) -= alone;
+  Eigen::VectorXd with = analysis.search().fit(groups).estimate;
+  with.head(analysis.base()) -= analysis.search().fit({}).estimate;
   Eigen::Index place = analysis.base();
   for (const std::size_t group : groups) {
     const Eigen::Index count = analysis.groups()[group].count;
@@ -391,9 +387,7 @@ std::string regimes_between(const FlightSamples& samples, double begin, double e
 
 std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
-  Eigen::VectorXd estimate;
-  Eigen::MatrixXd covariance;
-  analysis.search().fit(chosen, estimate, covariance);
+  const auto [estimate, covariance] = analysis.search().fit(chosen);
   const HeldOut with_all = chosen.empty() ? HeldOut{} : analysis.held_out(chosen);
   std::vector<Finding> findings;
   Eigen::Index place = analysis.base();
@@ -532,7 +526,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
   for (std::size_t i = 0; i < limits.size(); ++i) {
     SquareSum sum;
     for (const std::vector<SquareSum>& of_flight : of_flights) sum += of_flight[i];
-    limits[i].rms = std::sqrt(search.remaining(groups[i])) * std::sqrt(sum.squares / sum.count);
+    limits[i].rms = std::sqrt(search.remaining(groups[i])) * sum.rms();
   }
   std::sort(limits.begin(), limits.end(),
             [](const UpperLimit& a, const UpperLimit& b) { return a.rms > b.rms; });

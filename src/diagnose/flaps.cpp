@@ -115,9 +115,7 @@ void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std:
   const std::vector<std::size_t>& chosen = test.result().chosen;
   const std::vector<Finding> findings = findings_of(test, flaps.candidates);
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(test);
-  Eigen::VectorXd estimate;
-  Eigen::MatrixXd covariance;
-  test.search().fit(chosen, estimate, covariance);
+  const Eigen::VectorXd estimate = test.search().fit(chosen).estimate;
   std::vector<std::string> tested;
   for (std::size_t i = 0; i < flaps.candidates.size(); ++i) {
     if (flaps.reads_flaps[i] && !flaps.candidates[i].is_variant)

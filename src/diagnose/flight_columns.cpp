@@ -55,9 +55,6 @@ Testability testability_of(const FlightColumns& flight, const std::vector<double
   return found;
 }
 
-/// Single precision of the columns leaves 1e-6 of their length, squared here.
-constexpr double imitation_rank = 1e-12;
-
 References in_order_of_diagnosis(References references) {
   // The samples are read once for the first reference; the laser reads the most.
   const auto place = [](const Reference& reference) {
@@ -181,7 +178,7 @@ void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamCol
     BaseCoefficient& coefficient = set.base[static_cast<std::size_t>(k)];
     if (coefficient.of_reference && coefficient.usual > 0.0) {
       const Eigen::VectorXd across = sums(kept, k);
-      const double left = sums(k, k) - across.dot(pseudo_solution(sums(kept, kept), across, imitation_rank));
+      const double left = sums(k, k) - across.dot(pseudo_solution(sums(kept, kept), across));
       if (!(coefficient.usual * std::sqrt(std::max(0.0, left) / sums(k, count)) > notable)) continue;
     }
     kept.push_back(k);

@@ -1,17 +1,19 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
 
-/// Sum of squares of some values; the sums of flights can be added.
+/// Sum of squares of some values, without NaN; the sums of flights can be added.
 struct SquareSum {
   double squares = 0.0;
   double count = 0.0;
 
   void add(double value) {
+    if (std::isnan(value)) return;
     squares += value * value;
     count += 1.0;
   }
@@ -22,8 +24,8 @@ struct SquareSum {
     return *this;
   }
 
-  /// Root mean square; 0 if there is no value.
-  double rms() const { return count > 0.0 ? std::sqrt(squares / count) : 0.0; }
+  /// Root mean square; NaN if there is no value.
+  double rms() const { return std::sqrt(squares / count); }
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -31,18 +33,17 @@ struct SquareSum {
   }
 };
 
-/// Root mean square of one series over all flights, ignoring NaN; 0 if there is no value. @param series_of
-/// gives the values of a local flight
+inline SquareSum square_sum_of(const std::vector<double>& values) {
+  SquareSum sum;
+  for (const double value : values) sum.add(value);
+  return sum;
+}
+
+/// Root mean square of one series over all flights. @param series_of gives the values of a local flight
 template <class Series>
 double rms_of(const FlightPartition& share, const Series& series_of) {
   return share
-      .sum_of_each_flight<SquareSum>([&](std::size_t flight) {
-        SquareSum sum;
-        for (const double value : series_of(flight)) {
-          if (!std::isnan(value)) sum.add(value);
-        }
-        return sum;
-      })
+      .sum_of_each_flight<SquareSum>([&](std::size_t flight) { return square_sum_of(series_of(flight)); })
       .rms();
 }
 

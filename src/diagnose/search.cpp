@@ -86,31 +86,44 @@ std::vector<std::size_t> without(std::vector<std::size_t> set, std::size_t value
 
 }  // namespace
 
+std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base) {
+  std::vector<Eigen::Index> places(static_cast<std::size_t>(group.count));
+  std::iota(places.begin(), places.end(), base + group.first);
+  return places;
+}
+
+std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& some,
+                                    const std::vector<ColumnGroup>& groups, Eigen::Index base) {
+  std::vector<Eigen::Index> places(static_cast<std::size_t>(base));
+  std::iota(places.begin(), places.end(), Eigen::Index{0});
+  for (const std::size_t group : some) {
+    const std::vector<Eigen::Index> own = places_of(groups[group], base);
+    places.insert(places.end(), own.begin(), own.end());
+  }
+  return places;
+}
+
 Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups)
     : scores_(&scores), base_(base), groups_(groups) {
-  const Eigen::MatrixXd& information = scores.information;
   const Eigen::Index columns = scores.columns();
   const Eigen::Index tested = columns - base;
-  scale_ = information.diagonal().head(columns);
-  for (double& value : scale_) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
-  const Eigen::MatrixXd scaled =
-      scale_.asDiagonal() * information.topLeftCorner(columns, columns) * scale_.asDiagonal();
-  const Eigen::VectorXd right = scale_.asDiagonal() * information.col(columns).head(columns);
-  const Eigen::MatrixXd inverse = pseudo_inverse(scaled.topLeftCorner(base, base), 1e-12);
-  const Eigen::MatrixXd solution = inverse * scaled.topRightCorner(base, tested);
-  left_ = scaled.bottomRightCorner(tested, tested) - scaled.bottomLeftCorner(tested, base) * solution;
-  left_score_ = right.tail(tested) - solution.transpose() * right.head(base);
-  squares_ = information(columns, columns) - right.head(base).dot(inverse * right.head(base));
+  const auto inverse_lengths = [&](const Eigen::MatrixXd& products) {
+    Eigen::VectorXd scale = products.diagonal().head(columns);
+    for (double& value : scale) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
+    return scale;
+  };
+  scale_ = inverse_lengths(scores.information);
+  const Eigen::MatrixXd after = products_after(scores.information, base);
+  const Eigen::VectorXd scale = scale_.tail(tested);
+  left_ = scale.asDiagonal() * after.topLeftCorner(tested, tested) * scale.asDiagonal();
+  left_score_ = scale.cwiseProduct(after.col(tested).head(tested));
+  squares_ = after(tested, tested);
 
   // Imitation by the base does not depend on drift: likely drift hides slow columns but does not remove them.
-  Eigen::VectorXd length = scores.plain.diagonal().head(columns);
-  for (double& value : length) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
-  const Eigen::MatrixXd plain =
-      length.asDiagonal() * scores.plain.topLeftCorner(columns, columns) * length.asDiagonal();
-  const Eigen::MatrixXd plain_after =
-      plain.bottomRightCorner(tested, tested) -
-      plain.bottomLeftCorner(tested, base) *
-          (pseudo_inverse(plain.topLeftCorner(base, base), 1e-12) * plain.topRightCorner(base, tested));
+  const Eigen::VectorXd length = inverse_lengths(scores.plain).tail(tested);
+  const Eigen::MatrixXd plain_after = length.asDiagonal() *
+                                      products_after(scores.plain, base).topLeftCorner(tested, tested) *
+                                      length.asDiagonal();
 
   Eigen::Index width = 0;
   for (const ColumnGroup& group : groups) {
@@ -133,8 +146,9 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
     Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(group.count, kept);
     if (kept > 0) {
       const SymmetricEigen solver = symmetric_eigen(own(told, told));
-      turned(told, Eigen::all) = solver.eigenvectors() *
-                                 solver.eigenvalues().cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal();
+      turned(told, Eigen::all) =
+          solver.eigenvectors() *
+          solver.eigenvalues().cwiseMax(rank_limit).cwiseSqrt().cwiseInverse().asDiagonal();
     }
     turned_.push_back(std::move(turned));
     begin_.push_back(width);
@@ -151,7 +165,7 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
   score_ = turn.transpose() * left_score_;
 }
 
-std::vector<Eigen::Index> Search::places_of(const std::vector<std::size_t>& groups) const {
+std::vector<Eigen::Index> Search::directions_of(const std::vector<std::size_t>& groups) const {
   std::vector<Eigen::Index> places;
   for (const std::size_t group : groups) {
     for (Eigen::Index k = 0; k < turned_[group].cols(); ++k) places.push_back(begin_[group] + k);
@@ -170,7 +184,7 @@ std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set)
 
 Search::Conditional Search::given(const std::vector<std::size_t>& groups) const {
   Conditional result{information_, score_, squares_, 1.0};
-  std::vector<Eigen::Index> places = places_of(groups);
+  std::vector<Eigen::Index> places = directions_of(groups);
   const std::size_t count = places.size();
   const std::vector<Eigen::Index> shapes = shapes_of(groups);
   const Eigen::Index turned = information_.cols() - (left_.cols() - candidates_);
@@ -282,17 +296,9 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
           scale_.segment(base_ + own.first, own.count).asDiagonal() * turned_[group].col(kept - 1);
   }
   weight.segment(base_ + own.first, own.count) = found.estimate;
-  std::vector<Eigen::Index> rest(static_cast<std::size_t>(base_));
-  std::iota(rest.begin(), rest.end(), Eigen::Index{0});
-  for (const std::size_t other : without(others, group)) {
-    const ColumnGroup& columns_of = groups_[other];
-    for (Eigen::Index k = 0; k < columns_of.count; ++k) rest.push_back(base_ + columns_of.first + k);
-  }
-  const Eigen::MatrixXd scaled =
-      scale_.asDiagonal() * scores_->information.topLeftCorner(columns, columns) * scale_.asDiagonal();
-  const Eigen::VectorXd target = scaled(rest, Eigen::all) * weight.cwiseQuotient(scale_.cwiseMax(1e-300));
-  const Eigen::VectorXd fitted = pseudo_inverse(scaled(rest, rest), 1e-12) * target;
-  for (std::size_t k = 0; k < rest.size(); ++k) weight[rest[k]] = -fitted[as_index(k)] * scale_[rest[k]];
+  const std::vector<Eigen::Index> rest = places_of(without(others, group), groups_, base_);
+  const Eigen::VectorXd imitated = scores_->information(rest, Eigen::all).leftCols(columns) * weight;
+  weight(rest) = -pseudo_solution(scores_->information(rest, rest), imitated);
   std::vector<Eigen::VectorXd> rows(scores_->rows.size());
   for (std::size_t f = 0; f < rows.size(); ++f) {
     if (scores_->share.owns(f)) rows[f] = scores_->rows[f].leftCols(columns) * weight;
@@ -318,17 +324,8 @@ double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen,
 }
 
 std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen) const {
-  Eigen::VectorXd estimate;
-  Eigen::MatrixXd covariance;
-  fit(chosen, estimate, covariance);
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(scores_->columns());
-  coefficients.head(base_) = estimate.head(base_);
-  Eigen::Index place = base_;
-  for (const std::size_t group : chosen) {
-    const ColumnGroup& columns = groups_[group];
-    coefficients.segment(base_ + columns.first, columns.count) = estimate.segment(place, columns.count);
-    place += columns.count;
-  }
+  coefficients(places_of(chosen, groups_, base_)) = fit(chosen).estimate;
   std::vector<Eigen::VectorXd> result(scores_->rows.size());
   for (std::size_t f = 0; f < result.size(); ++f) {
     if (scores_->share.owns(f)) result[f] = scores_->left(f, coefficients);
@@ -550,8 +547,7 @@ double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::
   return std::clamp(singular_values(across)[0], 0.0, 1.0);
 }
 
-void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estimate,
-                 Eigen::MatrixXd& covariance) const {
+SearchFit Search::fit(const std::vector<std::size_t>& chosen) const {
   std::vector<Eigen::Index> places(static_cast<std::size_t>(base_));  // positions among the scores' columns
   std::iota(places.begin(), places.end(), Eigen::Index{0});
   std::vector<Eigen::Index> out = places;  // positions among the estimates
@@ -575,11 +571,12 @@ void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estima
       ++place;
     }
   }
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * pseudo_inverse(scaled, 1e-11) * scale.asDiagonal();
-  estimate = Eigen::VectorXd::Zero(size);
-  estimate(out) = inverse * scores_->information.col(scores_->columns())(places);
-  covariance = Eigen::MatrixXd::Zero(size, size);
-  covariance(out, out) = variance(chosen) * inverse;
+  const Eigen::MatrixXd inverse =
+      scale.asDiagonal() * pseudo_inverse(scaled, rank_limit) * scale.asDiagonal();
+  SearchFit result{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+  result.estimate(out) = inverse * scores_->information.col(scores_->columns())(places);
+  result.covariance(out, out) = variance(chosen) * inverse;
+  return result;
 }
 
 double Search::variance(const std::vector<std::size_t>& chosen) const { return given(chosen).variance; }

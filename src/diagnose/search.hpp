@@ -34,6 +34,13 @@ struct ColumnGroup {
   }
 };
 
+/// Columns of a group among those of base and candidates.
+std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base);
+
+/// Columns of the base, then of some groups, among those of base and candidates.
+std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& some,
+                                    const std::vector<ColumnGroup>& groups, Eigen::Index base);
+
 struct SearchOptions {
   std::size_t draws = 4000;
   double confidence = 0.997;          ///< probability of no finding if there is no effect
@@ -56,6 +63,12 @@ struct SearchResult {
   std::vector<std::size_t> chosen{};  ///< groups sorted by decreasing evidence
   double threshold = 0.0;
   std::vector<double> p_values{};  ///< one per chosen group
+};
+
+/// Estimates and covariance of base and chosen columns together, in the order of `places_of`.
+struct SearchFit {
+  Eigen::VectorXd estimate{};
+  Eigen::MatrixXd covariance{};
 };
 
 /// Search for groups of columns that explain residuals beyond the base.
@@ -90,10 +103,8 @@ class Search {
   /// Largest correlation between two groups after base and `others`; signed if both have one column.
   double correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const;
 
-  /// Estimates and covariance of base and chosen columns together, in the order base, then the columns of the
-  /// groups as given. Coefficients that the flights hardly constrain have their usual size as error.
-  void fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estimate,
-           Eigen::MatrixXd& covariance) const;
+  /// Coefficients that the flights hardly constrain have their usual size as error.
+  SearchFit fit(const std::vector<std::size_t>& chosen) const;
 
   /// Variance of the whitened residuals after a fit of base and `chosen`; 1 if the noise model holds.
   double variance(const std::vector<std::size_t>& chosen) const;
@@ -113,8 +124,8 @@ class Search {
     double variance = 1.0;
   };
 
-  Eigen::Index begin_of(std::size_t group) const { return begin_[group]; }
-  std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& groups) const;
+  /// Turned columns of some groups.
+  std::vector<Eigen::Index> directions_of(const std::vector<std::size_t>& groups) const;
   /// Columns of the uncertain shapes of a set, counted from the first candidate's.
   std::vector<Eigen::Index> shapes_of(const std::vector<std::size_t>& set) const;
   Conditional given(const std::vector<std::size_t>& groups) const;

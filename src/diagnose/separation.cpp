@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <pcor/effects/catalogue.hpp>
 #include "base/phrasing.hpp"
@@ -22,15 +21,8 @@ constexpr double seconds_per_minute = 60.0;
 /// Part of an effect at its estimated size that base and a rival cannot imitate, in units of the noise.
 double distinct(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& rest,
                 const std::vector<Eigen::Index>& own, const Eigen::VectorXd& size) {
-  const Eigen::MatrixXd normal = information(rest, rest);
-  const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * normal * scale.asDiagonal());
   const Eigen::VectorXd across = information(rest, own) * size;
-  const Eigen::VectorXd turned = solver.eigenvectors().transpose() * (scale.asDiagonal() * across);
-  double imitated = 0.0;
-  for (Eigen::Index k = 0; k < turned.size(); ++k) {
-    if (solver.eigenvalues()[k] > 1e-9) imitated += turned[k] * turned[k] / solver.eigenvalues()[k];
-  }
+  const double imitated = across.dot(pseudo_solution(information(rest, rest), across));
   return std::max(0.0, size.dot(information(own, own) * size) - imitated);
 }
 
@@ -103,12 +95,6 @@ std::string general_advice(const std::string& id, const ModelEffect& effect) {
 
 bool is_separated(const SeparationProblem& rivalry) {
   return power_of(min_distinct(rivalry, rivalry.information)) >= enough_power;
-}
-
-std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base) {
-  std::vector<Eigen::Index> places(static_cast<std::size_t>(group.count));
-  std::iota(places.begin(), places.end(), base + group.first);
-  return places;
 }
 
 }  // namespace pcor::internal

@@ -50,7 +50,4 @@ std::string general_advice(const std::string& id, const ModelEffect& effect);
 /// Whether the existing flights separate the effect from its rivals with a probability of 95 %.
 bool is_separated(const SeparationProblem& rivalry);
 
-/// Columns of a group among those of base and candidates.
-std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base);
-
 }  // namespace pcor::internal

@@ -10,22 +10,10 @@
 namespace pcor::internal {
 namespace {
 
-/// Coefficients of all columns in a fit of base and groups; with `alone`, the coefficients of the base and of
-/// earlier groups are zero.
-Eigen::VectorXd coefficients_of(const Analysis& analysis, const std::vector<std::size_t>& groups,
-                                bool alone = false) {
-  Eigen::VectorXd estimate;
-  Eigen::MatrixXd covariance;
-  analysis.search().fit(groups, estimate, covariance);
+/// Coefficients of all columns in a fit of base and groups.
+Eigen::VectorXd coefficients_of(const Analysis& analysis, const std::vector<std::size_t>& groups) {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(analysis.scores().columns());
-  Eigen::Index place = analysis.base();
-  if (!alone) all.head(place) = estimate.head(place);
-  for (const std::size_t number : groups) {
-    const ColumnGroup& group = analysis.groups()[number];
-    if (!alone || number == groups.back())
-      all.segment(analysis.base() + group.first, group.count) = estimate.segment(place, group.count);
-    place += group.count;
-  }
+  all(places_of(groups, analysis.groups(), analysis.base())) = analysis.search().fit(groups).estimate;
   return all;
 }
 
@@ -39,13 +27,14 @@ std::vector<std::size_t> with(std::vector<std::size_t> groups, std::size_t group
 double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::size_t>& others,
                               std::size_t effect, std::size_t rival) {
   const double whole = analysis.search().score(effect, others).chi2;
-  const Eigen::VectorXd added = coefficients_of(analysis, with(others, effect), true);
-  const Eigen::VectorXd difference =
-      coefficients_of(analysis, with(others, effect)) - coefficients_of(analysis, with(others, rival));
+  const Eigen::VectorXd fitted = coefficients_of(analysis, with(others, effect));
+  const Eigen::VectorXd difference = fitted - coefficients_of(analysis, with(others, rival));
+  const std::vector<Eigen::Index> own = places_of(analysis.groups()[effect], analysis.base());
   using Squares = std::array<double, 2>;  // squares of the contribution and of the difference
   const auto of_flights = analysis.whole_share().of_each_flight<Squares>([&](std::size_t f) {
     const auto columns = analysis.scores().rows[f].leftCols(analysis.scores().columns());
-    return Squares{(columns * added).squaredNorm(), (columns * difference).squaredNorm()};
+    return Squares{(columns(Eigen::all, own) * fitted(own)).squaredNorm(),
+                   (columns * difference).squaredNorm()};
   });
   std::map<std::size_t, Squares> against;  // keyed by reference
   double differences = 0.0;

@@ -65,8 +65,7 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
                                                const BinnedFlights& binned,
                                                const std::vector<Eigen::VectorXd>& effects) {
   const Eigen::Index count = as_index(effects.size());
-  std::size_t references = 0;
-  for (const FlightColumns* const flight : flights) references = std::max(references, flight->reference + 1);
+  const std::size_t references = flights.back()->reference + 1;
   std::vector<Eigen::MatrixXd> result(flights.size());
   for (std::size_t f = 0; f < flights.size(); ++f)
     result[f] = Eigen::MatrixXd::Zero(binned.columns[f].rows(), shape_columns * count);

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "campaign/binned_flights.hpp"
+#include "campaign/columns.hpp"
 #include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
@@ -27,6 +27,7 @@ inline constexpr Eigen::Index shape_columns = 5;
 /// size of the effect. The coefficient of each column has a normal prior of standard deviation 1. A value
 /// that is not known gives 0.
 ///
+/// @param flights in the order of their references
 /// @param effects coefficients of all columns of the flights; each vector holds those of one effect, and
 /// zeros
 std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,

@@ -70,6 +70,18 @@ double chance_among(double value, const Eigen::VectorXd& others) {
   return std::max(by_law, by_number);
 }
 
+/// Whitened residuals of each local flight after least squares of all columns.
+std::vector<Eigen::VectorXd> left_of(const WhitenedSystem& scores) {
+  const Eigen::Index width = scores.columns();
+  const Eigen::VectorXd solution = pseudo_solution(scores.information.topLeftCorner(width, width),
+                                                   scores.information.col(width).head(width));
+  std::vector<Eigen::VectorXd> left(scores.rows.size());
+  for (std::size_t f = 0; f < left.size(); ++f) {
+    if (scores.share.owns(f)) left[f] = scores.left(f, solution);
+  }
+  return left;
+}
+
 bool misses_too_much(const VariableValues& values) {
   const auto missing = static_cast<double>(values.missing());
   return missing > max_missing * (missing + static_cast<double>(values.count()));
@@ -83,6 +95,8 @@ StructureTest::StructureTest(const FlightPartition& share, const std::vector<Bin
                              std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside)
     : share_(share), bins_(&bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
   alone_ = std::numeric_limits<double>::infinity();
+  std::vector<Eigen::MatrixXd> with_aside = columns;
+  for (std::size_t f = 0; f < aside.size(); ++f) with_aside[f] = side_by_side(columns[f], aside[f]);
   for (const double part : parts_of_drift) {
     if (part < 1.0 && !noise.drifts()) break;
     Whitened& flights = whitened_.emplace_back();
@@ -91,25 +105,18 @@ StructureTest::StructureTest(const FlightPartition& share, const std::vector<Bin
     const WhitenedSystem scores = find_scores(share, bins, columns, residuals, left);
     rows_ = scores.row_count;
     const Eigen::Index width = scores.columns();
-    flights.scale = scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    flights.inverse =
-        pseudo_inverse(flights.scale.asDiagonal() * scores.information.topLeftCorner(width, width) *
-                           flights.scale.asDiagonal(),
-                       1e-12);
-    const Eigen::VectorXd right = flights.scale.asDiagonal() * scores.information.col(width).head(width);
-    const Eigen::VectorXd solution = flights.scale.asDiagonal() * (flights.inverse * right);
-    flights.squares = scores.information(width, width) - right.dot(flights.inverse * right);
+    flights.inverse = information_inverse(scores.information.topLeftCorner(width, width));
+    flights.squares = products_after(scores.information, width)(0, 0);
+    flights.left = left_of(scores);
     for (std::size_t f = 0; f < bins.size(); ++f) {
       flights.whitening.emplace_back(bins[f], left, f);
       flights.model.emplace_back();
-      flights.left.emplace_back();
-      if (!share.owns(f)) continue;
-      flights.model[f] = scores.rows[f].leftCols(width);
-      flights.left[f] = scores.left(f, solution);
+      if (share.owns(f)) flights.model[f] = scores.rows[f].leftCols(width);
     }
     flights.determinant = share.sum_of_each_flight<double>(
         [&flights](std::size_t f) { return flights.whitening[f].log_determinant(); });
-    const std::vector<Eigen::VectorXd> noise_alone = left_by(aside, flights);
+    const std::vector<Eigen::VectorXd> noise_alone =
+        aside.empty() ? flights.left : left_of(find_scores(share, bins, with_aside, residuals, left));
     flights.drawn.resize(bins.size());
     flights.model_with_drawn = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
       flights.drawn[f] = drawn(noise_alone[f], bins[f], seed + f, seed);
@@ -117,28 +124,6 @@ StructureTest::StructureTest(const FlightPartition& share, const std::vector<Bin
     });
     alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
   }
-}
-
-std::vector<Eigen::VectorXd> StructureTest::left_by(const std::vector<Eigen::MatrixXd>& aside,
-                                                    const Whitened& flights) const {
-  if (aside.empty()) return flights.left;
-  const Eigen::Index count = aside.front().cols();
-  const Eigen::Index width = flights.scale.size() + count;
-  std::vector<Eigen::MatrixXd> all(bins_->size());
-  const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
-    all[f].resize(flights.model[f].rows(), width);
-    all[f] << flights.model[f], flights.whitening[f](aside[f]);
-    Eigen::MatrixXd part(width, width + 1);
-    part.leftCols(width) = all[f].transpose() * all[f];
-    part.rightCols(1) = all[f].transpose() * flights.left[f];
-    return part;
-  });
-  const Eigen::VectorXd solution = pseudo_solution(normal.leftCols(width), normal.rightCols(1), rank_limit);
-  std::vector<Eigen::VectorXd> left = flights.left;
-  for (std::size_t f = 0; f < left.size(); ++f) {
-    if (share_.owns(f)) left[f] -= all[f] * solution;
-  }
-  return left;
 }
 
 double StructureTest::minus_likelihood(const Whitened& flights, double taken) const {
@@ -193,7 +178,7 @@ std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
 
 Eigen::MatrixXd StructureTest::products(std::size_t flight, const Eigen::MatrixXd& columns) const {
   const Eigen::Index count = columns.cols();
-  const Eigen::Index model = whitened_.front().scale.size();
+  const Eigen::Index model = whitened_.front().inverse.rows();
   const Eigen::Index width = count + model + 1 + 2 * draws;
   Eigen::MatrixXd all(count, width * as_index(whitened_.size()));
   for (std::size_t k = 0; k < whitened_.size(); ++k) {
@@ -210,13 +195,12 @@ Eigen::MatrixXd StructureTest::products(std::size_t flight, const Eigen::MatrixX
 
 StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, const Whitened& flights) {
   const Eigen::Index count = products.rows();
-  const Eigen::Index model = flights.scale.size();
+  const Eigen::Index model = flights.inverse.rows();
   Eigen::MatrixXd own = products.leftCols(count);
   const Eigen::MatrixXd with_model = products.middleCols(count, model).transpose();
   const Eigen::VectorXd score = products.col(count + model);
   Eigen::MatrixXd drawn = products.rightCols(2 * draws);
-  const Eigen::MatrixXd solution =
-      flights.scale.asDiagonal() * (flights.inverse * (flights.scale.asDiagonal() * with_model));
+  const Eigen::MatrixXd solution = flights.inverse * with_model;
   const Eigen::VectorXd before = own.diagonal();
   own -= with_model.transpose() * solution;
   drawn -= solution.transpose() * flights.model_with_drawn;
@@ -259,7 +243,7 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
     const Taken taken = taken_by(sums.middleCols(width * as_index(k), width), flights);
     if (taken.freedom == 0) return false;
     const double freedom =
-        std::max(1.0, static_cast<double>(rows_) - static_cast<double>(flights.scale.size()));
+        std::max(1.0, static_cast<double>(rows_) - static_cast<double>(flights.inverse.rows()));
     const double variance = flights.squares / freedom;
     structure.freedom = std::max(structure.freedom, static_cast<double>(taken.freedom));
     if (const double value = minus_likelihood(flights, taken.all); value < with_all) {

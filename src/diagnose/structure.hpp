@@ -79,8 +79,7 @@ class StructureTest {
     std::vector<Eigen::MatrixXd>
         drawn{};  // drawn residuals after the model, shifted or with random signs, by columns
     Eigen::MatrixXd model_with_drawn{};
-    Eigen::VectorXd scale{};
-    Eigen::MatrixXd inverse{};  // inverse of the scaled information of the model
+    Eigen::MatrixXd inverse{};  // inverse of the information of the model
     double squares = 0.0;       // sum of the remaining squares
     double determinant = 0.0;   // log determinant of the covariance of the noise
   };
@@ -104,9 +103,6 @@ class StructureTest {
   Eigen::MatrixXd products(std::size_t flight, const Eigen::MatrixXd& columns) const;
   /// @param products summed over all flights for one part of the drift
   static Taken taken_by(const Eigen::MatrixXd& products, const Whitened& flights);
-  /// Residuals of each flight after subtraction of `aside`.
-  std::vector<Eigen::VectorXd> left_by(const std::vector<Eigen::MatrixXd>& aside,
-                                       const Whitened& flights) const;
   double minus_likelihood(const Whitened& flights, double taken) const;
 
   FlightPartition share_;

@@ -117,9 +117,7 @@ std::string worst_regime(const Analysis& analysis, const std::vector<std::vector
 /// Residuals of the flights of this process after the groups.
 std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
                                                  const std::vector<std::size_t>& groups) {
-  Eigen::VectorXd estimate;
-  Eigen::MatrixXd covariance;
-  analysis.search().fit(groups, estimate, covariance);
+  const Eigen::VectorXd estimate = analysis.search().fit(groups).estimate;
   std::vector<std::vector<double>> after;
   for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
     std::vector<double> left = analysis.flights()[f].given;
@@ -241,14 +239,6 @@ std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& te
   return lines;
 }
 
-/// Number of references of an analysis.
-std::size_t reference_count(const Analysis& analysis) {
-  std::size_t count = 0;
-  for (std::size_t f = 0; f < analysis.flight_count(); ++f)
-    count = std::max(count, analysis.flight(f).reference + 1);
-  return count;
-}
-
 /// Possible locations of a cause: at the static ports, the laser or the thermometer it leaves the total
 /// pressures unchanged; at the pitot or at the transducers it changes them. @param numbers indices of the
 /// variables
@@ -256,7 +246,7 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
                  const References& references, std::vector<EmpiricalPredictor>& variables) {
   constexpr double seen = 3.0;           // standard errors
   constexpr double would_be_seen = 6.0;  // the same slope as against the first reference
-  const std::size_t count = reference_count(analysis);
+  const std::size_t count = analysis.reference_count();
   std::size_t blind = 0;  // first reference that is insensitive to static defects
   while (blind < count && references[blind]->sees_static_defect()) ++blind;
   if (blind == 0 || blind >= count || numbers.empty()) return;
@@ -333,7 +323,7 @@ LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& ch
   }
   LineRival best;
   if (causes.empty()) return best;
-  const std::size_t references = reference_count(analysis);
+  const std::size_t references = analysis.reference_count();
   const std::vector<Eigen::MatrixXd> lines = lines_in(analysis, tested, causes, as_index(references));
   const Competition competition = analysis.competition(chosen, lines, references);
   const Search search(competition.system, analysis.base(), competition.groups);

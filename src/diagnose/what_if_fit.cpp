@@ -29,17 +29,13 @@ double taken_off(const FlightColumns& flight, std::size_t record, const Eigen::V
 /// Residual of a flight without outliers, i.e. samples that depart from their neighbours.
 std::vector<double> calm(const FlightColumns& flight, const std::vector<double>& residual,
                          const Eigen::VectorXd& values) {
-  std::vector<double> left(residual.size(), nan);
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    if (!std::isnan(residual[i])) left[i] = residual[i] - taken_off(flight, i, values);
-  }
-  const std::vector<double> nothing(left.size(), 0.0);
+  std::vector<double> predicted(residual.size());
+  for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] = taken_off(flight, i, values);
   std::size_t count = 0;
-  const std::vector<double> without =
-      without_outliers(left, nothing, flight.samples->time, flight.samples->step, count);
-  std::vector<double> result = residual;
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    if (!(without[i] == left[i])) result[i] = nan;
+  std::vector<double> result =
+      without_outliers(residual, predicted, flight.samples->time, flight.samples->step, count);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (result[i] != residual[i]) result[i] = nan;
   }
   return result;
 }
@@ -49,7 +45,7 @@ Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Places& free, Eigen::Ve
   values(free).setZero();
   const Eigen::Index width = values.size();
   const Eigen::VectorXd right = sum.col(width).head(width) - sum.topLeftCorner(width, width) * values;
-  values(free) = pseudo_solution(sum(free, free), right(free), rank_limit);
+  values(free) = pseudo_solution(sum(free, free), right(free));
   return values;
 }
 
@@ -152,9 +148,7 @@ WhitenedSystem WhatIfFit::least_squares(const Places& free, bool is_robust, Eige
   system.rows.resize(weights.size());
   for (int step = 0; step <= max_steps; ++step) {
     for (std::size_t f = 0; f < weights.size(); ++f) {
-      Eigen::MatrixXd rows(binned_.columns[f].rows(), values.size() + 1);
-      rows << binned_.columns[f], binned_.residuals[f];
-      system.rows[f] = weights[f].asDiagonal() * rows;
+      system.rows[f] = weights[f].asDiagonal() * side_by_side(binned_.columns[f], binned_.residuals[f]);
     }
     sum_up(system);
     const Eigen::VectorXd before = values;

@@ -14,7 +14,7 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::size_t min_flights = 8;  // minimum number for omitting whole flights
-constexpr double parts = 20.0;          // otherwise number of parts of all flights together
+constexpr double part_count = 20.0;     // otherwise number of parts of all flights together
 constexpr double min_part = 120.0;      // s
 
 /// Flights, or parts of flights, omitted one at a time: blocks are numbered per flight, after those of the
@@ -28,7 +28,7 @@ class Blocks {
     });
     double all = 0.0;
     for (const auto& [begin, length] : spans) all += length;
-    length_ = flights.count() >= min_flights ? infinity : std::max(all / parts, min_part);
+    length_ = flights.count() >= min_flights ? infinity : std::max(all / part_count, min_part);
     for (std::size_t f = 0; f < flights.count(); ++f) {
       begin_[f] = spans[f].first;
       count_[f] += static_cast<std::size_t>(spans[f].second / length_);

@@ -231,8 +231,7 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
       Reduction part;
       for (const double innovation : rows.innovations) part.cost += 0.5 * loss(innovation)[0];
       const Eigen::VectorXd weight = loss.weights(rows.innovations);
-      Eigen::MatrixXd all(rows.columns.rows(), fitted + 1);
-      all << rows.columns(Eigen::all, places), rows.innovations;
+      const Eigen::MatrixXd all = side_by_side(rows.columns(Eigen::all, places), rows.innovations);
       const Eigen::MatrixXd left = rows.without_offsets(all, weight);
       part.absorbed = (all - left).leftCols(fitted).cwiseAbs2().transpose() * weight;
       TriangularFactor factor(fitted + 1);

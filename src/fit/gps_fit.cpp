@@ -24,21 +24,12 @@ constexpr double max_error = 1.0;        // error of delta-p in one direction of
 constexpr double min_information = 3.0;  // ratio to the prior information
 constexpr double block_time = 300.0;     // s
 
-/// Products of whitened rows (wanted, nuisances, residual) over a block of a few minutes.
-struct Products {
-  std::int64_t block = 0;
-  std::vector<double> values{};
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(block, values);
-  }
-};
-
 /// Information of a flight through one reference.
 struct Part {
-  std::vector<Products> blocks{};
-  std::vector<double> defects{};  ///< products of the derivatives of delta-p by the wanted coefficients
+  /// Products of whitened rows (wanted, nuisances, residual) over blocks of a few minutes, with their
+  /// numbers.
+  std::vector<std::pair<std::int64_t, Eigen::MatrixXd>> blocks{};
+  Eigen::MatrixXd defects{};  ///< products of the derivatives of delta-p by the wanted coefficients
   std::size_t samples = 0;
 
   template <class Archive>
@@ -46,14 +37,6 @@ struct Part {
     archive(blocks, defects, samples);
   }
 };
-
-std::vector<double> packed(const Eigen::MatrixXd& matrix) {
-  return {matrix.data(), matrix.data() + matrix.size()};
-}
-
-Eigen::MatrixXd unpacked(const std::vector<double>& values, Eigen::Index size) {
-  return Eigen::Map<const Eigen::MatrixXd>(values.data(), size, size);
-}
 
 /// Noise of a flight, and the relative width of its outliers.
 struct FlightState {
@@ -108,12 +91,8 @@ class GpsSolver {
 
   GpsPrior flight_prior() const {
     GpsPrior prior{Eigen::VectorXd::Zero(all()), Eigen::VectorXd(all())};
-    for (Eigen::Index k = 0; k < count_; ++k) {
-      prior.deviation[k] = prior_deviation_[k];
-      prior.mean[k] = before_.values[k] - values_[as_index(wanted_[static_cast<std::size_t>(k)])];
-    }
-    for (Eigen::Index n = 0; n < gps_nuisance_count; ++n)
-      prior.deviation[count_ + n] = gps_nuisances[static_cast<std::size_t>(n)].deviation;
+    prior.deviation << prior_deviation_, nuisance_deviation_;
+    prior.mean.head(count_) = before_.values - values_(wanted_);
     return prior;
   }
 
@@ -124,7 +103,7 @@ class GpsSolver {
     Part part;
     const GpsRows rows = gps_rows(kind, samples, task_.model, fit.kept(), own.data(), wanted_);
     part.samples = static_cast<std::size_t>(rows.defect.rows());
-    part.defects = packed(rows.defect.transpose() * rows.defect);
+    part.defects = rows.defect.transpose() * rows.defect;
     if (part.samples == 0) return part;
     if (state.outliers.size() != rows.rows.rows()) state.outliers = Eigen::VectorXd::Zero(rows.rows.rows());
     GpsPrior prior = flight_prior();
@@ -134,28 +113,19 @@ class GpsSolver {
     WhiteRows white = state.noise->white(rows, state.outliers);
     if (with_outliers && find_outliers(white, prior, state.outliers))
       white = state.noise->white(rows, state.outliers);
-    std::map<std::int64_t, Eigen::MatrixXd> blocks;
-    const std::size_t size = rows.time.size();
-    for (Eigen::Index first = 0; first < white.rows.rows(); first += as_index(size)) {
-      for (std::size_t i = 0; i < size;) {
-        const auto block = static_cast<std::int64_t>(std::floor(rows.time[i] / block_time));
-        std::size_t end = i;
-        while (end < size && std::floor(rows.time[end] / block_time) == static_cast<double>(block)) ++end;
-        const auto some = white.rows.middleRows(first + as_index(i), as_index(end - i));
-        Eigen::MatrixXd& sum =
-            blocks.try_emplace(block, Eigen::MatrixXd::Zero(all() + 1, all() + 1)).first->second;
-        sum.noalias() += some.transpose() * some;
-        i = end;
-      }
+    std::map<std::int64_t, std::vector<Eigen::Index>> rows_of_blocks;
+    for (Eigen::Index row = 0; row < white.rows.rows(); ++row) {
+      const double time = rows.time[static_cast<std::size_t>(row) % rows.time.size()];
+      rows_of_blocks[static_cast<std::int64_t>(std::floor(time / block_time))].push_back(row);
     }
-    for (const auto& [block, sum] : blocks) {
-      if (sum.cwiseAbs().maxCoeff() > 0.0) part.blocks.push_back({block, packed(sum)});
+    for (const auto& [block, numbers] : rows_of_blocks) {
+      const Eigen::MatrixXd some = white.rows(numbers, Eigen::all);
+      if (!some.isZero(0.0)) part.blocks.emplace_back(block, some.transpose() * some);
     }
     return part;
   }
 
   void read(bool with_noise, bool with_outliers) {
-    const Eigen::Index size = all() + 1;
     std::vector<std::map<std::int64_t, Eigen::MatrixXd>> blocks(task_.flights.size());
     defects_ = Eigen::MatrixXd::Zero(count_, count_);
     samples_ = 0;
@@ -167,12 +137,11 @@ class GpsSolver {
           },
           values_);
       for (std::size_t f = 0; f < parts.size(); ++f) {
-        for (const Products& each : parts[f].blocks) {
-          Eigen::MatrixXd& sum =
-              blocks[f].try_emplace(each.block, Eigen::MatrixXd::Zero(size, size)).first->second;
-          sum += unpacked(each.values, size);
+        for (const auto& [block, products] : parts[f].blocks) {
+          const auto [sum, is_new] = blocks[f].try_emplace(block, products);
+          if (!is_new) sum->second += products;
         }
-        defects_ += unpacked(parts[f].defects, count_);
+        defects_ += parts[f].defects;
         samples_ += parts[f].samples;
       }
     }
@@ -190,25 +159,19 @@ class GpsSolver {
     equations_ = {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), {}};
     for (const auto& blocks : flights) {
       Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(all() + 1, all() + 1);
+      sum.diagonal().segment(size, own) = nuisance_deviation_.tail(own).cwiseAbs2().cwiseInverse();
       for (const auto& [block, products] : blocks) sum += products;
-      Eigen::MatrixXd of_own = sum.block(size, size, own, own);
-      for (Eigen::Index k = 0; k < own; ++k)
-        of_own(k, k) +=
-            std::pow(gps_nuisances[static_cast<std::size_t>(gps_shared_nuisances + k)].deviation, -2);
-      const Eigen::LDLT<Eigen::MatrixXd> solver(of_own);
       // Rows minus the part explained by the flight's nuisances: columns less own times these.
       Eigen::MatrixXd without = Eigen::MatrixXd::Zero(all() + 1, size + 1);
       without.topLeftCorner(size, size).setIdentity();
       without(all(), size) = 1.0;
-      without.block(size, 0, own, size) = -solver.solve(sum.block(size, 0, own, size));
-      without.block(size, size, own, 1) = -solver.solve(sum.block(size, all(), own, 1));
-      for (const auto& [block, products] : blocks) {
+      without.middleRows(size, own) =
+          -sum.block(size, size, own, own).ldlt().solve(sum.middleRows(size, own) * without);
+      for (const auto& [block, products] : blocks)
         equations_.products.emplace_back(without.transpose() * products * without);
-      }
-      const Eigen::MatrixXd cross = sum.block(size, 0, own, size);
-      equations_.matrix += sum.topLeftCorner(size, size) - cross.transpose() * solver.solve(cross);
-      equations_.right +=
-          sum.col(all()).head(size) - cross.transpose() * solver.solve(sum.block(size, all(), own, 1));
+      const Eigen::MatrixXd left = without.transpose() * sum * without;
+      equations_.matrix += left.topLeftCorner(size, size);
+      equations_.right += left.col(size).head(size);
     }
     for (Eigen::Index k = 0; k < count_; ++k) {
       if (prior_deviation_[k] > 0.0) continue;
@@ -225,8 +188,8 @@ class GpsSolver {
     } else {
       covariance.topLeftCorner(count_, count_) = free_ * free_.transpose();
     }
-    for (Eigen::Index n = 0; n < gps_shared_nuisances; ++n)
-      covariance(count_ + n, count_ + n) = std::pow(gps_nuisances[static_cast<std::size_t>(n)].deviation, 2);
+    covariance.diagonal().tail(gps_shared_nuisances) =
+        nuisance_deviation_.head(gps_shared_nuisances).cwiseAbs2();
     return covariance;
   }
 
@@ -236,8 +199,7 @@ class GpsSolver {
     if (before_.covariance.size() > 0) return;
     Eigen::MatrixXd nuisances =
         equations_.matrix.bottomRightCorner(gps_shared_nuisances, gps_shared_nuisances);
-    for (Eigen::Index n = 0; n < gps_shared_nuisances; ++n)
-      nuisances(n, n) += std::pow(gps_nuisances[static_cast<std::size_t>(n)].deviation, -2);
+    nuisances.diagonal() += nuisance_deviation_.head(gps_shared_nuisances).cwiseAbs2().cwiseInverse();
     const Eigen::MatrixXd cross = equations_.matrix.bottomLeftCorner(gps_shared_nuisances, count_);
     const Eigen::MatrixXd information = prior_deviation_.asDiagonal() *
                                         (equations_.matrix.topLeftCorner(count_, count_) -
@@ -371,7 +333,7 @@ class GpsSolver {
     const Eigen::MatrixXd matrix = equations_.matrix.topLeftCorner(count_, count_);
     const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::VectorXd eigenvalues =
-        symmetric_eigen(scale.asDiagonal() * matrix * scale.asDiagonal()).eigenvalues();
+        symmetric_eigenvalues(scale.asDiagonal() * matrix * scale.asDiagonal());
     fit.condition_number = std::sqrt(eigenvalues.maxCoeff() / std::max(eigenvalues.minCoeff(), 1e-20));
     fit.thermometer = change_[count_];
     fit.thermometer_error = std::sqrt(posterior_(count_, count_));
@@ -455,6 +417,7 @@ class GpsSolver {
   const std::vector<std::size_t>& wanted_;
   Eigen::Index count_;
   Eigen::VectorXd prior_deviation_{};
+  const Eigen::VectorXd nuisance_deviation_ = gps_nuisance_deviations();
   std::vector<std::vector<FlightState>> states_;  // indexed by reference and flight
   Equations equations_{};
   Eigen::MatrixXd defects_{};

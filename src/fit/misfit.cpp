@@ -70,22 +70,12 @@ struct Products {
   }
 };
 
-/// Products of the parts of columns that the derivatives absorb. @param across products of both
-Eigen::MatrixXd absorbed(const Eigen::MatrixXd& information, const Eigen::MatrixXd& across) {
-  return across.transpose() * information_inverse(information) * across;
-}
-
 /// Information about the heights of the bumps: derivatives have no prior, bumps have the variance of their
 /// state.
 class Heights {
  public:
-  Heights(const Products& products, Eigen::Index derivatives) {
-    // Information after elimination of the derivatives.
-    const Eigen::MatrixXd& all = products.white;
-    const Eigen::Index rest = all.cols() - derivatives;
-    const Eigen::MatrixXd across = all.topRightCorner(derivatives, rest);
-    left_ = all.bottomRightCorner(rest, rest) - absorbed(all.topLeftCorner(derivatives, derivatives), across);
-  }
+  Heights(const Products& products, Eigen::Index derivatives)
+      : left_(products_after(products.white, derivatives)) {}
 
   struct Posterior {
     Eigen::MatrixXd covariance;
@@ -107,7 +97,7 @@ class Heights {
   }
 
  private:
-  Eigen::MatrixXd left_;
+  Eigen::MatrixXd left_;  // information after elimination of the derivatives
 };
 
 constexpr double min_bump = 1e-3;  // size of a bump over the rms of the residual, practically zero
@@ -260,9 +250,7 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
     const double weight = weight_of(posterior, variance, rms);
     misfit.variance = weight * variance;
     misfit.height = weight * posterior.mean;
-    const Eigen::MatrixXd across = sum.plain.block(0, own, own, count);
-    const Eigen::MatrixXd left =
-        sum.plain.block(own, own, count, count) - absorbed(sum.plain.topLeftCorner(own, own), across);
+    const Eigen::MatrixXd left = products_after(sum.plain, own).topLeftCorner(count, count);
     misfit.left = std::sqrt(
         weight *
         std::max(0.0, (left * (posterior.covariance + posterior.mean * posterior.mean.transpose())).trace()) /

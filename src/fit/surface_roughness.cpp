@@ -39,8 +39,7 @@ Products products_of(FitFlights& flights, const Eigen::VectorXd& values) {
   const Eigen::Index count = as_index(flights.setup().wanted.size());
   return flights.share().sum_of_each_flight<Products>([&](std::size_t flight) {
     const FitRows rows = flights.rows(flight, values, {});
-    Eigen::MatrixXd all(rows.columns.rows(), count + 1);
-    all << rows.columns.leftCols(count), rows.innovations;
+    const Eigen::MatrixXd all = side_by_side(rows.columns.leftCols(count), rows.innovations);
     const Eigen::MatrixXd weighted = flights.weighted(flight, all.leftCols(count));
     return Products{all.transpose() * all,
                     noise_covariance(weighted, flights.bins(flight), flights.noise(flight), 0)};

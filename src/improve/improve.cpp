@@ -13,12 +13,12 @@
 #include <pcor/base/error.hpp>
 #include <pcor/effects/static_surface.hpp>
 #include <pcor/flight/flight.hpp>
+#include "diagnose/rms.hpp"
 #include "diagnose/traced_effect.hpp"
 #include "fit/lineage.hpp"
 #include "improve/improve_loop.hpp"
 #include "improve/model_trials.hpp"
 #include "improve/rival_choice.hpp"
-#include "numerics/missing.hpp"
 #include "parallel/flight_partition.hpp"
 #include "residuals/flight_statistics.hpp"
 
@@ -96,28 +96,15 @@ Candidate candidate_of(const EmpiricalPredictor& variable, const std::string& fl
   return candidate;
 }
 
-double rms_of(const std::vector<double>& values) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    squares += value * value;
-    count += 1.0;
-  }
-  return count > 0.0 ? std::sqrt(squares / count) : nan;
-}
-
 /// rms of the held-out samples, hPa; NaN if there are no such samples
 double held_out_rms(const RefitResult& fit) {
-  double squares = 0.0;
-  double samples = 0.0;
+  SquareSum sum;
   for (const FlightFit& flight : fit.flights) {
     if (!flight.holdout || flight.after.samples == 0) continue;
     const auto count = static_cast<double>(flight.after.samples);
-    squares += flight.after.rms * flight.after.rms * count;
-    samples += count;
+    sum += {flight.after.rms * flight.after.rms * count, count};
   }
-  return samples > 0.0 ? std::sqrt(squares / samples) : nan;
+  return sum.rms();
 }
 
 std::string shown(double rms) { return fmt::format("{:.4f} hPa", rms); }
@@ -279,7 +266,8 @@ class Climb {
     step.rival_error = choice.error;
     step.delivered.clear();
     for (std::size_t i = 0; i < tested.size(); ++i)
-      step.rivals.push_back({rungs_[rung][tested[i]].added.effect.id, weights[i], rms_of(changes[i])});
+      step.rivals.push_back(
+          {rungs_[rung][tested[i]].added.effect.id, weights[i], square_sum_of(changes[i]).rms()});
     if (!choice.rival) return std::nullopt;
     step.delivered = step.rivals[*choice.rival].effect;
     return tested[*choice.rival];

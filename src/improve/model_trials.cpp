@@ -6,7 +6,7 @@
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/roles/add_effects.hpp>
 #include "campaign/linear_rows.hpp"
-#include "numerics/missing.hpp"
+#include "diagnose/rms.hpp"
 #include "parallel/flight_partition.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/packed_residuals.hpp"
@@ -164,9 +164,8 @@ bool TrialComparison::is_worse() const { return gain < -sure_gain * gain_error; 
 TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
                               bool held_out) {
   TrialComparison result;
-  double squares_before = 0.0;
-  double squares_after = 0.0;
-  double samples = 0.0;
+  SquareSum before_sum;
+  SquareSum after_sum;
   double variance = 0.0;
   double first_variance = 0.0;
   for (const TrialFlight& flight : flights) {
@@ -183,15 +182,14 @@ TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size
     first_variance += gain.error * gain.error;
     for (const std::size_t i : part) {
       if (std::isnan(was[i]) || std::isnan(is[i])) continue;
-      squares_before += was[i] * was[i];
-      squares_after += is[i] * is[i];
-      samples += 1.0;
+      before_sum.add(was[i]);
+      after_sum.add(is[i]);
     }
   }
   result.gain_error = std::sqrt(variance);
   result.first_gain_error = std::sqrt(first_variance);
-  result.rms_before = samples > 0.0 ? std::sqrt(squares_before / samples) : nan;
-  result.rms_after = samples > 0.0 ? std::sqrt(squares_after / samples) : nan;
+  result.rms_before = before_sum.rms();
+  result.rms_after = after_sum.rms();
   return result;
 }
 

@@ -2,20 +2,16 @@
 
 #include <cmath>
 
+#include "diagnose/rms.hpp"
+
 namespace pcor::internal {
 namespace {
 
-/// Rms of a - b over the samples in which both have a value; 0 if there are no such samples.
+/// Rms of a - b over the samples in which both have a value.
 double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double difference = a[i] - b[i];
-    if (std::isnan(difference)) continue;
-    sum += difference * difference;
-    count += 1.0;
-  }
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  SquareSum sum;
+  for (std::size_t i = 0; i < a.size(); ++i) sum.add(a[i] - b[i]);
+  return sum.rms();
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include <pcor/base/utc.hpp>
-#include "report/present_columns.hpp"
+#include "report/columns.hpp"
 #include "report/residual_pictures.hpp"
 #include "residuals/wind.hpp"
 

@@ -51,6 +51,13 @@ Eigen::MatrixXd information_inverse(const Eigen::MatrixXd& information) {
          scale.asDiagonal();
 }
 
+Eigen::MatrixXd products_after(const Eigen::MatrixXd& products, Eigen::Index count) {
+  const Eigen::Index rest = products.cols() - count;
+  const Eigen::MatrixXd across = products.topRightCorner(count, rest);
+  return products.bottomRightCorner(rest, rest) -
+         across.transpose() * (information_inverse(products.topLeftCorner(count, count)) * across);
+}
+
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix) {
   return matrix.completeOrthogonalDecomposition().pseudoInverse();
 }

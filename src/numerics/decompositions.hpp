@@ -35,10 +35,14 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least);
 /// The x of information x = right, unknowns scaled alike, over the directions above `least`; zero over the
 /// others.
 Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen::VectorXd& right,
-                                double least);
+                                double least = rank_limit);
 
 /// The inverse of the information on unknowns in any units, over the directions that it determines.
 Eigen::MatrixXd information_inverse(const Eigen::MatrixXd& information);
+
+/// Products of columns after least squares by the first `count` of them, in any units.
+/// @param products of all columns with each other @return those of the columns after the first `count`
+Eigen::MatrixXd products_after(const Eigen::MatrixXd& products, Eigen::Index count);
 
 /// Moore-Penrose inverse, without the directions whose singular values are zero within rounding errors.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);

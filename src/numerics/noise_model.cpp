@@ -196,7 +196,7 @@ class RestrictedLikelihood {
     if (width > 0) {
       const Eigen::MatrixXd information = squares_of(white_.leftCols(width));
       innovation -= white_.leftCols(width) *
-                    pseudo_solution(information, white_.leftCols(width).transpose() * innovation, rank_limit);
+                    pseudo_solution(information, white_.leftCols(width).transpose() * innovation);
       const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt();
       const Eigen::VectorXd inverse = scale.cwiseInverse();
       columns = 2.0 * scale.array().log().sum() +

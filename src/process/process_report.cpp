@@ -10,7 +10,6 @@
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/flight/flight.hpp>
 #include "report/columns.hpp"
-#include "report/present_columns.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
 
@@ -101,15 +100,10 @@ void add_pictures(Report& report) {
                            {"PCOR"},
                            "delta-p",
                            meet(report.columns, {"PCOR", "PCOR_uncertainty"}) ? "PCOR_uncertainty" : ""});
-  if (has_column(report, "PCOR")) {
-    std::vector<std::string> states;
-    for (const char* name : {"MACHX", "QCXC", "PSXC"}) {
-      if (has_column(report, name)) states.emplace_back(name);
-    }
-    if (!states.empty())
-      report.items.emplace_back(BinnedPanel{
-          "Delta-p by the state of flight", "The samples, and their mean in each bin.", {"PCOR"}, states});
-  }
+  const std::vector<std::string> states = present(report, {"MACHX", "QCXC", "PSXC"});
+  if (!states.empty() && column_named(report.columns, "PCOR") != nullptr)
+    report.items.emplace_back(BinnedPanel{
+        "Delta-p by the state of flight", "The samples, and their mean in each bin.", {"PCOR"}, states});
   add_if_present(report, TimePanel{"Difference from the flight's own processing",
                                    "Corrected static pressure minus the corrected static pressure of the "
                                    "input: 1 hPa is about 8 m of height at the ground.",

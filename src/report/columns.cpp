@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 
@@ -23,6 +26,23 @@ bool meet(const std::vector<ReportColumn>& columns, const std::vector<std::strin
       return true;
   }
   return false;
+}
+
+void add_if_present(Report& report, ReportColumn column) {
+  if (has_value(column.values)) report.columns.push_back(std::move(column));
+}
+
+std::vector<std::string> present(const Report& report, std::vector<std::string> names) {
+  names.erase(
+      std::remove_if(names.begin(), names.end(),
+                     [&](const std::string& name) { return column_named(report.columns, name) == nullptr; }),
+      names.end());
+  return names;
+}
+
+void add_if_present(Report& report, TimePanel panel) {
+  panel.columns = present(report, std::move(panel.columns));
+  if (!panel.columns.empty()) report.items.emplace_back(std::move(panel));
 }
 
 }  // namespace pcor::internal

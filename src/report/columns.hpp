@@ -13,4 +13,13 @@ const ReportColumn* column_named(const std::vector<ReportColumn>& columns, const
 /// Whether some sample has a value in all of these columns; false if one of them is absent.
 bool meet(const std::vector<ReportColumn>& columns, const std::vector<std::string>& names);
 
+/// Names of the columns that a report has.
+std::vector<std::string> present(const Report& report, std::vector<std::string> names);
+
+/// Adds a column, unless it has no value.
+void add_if_present(Report& report, ReportColumn column);
+
+/// Adds a panel of its available columns; adds no panel if all are missing.
+void add_if_present(Report& report, TimePanel panel);
+
 }  // namespace pcor::internal

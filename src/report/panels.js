@@ -10,6 +10,9 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+// A table that scrolls sideways, also by keys.
+const scrolling = (label, table) => make('div', {class: 'scroll', tabindex: '0', role: 'group', 'aria-label': label}, table);
+
 // Two distinct numbers, further apart than rounding errors.
 const isRange = (range) => Array.isArray(range) && range.length === 2 && range.every(Number.isFinite) &&
   range[1] - range[0] > 1e-9 * Math.max(Math.abs(range[0]), Math.abs(range[1]));
@@ -71,7 +74,7 @@ class Panel {
     if (this.switches.length) this.picture.before(make('div', {class: 'chips', role: 'group', 'aria-label': 'Curves'}, ...this.switches));
     this.whole = make('p', {class: 'hint whole', hidden: ''}, 'This picture shows all samples.');
     this.picture.after(this.whole);
-    section.append(make('details', {}, make('summary', {}, 'Numbers'), make('div', {'class': 'scroll', 'tabindex': '0', 'role': 'group', 'aria-label': `Numbers of ${item.title}`}, this.numbers)));
+    section.append(make('details', {}, make('summary', {}, 'Numbers'), scrolling(`Numbers of ${item.title}`, this.numbers)));
   }
 
   choice() {
@@ -400,8 +403,7 @@ class Regimes {
   constructor(item, section, report) {
     Object.assign(this, {item, report});
     this.table = make('table', {class: 'regime-table'});
-    const scroll = {class: 'scroll', tabindex: '0', role: 'group', 'aria-label': item.title};
-    section.querySelector('h2').after(make('div', scroll, this.table));
+    section.querySelector('h2').after(scrolling(item.title, this.table));
   }
 
   draw() {

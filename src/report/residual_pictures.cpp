@@ -1,23 +1,14 @@
 #include "report/residual_pictures.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 
 #include "numerics/median.hpp"
 #include "numerics/octave_spectrum.hpp"
 #include "report/columns.hpp"
-#include "report/present_columns.hpp"
 
 namespace pcor::internal {
 namespace {
-
-std::vector<std::string> present(const Report& report, std::vector<std::string> names) {
-  names.erase(std::remove_if(names.begin(), names.end(),
-                             [&report](const std::string& name) { return !has_column(report, name); }),
-              names.end());
-  return names;
-}
 
 // Median sampling interval, s.
 double step_of(const Report& report) {

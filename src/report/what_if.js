@@ -89,12 +89,12 @@ class WhatIf {
     this.commandPart = make('div', {class: 'what-if-command'}, make('p', {}, 'To add the active effects, and refit'), this.copy, this.command);
     this.coefficients = make('table');
     this.controls = make('div', {class: 'what-if-controls'},
-      make('div', {class: 'scroll', tabindex: '0', role: 'group', 'aria-label': 'Residual by fit'}, this.figures),
+      scrolling('Residual by fit', this.figures),
       make('div', {class: 'what-if-general'},
         make('label', {class: 'switch'}, this.ownSwitch, text('The model’s coefficients are fitted again')), this.reset),
       this.commandPart,
       make('ul', {class: 'what-if-effects', 'aria-label': 'Effects'}, ...this.rows.map(({element}) => element)),
-      make('details', {}, make('summary', {}, 'Coefficients'), make('div', {class: 'scroll', tabindex: '0', role: 'group', 'aria-label': 'Coefficients'}, this.coefficients)));
+      make('details', {}, make('summary', {}, 'Coefficients'), scrolling('Coefficients', this.coefficients)));
   }
 
   effectRow({id, title, why, note}, e) {
@@ -204,9 +204,8 @@ class WhatIf {
       'Reduction of the residual by each effect alone, with the model fitted again: where the two curves differ, these flights distinguish the effects.',
       make('div', {class: 'what-if-pair'}, ...labels));
     this.panels.push(this.pairPanel);
-    const scroll = {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Two effects by regime'};
     part('table', 'Where the two differ', 'Rms of the reduction of the residual by each effect, and of the difference, over the selected samples; the correlation covers the same samples.',
-      this.pairWords, make('div', scroll, this.pairTable));
+      this.pairWords, scrolling('Two effects by regime', this.pairTable));
     this.report.tables.push({draw: () => this.fillPairTable(), table: this.pairTable});
   }
 

@@ -44,9 +44,7 @@ std::vector<double> combination(const std::vector<double>& series, double max_rm
     ++rows;
   }
   if (rows < min_rows) return {};
-  const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Row solution = scale.asDiagonal() * pseudo_solution(scale.asDiagonal() * normal * scale.asDiagonal(),
-                                                            scale.cwiseProduct(right), 1e-12);
+  const Row solution = pseudo_solution(normal, right);
   const double left = std::max(0.0, squares - solution.dot(right));
   if (!(std::sqrt(left / static_cast<double>(rows)) < max_rms)) return {};
   std::vector<double> result(series.size());

@@ -17,11 +17,10 @@ namespace pcor::internal {
 namespace {
 
 // The states, in their order.
-enum State : Eigen::Index { drift, wander, slope_east, slope_north, state_count };
+enum HeightState : Eigen::Index { drift, wander, slope_east, slope_north, state_count };
 
 // Columns of the filter: the height, and the columns of the unknowns.
-constexpr Eigen::Index unknowns = HeightEquations::unknowns;
-constexpr Eigen::Index filtered = 1 + unknowns;
+constexpr Eigen::Index filtered = 1 + HeightEquations::unknowns;
 using Covariance = Eigen::Matrix<double, state_count, state_count>;
 using Vector = Eigen::Matrix<double, state_count, 1>;
 using Means = Eigen::Matrix<double, state_count, filtered>;
@@ -351,7 +350,7 @@ HeightEquations height_equations(const HeightRecord& record, const HeightNoise& 
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
     if (block.starts_segment) return;  // this block only determines the unknown initial height
     const double weight = 1.0 / variance;
-    const HeightEquations::Vector columns = innovation.tail<unknowns>().transpose();
+    const HeightEquations::Vector columns = innovation.tail<HeightEquations::unknowns>().transpose();
     result.information.noalias() += weight * columns * columns.transpose();
     result.right += weight * innovation(0) * columns;
     result.squares += weight * innovation(0) * innovation(0);
@@ -365,7 +364,7 @@ std::vector<double> height_innovations(const HeightRecord& record, const HeightN
                                        const HeightPrior& prior, const HeightEquations::Vector& all) {
   std::vector<double> result;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
-    const double left = innovation(0) - innovation.tail<unknowns>().dot(all);
+    const double left = innovation(0) - innovation.tail<HeightEquations::unknowns>().dot(all);
     result.push_back(block.starts_segment ? nan : left / std::sqrt(variance));
   });
   return result;

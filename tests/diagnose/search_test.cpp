@@ -320,9 +320,7 @@ TEST(Search, EstimatesAreThoseOfDenseLeastSquares) {
   problem.candidate(5) *= 1e-5;
   problem.residual += 3e-5 * problem.candidate(2) - 2e4 * problem.candidate(5);
   const Search search = problem.search();
-  Eigen::VectorXd estimate;
-  Eigen::MatrixXd covariance;
-  search.fit({2, 5}, estimate, covariance);
+  const auto [estimate, covariance] = search.fit({2, 5});
   const Dense dense(problem, {0, 1, base + 2, base + 5});
   // Rounding of normal equations whose condition, columns alike, is below 1e3.
   for (Eigen::Index k = 0; k < 4; ++k) {

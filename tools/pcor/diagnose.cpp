@@ -26,12 +26,10 @@ struct DiagnoseArguments {
   CommonOptions common;
   ComparisonOptions comparison;
   CandidateOptions candidates;
-  FitOptions held;
+  FitOptions fit;
   std::string model;
   std::vector<std::string> not_variables;
   bool no_file_variables = false;
-  double training_share = 1.0;
-  bool trust_reference = false;
   bool full = false;
 };
 
@@ -130,18 +128,10 @@ void print_others(const Diagnosis& diagnosis, bool all) {
   print_list("not testable", not_testable, all);
 }
 
-/// Arguments of a fit with the options of the diagnosis. @param flights arguments with the flights
-std::string fit_command_line(std::string flights, const DiagnoseArguments& options) {
-  if (options.trust_reference) flights += " --trust-reference";
-  flights += command_line(options.held);
-  if (options.training_share < 1.0) flights += fmt::format(" --training-share {}", options.training_share);
-  return flights;
-}
-
 /// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
 /// for findings that one command cannot add.
 std::string next_command(const Diagnosis& diagnosis, const DiagnoseArguments& options) {
-  const std::string flights = fit_command_line(advised_command_line(options.comparison), options);
+  const std::string flights = advised_command_line(options.comparison) + command_line(options.fit);
   const std::string model = shell_path(options.model);
   if (diagnosis.verdict == Verdict::silent) {
     return fmt::format("To apply the model: {} process {} -m {} -o corrected.nc", program(),
@@ -234,7 +224,7 @@ void run(const DiagnoseArguments& options) {
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
   const ModelDefinition model =
-      with_fit_options(read_model_for(options.model, flights, options.common), options.held);
+      with_fit_options(read_model_for(options.model, flights, options.common), options.fit);
   const ChosenReferences references = references_to_fit(options.comparison, model, flights);
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
@@ -242,8 +232,8 @@ void run(const DiagnoseArguments& options) {
   diagnose_with.formulas = candidate_formulas(options.candidates, model, flights);
   diagnose_with.whole_file = !options.no_file_variables;
   diagnose_with.not_variables = options.not_variables;
-  diagnose_with.training_share = options.training_share;
-  diagnose_with.trust_reference = options.trust_reference;
+  diagnose_with.training_share = options.fit.training_share;
+  diagnose_with.trust_reference = options.fit.trust_reference;
   Diagnosis diagnosis;
   WhatIf tried;
   {
@@ -255,7 +245,7 @@ void run(const DiagnoseArguments& options) {
       tried = what_if(flights, model, references.used, what_if_candidates(diagnosis, diagnose_with.formulas),
                       {diagnose_with, {}, true, diagnosis.own});
       add_commands(tried, options.model, options.comparison.flights.front(),
-                   fit_command_line(command_line(options.comparison), options));
+                   command_line(options.comparison) + command_line(options.fit));
     }
   }
   if (!is_speaker()) return;
@@ -280,16 +270,16 @@ std::function<void()> add_diagnose(CLI::App& program) {
       ->required()
       ->type_name("MODEL.toml");
   add_candidate_options(*command, options->candidates);
-  add_fit_options(*command, options->held);
+  add_fit_options(*command, options->fit);
   add_list_option(*command, "--not-variable", options->not_variables,
                   "exclude a variable of the flights from the search for unexplained structure")
       ->type_name("NAME");
   command->add_flag("--no-file-variables", options->no_file_variables,
                     "do not search the variables of the flights for unexplained structure");
-  command->add_flag("--trust-reference", options->trust_reference,
+  command->add_flag("--trust-reference", options->fit.trust_reference,
                     "assume that the references are exact: do not test effects of the references");
   command
-      ->add_option("--training-share", options->training_share,
+      ->add_option("--training-share", options->fit.training_share,
                    "use only this fraction of every flight, its first part")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();

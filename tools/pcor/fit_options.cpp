@@ -42,6 +42,25 @@ void add_fit_options(CLI::App& command, FitOptions& options) {
       ->type_name("NAME");
 }
 
+void add_training_options(CLI::App& command, FitOptions& options, const std::string& tested) {
+  command
+      .add_option("--loss", options.loss,
+                  "loss function, which limits the weight of outliers; none: least squares")
+      ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
+      ->capture_default_str();
+  add_list_option(command, "--holdout", options.holdout, "a flight that is not fitted, but tests " + tested)
+      ->type_name("T.nc");
+  command
+      .add_option("--training-share", options.training_share,
+                  "fit only this fraction of every flight, its first part; the rest tests " + tested)
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  command.add_flag("--trust-reference", options.trust_reference,
+                   "assume exact calibrations of the reference and the thermometer: standard errors exclude "
+                   "their uncertainty ([uncertainty] of the model or default sizes), and effects of the "
+                   "reference are not tested");
+}
+
 ModelDefinition with_fit_options(ModelDefinition model, const FitOptions& options) {
   for (const std::string& name : options.free) set_fixed(model, name, false, "--free");
   for (const std::string& name : options.fix) set_fixed(model, name, true, "--fix");
@@ -50,6 +69,10 @@ ModelDefinition with_fit_options(ModelDefinition model, const FitOptions& option
 
 std::string command_line(const FitOptions& options) {
   std::string line;
+  for (const std::string& flight : options.holdout) line += " --holdout " + shell_path(flight);
+  if (options.training_share < 1.0) line += fmt::format(" --training-share {}", options.training_share);
+  if (options.loss != FitOptions().loss) line += " --loss " + options.loss;
+  if (options.trust_reference) line += " --trust-reference";
   for (const std::string& name : options.fix) line += " --fix " + shell_quote(name);
   for (const std::string& name : options.free) line += " --free " + shell_quote(name);
   return line;

@@ -6,13 +6,6 @@
 
 namespace pcor::tool {
 
-void add_trust_option(CLI::App& command, bool& trust) {
-  command.add_flag("--trust-reference", trust,
-                   "assume exact calibrations of the reference and the thermometer: standard errors exclude "
-                   "their uncertainty ([uncertainty] of the model or default sizes), and effects of the "
-                   "reference are not tested");
-}
-
 void print_fit_summary(const RefitResult& fit) {
   const std::optional<HeldOutPart> held_out = worst_held_out(fit.flights);
   if (held_out && held_out->is_off()) say("Warning: {}.\n", held_out->text());

@@ -27,15 +27,11 @@ struct ImproveArguments {
   CommonOptions common;
   ComparisonOptions comparison;
   CandidateOptions candidates;
-  FitOptions held;
+  FitOptions fit;
   std::string model;
   std::string output;
-  std::string loss = "huber";
-  std::vector<std::string> holdout;
-  double training_share = 1.0;
   bool trace_variables = false;
   bool force = false;
-  bool trust_reference = false;
 };
 
 std::string next_step(const ImproveArguments& options) {
@@ -66,13 +62,13 @@ void print(const Improvement& improvement, const ChosenReferences& references,
     say("{:<24} {:>10} {:>10}\n", "output model", figure(improvement.rms_train),
         figure(improvement.rms_holdout));
   }
-  if (!options.holdout.empty()) {
+  if (!options.fit.holdout.empty()) {
     std::vector<std::string> names;
-    for (const std::string& path : options.holdout)
+    for (const std::string& path : options.fit.holdout)
       names.push_back(std::filesystem::path(path).filename().string());
     say("held out: {}\n", fmt::join(names, ", "));
   } else if (improvement.holdout_is_flights) {
-    say("held out: the last {:.0f} % of every flight\n", 100.0 * (1.0 - options.training_share));
+    say("held out: the last {:.0f} % of every flight\n", 100.0 * (1.0 - options.fit.training_share));
   } else {
     say("held out: five parts of the flights, one at a time, without outliers; hold out whole flights with "
         "--holdout\n");
@@ -96,10 +92,10 @@ ImproveOptions improve_options(const ImproveArguments& options, const ModelDefin
                                const CommandFlights& of) {
   ImproveOptions improve_with;
   improve_with.refit.mask = mask_options(options.comparison);
-  improve_with.refit.loss = *loss_named(options.loss);
-  improve_with.refit.training_share = options.training_share;
+  improve_with.refit.loss = *loss_named(options.fit.loss);
+  improve_with.refit.training_share = options.fit.training_share;
   improve_with.refit.holdout = of.holdout;
-  improve_with.refit.trust_reference = options.trust_reference;
+  improve_with.refit.trust_reference = options.fit.trust_reference;
   improve_with.formulas = candidate_formulas(options.candidates, model, of.flights);
   improve_with.trace_variables = options.trace_variables;
   return improve_with;
@@ -109,15 +105,15 @@ void run(const ImproveArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);
-  inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
+  inputs.insert(inputs.end(), options.fit.holdout.begin(), options.fit.holdout.end());
   refuse_overwriting({options.output, options.common.json, options.common.report, options.common.figures},
                      inputs);
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   require_figures(options.common);
   JsonResult json(options.common);
-  const CommandFlights of(options.comparison, options.holdout);
+  const CommandFlights of(options.comparison, options.fit.holdout);
   const ModelDefinition model =
-      with_fit_options(read_model_for(options.model, of.flights, options.common), options.held);
+      with_fit_options(read_model_for(options.model, of.flights, options.common), options.fit);
   const ChosenReferences references = references_to_fit(options.comparison, model, of.all());
   ImproveOptions improve_with = improve_options(options, model, of);
   Improvement improvement;
@@ -129,13 +125,8 @@ void run(const ImproveArguments& options) {
     improvement = improve(of.flights, model, references.used, improve_with);
     if (!options.common.report.empty()) {
       tried = what_if(of.flights, improvement, references.used, improve_with);
-      std::string fit = command_line(options.comparison);
-      for (const std::string& flight : options.holdout) fit += " --holdout " + shell_path(flight);
-      if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
-      if (options.loss != "huber") fit += " --loss " + options.loss;
-      if (options.trust_reference) fit += " --trust-reference";
-      fit += command_line(options.held);
-      add_commands(tried, options.model, options.comparison.flights.front(), fit);
+      add_commands(tried, options.model, options.comparison.flights.front(),
+                   command_line(options.comparison) + command_line(options.fit));
     }
   }
   refuse_worse(improvement.worse, options.force, improvement.model);
@@ -143,10 +134,12 @@ void run(const ImproveArguments& options) {
   OutputTransaction together;
   deliver(improvement.model, options.output, inputs);
   if (wants_report(options.common))
-    write_report_of_run(
-        improvement_report(improvement, model, &tried),
-        {{options.model, options.output}, options.comparison.flights, options.holdout, next_step(options)},
-        options.common);
+    write_report_of_run(improvement_report(improvement, model, &tried),
+                        {{options.model, options.output},
+                         options.comparison.flights,
+                         options.fit.holdout,
+                         next_step(options)},
+                        options.common);
   improvement.output = options.output;
   json.write(improvement);
   together.appear();
@@ -164,25 +157,12 @@ std::function<void()> add_improve(CLI::App& program) {
   command->add_option("-o,--output", options->output, "output model (written atomically); - for stdout")
       ->required()
       ->type_name("BEST.toml");
-  add_fit_options(*command, options->held);
-  add_list_option(*command, "--holdout", options->holdout,
-                  "a flight that is not fitted, but tests every step")
-      ->type_name("T.nc");
-  command
-      ->add_option("--training-share", options->training_share,
-                   "fit only this fraction of every flight, its first part; the rest tests every step")
-      ->check(CLI::Range(0.01, 1.0))
-      ->capture_default_str();
+  add_fit_options(*command, options->fit);
+  add_training_options(*command, options->fit, "every step");
   add_candidate_options(*command, options->candidates);
   command->add_flag("--trace-variables", options->trace_variables,
                     "if no effect of the catalogue explains the residual, add a formula of the correlated "
                     "variable, at the static ports unless total pressures show it as well");
-  command
-      ->add_option("--loss", options->loss,
-                   "loss function of the fits, which limits the weight of outliers; none: least squares")
-      ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
-      ->capture_default_str();
-  add_trust_option(*command, options->trust_reference);
   add_force_option(*command, options->force);
   add_common_options<Improvement>(*command, options->common);
   add_examples(

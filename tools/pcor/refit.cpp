@@ -33,14 +33,10 @@ struct RefitArguments {
   std::string output;
   std::string reference_output;
   std::string table;
-  std::string loss = "huber";
-  FitOptions held;
+  FitOptions fit;
   std::vector<std::string> stages;
-  std::vector<std::string> holdout;
-  double training_share = 1.0;
   double memory_mib = 512.0;
   bool prior = false;
-  bool trust_reference = false;
   bool search = false;
   bool force = false;
 };
@@ -78,17 +74,17 @@ FitStage parse_stage(const std::string& text) {
 RefitOptions refit_options(const RefitArguments& options, const FlightSet& holdout) {
   RefitOptions refit;
   refit.mask = mask_options(options.comparison);
-  refit.loss = *loss_named(options.loss);
-  refit.fix = options.held.fix;
-  refit.free = options.held.free;
+  refit.loss = *loss_named(options.fit.loss);
+  refit.fix = options.fit.fix;
+  refit.free = options.fit.free;
   std::vector<std::string> stages = options.stages;
   std::sort(stages.begin(), stages.end());  // the last digits do not depend on their order
   for (const std::string& stage : stages) refit.stages.push_back(parse_stage(stage));
   refit.fit_reference = !options.reference_output.empty();
   refit.use_prior = options.prior;
   refit.search = options.search;
-  refit.trust_reference = options.trust_reference;
-  refit.training_share = options.training_share;
+  refit.trust_reference = options.fit.trust_reference;
+  refit.training_share = options.fit.training_share;
   refit.holdout = holdout;
   return refit;
 }
@@ -237,7 +233,7 @@ Comparison before_against_after(const RefitResult& result, const ModelDefinition
   }
   Progress bar("comparing for the report", !options.common.quiet);
   compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-  const bool holds_out = !options.holdout.empty() || options.training_share < 1.0;
+  const bool holds_out = !options.fit.holdout.empty() || options.fit.training_share < 1.0;
   const std::string part = holds_out ? ", fitted and held-out samples" : "";
   return compare(
       flights, {{"before the fit" + part, model, references}, {"after the fit" + part, result.model, fitted}},
@@ -310,7 +306,7 @@ void put_static_systems_first(std::vector<std::string>& references) {
 void run(const RefitArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
-  inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
+  inputs.insert(inputs.end(), options.fit.holdout.begin(), options.fit.holdout.end());
   refuse_overwriting({options.output, options.reference_output, options.common.json, options.common.report,
                       options.common.figures, options.table},
                      inputs);
@@ -319,7 +315,7 @@ void run(const RefitArguments& options) {
     require_writable(output);
   require_figures(options.common);
   JsonResult json(options.common);
-  const CommandFlights of(options.comparison, options.holdout,
+  const CommandFlights of(options.comparison, options.fit.holdout,
                           static_cast<std::size_t>(options.memory_mib * 1048576.0));
   const FlightSet all = of.all();
   const ModelDefinition model = read_model_for(options.model, of.flights, options.common);
@@ -345,7 +341,7 @@ void run(const RefitArguments& options) {
     write_report_of_run(refit_report(result, *comparison),
                         {{options.model, options.output},
                          options.comparison.flights,
-                         options.holdout,
+                         options.fit.holdout,
                          is_refused ? "" : next_step(options)},
                         options.common);
   }
@@ -388,23 +384,12 @@ std::function<void()> add_refit(CLI::App& program) {
       ->add_option("--refit-reference", options->reference_output,
                    "fit the model of the second static system as well, and write it to this file")
       ->type_name("OTHER.toml");
-  command
-      ->add_option("--loss", options->loss,
-                   "loss function, which limits the weight of outliers; none: least squares")
-      ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
-      ->capture_default_str();
-  add_fit_options(*command, options->held);
+  add_fit_options(*command, options->fit);
   add_list_option(*command, "--stage", options->stages,
                   "fit these coefficients using only these regimes (one free offset per interval); stages "
                   "are iterated to convergence: 'pitch manoeuvre: static-alpha'")
       ->type_name("REGIMES: NAMES");
-  add_list_option(*command, "--holdout", options->holdout, "a flight that is not fitted, but tests the fit")
-      ->type_name("T.nc");
-  command
-      ->add_option("--training-share", options->training_share,
-                   "fit only this fraction of every flight, its first part; the rest tests the fit")
-      ->check(CLI::Range(0.01, 1.0))
-      ->capture_default_str();
+  add_training_options(*command, options->fit, "the fit");
   command->add_flag("--prior", options->prior,
                     "apply a Gaussian prior at the starting values, with the covariance in the model file, "
                     "otherwise with the typical size of each effect as standard error");
@@ -416,7 +401,6 @@ std::function<void()> add_refit(CLI::App& program) {
                    "MiB of samples kept in memory between passes over the flights; the rest is read again")
       ->check(is_amount())
       ->capture_default_str();
-  add_trust_option(*command, options->trust_reference);
   add_force_option(*command, options->force);
   add_common_options<RefitResult>(*command, options->common);
   add_examples(
