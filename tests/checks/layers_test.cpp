@@ -55,7 +55,6 @@ std::map<std::string, double> numbers_of(const CheckResult& result) {
 
 TEST(LayersCheck, CorrectThermometerPasses) {
   const CheckResult result = check_layers({made(0.0)});
-  EXPECT_EQ(result.name, "layers");
   ASSERT_TRUE(result.ran) << result.reason;
   // One flight, with the usual errors of delta-p, does not detect 0.3 K at two standard errors.
   EXPECT_EQ(result.verdict, CheckVerdict::inconclusive);
