@@ -29,7 +29,7 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 CorrectWith correct_with(const std::string& name) {
   if (name == "model") return CorrectWith::model;
   if (name == "lams") return CorrectWith::lams;
-  throw Error("correct_with: unknown value '" + name + "' (expected 'model' or 'lams')");
+  throw Error(Error::Code::usage, "correct_with: unknown value '" + name + "' (expected 'model' or 'lams')");
 }
 
 Quantity known_quantity(const std::string& name) {
@@ -100,8 +100,9 @@ class ArrayModel {
       const std::vector<py::ssize_t> own(array.shape(), array.shape() + array.ndim());
       if (inputs.empty()) shape = own;
       if (own != shape) {
-        throw Error("the array of '" + name + "' has another shape than that of '" + arrays.begin()->first +
-                    "'; give all recorded quantities on the same samples");
+        throw Error(Error::Code::usage, "the array of '" + name + "' has another shape than that of '" +
+                                            arrays.begin()->first +
+                                            "'; give all recorded quantities on the same samples");
       }
       inputs.push_back({input_named(name, extra_names()), array.data()});
     }

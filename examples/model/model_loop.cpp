@@ -10,7 +10,7 @@ int main(int argc, char** argv) try {
   const pcor::ModelDefinition file = pcor::read_model(argv[1]);
   std::string error;
   auto loop = pcor::Loop::build(file.model, file.roles(), 25.0, &error);
-  if (!loop) throw pcor::Error(error);
+  if (!loop) throw pcor::Error(pcor::Error::Code::model, error);
 
   std::printf("%s reads", file.model.name.c_str());
   for (const auto& [role, variable] : file.variables) std::printf(" %s", variable.c_str());

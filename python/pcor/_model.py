@@ -49,7 +49,7 @@ class Model:
     """Model of delta-p, the correction that is added to the static and subtracted from the dynamic pressure.
 
     `source` is a name ("c130-psfd-eq18"), the path of a model file, or the text of a model file. Raises `Error` with
-    code "file" if there is no such model, and "model" if the text is not valid.
+    code "file" if there is no such model, and "definition" if the text is not valid.
     """
 
     _definition: _pcor.ModelDefinition

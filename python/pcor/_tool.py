@@ -111,7 +111,7 @@ def run(arguments: list[str], progress: Optional[Progress] = None) -> Run:
     if process.returncode != 0:
         command = ["pcor", *arguments]
         message = failure.get("error") or "\n".join(lines) or f"the tool ended with status {process.returncode}"
-        code = failure.get("code") or {1: "other", 2: "usage"}.get(process.returncode, "crash")
+        code = failure.get("code") or ("usage" if process.returncode == 2 else "crash")
         raise Error(message, code, process.returncode, command)
     for line in lines:
         warnings.warn(line, stacklevel=2)

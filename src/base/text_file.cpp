@@ -20,7 +20,7 @@ constexpr std::uintmax_t max_bytes = std::uintmax_t{16} << 20U;
 
 std::string text_of_file(const std::filesystem::path& path, std::string_view what) {
   const auto fail = [&](const std::string& trouble) {
-    throw Error(one_line(fmt::format("{}: {}", path.string(), trouble)));
+    throw Error(Error::Code::file, one_line(fmt::format("{}: {}", path.string(), trouble)));
   };
   std::error_code code;
   if (!std::filesystem::exists(path, code)) {

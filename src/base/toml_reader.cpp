@@ -142,7 +142,7 @@ std::string TomlReader::place_of(Place place) const {
 }
 
 void TomlReader::fail(Place place, const std::string& what) const {
-  throw Error(one_line(place_of(place) + ": " + what));
+  throw Error(Error::Code::definition, one_line(place_of(place) + ": " + what));
 }
 
 void TomlReader::fail(const toml::node& node, const std::string& what) const {

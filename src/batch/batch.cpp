@@ -23,13 +23,14 @@ Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWi
   if (!chain) throw Error(Error::Code::model, fmt::format("model '{}': {}", model.name, why.message()));
   const auto require = [&](Quantity quantity) {
     if (!chain->derives(quantity)) return;
-    throw Error(fmt::format("model '{}': over whole arrays it needs '{}' among them", model.name,
-                            info_of(quantity).name));
+    throw Error(Error::Code::model, fmt::format("model '{}': over whole arrays it needs '{}' among them",
+                                                model.name, info_of(quantity).name));
   };
   require(Quantity::time);
   for (const Rate& each : rates) require(each.rate);
   if (with == CorrectWith::lams && !chain->has_lams()) {
-    throw Error(fmt::format("model '{}': correction with LAMS needs the role 'lams_airspeed'", model.name));
+    throw Error(Error::Code::model,
+                fmt::format("model '{}': correction with LAMS needs the role 'lams_airspeed'", model.name));
   }
   return std::move(*chain);
 }
@@ -82,12 +83,14 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
   for (const Quantity needed : chain_.inputs()) {
     const bool given = std::any_of(inputs.begin(), inputs.end(),
                                    [needed](const Input& input) { return input.quantity == needed; });
-    if (!given) throw Error(fmt::format("the values of '{}' are missing", to_string(needed)));
+    if (!given)
+      throw Error(Error::Code::variable, fmt::format("the values of '{}' are missing", to_string(needed)));
   }
   std::bitset<state_capacity> wanted;
   for (const Output& output : outputs) {
     if (!finds(output.quantity)) {
       throw Error(
+          Error::Code::variable,
           fmt::format("'{}' is not available in batch mode: an input is not recorded or depends on earlier "
                       "samples; pass it as an input",
                       to_string(output.quantity)));

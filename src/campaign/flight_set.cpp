@@ -99,8 +99,10 @@ struct FlightSet::Entry {
 
   const Flight& open() {
     if (given)
-      throw Error(fmt::format(
-          "{}: these samples are in memory, but the request reads the file; give its path", given->name));
+      throw Error(
+          Error::Code::usage,
+          fmt::format("{}: these samples are in memory, but the request reads the file; give its path",
+                      given->name));
     std::list<Entry*>& others = memory->open;
     if (flight) {
       if (others.front() != this)
@@ -251,6 +253,7 @@ void FlightSet::require_one_aircraft() const {
     if (!first) first = i;
     if (known[i].aircraft == known[*first].aircraft) continue;
     throw Error(
+        Error::Code::usage,
         fmt::format("{} is of the aircraft '{}' and {} of '{}', but a model applies to one aircraft; give "
                     "flights of a single aircraft",
                     name(*first), known[*first].aircraft, name(i), known[i].aircraft));
@@ -264,7 +267,8 @@ void FlightSet::require_each_once() const {
     if (entry->given || stat(entry->path.c_str(), &file) != 0 ||
         files.emplace(file.st_dev, file.st_ino).second)
       continue;
-    throw Error(fmt::format("{} is given twice; give every flight once, to the fit or to --holdout",
+    throw Error(Error::Code::usage,
+                fmt::format("{} is given twice; give every flight once, to the fit or to --holdout",
                             entry->path.string()));
   }
 }

@@ -49,6 +49,7 @@ ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flig
   for (auto other = first; other != choices.end(); ++other) {
     if (other->completes && (other->variables != first->variables || other->moist != first->moist)) {
       throw Error(
+          Error::Code::variable,
           fmt::format("{} and {} need different variables; set [variables] in the model or process the "
                       "flights separately",
                       flights.path(number_of(first)).string(), flights.path(number_of(other)).string()));

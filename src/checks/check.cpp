@@ -92,6 +92,7 @@ CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelD
   if (!second) return result;
   if (same(pair_of(*second), of_model)) {
     throw Error(
+        Error::Code::usage,
         fmt::format("the model '{}' has the pressures {} of the model under test; give a second system with "
                     "other pressures",
                     second->model.name, of_model.name()));
@@ -179,7 +180,7 @@ std::string_view to_string(CheckVerdict verdict) {
 
 Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& model,
              const CheckOptions& options) {
-  if (flights.empty()) throw Error("give at least one flight to check");
+  if (flights.empty()) throw Error(Error::Code::usage, "give at least one flight to check");
   flights.require_each_once();
   if (options.second && options.second->variables.count(Quantity::static_pressure) == 0) {
     throw Error(Error::Code::model,

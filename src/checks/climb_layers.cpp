@@ -332,8 +332,8 @@ Eigen::MatrixXd covariance_of(const std::vector<FlightLayers>& flights, std::siz
   return causes.covariance();
 }
 
-void require(bool well, const char* what) {
-  if (!well) throw Error(fmt::format("layers: {}", what));
+void require(bool well, const char* what, Error::Code code = Error::Code::usage) {
+  if (!well) throw Error(code, fmt::format("layers: {}", what));
 }
 
 }  // namespace
@@ -345,8 +345,8 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
   require(options.pressure_noise >= 0.0 && options.static_bias >= 0.0 && options.static_change >= 0.0 &&
               options.gradient.value_or(0.0) >= 0.0,
           "standard deviations must not be negative");
-  require(!air.temperature.empty(), "the model has no thermometer, so no temperature to test");
-  require(!air.geopotential_height.empty(), "the flight has no GPS height or no latitude");
+  require(!air.temperature.empty(), "the model has no thermometer, so no temperature to test", Error::Code::variable);
+  require(!air.geopotential_height.empty(), "the flight has no GPS height or no latitude", Error::Code::variable);
 
   FlightLayers found;
   found.flight = air.samples->name;

@@ -545,7 +545,8 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
 
 Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
                    const CompareOptions& options) {
-  if (flights.empty() || contenders.empty()) throw Error("give at least one flight to compare and one model");
+  if (flights.empty() || contenders.empty())
+    throw Error(Error::Code::usage, "give at least one flight to compare and one model");
   for (const ComparedModel& contender : contenders) first_of(contender.references);
   const std::vector<Field> fields = fields_of(contenders);
   flights.require_one_aircraft();
@@ -557,6 +558,7 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& c
   Comparison result = compare_with(fields.front().pairings, flights, options, progress);
   if (result.masks[0] == 0) {
     throw Error(
+        Error::Code::samples,
         fmt::format("{}: no samples remain to compare: {}; see the variables of the model and "
                     "--min-airspeed, --max-flaps, --exclude",
                     flights.size() == 1 ? flights.path(0).string() : "the flights", mask_text(result.masks)));

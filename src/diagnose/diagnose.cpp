@@ -341,6 +341,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   }
   if (diagnosis.samples < min_samples) {
     throw Error(
+        Error::Code::samples,
         fmt::format("{} usable samples, at least {} required: {}; add flights or relax --min-airspeed, "
                     "--max-flaps, --exclude",
                     diagnosis.samples, min_samples, mask_text(diagnosis.masks)));
@@ -463,7 +464,7 @@ void judge_held_out(Diagnosis& diagnosis) {
 
 Diagnosis diagnose(const FlightSet& flights, const ModelDefinition& model, const References& all_references,
                    const DiagnoseOptions& options) {
-  if (flights.empty()) throw Error("give at least one flight to diagnose");
+  if (flights.empty()) throw Error(Error::Code::usage, "give at least one flight to diagnose");
   flights.require_each_once();
   flights.require_one_aircraft();
   StepDates dates(flights);

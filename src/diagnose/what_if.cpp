@@ -345,7 +345,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   keep(set, wanted);
   TeamColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);
-  if (columns.flights.empty()) throw Error("no sample is left to try effects on");
+  if (columns.flights.empty()) throw Error(Error::Code::samples, "no sample is left to try effects on");
   drop_untestable(set, columns);
   TeamColumns others = held_out_columns(files, flights.size(), columns, model, set, options);
   hold_imitated_coefficients(set, columns, &others);

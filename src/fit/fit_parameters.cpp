@@ -51,7 +51,8 @@ std::vector<std::size_t> places_of(const std::vector<FitParameter>& parameters, 
   }
   if (!found.empty()) return found;
   const std::string meant = did_you_mean(name, known);
-  throw Error(fmt::format("{} {}: the model has no such parameter or effect; {}", option, name,
+  throw Error(Error::Code::usage,
+              fmt::format("{} {}: the model has no such parameter or effect; {}", option, name,
                           meant.empty() ? fmt::format("it has {}", fmt::join(known, ", ")) : meant));
 }
 
@@ -71,7 +72,8 @@ std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Ref
   }
   for (const FitParameter& parameter : parameters) {
     if (!(parameter.bounds.lower < parameter.bounds.upper)) {
-      throw Error(fmt::format("{}: its bounds [{}, {}] are empty; give the smaller one first", parameter.name,
+      throw Error(Error::Code::usage,
+                  fmt::format("{}: its bounds [{}, {}] are empty; give the smaller one first", parameter.name,
                               parameter.bounds.lower, parameter.bounds.upper));
     }
   }
@@ -84,8 +86,10 @@ std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>
   std::vector<bool> left;
   for (const FitParameter& parameter : parameters) left.push_back(!parameter.fixed);
   if (std::find(left.begin(), left.end(), true) == left.end()) {
-    throw Error(fmt::format(
-        "model '{}': no coefficient is free; add an effect, or free one with --free EFFECT", model_name));
+    throw Error(
+        Error::Code::usage,
+        fmt::format("model '{}': no coefficient is free; add an effect, or free one with --free EFFECT",
+                    model_name));
   }
   std::vector<std::vector<std::size_t>> result;
   for (const FitStage& stage : stages) {
@@ -93,7 +97,8 @@ std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>
     for (const std::string& name : stage.parameters) {
       for (const std::size_t p : places_of(parameters, name, "--stage")) {
         if (!left[p])
-          throw Error(fmt::format("--stage: {} is fixed, or fitted in a stage before", parameters[p].name));
+          throw Error(Error::Code::usage,
+                      fmt::format("--stage: {} is fixed, or fitted in a stage before", parameters[p].name));
         left[p] = false;
         wanted.push_back(p);
       }

@@ -74,6 +74,7 @@ Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values
   Trial trial(flights, values, free);
   if (trial.searched().empty()) {
     throw Error(
+        Error::Code::usage,
         "--search: the residual is linear in every free coefficient, so there is only one minimum; omit the "
         "option");
   }
@@ -85,10 +86,10 @@ Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values
     const auto& [low, high] = task.parameters[place].bounds;
     if (!std::isfinite(low) || !std::isfinite(high)) {
       const std::string& name = task.parameters[place].name;
-      throw Error(
-          fmt::format("--search: {} has no bounds to search between; give the effect "
-                      "bounds = {{ {} = [lower, upper] }} in the model file",
-                      name, name.substr(name.rfind('.') + 1)));
+      throw Error(Error::Code::usage,
+                  fmt::format("--search: {} has no bounds to search between; give the effect "
+                              "bounds = {{ {} = [lower, upper] }} in the model file",
+                              name, name.substr(name.rfind('.') + 1)));
     }
     lower.push_back(low);
     upper.push_back(high);

@@ -148,6 +148,7 @@ class GpsSolver {
     task_.tell();
     if (samples_ == 0)
       throw Error(
+          Error::Code::samples,
           "wind and height have no sample in these flights: they need more than 40 m/s; leave them out, or "
           "name other flights");
     eliminate_own(blocks);

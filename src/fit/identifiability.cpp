@@ -39,11 +39,13 @@ double condition_number(const Reduction& reduction, const FitTask& task,
     const double length = scaled.col(k).norm();
     if (!(lengths[k] > 0.0)) {
       throw Error(
+          Error::Code::fit,
           fmt::format("{} has no influence on these flights, so it cannot be fitted; fix it: --fix {}",
                       to_string(k), to_string(k)));
     }
     if (!(length > lengths[k] / hopeless_condition)) {
       throw Error(
+          Error::Code::fit,
           fmt::format("--stage: {} is not identifiable together with the offsets of the intervals; move it "
                       "to the last stage",
                       to_string(k)));
@@ -60,6 +62,7 @@ double condition_number(const Reduction& reduction, const FitTask& task,
     if (weak[k] > 0.1 * weak.maxCoeff()) names.push_back(to_string(k));
   }
   throw Error(
+      Error::Code::fit,
       fmt::format("{} are not identifiable together on these flights (condition number {:.0e}); fix one of "
                   "them, e.g. --fix {}",
                   fmt::join(names, ", "), condition, names.back()));

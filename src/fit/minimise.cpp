@@ -90,6 +90,7 @@ void minimise(const LossProblem& problem, Eigen::VectorXd& x) {
   }
   if (!summary.IsSolutionUsable() || !x.allFinite()) {
     throw Error(
+        Error::Code::fit,
         "the fit found no coefficients: from their values in the model the residuals are not numbers; give "
         "other starting values, or look for them with --search");
   }

@@ -31,18 +31,20 @@ namespace {
 constexpr std::size_t passes_expected = 40;
 
 void require_sense(const FlightSet& flights, const References& references, const RefitOptions& options) {
-  if (flights.empty()) throw Error("no flight to fit; give at least one");
+  if (flights.empty()) throw Error(Error::Code::usage, "no flight to fit; give at least one");
   const bool is_in_memory = flights.path(0).empty();
   if (is_in_memory && references.size() > 1)
     throw Error(
+        Error::Code::usage,
         "samples in memory hold what one reference reads; give one reference, or the paths of the flights");
   if (options.fit_reference && first_of(references).model() == nullptr) {
     throw Error(
+        Error::Code::usage,
         "only a static system can be fitted together with the model, and it is the first of the references; "
         "give --reference static:OTHER.toml");
   }
   if (!(options.training_share > 0.0 && options.training_share <= 1.0)) {
-    throw Error("the share of samples that is fitted has to be above 0 and at most 1");
+    throw Error(Error::Code::usage, "the share of samples that is fitted has to be above 0 and at most 1");
   }
   const FlightSet all = flights.with(options.holdout);
   all.require_each_once();
@@ -171,14 +173,17 @@ Fitted fit_in_stages(FitTask& task) {
 Fitted prepared_for_gps(const FitTask& task) {
   if (!task.options.stages.empty())
     throw Error(
+        Error::Code::usage,
         "--stage: a fit to GPS alone has no stages; give a further reference, or leave the stages out");
   if (task.options.use_prior)
     throw Error(
+        Error::Code::usage,
         "--prior: a fit to GPS alone always has a prior about the start, with the typical sizes of the "
         "effects; "
         "leave --prior out, or give a further reference");
   if (task.options.loss != RefitOptions().loss)
     throw Error(
+        Error::Code::usage,
         fmt::format("--loss {}: a fit to GPS alone has no loss function, outliers get a larger variance; "
                     "leave --loss out, "
                     "or give a further reference",
@@ -187,6 +192,7 @@ Fitted prepared_for_gps(const FitTask& task) {
   for (const std::size_t p : fitted.parameters) {
     if (const SurfaceRoughness* const surface = task.surface_of(p)) {
       throw Error(
+          Error::Code::fit,
           fmt::format("{}: wind and heights do not determine a surface; hold it with --fix {} or give a "
                       "further reference",
                       surface->effect, surface->effect));
@@ -195,6 +201,7 @@ Fitted prepared_for_gps(const FitTask& task) {
   fitted.flights = std::make_unique<FitFlights>(task, fitted.setup());
   if (fitted.flights->samples() == 0) {
     throw Error(
+        Error::Code::samples,
         fmt::format("no usable sample for the fit: {}; see the variables of the model and --min-airspeed, "
                     "--max-flaps, --exclude",
                     mask_text(fitted.flights->masks())));
@@ -472,7 +479,9 @@ RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const 
     const bool has_both = gps != in_order.begin() && gps != in_order.end();
     const bool is_for_others = !options.stages.empty() || options.fit_reference || options.use_prior ||
                                options.loss != RefitOptions().loss;
-    if (!has_both || error.code() != Error::Code::other || is_for_others) throw;
+    const bool is_of_fit = error.code() == Error::Code::samples || error.code() == Error::Code::fit ||
+                           error.code() == Error::Code::usage;  // of --search
+    if (!has_both || !is_of_fit || is_for_others) throw;
     result = fit(flights, model, References(gps, in_order.end()), options);
     result.notes.insert(result.notes.begin(),
                         fmt::format("fitted to {} alone, since the other references do not determine the "

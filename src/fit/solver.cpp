@@ -27,19 +27,24 @@ void require_samples(const FitFlights& flights, std::size_t free, bool is_stage)
     std::vector<std::string_view> names;
     for (const Regime regime : setup.regimes) names.push_back(info_of(regime).name);
     throw Error(
+        Error::Code::samples,
         fmt::format("--stage: the flights have no {}; fit without the stage, or give the intervals in a file "
                     "with --intervals",
                     fmt::join(names, " or ")));
   }
   if (flights.samples() == 0) {
-    throw Error(fmt::format(
-        "{}: no usable sample for the fit: {}; see the variables of the model and --min-airspeed, "
-        "--max-flaps, --exclude",
-        flights.count() == 1 ? flights.task().flights.name(0) : "the flights", mask_text(flights.masks())));
+    throw Error(
+        Error::Code::samples,
+        fmt::format(
+            "{}: no usable sample for the fit: {}; see the variables of the model and --min-airspeed, "
+            "--max-flaps, --exclude",
+            flights.count() == 1 ? flights.task().flights.name(0) : "the flights",
+            mask_text(flights.masks())));
   }
   const std::size_t unknown = free + flights.offsets();
   if (flights.samples() <= unknown) {
     throw Error(
+        Error::Code::samples,
         fmt::format("{} samples are too few for {} coefficients (not used: {}); give more flights or fix "
                     "coefficients",
                     flights.samples(), unknown, mask_text(flights.masks())));
@@ -48,10 +53,11 @@ void require_samples(const FitFlights& flights, std::size_t free, bool is_stage)
   const std::size_t fewest = unknown + (is_stage ? 1 : min_free_bins);
   const std::size_t bins = flights.bins();
   if (bins < fewest) {
-    throw Error(fmt::format(
-        "{} samples, in {} intervals of four seconds, are too few for {} coefficients and their errors: {} "
-        "intervals are the fewest (not used: {}); give more flights or fix coefficients",
-        flights.samples(), bins, unknown, fewest, mask_text(flights.masks())));
+    throw Error(Error::Code::samples,
+                fmt::format("{} samples, in {} intervals of four seconds, are too few for {} coefficients "
+                            "and their errors: {} "
+                            "intervals are the fewest (not used: {}); give more flights or fix coefficients",
+                            flights.samples(), bins, unknown, fewest, mask_text(flights.masks())));
   }
 }
 
@@ -253,6 +259,7 @@ class Solver {
       const auto [cost, length] = linear_step(loss);
       if (!std::isfinite(cost) && !std::isfinite(least)) {
         throw Error(
+            Error::Code::fit,
             "the fit found no coefficients: from their values in the model the residuals are not numbers; "
             "give other starting values, or look for them with --search");
       }

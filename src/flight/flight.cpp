@@ -301,7 +301,8 @@ struct Flight::Implementation {
 
   void check_block(const std::string& name, RecordBlock block) const {
     if (block.first > records || block.count > records - block.first)
-      throw Error(fmt::format("{}: cannot read {} at records {} to {}, there are {}", path(), name,
+      throw Error(Error::Code::usage,
+                  fmt::format("{}: cannot read {} at records {} to {}, there are {}", path(), name,
                               block.first, block.first + block.count, records));
   }
 
@@ -328,7 +329,7 @@ struct Flight::Implementation {
   }
 
   RejectedCounts read(Variable& variable, RecordBlock block, double* out) {
-    if (variable.refusal) throw Error(*variable.refusal);
+    if (variable.refusal) throw *variable.refusal;
     read_stored(variable, block, out);
     const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
     const RejectedCounts left_out = clean(variable, count, out);
@@ -353,12 +354,13 @@ struct Flight::Implementation {
     read(variable(static_cast<std::size_t>(source.variable)), block, out);
     for (std::size_t i = 0; i < block.count; ++i) {
       if (std::isnan(out[i]))
-        throw Error(fmt::format("{}: the time of record {} is missing; leave that record out", path(),
+        throw Error(Error::Code::time,
+                    fmt::format("{}: the time of record {} is missing; leave that record out", path(),
                                 block.first + i));
       out[i] = out[i] * source.scale + source.offset;
       if (!is_of_aviation(out[i]))
-        throw Error(fmt::format("{}: the time of record {} is {}; leave that record out", path(),
-                                block.first + i, utc_text(out[i])));
+        throw Error(Error::Code::time, fmt::format("{}: the time of record {} is {}; leave that record out",
+                                                   path(), block.first + i, utc_text(out[i])));
     }
     for (const std::size_t wrap : axis.midnight_wraps)
       for (std::size_t i = wrap > block.first ? wrap - block.first : 0; i < block.count; ++i) out[i] += day;
@@ -408,12 +410,14 @@ struct Flight::Implementation {
     }
     axis.last = before;
     if (backward + repeated > 0)
-      throw Error(fmt::format(
-          "{}: time {} at record {} ({} after {}), {} backward and {} repeated steps in all; cut the file "
-          "there with ncks -d {}",
-          path(), bad < bad_before ? "runs backwards" : "repeats", first_bad, utc_text(bad),
-          utc_text(bad_before), backward, repeated,
-          shell_quote(fmt::format("{},0,{}", file->dimension_name(source.dimension), first_bad - 1))));
+      throw Error(Error::Code::time,
+                  fmt::format("{}: time {} at record {} ({} after {}), {} backward and {} repeated steps in "
+                              "all; cut the file "
+                              "there with ncks -d {}",
+                              path(), bad < bad_before ? "runs backwards" : "repeats", first_bad,
+                              utc_text(bad), utc_text(bad_before), backward, repeated,
+                              shell_quote(fmt::format("{},0,{}", file->dimension_name(source.dimension),
+                                                      first_bad - 1))));
   }
 };
 
@@ -525,12 +529,15 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
   Variable& variable = implementation_->find_series(name);
   const int own = variable.info.rate;
   if (rate == own) return read(name, block, conversion, out);
-  if (rate < 1) throw Error(fmt::format("{}: {} samples a record are impossible", path().string(), rate));
+  if (rate < 1)
+    throw Error(Error::Code::usage,
+                fmt::format("{}: {} samples a record are impossible", path().string(), rate));
   if (rate % own != 0 && own % rate != 0)
-    throw Error(fmt::format(
-        "{}: {} has {} samples a record, which cannot be brought to {}; name a variable with {} samples a "
-        "record instead",
-        path().string(), name, own, rate, implementation_->rates_that_fit(rate)));
+    throw Error(Error::Code::samples,
+                fmt::format("{}: {} has {} samples a record, which cannot be brought to {}; name a variable "
+                            "with {} samples a "
+                            "record instead",
+                            path().string(), name, own, rate, implementation_->rates_that_fit(rate)));
   std::vector<double>& values = implementation_->scratch;
   values.resize(block.count * static_cast<std::size_t>(own));
   RejectedCounts left_out = implementation_->read(variable, block, values.data());
@@ -559,7 +566,9 @@ void Flight::read_time_stamps(RecordBlock block, double* out) const {
 }
 
 void Flight::read_sample_times(RecordBlock block, int rate, double* out) const {
-  if (rate < 1) throw Error(fmt::format("{}: {} samples a record are impossible", path().string(), rate));
+  if (rate < 1)
+    throw Error(Error::Code::usage,
+                fmt::format("{}: {} samples a record are impossible", path().string(), rate));
   std::vector<double>& stamps = implementation_->scratch;
   stamps.resize(block.count);
   read_time_stamps(block, stamps.data());

@@ -94,7 +94,7 @@ struct FlightWriter::Implementation {
         replacement(shown) {
     std::error_code code;
     if (input && std::filesystem::equivalent(shown, input->path(), code))
-      throw Error(shown.string() + " is the input itself; choose another output");
+      throw Error(Error::Code::usage, shown.string() + " is the input itself; choose another output");
     file.emplace(replacement.path(), shown, start.kind);
     const auto* const source = input ? dynamic_cast<const NetcdfFile*>(&input->file()) : nullptr;
     if (source) {
@@ -220,18 +220,21 @@ struct FlightWriter::Implementation {
 
   void check_new(const std::string& name) const {
     if (!defining)
-      throw Error(shown.string() + ": " + name + " is defined after the first value was written");
+      throw Error(Error::Code::usage,
+                  shown.string() + ": " + name + " is defined after the first value was written");
     if (name.empty() || name.find('/') != std::string::npos)
-      throw Error(shown.string() + ": a variable cannot be called \"" + name + "\"; choose another name");
+      throw Error(Error::Code::usage,
+                  shown.string() + ": a variable cannot be called \"" + name + "\"; choose another name");
     if (file->has(name))
-      throw Error(shown.string() + ": there is a variable " + name + " already; give the new one a suffix");
+      throw Error(Error::Code::usage,
+                  shown.string() + ": there is a variable " + name + " already; give the new one a suffix");
   }
 
   std::size_t define(const OutputVariable& variable) {
     check_new(variable.name);
     if (variable.rate < 1)
-      throw Error(fmt::format("{}: {} cannot have {} samples a record", shown.string(), variable.name,
-                              variable.rate));
+      throw Error(Error::Code::usage, fmt::format("{}: {} cannot have {} samples a record", shown.string(),
+                                                  variable.name, variable.rate));
     Written entry;
     entry.name = variable.name;
     entry.rate = variable.rate;
@@ -276,7 +279,8 @@ struct FlightWriter::Implementation {
   }
 
   void copy(const std::string& name) {
-    if (!input) throw Error(shown.string() + ": " + name + " cannot be copied, there is no input");
+    if (!input)
+      throw Error(Error::Code::usage, shown.string() + ": " + name + " cannot be copied, there is no input");
     input->variable(name);  // or an error that lists the existing variables
     if (name == input->time_variable() && name != "time_offset") return;
     check_new(name);
@@ -286,8 +290,8 @@ struct FlightWriter::Implementation {
 
   void define_series(const VariableInfo& info) {
     if (!info.is_series)
-      throw Error(shown.string() + ": " + info.name +
-                  " is not a time series, which alone is copied; leave it out");
+      throw Error(Error::Code::variable, shown.string() + ": " + info.name +
+                                             " is not a time series, which alone is copied; leave it out");
     const int variable = file->add_variable(info.name, NC_DOUBLE,
                                             file->dimensions_of_series(static_cast<std::size_t>(info.rate)));
     file->variable(variable).putAtt("_FillValue", netCDF::ncDouble, fill);
@@ -305,12 +309,13 @@ struct FlightWriter::Implementation {
     for (std::size_t i = 0; i < block.count; ++i) {
       const double before = i == 0 ? last_time : times[i - 1];
       if (!std::isfinite(times[i]) || (time_records + i > 0 && times[i] <= before))
-        throw Error(fmt::format("{}: the time of record {} does not follow the previous time", shown.string(),
+        throw Error(Error::Code::time,
+                    fmt::format("{}: the time of record {} does not follow the previous time", shown.string(),
                                 block.first + i));
       since_midnight[i] -= midnight;
       if (whole_seconds && since_midnight[i] != std::floor(since_midnight[i]))
-        throw Error(
-            fmt::format("{}: the time of record {} is not a whole second", shown.string(), block.first + i));
+        throw Error(Error::Code::time, fmt::format("{}: the time of record {} is not a whole second",
+                                                   shown.string(), block.first + i));
     }
     file->variable(time_variable).putVar({block.first}, {block.count}, since_midnight.data());
     if (time_records == 0) first_time = times[0];
@@ -327,7 +332,8 @@ struct FlightWriter::Implementation {
     if (variable.flags) {
       for (std::size_t i = 0; i < total; ++i)
         if (!(std::abs(values[i]) <= std::numeric_limits<int>::max()) || values[i] != std::floor(values[i]))
-          throw Error(fmt::format("{}: {} is not a whole number at record {}", shown.string(), variable.name,
+          throw Error(Error::Code::variable,
+                      fmt::format("{}: {} is not a whole number at record {}", shown.string(), variable.name,
                                   block.first + i / rate));
       file->variable(variable.id).putVar({block.first, 0}, {block.count, rate}, values);
     } else {
@@ -399,11 +405,12 @@ struct FlightWriter::Implementation {
       if (copies) copies->copy_values(input->records());
       for (const Series& copied : series) copy_series(copied);
     }
-    if (time_records == 0) throw Error(shown.string() + " would have no records; nothing was written");
+    if (time_records == 0)
+      throw Error(Error::Code::samples, shown.string() + " would have no records; nothing was written");
     for (const Written& variable : written)
       if (variable.records != time_records)
-        throw Error(fmt::format("{}: {} was written for {} of {} records", shown.string(), variable.name,
-                                variable.records, time_records));
+        throw Error(Error::Code::usage, fmt::format("{}: {} was written for {} of {} records", shown.string(),
+                                                    variable.name, variable.records, time_records));
 
     put_text(global, "time_coverage_start", utc_text(first_time, iso_8601));
     put_text(global, "time_coverage_end", utc_text(last_time, iso_8601));

@@ -79,6 +79,7 @@ void NetcdfCopy::define(const std::string& name) {
   const int type = from ? source_.type_of(*from) : NC_NAT;
   if (!from || !is_copied(type))
     throw Error(
+        Error::Code::variable,
         fmt::format("{}: {} holds strings, has a user-defined type or a name that netCDF does not allow, and "
                     "cannot be copied; leave it out",
                     shown, name));
@@ -90,7 +91,8 @@ void NetcdfCopy::define(const std::string& name) {
     const bool time = each == time_dimension_;
     const std::size_t length = source_.dimension_length(each);
     if (time && !dimensions.empty())
-      throw Error(fmt::format("{}: Time is not the first dimension of {}; leave it out", shown, name));
+      throw Error(Error::Code::variable,
+                  fmt::format("{}: Time is not the first dimension of {}; leave it out", shown, name));
     dimensions.push_back(time ? output_.time() : output_.dimension_of(source_.dimension_name(each), length));
     entry.over_time = entry.over_time || time;
     if (!time) entry.shape.push_back(length);

@@ -46,7 +46,8 @@ NcDim NetcdfOutput::dimension_of(const std::string& name, std::size_t length) {
     return attempt("cannot have a dimension called " + quote(name),
                    [&] { return file_.addDim(name, length); });
   if (known.getSize() != length)
-    throw Error(fmt::format("{}: the dimension {} has two lengths, {} and {}; leave one variable out",
+    throw Error(Error::Code::variable,
+                fmt::format("{}: the dimension {} has two lengths, {} and {}; leave one variable out",
                             path().string(), name, length, known.getSize()));
   return known;
 }

@@ -160,15 +160,15 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
   const bool is_gregorian = is("") || is("standard") || is("gregorian") ||
                             (is("proleptic_gregorian") && year >= first_gregorian_year);
   if (!is_gregorian)
-    throw Error(
-        fmt::format("{} counts from the year {} in the calendar \"{}\", whose days are not those of "
-                    "the standard calendar; write the time in that",
-                    time.of, year, time.calendar));
+    throw Error(Error::Code::time,
+                fmt::format("{} counts from the year {} in the calendar \"{}\", whose days are not those of "
+                            "the standard calendar; write the time in that",
+                            time.of, year, time.calendar));
   const auto refuse_time_of_day = [&time]() {
-    throw Error(
-        fmt::format("{} counts in \"{}\", where what follows the date is not a time of day in UTC or "
-                    "with an offset in hours; {}",
-                    time.of, time.units, time.how_to_state));
+    throw Error(Error::Code::time,
+                fmt::format("{} counts in \"{}\", where what follows the date is not a time of day in UTC or "
+                            "with an offset in hours; {}",
+                            time.of, time.units, time.how_to_state));
   };
   if (!is_time_of_day(time.units.c_str() + since + 6 + letters)) refuse_time_of_day();
   try {
@@ -241,22 +241,26 @@ TimeSource find_time(const FlightFile& file) {
   const auto time = find_time_variable(file);
   const auto offset = file.find_variable("time_offset");
   if (!time && (!offset || file.dimensions_of(*offset).size() != 1))
-    throw Error(path +
-                " has neither a variable Time nor base_time and time_offset; it is not a flight file that "
-                "pcor reads");
+    throw Error(
+        Error::Code::time,
+        path +
+            " has neither a variable Time nor base_time and time_offset; it is not a flight file that "
+            "pcor reads");
 
   TimeSource source;
   source.variable = time ? *time : *offset;
   source.dimension = file.dimensions_of(source.variable).front();
   if (file.dimension_length(source.dimension) == 0)
-    throw Error(path + " has no records: its dimension " + file.dimension_name(source.dimension) +
-                " is empty; choose a file with data");
+    throw Error(Error::Code::samples, path + " has no records: its dimension " +
+                                          file.dimension_name(source.dimension) +
+                                          " is empty; choose a file with data");
   const std::string name = file.variable_name(source.variable);
   const Counting counting = counting_of(file, source.variable);
   const std::string& units = counting.units;
   const auto raw = first_value(file, source.variable);
   if (!raw)
-    throw Error(path + ": the variable " + name + " is not numeric at record 0; repair the time axis");
+    throw Error(Error::Code::time,
+                path + ": the variable " + name + " is not numeric at record 0; repair the time axis");
 
   const auto base = base_time(file);
   if (!time && base) {
@@ -268,17 +272,20 @@ TimeSource find_time(const FlightFile& file) {
   const double first = epoch ? (*epoch)(*raw) : 0;
   const bool units_hold = epoch && is_plausible(first);
   if (epoch && !is_of_aviation(first))
-    throw Error(fmt::format("{} counts in \"{}\" and begins with {}, which is the {}; {}", counting.of, units,
+    throw Error(Error::Code::time,
+                fmt::format("{} counts in \"{}\" and begins with {}, which is the {}; {}", counting.of, units,
                             *raw, utc_text(first), counting.how_to_state));
   if (max_seconds(file, source.variable, epoch) < day)
     throw Error(
+        Error::Code::time,
         fmt::format("{} is stored in integers up to {}, less than the seconds of a day, so times may have "
                     "wrapped; store time as 32-bit integers or doubles",
                     counting.of, file.max_number(source.variable)));
   if (units_hold) {
     constexpr double week = 7 * day;
     if (epoch->scale() > week)
-      throw Error(fmt::format("{} counts in \"{}\", and months and years are not always as long; {}",
+      throw Error(Error::Code::time,
+                  fmt::format("{} counts in \"{}\", and months and years are not always as long; {}",
                               counting.of, units, counting.how_to_state));
     source.scale = epoch->scale();
     source.offset = std::round(epoch->offset() * 1000) / 1000;
@@ -301,9 +308,11 @@ TimeSource find_time(const FlightFile& file) {
       return source;
     }
   }
-  throw Error(fmt::format(
-      "{} is not a valid time: its units are \"{}\" and there is no matching base_time or FlightDate; {}",
-      counting.of, units, counting.how_to_state));
+  throw Error(
+      Error::Code::time,
+      fmt::format(
+          "{} is not a valid time: its units are \"{}\" and there is no matching base_time or FlightDate; {}",
+          counting.of, units, counting.how_to_state));
 }
 
 }  // namespace pcor::internal

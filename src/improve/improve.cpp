@@ -153,6 +153,7 @@ class Climb {
     measure(first, fit, {});
     if (std::isnan(first.rms_holdout)) {
       throw Error(
+          Error::Code::samples,
           "no held-out sample is usable, so no step can be tested; give another flight with --holdout");
     }
     first.learnt = fmt::format("the coefficients fitted again: rms {} before, {} after",

@@ -175,7 +175,8 @@ void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size
 
 Report improvement_report(const Improvement& improvement, const ModelDefinition& start,
                           const WhatIf* what_if) {
-  if (improvement.steps.empty()) throw Error("report: the ladder has no rung; improve a model first");
+  if (improvement.steps.empty())
+    throw Error(Error::Code::usage, "report: the ladder has no rung; improve a model first");
   const std::vector<ImproveStep>& steps = improvement.steps;
   const Diagnosis& top = steps.back().diagnosis;
   DiagnosisPanels panels(shown_flights(improvement));

@@ -61,9 +61,11 @@ ModelUncertainty uncertainty_of(const ModelDefinition& file) {
       continue;
     }
     if (found == names.end()) {
-      throw Error(fmt::format(
-          "model '{}': its covariance names {}, which is not a parameter of the model; refit the model",
-          file.model.name, quote(name)));
+      throw Error(
+          Error::Code::definition,
+          fmt::format(
+              "model '{}': its covariance names {}, which is not a parameter of the model; refit the model",
+              file.model.name, quote(name)));
     }
     places.push_back(static_cast<std::size_t>(found - names.begin()));
   }
@@ -103,8 +105,8 @@ std::vector<std::string> parameter_names(const ModelEffect& effect) {
 ModelEffect neutral_effect(std::string_view id) {
   const std::size_t place = effect_named(id);
   if (place == catalogue_size) {
-    throw Error(fmt::format("there is no effect {} in the catalogue; {}", quote(id),
-                            suggestion_text(id, names_of(effect_info, &EffectInfo::id))));
+    throw Error(Error::Code::usage, fmt::format("there is no effect {} in the catalogue; {}", quote(id),
+                                                suggestion_text(id, names_of(effect_info, &EffectInfo::id))));
   }
   ModelEffect effect;
   effect.id = id;
@@ -143,7 +145,7 @@ std::string write_model(const ModelDefinition& file) {
   try {
     parse_model(text, "its text");
   } catch (const Error& error) {
-    throw Error(std::string("the model cannot be written: ") + error.what());
+    throw Error(error.code(), std::string("the model cannot be written: ") + error.what());
   }
   return text;
 }
@@ -153,15 +155,18 @@ void save_model(const ModelDefinition& file, const fs::path& path, const std::ve
     std::error_code code;
     if (!fs::equivalent(path, input, code)) continue;
     throw Error(
+        Error::Code::usage,
         path.string() +
-        ": the model was read from this file, which is never overwritten; give the output another name");
+            ": the model was read from this file, which is never overwritten; give the output another name");
   }
   const std::string text = write_model(file);
   AtomicFile output(path);
   std::ofstream stream(output.path(), std::ios::binary);
   stream << text;
   stream.close();
-  if (!stream) throw Error(path.string() + ": cannot be written; check the space and the permissions");
+  if (!stream)
+    throw Error(Error::Code::output,
+                path.string() + ": cannot be written; check the space and the permissions");
   output.commit();
 }
 

@@ -43,7 +43,8 @@ class Writer {
 
   static std::string number(double value, std::string_view what) {
     if (!std::isfinite(value)) {
-      throw Error(fmt::format("the model cannot be written: {} is {}; give it a finite value", one_line(what),
+      throw Error(Error::Code::definition,
+                  fmt::format("the model cannot be written: {} is {}; give it a finite value", one_line(what),
                               value));
     }
     std::string digits = fmt::format("{}", value);  // shortest text that restores the same number
@@ -201,10 +202,10 @@ class Writer {
     const ModelEffect& effect = file.model.effects[effect_number];
     const Names names = parameter_names(effect);
     if (names.size() != effect.parameters.size()) {
-      throw Error(
-          fmt::format("the model cannot be written: effect {} has {} parameters, not {}; give one "
-                      "value for each",
-                      quote(effect.id), names.size(), effect.parameters.size()));
+      throw Error(Error::Code::definition,
+                  fmt::format("the model cannot be written: effect {} has {} parameters, not {}; give one "
+                              "value for each",
+                              quote(effect.id), names.size(), effect.parameters.size()));
     }
     std::vector<std::string> values, standard_errors, fixed, ranges;
     for (std::size_t i = 0; i < names.size(); ++i) {

@@ -20,7 +20,7 @@ struct Message {
   // Fields of an error:
   bool has_error = false;
   std::uint64_t place = 0;
-  Error::Code code = Error::Code::other;
+  Error::Code code{};
   std::string text{};
 
   template <class Archive>
@@ -70,7 +70,9 @@ bool agree(const std::vector<Message>& all) {
 }  // namespace
 
 std::vector<Message> Communicator::talk(const Message& own) {
-  if (has_parted_) throw parted_with_ ? *parted_with_ : Error("a member of the team has left it before");
+  if (has_parted_)
+    throw parted_with_ ? *parted_with_
+                       : Error(Error::Code::system, "a member of the team has left it before");
   std::vector<Message> all;
   for (const std::string& bytes : exchange(packed(own))) all.push_back(unpacked<Message>(bytes));
   has_parted_ =
@@ -83,6 +85,7 @@ std::vector<Message> Communicator::talk(const Message& own) {
   if (!agree(all)) {
     has_parted_ = true;
     parted_with_ = Error(
+        Error::Code::system,
         "processes obtained different results; use identical command lines, input files and CPU models on "
         "all nodes");
     throw *parted_with_;
@@ -116,7 +119,8 @@ std::optional<Error> Communicator::leave(const std::optional<Error>& error) {
     return of_all;
   } catch (const std::bad_alloc&) {
     // The others see that this member is gone.
-    return error.value_or(Error("the memory is exhausted; give fewer or shorter flights at a time"));
+    return error.value_or(
+        Error(Error::Code::system, "the memory is exhausted; give fewer or shorter flights at a time"));
   }
   return std::nullopt;
 }

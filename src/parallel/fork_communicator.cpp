@@ -21,7 +21,8 @@ ForkCommunicator::ForkCommunicator(std::size_t size) : size_(size) {
     if (!copied) {
       const std::string why = std::strerror(errno);
       let_go(true);
-      throw Error(fmt::format("cannot start {} processes ({}); use a smaller --processes", size, why));
+      throw Error(Error::Code::system,
+                  fmt::format("cannot start {} processes ({}); use a smaller --processes", size, why));
     }
     if (!copied->is_copy) {
       others_.push_back(copied->other);
@@ -50,19 +51,22 @@ void ForkCommunicator::let_go(bool at_once) {
 Error ForkCommunicator::loss_of(const PeerProcess& other, int why) const {
   constexpr const char* fewer = "give fewer processes, or fewer flights at a time";
   if (why != 0)
-    return Error(fmt::format("the {} processes of this run cannot reach each other: {}; {}", size_,
+    return Error(Error::Code::system,
+                 fmt::format("the {} processes of this run cannot reach each other: {}; {}", size_,
                              std::strerror(why), fewer));
-  if (rank_ > 0) return Error("the first process of this run has ended");
+  if (rank_ > 0) return Error(Error::Code::system, "the first process of this run has ended");
   const std::optional<int> end = end_of(other.process);
-  if (end && WIFEXITED(*end) && WEXITSTATUS(*end) == has_told) return Error("");
+  if (end && WIFEXITED(*end) && WEXITSTATUS(*end) == has_told) return Error(Error::Code::system, "");
   const std::string which = fmt::format("one of the {} processes of this run ", size_);
   if (end && WIFSIGNALED(*end) && WTERMSIG(*end) != SIGKILL)
     return Error(
+        Error::Code::system,
         fmt::format("{}was ended by the signal \"{}\"; give the command again, and report it if that "
                     "happens again",
                     which, ::strsignal(WTERMSIG(*end))));
   const bool is_killed = end && WIFSIGNALED(*end);
-  return Error(fmt::format("{}, as where the memory is short; {}",
+  return Error(Error::Code::system,
+               fmt::format("{}, as where the memory is short; {}",
                            which + (is_killed ? "was killed" : "ended before the others"), fewer));
 }
 
@@ -94,6 +98,7 @@ std::vector<std::string> ForkCommunicator::exchange(const std::string& own) {
   if (loss_) throw *loss_;
   // Until all messages are sent and received: an interruption is not an Error of this process.
   loss_ = Error(
+      Error::Code::system,
       "the processes of this run lost each other where the memory is short; give fewer processes, or fewer "
       "flights at a time");
   std::vector<std::string> all(size_);

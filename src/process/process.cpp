@@ -70,11 +70,11 @@ class Processing {
  private:
   using Names = std::vector<std::string>;
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(flight_.path().string() + ": " + what);
+  [[noreturn]] void fail(Error::Code code, const std::string& what) const {
+    throw Error(code, flight_.path().string() + ": " + what);
   }
   [[noreturn]] void fail_model(const std::string& what) const {
-    throw Error(fmt::format("model '{}': {}", file_.model.name, what));
+    throw Error(Error::Code::model, fmt::format("model '{}': {}", file_.model.name, what));
   }
 
   template <class... Values>
@@ -140,10 +140,11 @@ void Processing::choose_roles() {
   for (const auto& [role, variable] : file_.variables) {
     if (role == Quantity::lams_airspeed && !flight_.has(variable)) {
       if (options_.correct_with == CorrectWith::lams) {
-        fail(fmt::format(
-            "{} (lams_airspeed) is not in this file, so it cannot be corrected with LAMS; leave out "
-            "--correct-with lams",
-            variable));
+        fail(Error::Code::variable,
+             fmt::format(
+                 "{} (lams_airspeed) is not in this file, so it cannot be corrected with LAMS; leave out "
+                 "--correct-with lams",
+                 variable));
       }
       note("{} is not in this file: the flight is processed without LAMS", variable);
       continue;
@@ -473,10 +474,10 @@ void Processing::define_flags(FlightWriter& writer) {
 
 std::size_t Processing::define(FlightWriter& writer, const OutputVariable& variable) {
   if (writer.has(variable.name)) {
-    fail(fmt::format(
-        "it has a variable {} already; give --suffix to name the derived variables apart from the input's, "
-        "e.g. --suffix _NEW",
-        variable.name));
+    fail(Error::Code::usage, fmt::format("it has a variable {} already; give --suffix to name the derived "
+                                         "variables apart from the input's, "
+                                         "e.g. --suffix _NEW",
+                                         variable.name));
   }
   summary_.outputs.push_back(variable.name);
   return writer.define(variable);

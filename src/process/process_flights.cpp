@@ -61,12 +61,14 @@ std::vector<ProcessTask> tasks_in_folder(const std::vector<fs::path>& flights, c
     const fs::path name = flight.filename();
     const auto [other, is_new] = flight_called.emplace(name, flight);
     if (!is_new) {
-      throw Error(fmt::format("{} and {} would have one output, {}; process them into two folders",
+      throw Error(Error::Code::usage,
+                  fmt::format("{} and {} would have one output, {}; process them into two folders",
                               other->second.string(), flight.string(), (folder / name).string()));
     }
     std::error_code code;
     if (fs::equivalent(fs::absolute(flight).parent_path(), folder, code)) {
       throw Error(
+          Error::Code::usage,
           fmt::format("{} lies in the folder {} itself, and is never written over; choose another folder",
                       flight.string(), folder.string()));
     }
@@ -87,7 +89,7 @@ std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tas
     flight.output = tasks[i].output;
     try {
       if (const auto trouble = troubles.find(flight.input); trouble != troubles.end())
-        throw Error(trouble->second);
+        throw Error(Error::Code::file, trouble->second);
       flight.model = model_of(flight.input);
       process_one(tasks[i], options, flight);
     } catch (const Error& error) {

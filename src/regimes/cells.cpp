@@ -32,6 +32,7 @@ Division divide(const std::vector<double>& time) {
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (!std::isfinite(time[i]) || (i > 0 && !(time[i] > time[i - 1]))) {
       throw Error(
+          Error::Code::time,
           fmt::format("flight motion: the time of sample {} is not after the time before; give times that "
                       "strictly increase",
                       i));
@@ -69,9 +70,11 @@ std::vector<double> means(const std::vector<double>& samples, const Division& di
   const std::size_t count = division.begin.empty() ? 0 : division.begin.size() - 1;
   std::vector<double> sum(count, 0.0), known(count, 0.0);
   if (!samples.empty() && samples.size() != division.cell.size()) {
-    throw Error(fmt::format(
-        "flight motion: {} has {} values for {} times; give one value per time, or an empty series", name,
-        samples.size(), division.cell.size()));
+    throw Error(
+        Error::Code::usage,
+        fmt::format(
+            "flight motion: {} has {} values for {} times; give one value per time, or an empty series", name,
+            samples.size(), division.cell.size()));
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!std::isfinite(samples[i])) continue;

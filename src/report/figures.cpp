@@ -45,15 +45,18 @@ std::string browser() {
   if (const char* const chosen = std::getenv("CHROMIUM"); chosen != nullptr && *chosen != '\0') {
     const std::string found = program_named(chosen);
     if (found.empty())
-      throw Error(fmt::format(
-          "figures: CHROMIUM names {}, which is not a program; set it to Chromium or a similar browser",
-          chosen));
+      throw Error(
+          Error::Code::system,
+          fmt::format(
+              "figures: CHROMIUM names {}, which is not a program; set it to Chromium or a similar browser",
+              chosen));
     return found;
   }
   for (const char* const name : {"chromium", "chromium-browser", "google-chrome"}) {
     if (std::string found = program_named(name); !found.empty()) return found;
   }
   throw Error(
+      Error::Code::system,
       "figures: Chromium was not found; install it (on Debian: apt-get install chromium), set CHROMIUM to a "
       "similar browser, or save the pictures of a --report from a browser");
 }
@@ -114,6 +117,7 @@ std::string dumped(const std::string& program, const std::string& html, const st
   if (::pclose(pipe) != 0) {
     while (!text.empty() && text.back() == '\n') text.pop_back();
     throw Error(
+        Error::Code::system,
         fmt::format("figures: {} failed: {}; start it from a shell, or set CHROMIUM to another browser",
                     program, text.substr(text.rfind('\n') + 1)));
   }
@@ -190,6 +194,7 @@ void require_figures(const fs::path& folder) {
   if (dumped(program, fmt::format("<!DOCTYPE html><title>figures</title><p>{}", sign), "").find(sign) ==
       std::string::npos)
     throw Error(
+        Error::Code::system,
         fmt::format("figures: {} cannot read a page in {}; set TMPDIR to a readable folder, or CHROMIUM to "
                     "another browser",
                     program, fs::temp_directory_path().string()));
@@ -198,10 +203,12 @@ void require_figures(const fs::path& folder) {
 std::vector<std::string> write_figures(const Report& report, const fs::path& folder, FigureUse use) {
   const std::string program = browser();
   const Files files = files_of(exported(program, report_html(report), use));
-  if (files.empty()) throw Error(fmt::format("figures: {} shows no pictures of this report", program));
+  if (files.empty())
+    throw Error(Error::Code::system, fmt::format("figures: {} shows no pictures of this report", program));
   std::vector<std::string> names;
   for (const auto& [name, bytes] : files) {
-    if (bytes.empty()) throw Error(fmt::format("figures: {} wrote no picture for {}", program, name));
+    if (bytes.empty())
+      throw Error(Error::Code::system, fmt::format("figures: {} wrote no picture for {}", program, name));
     names.push_back(name);
   }
   OutputTransaction together;

@@ -17,7 +17,7 @@ namespace pcor::internal::report {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what) { throw Error("report: " + what); }
+[[noreturn]] void fail(const std::string& what) { throw Error(Error::Code::usage, "report: " + what); }
 
 [[noreturn]] void fail_empty(const std::string& title) {
   fail("panel '" + title + "' would be empty: no sample has a value; remove the panel");

@@ -153,8 +153,8 @@ json flights(const Report& report) {
     for (std::size_t i = bounds[flight]; i < bounds[flight + 1]; ++i) {
       const double milliseconds = std::round((report.time[i] - start) * 1000.0);
       if (milliseconds > most)
-        throw Error("report: flight " + std::to_string(flight + 1) +
-                    " lasts over 49 days; begin a new flight in flight_starts");
+        throw Error(Error::Code::usage, "report: flight " + std::to_string(flight + 1) +
+                                            " lasts over 49 days; begin a new flight in flight_starts");
       steps.push_back(static_cast<std::uint32_t>(milliseconds - before));
       before = milliseconds;
     }

@@ -245,7 +245,8 @@ void write_report(const Report& report, const std::filesystem::path& path) {
   stream << html;
   stream.close();
   if (!stream)
-    throw Error(path.string() + " cannot be written: check the space there, or choose another output");
+    throw Error(Error::Code::output,
+                path.string() + " cannot be written: check the space there, or choose another output");
   file.commit();
 }
 

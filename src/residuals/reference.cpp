@@ -25,10 +25,12 @@ using Pointer = std::shared_ptr<const Reference>;
 
 Pointer read_lams(const std::string&, const ModelDefinition& model) {
   if (model.variables.count(Quantity::lams_airspeed) == 0) {
-    throw Error(fmt::format(
-        "model '{}' has no lams_airspeed; name its variable in the table [variables], or give another "
-        "--reference: static:OTHER.toml, pressure:VARIABLE, height or wind",
-        model.model.name));
+    throw Error(
+        Error::Code::model,
+        fmt::format(
+            "model '{}' has no lams_airspeed; name its variable in the table [variables], or give another "
+            "--reference: static:OTHER.toml, pressure:VARIABLE, height or wind",
+            model.model.name));
   }
   return lams_reference();
 }
@@ -93,7 +95,7 @@ ModelSamples Reference::read(const Flight&, const std::vector<double>&, std::vec
 }
 
 const Reference& first_of(const References& references) {
-  if (references.empty()) throw Error("no reference is given; give at least one");
+  if (references.empty()) throw Error(Error::Code::usage, "no reference is given; give at least one");
   return *references.front();
 }
 
@@ -137,7 +139,7 @@ Pointer read_reference(const std::string& text, const ModelDefinition& model) {
     const bool fits = each.argument.empty() ? colon == std::string::npos : !argument.empty();
     if (each.form == form && fits) return each.read(argument, model);
   }
-  throw Error(fmt::format("unknown reference '{}'; give {}", text, reference_forms()));
+  throw Error(Error::Code::usage, fmt::format("unknown reference '{}'; give {}", text, reference_forms()));
 }
 
 }  // namespace pcor

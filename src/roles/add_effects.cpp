@@ -48,19 +48,22 @@ void add(ModelDefinition& file, ModelEffect effect) {
   const bool known = std::any_of(effects.begin(), effects.end(),
                                  [&effect](const ModelEffect& each) { return each.id == effect.id; });
   if (known) {
-    throw Error(fmt::format("model '{}' has the effect {} already; refit it, or add another",
+    throw Error(Error::Code::usage,
+                fmt::format("model '{}' has the effect {} already; refit it, or add another",
                             one_line(file.model.name), quote(effect.id)));
   }
   if (effect.is_formula()) {
     if (effect_named(effect.id) != catalogue_size) {
-      throw Error(fmt::format("effect {} has its formula in the catalogue; give the new formula another id",
+      throw Error(Error::Code::usage,
+                  fmt::format("effect {} has its formula in the catalogue; give the new formula another id",
                               quote(effect.id)));
     }
   } else {
     const ModelEffect neutral = neutral_effect(effect.id);
     if (effect.parameters.empty()) effect.parameters = neutral.parameters;
     if (effect.parameters.size() != neutral.parameters.size()) {
-      throw Error(fmt::format("effect {} takes {} parameter(s), not {}; give one value for each",
+      throw Error(Error::Code::usage,
+                  fmt::format("effect {} takes {} parameter(s), not {}; give one value for each",
                               quote(effect.id), neutral.parameters.size(), effect.parameters.size()));
     }
   }

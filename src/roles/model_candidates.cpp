@@ -112,19 +112,21 @@ ModelCandidate model_candidate(const Flight& flight, const std::vector<std::file
                                std::vector<std::string>& notes) {
   std::vector<std::string> unread;
   std::vector<ModelCandidate> laws = model_candidates(flight, models, unread);
-  if (!unread.empty()) throw Error(unread.front());
+  if (!unread.empty()) throw Error(Error::Code::definition, unread.front());
   if (flight.aircraft().empty())
-    throw Error(
-        fmt::format("{}: the aircraft is not stated; name the model with --model", flight.path().string()));
+    throw Error(Error::Code::model, fmt::format("{}: the aircraft is not stated; name the model with --model",
+                                                flight.path().string()));
   const std::string who =
       fmt::format("{}, '{}' of {}", flight.path().string(), flight.aircraft(), day_of(flight));
   if (laws.empty()) {
     throw Error(
+        Error::Code::model,
         fmt::format("{}: the {} models are for other aircraft; name one with --model", who, models.size()));
   }
   const ModelCandidate& first = laws.front();
   if (!first.fits())
-    throw Error(fmt::format("{}: no model fits it: {}; name one with --model", who, reasons_of(laws)));
+    throw Error(Error::Code::model,
+                fmt::format("{}: no model fits it: {}; name one with --model", who, reasons_of(laws)));
   for (const ModelCandidate& law : laws) {
     if (!first.model.law.in_processing && law.model.law.in_processing && law.is_in_time)
       notes.push_back(fmt::format("such flights are processed with {}, which this one does not allow: {}",
@@ -136,10 +138,10 @@ ModelCandidate model_candidate(const Flight& flight, const std::vector<std::file
                    [&](const ModelCandidate& law) { return rank_of(law, family) != rank_of(first, family); }),
       laws.end());
   if (laws.size() > 1) {
-    throw Error(fmt::format(
-        "{}: {} fit alike; name one with --model, or state in_processing = true in the [law] of that with "
-        "which such flights are processed",
-        who, names_of(laws)));
+    throw Error(Error::Code::model, fmt::format("{}: {} fit alike; name one with --model, or state "
+                                                "in_processing = true in the [law] of that with "
+                                                "which such flights are processed",
+                                                who, names_of(laws)));
   }
   return laws.front();
 }

@@ -102,6 +102,7 @@ class Completion {
     std::vector<std::string> looked_for;
     for (const PressurePair& pair : family_.measured) looked_for.push_back(pair.name());
     throw Error(
+        Error::Code::variable,
         fmt::format("{}: no pair of static and dynamic pressure with the names of {} was found ({}); set "
                     "static_pressure and dynamic_pressure in the [variables] of the model, or another "
                     "aircraft with roles = \"...\"; 'pcor inspect' lists the variables of the flight",
@@ -159,6 +160,7 @@ ModelDefinition resolve_variables(const ModelDefinition& model, const Flight& fl
       std::vector<std::string> names;
       for (const VariableNaming* family : like) names.push_back(family->name);
       throw Error(
+          Error::Code::variable,
           fmt::format("{}: the file resembles the files of {}; choose one in the model, roles = \"{}\"",
                       flight.path().string(), fmt::join(names, " and of "), names.front()));
     }

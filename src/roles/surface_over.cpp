@@ -47,7 +47,7 @@ SurfaceAxis axis_of(Quantity quantity, std::vector<double> values, std::size_t s
 ModelEffect surface_over(std::size_t flights, const std::function<const Flight&(std::size_t)>& flight,
                          const ModelDefinition& model, std::string_view id, std::size_t splines) {
   const EffectInfo* const info = surface_named(id);
-  if (info == nullptr) throw Error(fmt::format("there is no surface {}", quote(id)));
+  if (info == nullptr) throw Error(Error::Code::usage, fmt::format("there is no surface {}", quote(id)));
   const Quantity ratio = info->needs[1];
   const Quantity pressure = ratio == Quantity::attack_ratio ? Quantity::attack_differential_pressure
                                                             : Quantity::sideslip_differential_pressure;
@@ -68,16 +68,19 @@ ModelEffect surface_over(std::size_t flights, const std::function<const Flight&(
     }
   }
   if (machs.size() < min_samples) {
-    throw Error(fmt::format(
-        "surface {}: {} samples have all that it reads above Mach {} ({} expected); give a flight "
-        "with more of them",
-        id, machs.size(), min_mach, min_samples));
+    throw Error(
+        Error::Code::samples,
+        fmt::format(
+            "surface {}: {} samples have all that it reads above Mach {} ({} expected); give a flight "
+            "with more of them",
+            id, machs.size(), min_mach, min_samples));
   }
   const std::array<SurfaceAxis, 2> axes{axis_of(ratio, std::move(ratios), splines),
                                         axis_of(Quantity::mach, std::move(machs), splines)};
   for (const SurfaceAxis& axis : axes) {
     if (axis.is_valid()) continue;
     throw Error(
+        Error::Code::samples,
         fmt::format("surface {}: {} splines over {} from {:.4g} to {:.4g} are not a valid axis ({} to {} "
                     "splines expected); give a flight with a larger range",
                     id, axis.count, info_of(axis.quantity).name, axis.lower, axis.upper,

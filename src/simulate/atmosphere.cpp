@@ -56,10 +56,10 @@ Column::Column(const Scenario::Atmosphere& a, double latitude) : bottom_(a.groun
     levels_[i].temperature = temperature(a, height(i));
     levels_[i].vapor_pressure = vapor_pressure(a, height(i));
     if (levels_[i].temperature < 150.0)
-      throw Error(
-          fmt::format("the air would have {:.0f} K at {:.0f} m; give a smaller lapse_rate or a lower "
-                      "tropopause",
-                      levels_[i].temperature, height(i)));
+      throw Error(Error::Code::definition,
+                  fmt::format("the air would have {:.0f} K at {:.0f} m; give a smaller lapse_rate or a lower "
+                              "tropopause",
+                              levels_[i].temperature, height(i)));
   }
   // d ln p/dz = -g/(R T), trapezium rule; R needs p itself, which the level before gives well enough.
   const auto slope = [&](std::size_t i, double pressure) {

@@ -202,7 +202,8 @@ std::vector<std::size_t> kept_records(const Scenario& scenario, std::size_t reco
     });
     if (!lost) kept.push_back(i);
   }
-  if (kept.empty()) throw Error(scenario.file + ": the gaps leave no record; make them shorter");
+  if (kept.empty())
+    throw Error(Error::Code::definition, scenario.file + ": the gaps leave no record; make them shorter");
   return kept;
 }
 

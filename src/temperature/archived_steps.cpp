@@ -21,9 +21,11 @@ constexpr const char* model_attribute = "model";
 using Coefficients = std::array<double, 3>;
 
 [[noreturn]] void refuse_without(const Flight& flight, const char* what, const char* attribute) {
-  throw Error(fmt::format(
-      "{}: {} does not state {} (attribute {}); write the file again with pcor process --hydrostatic",
-      flight.path().string(), steps_variable, what, attribute));
+  throw Error(
+      Error::Code::variable,
+      fmt::format(
+          "{}: {} does not state {} (attribute {}); write the file again with pcor process --hydrostatic",
+          flight.path().string(), steps_variable, what, attribute));
 }
 
 std::string attribute_of(const Flight& flight, const std::string& wanted) {
@@ -46,10 +48,13 @@ void require_same_model(const Flight& flight, const ModelDefinition& model) {
   if (archived.empty()) refuse_without(flight, "its model", model_attribute);
   const std::string difference = archived_difference(archived, archived_model(model, CorrectWith::model));
   if (difference.empty()) return;
-  throw Error(fmt::format(
-      "{}: its pressures are not those of the model '{}' ({}); process the flight again with this model and "
-      "--hydrostatic, give the model that it was processed with, or leave out --archived for raw flights",
-      flight.path().string(), model.model.name, difference));
+  throw Error(
+      Error::Code::model,
+      fmt::format(
+          "{}: its pressures are not those of the model '{}' ({}); process the flight again with this model "
+          "and "
+          "--hydrostatic, give the model that it was processed with, or leave out --archived for raw flights",
+          flight.path().string(), model.model.name, difference));
 }
 
 /// The temperature, K, that the correction took to `corrected`, K: Newton's method from a step that is exact
@@ -67,6 +72,7 @@ double uncorrected(double corrected, const Coefficients& a) {
 std::vector<double> archived_steps(const Flight& flight, const ModelDefinition& model, FlightAir& air) {
   if (!flight.has(steps_variable)) {
     throw Error(
+        Error::Code::variable,
         fmt::format("{}: there is no {}; write it with pcor process --hydrostatic, or leave out --archived",
                     flight.path().string(), steps_variable));
   }

@@ -333,12 +333,13 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
   const std::string& name = air.samples->name;
   if (air.temperature.empty()) {
     throw Error(
+        Error::Code::model,
         fmt::format("{}: the model names no thermometer; give it recovery_temperature or ambient_temperature "
                     "in the table [variables]",
                     name));
   }
   if (const std::string trouble = height_problem(air); !trouble.empty())
-    throw Error(fmt::format("{}: {}", name, trouble));
+    throw Error(Error::Code::variable, fmt::format("{}: {}", name, trouble));
 
   HeightRecord record;
   record.name = name;
@@ -386,12 +387,14 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
     record.max_temperature = std::max(record.max_temperature, block.temperature);
   }
   if (!(highest - lowest >= min_height_range)) {
-    throw Error(fmt::format(
-        "{}: it climbs by {:.0f} m only{}; a fit of temperature needs climbs or descents of {:.0f} m and "
-        "more",
-        name, record.blocks.empty() ? 0.0 : highest - lowest,
-        options.min_climb_rate > 0.0 ? fmt::format(" at {} m/s or more", options.min_climb_rate) : "",
-        min_height_range));
+    throw Error(
+        Error::Code::samples,
+        fmt::format(
+            "{}: it climbs by {:.0f} m only{}; a fit of temperature needs climbs or descents of {:.0f} m and "
+            "more",
+            name, record.blocks.empty() ? 0.0 : highest - lowest,
+            options.min_climb_rate > 0.0 ? fmt::format(" at {} m/s or more", options.min_climb_rate) : "",
+            min_height_range));
   }
   if (record.way == WayKnown::over_ground) {
     const HeightBlock& first = record.blocks.front();

@@ -50,6 +50,7 @@ IterativeCalibration calibrate_iteratively(const FlightSet& flights, const Model
                                            const TemperatureOptions& temperature_options) {
   if (temperature_options.archived) {
     throw Error(
+        Error::Code::usage,
         "the pressures of archived flights are fixed; to fit pressure and temperature iteratively, give the "
         "recorded flights");
   }

@@ -65,13 +65,14 @@ constexpr double told = 2.6;  // standard errors, which chance makes once in 100
 
 /// Results of a rank for a local flight.
 struct FlightPart {
-  std::string left_out{};  ///< reason for exclusion; empty if used
-  std::string dry{};       ///< reason against dry air; empty if there is no objection
+  std::string left_out{};                   ///< reason for exclusion; empty if used
+  Error::Code code = Error::Code::samples;  ///< code of the error that left it out
+  std::string dry{};                        ///< reason against dry air; empty if there is no objection
   std::optional<HeightRecord> record{};
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(left_out, dry, record);
+    archive(left_out, code, dry, record);
   }
 };
 
@@ -119,7 +120,7 @@ class TemperatureCalibration {
         part.record = read_record(number);
         part.dry = trouble_with_dry_air(*part.record, model_, flights_[number]);
         if (!part.dry.empty() && !options_.dry_air)
-          throw Error(part.dry + "; --force continues with dry air");
+          throw Error(Error::Code::variable, part.dry + "; --force continues with dry air");
         if (options_.skip_returning && part.record->returns) {
           part.record.reset();
           part.left_out = "it ends at its start point (--skip-returning)";
@@ -127,6 +128,7 @@ class TemperatureCalibration {
       } catch (const Error& error) {
         part.record.reset();
         part.left_out = error.what();
+        part.code = error.code();
       }
       if (options_.progress) options_.progress(++done, flights_.share().own());
       return part;
@@ -148,9 +150,9 @@ class TemperatureCalibration {
       records_.push_back(std::move(*part.record));
     }
     if (!records_.empty()) return;
-    if (flights_.size() == 1) throw Error(first_trouble);
-    throw Error(
-        fmt::format("no usable flight among {} flights; the first: {}", flights_.size(), first_trouble));
+    if (flights_.size() == 1) throw Error(parts.front().code, first_trouble);
+    throw Error(Error::Code::samples, fmt::format("no usable flight among {} flights; the first: {}",
+                                                  flights_.size(), first_trouble));
   }
 
   HeightRecord read_record(std::size_t number) const {
@@ -165,6 +167,7 @@ class TemperatureCalibration {
       std::optional<ModelDefinition> recorded = recorded_model(flight);
       if (!recorded || recorded->variables.count(Quantity::ambient_temperature) == 0) {
         throw Error(
+            Error::Code::variable,
             fmt::format("{}: --archived needs PSXC, QCXC and ATX as pcor process writes them; leave it out "
                         "for raw flights",
                         flight.path().string()));
@@ -266,10 +269,12 @@ class TemperatureCalibration {
       maximise();
     }
     if (const std::string trouble = impossible(); !trouble.empty()) {
-      throw Error(fmt::format(
-          "the correction of the temperature is physically implausible: {}; {}", trouble,
-          terms_ > 1 ? "these flights do not determine this number of coefficients: reduce --degree"
-                     : "check recovery_temperature and the altitude in the model"));
+      throw Error(
+          Error::Code::fit,
+          fmt::format("the correction of the temperature is physically implausible: {}; {}", trouble,
+                      terms_ > 1
+                          ? "these flights do not determine this number of coefficients: reduce --degree"
+                          : "check recovery_temperature and the altitude in the model"));
     }
     const auto n = static_cast<Eigen::Index>(terms_);
     const HeightEquations& equations = likeliest_.equations;
@@ -752,10 +757,12 @@ std::optional<IsobarSlope> isobar_slope_named(std::string_view name) {
 
 TemperatureResult fit_temperature(const FlightSet& flights, const ModelDefinition& model,
                                   const TemperatureOptions& options) {
-  if (flights.empty()) throw Error("no flights for the temperature fit; give at least one flight");
+  if (flights.empty())
+    throw Error(Error::Code::usage, "no flights for the temperature fit; give at least one flight");
   constexpr int most = static_cast<int>(calibration_terms) - 1;
   if (options.degree && (*options.degree < 0 || *options.degree > most))
-    throw Error(fmt::format("a correction has no degree {}; give one from 0 to {}", *options.degree, most));
+    throw Error(Error::Code::usage,
+                fmt::format("a correction has no degree {}; give one from 0 to {}", *options.degree, most));
   TemperatureResult result = TemperatureCalibration(flights, model, options).run();
   flights.require_unchanged();
   return result;

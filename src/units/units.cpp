@@ -154,6 +154,7 @@ ut_system* udunits() {
   }();
   if (!system)
     throw Error(
+        Error::Code::system,
         "the unit database of UDUNITS cannot be read; install udunits2-data or set UDUNITS2_XML_PATH");
   return system.get();
 }

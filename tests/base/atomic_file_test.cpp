@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace pcor {
@@ -88,8 +89,8 @@ TEST(OutputTransaction, AFolderCannotBeWhereAFileIs) {
   const test::TemporaryDirectory directory;
   write(directory / "file");
   OutputTransaction together;
-  EXPECT_THAT([&] { together.make_folder(directory / "file" / "new"); },
-              testing::ThrowsMessage<Error>(testing::HasSubstr("cannot be a folder of outputs")));
+  EXPECT_THAT(test::error_of([&] { together.make_folder(directory / "file" / "new"); }),
+              test::IsError(Error::Code::output, (directory / "file").string()));
 }
 
 TEST(OutputTransaction, EarlierFilesGoWhenTheNewOnesAreThere) {

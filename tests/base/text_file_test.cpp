@@ -11,14 +11,11 @@
 
 #include <pcor/base/error.hpp>
 
+#include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace pcor::internal {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 TEST(TextFile, IsReadToTheByte) {
   const test::TemporaryDirectory directory;
@@ -29,11 +26,10 @@ TEST(TextFile, IsReadToTheByte) {
 
 TEST(TextFile, IsRefusedByNameWhereThereIsNone) {
   const test::TemporaryDirectory directory;
-  EXPECT_THAT([&] { text_of_file(directory / "no\nfile", "a model file"); },
-              ThrowsMessage<Error>(
-                  AllOf(HasSubstr("no\\x0afile: there is no such file"), HasSubstr("a model file"))));
-  EXPECT_THAT([&] { text_of_file(directory / "", "a model file"); },
-              ThrowsMessage<Error>(HasSubstr("is a directory; give the path of a model file")));
+  EXPECT_THAT(test::error_of([&] { text_of_file(directory / "no\nfile", "a model file"); }),
+              test::IsError(Error::Code::file, "no\\x0afile", "a model file"));
+  EXPECT_THAT(test::error_of([&] { text_of_file(directory / "", "a model file"); }),
+              test::IsError(Error::Code::file, directory.path().string(), "a model file"));
 }
 
 // A device may never end, and a pipe may have no writer.
@@ -41,13 +37,13 @@ TEST(TextFile, IsARegularOneOfUsualSize) {
   const test::TemporaryDirectory directory;
   ASSERT_EQ(mkfifo((directory / "pipe").c_str(), 0600), 0);
   for (const std::filesystem::path& path : {std::filesystem::path("/dev/zero"), directory / "pipe"}) {
-    EXPECT_THAT([&] { text_of_file(path, "a model file"); },
-                ThrowsMessage<Error>(HasSubstr("is not a regular file; give the path of a model file")));
+    EXPECT_THAT(test::error_of([&] { text_of_file(path, "a model file"); }),
+                test::IsError(Error::Code::file, path.string(), "a model file"));
   }
   std::ofstream(directory / "large") << "x";
   std::filesystem::resize_file(directory / "large", (16U << 20U) + 1);
-  EXPECT_THAT([&] { text_of_file(directory / "large", "a model file"); },
-              ThrowsMessage<Error>(HasSubstr("has more than 16 MB")));
+  EXPECT_THAT(test::error_of([&] { text_of_file(directory / "large", "a model file"); }),
+              test::IsError(Error::Code::file, "16 MB"));
 }
 
 }  // namespace

@@ -13,15 +13,13 @@
 #include <pcor/base/error.hpp>
 #include <pcor/realtime/loop.hpp>
 #include "batch/batch_kernel.hpp"
+#include "support/error_of.hpp"
 
 using namespace pcor::internal;
 
 namespace pcor {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsNan;
-using testing::ThrowsMessage;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -249,8 +247,8 @@ TEST(Batch, IsTheLoopForEveryApproachOfLams) {
 TEST(Batch, TakesRatesOfChangeAsArrays) {
   Model model = gv();
   model.effects.push_back({"static-lag", {0.1}});
-  EXPECT_THAT([&] { Batch(model, gv_roles); },
-              ThrowsMessage<Error>(HasSubstr("needs 'static_pressure_rate' among them")));
+  EXPECT_THAT(test::error_of([&] { Batch(model, gv_roles); }),
+              test::IsError(Error::Code::model, "'static_pressure_rate'"));
   std::vector<Quantity> roles = gv_roles;
   roles.push_back(Quantity::static_pressure_rate);
   expect_as_in_loop(model, roles);
@@ -356,12 +354,12 @@ TEST(Batch, MissingValuesAreReported) {
   const Batch batch(gv(), gv_roles);
   Arrays recorded = random_samples(10, gv_roles);
   recorded.erase(Quantity::attack);
-  EXPECT_THAT([&] { in_batch(batch, recorded, 10); },
-              ThrowsMessage<Error>(HasSubstr("'attack' are missing")));
-  EXPECT_THAT([] { Batch(gv(), {Quantity::static_pressure}); },
-              ThrowsMessage<Error>(HasSubstr("'dynamic_pressure'")));
-  EXPECT_THAT([] { Batch(gv(), gv_roles, CorrectWith::lams); },
-              ThrowsMessage<Error>(HasSubstr("'lams_airspeed'")));
+  EXPECT_THAT(test::error_of([&] { in_batch(batch, recorded, 10); }),
+              test::IsError(Error::Code::variable, "'attack'"));
+  EXPECT_THAT(test::error_of([] { Batch(gv(), {Quantity::static_pressure}); }),
+              test::IsError(Error::Code::model, "'dynamic_pressure'"));
+  EXPECT_THAT(test::error_of([] { Batch(gv(), gv_roles, CorrectWith::lams); }),
+              test::IsError(Error::Code::model, "'lams_airspeed'"));
 }
 
 // Each supported output has the same value alone and among all others; any other output is refused. No value
@@ -378,7 +376,7 @@ TEST(Batch, FindsEveryQuantityForItselfOrRefusesIt) {
       std::vector<double> values(count);
       const auto run = [&] { batch.run(inputs_of(recorded), {{quantity, values.data()}}, count); };
       if (!batch.finds(quantity)) {
-        EXPECT_THAT(run, ThrowsMessage<Error>(HasSubstr("is not available"))) << place;
+        EXPECT_THAT(test::error_of(run), test::IsError(Error::Code::variable)) << place;
         continue;
       }
       run();

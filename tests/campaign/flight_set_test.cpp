@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/synthetic_samples.hpp"
 #include "support/temporary_directory.hpp"
@@ -18,8 +19,9 @@
 namespace fs = std::filesystem;
 
 using namespace pcor;
+using pcor::test::error_of;
+using pcor::test::IsError;
 using pcor::test::NetcdfMaker;
-using testing::HasSubstr;
 
 namespace {
 
@@ -28,15 +30,6 @@ const fs::path scenarios = PCOR_SOURCE_DIR "/data/scenarios";
 void make(const fs::path& path, const std::vector<double>& seconds = {0, 1, 2}) {
   NetcdfMaker maker(path);
   maker.time(seconds, "seconds since 2004-02-18 00:00:00 +0000");
-}
-
-std::string message_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 class FlightSets : public testing::Test {
@@ -100,7 +93,8 @@ TEST_F(FlightSets, RefuseAFileThatWasReplacedChangedOrTaken) {
     EXPECT_EQ(flights[0].records(), 3U);
     flights.require_unchanged();
     change(directory / "a.nc");
-    EXPECT_THAT(message_of([&] { flights.require_unchanged(); }), HasSubstr("a.nc"));
+    EXPECT_THAT(error_of([&] { flights.require_unchanged(); }),
+                IsError(Error::Code::file, (directory / "a.nc").string()));
   }
 }
 
@@ -114,14 +108,14 @@ TEST_F(FlightSets, RefuseAFileThatWasReplacedWhileItWasClosed) {
   flights.outlines();  // opens all of them, so the first is closed
   make(directory / "other.nc", {0, 1, 2, 3});
   fs::rename(directory / "other.nc", paths[0]);
-  EXPECT_THAT(message_of([&] { flights[0]; }), HasSubstr("flight0.nc"));
+  EXPECT_THAT(error_of([&] { flights[0]; }), IsError(Error::Code::file, "flight0.nc"));
 }
 
 TEST_F(FlightSets, RefuseAFlightThatIsGivenTwice) {
   make(directory / "a.nc");
   fs::create_symlink(directory / "a.nc", directory / "b.nc");
   const FlightSet flights{directory / "a.nc", directory / "b.nc"};
-  EXPECT_THAT(message_of([&] { flights.require_each_once(); }), HasSubstr("b.nc"));
+  EXPECT_THAT(error_of([&] { flights.require_each_once(); }), IsError(Error::Code::usage, "b.nc"));
 }
 
 TEST_F(FlightSets, RefuseFlightsOfTwoAircraft) {
@@ -136,10 +130,10 @@ TEST_F(FlightSets, RefuseFlightsOfTwoAircraft) {
     return std::make_shared<const FlightSamples>(samples);
   };
   FlightSet({shared(own), shared(own)}).require_one_aircraft();
-  EXPECT_THAT(message_of([&] {
+  EXPECT_THAT(error_of([&] {
                 FlightSet({shared(own), shared(other)}).require_one_aircraft();
               }),
-              testing::AllOf(HasSubstr("N130AR"), HasSubstr("N677F")));
+              IsError(Error::Code::usage, "N130AR", "N677F"));
 }
 
 TEST_F(FlightSets, KeepSamplesForEachSetOfRoles) {

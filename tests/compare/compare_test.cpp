@@ -12,14 +12,17 @@
 #include <string>
 #include <vector>
 
+#include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
 
 using pcor::ComparedModel;
 using pcor::CompareOptions;
 using pcor::Comparison;
+using pcor::Error;
 using pcor::Mask;
 using pcor::ModelDefinition;
+using pcor::test::IsError;
 using testing::HasSubstr;
 
 namespace {
@@ -278,22 +281,18 @@ TEST(Compare, KeepsRecordsOfChosenFlightsOnly) {
 }
 
 TEST(Compare, RefusesWhatCannotBeCompared) {
-  const auto message_of = [](const std::vector<fs::path>& flights, const ComparedModel& contender,
-                             const CompareOptions& options = {}) -> std::string {
-    try {
-      pcor::compare(flights, {contender}, options);
-    } catch (const pcor::Error& error) {
-      return error.what();
-    }
-    return "";
+  const auto refusal = [](const std::vector<fs::path>& flights, const ComparedModel& contender,
+                          const CompareOptions& options = {}) {
+    return pcor::test::error_of([&] { pcor::compare(flights, {contender}, options); });
   };
   CompareOptions fast;
   fast.mask.min_airspeed = 500.0;
-  EXPECT_THAT(message_of({flight_file()}, laser_contender(), fast), HasSubstr("--min-airspeed"));
+  EXPECT_THAT(refusal({flight_file()}, laser_contender(), fast),
+              IsError(Error::Code::samples, "--min-airspeed"));
   ComparedModel absent = laser_contender();
   absent.references = {pcor::pressure_reference("PS_B")};
-  EXPECT_THAT(message_of({flight_file()}, absent), testing::AllOf(HasSubstr("PS_B"), HasSubstr("PS_A")));
-  EXPECT_THAT(message_of({}, laser_contender()), HasSubstr("one flight"));
+  EXPECT_THAT(refusal({flight_file()}, absent), IsError(Error::Code::variable, "PS_B", "PS_A"));
+  EXPECT_THAT(refusal({}, laser_contender()), IsError(Error::Code::usage));
 }
 
 TEST(ComparisonReport, HasTheFiguresAndStaysSmall) {

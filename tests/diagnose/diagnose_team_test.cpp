@@ -17,6 +17,7 @@
 
 #include "diagnose/packed_diagnosis.hpp"
 #include "parallel/packed.hpp"
+#include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
 
@@ -305,21 +306,12 @@ TEST(DiagnosisOfATeam, FailsOnAllMembersAsOneAlone) {
   const test::TemporaryDirectory directory;
   paths[2] = directory / "broken.nc";
   std::ofstream(paths[2]) << "no flight";
-  std::string alone;
-  try {
-    diagnose(paths, model(), {lams_reference()});
-  } catch (const Error& error) {
-    alone = error.what();
-  }
-  EXPECT_THAT(alone, HasSubstr("broken.nc"));
+  const std::optional<Error> alone = test::error_of([&] { diagnose(paths, model(), {lams_reference()}); });
+  ASSERT_THAT(alone, test::IsError(Error::Code::file, "broken.nc"));
   for (const std::size_t size : {2U, 3U, 6U}) {
     run(size, [&](Communicator& comm) {
-      try {
-        diagnose({paths, {{}, &comm}}, model(), {lams_reference()});
-        ADD_FAILURE() << "of " << comm.rank();
-      } catch (const Error& error) {
-        EXPECT_EQ(error.what(), alone);
-      }
+      const auto error = test::error_of([&] { diagnose({paths, {{}, &comm}}, model(), {lams_reference()}); });
+      EXPECT_THAT(error, test::IsError(alone->code(), alone->what())) << "of " << comm.rank();
     });
   }
 }

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/error_of.hpp"
 #include "support/synthetic_samples.hpp"
 #include "support/thread_team.hpp"
 
@@ -134,16 +135,14 @@ TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
 }
 
 TEST(TeamFit, FailsOnAllMembersAlike) {
-  std::vector<std::string> messages(2);
+  std::vector<std::optional<Error>> errors(2);
   test::run_with_communicator(2, [&](Communicator& comm) {
     const std::vector<std::filesystem::path> paths{"nowhere/a.nc", "nowhere/b.nc"};
-    try {
+    errors[comm.rank()] = test::error_of([&] {
       refit({paths, {{}, &comm}}, made::model({"static-constant"}), made::pressure_reference());
-    } catch (const Error& error) {
-      messages[comm.rank()] = error.what();
-    }
+    });
   });
-  EXPECT_THAT(messages, Each(::testing::HasSubstr("nowhere/a.nc")));
+  EXPECT_THAT(errors, Each(test::IsError(Error::Code::file, "nowhere/a.nc")));
 }
 
 }  // namespace

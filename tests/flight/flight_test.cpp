@@ -13,6 +13,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -22,15 +23,14 @@ using pcor::RecordBlock;
 using pcor::TimestampAlignment;
 using pcor::UnitConversion;
 using pcor::utc_text;
+using pcor::test::error_of;
+using pcor::test::IsError;
 using pcor::test::NetcdfMaker;
 using pcor::test::sequence;
-using testing::AllOf;
 using testing::DoubleEq;
 using testing::ElementsAre;
-using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsNan;
-using testing::Not;
 
 namespace {
 
@@ -42,12 +42,12 @@ class FlightTest : public testing::Test {
  protected:
   std::filesystem::path path() const { return directory / "flight.nc"; }
 
-  // The one-line error of opening the file.
-  std::string refusal() const { return refusal(path()); }
-  static std::string refusal(const std::filesystem::path& file) {
-    const std::string message = pcor::test::message_of<Error>([&] { Flight{file}; });
-    EXPECT_THAT(message, AllOf(HasSubstr(file.string()), Not(HasSubstr("\n"))));
-    return message;
+  // The error of opening the file.
+  std::optional<Error> refusal() const { return refusal(path()); }
+  static std::optional<Error> refusal(const std::filesystem::path& file) {
+    std::optional<Error> error = error_of([&] { Flight{file}; });
+    EXPECT_THAT(error ? error->what() : "", HasSubstr(file.string()));
+    return error;
   }
 
   std::vector<double> read(const std::string& name, const UnitConversion& conversion = {}) const {
@@ -85,19 +85,19 @@ class FlightTest : public testing::Test {
 
 // Files that cannot be read
 
-TEST_F(FlightTest, AnAbsentFileIsNamed) { EXPECT_THAT(refusal(), HasSubstr("no such file")); }
+TEST_F(FlightTest, AnAbsentFileIsNamed) { EXPECT_THAT(refusal(), IsError(Error::Code::file)); }
 
 TEST_F(FlightTest, ADirectoryIsRefused) {
-  EXPECT_THAT(refusal(directory.path()), HasSubstr("is a directory"));
+  EXPECT_THAT(refusal(directory.path()), IsError(Error::Code::file));
 }
 
-TEST_F(FlightTest, ADeviceIsRefused) { EXPECT_THAT(refusal("/dev/null"), HasSubstr("not a regular file")); }
+TEST_F(FlightTest, ADeviceIsRefused) { EXPECT_THAT(refusal("/dev/null"), IsError(Error::Code::file)); }
 
 TEST_F(FlightTest, AFileOfAnotherKindIsRefused) {
   std::ofstream(path()) << "PSFD,QCF\n850,100\n";
-  EXPECT_THAT(refusal(), HasSubstr("is not a netCDF file"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::file));
   std::ofstream(path(), std::ios::trunc).flush();
-  EXPECT_THAT(refusal(), HasSubstr("is not a netCDF file"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::file));
 }
 
 TEST_F(FlightTest, ATruncatedFileIsRefusedWhateverItsKind) {
@@ -112,14 +112,14 @@ TEST_F(FlightTest, ATruncatedFileIsRefusedWhateverItsKind) {
       const auto size = std::filesystem::file_size(path());
       for (const std::uintmax_t left : {size - 1, size / 2, std::uintmax_t{40}}) {
         std::filesystem::resize_file(path(), left);
-        EXPECT_THAT(refusal(), HasSubstr("truncated")) << mode << " " << left << " of " << size;
+        EXPECT_THAT(refusal(), IsError(Error::Code::file)) << mode << " " << left << " of " << size;
       }
     }
   }
 }
 
 TEST_F(FlightTest, AFileWithoutANameIsRefused) {
-  EXPECT_EQ(pcor::test::message_of<Error>([] { Flight{""}; }), "the input has no name; name a netCDF file");
+  EXPECT_THAT(error_of([] { Flight{""}; }), IsError(Error::Code::file));
 }
 
 // The netCDF library trusts a header, and allocates the stated memory.
@@ -177,7 +177,7 @@ TEST_F(FlightTest, ACountThatTheFileHasNoRoomForIsDamage) {
     file.seekp(mode == 0 ? 12 : 16);  // number of dimensions
     file.put('\x3f');
     file.close();
-    EXPECT_THAT(refusal(), HasSubstr("is truncated or damaged: its header cannot be read"));
+    EXPECT_THAT(refusal(), IsError(Error::Code::file));
   }
 }
 
@@ -185,20 +185,20 @@ TEST_F(FlightTest, ACountThatTheFileHasNoRoomForIsDamage) {
 TEST_F(FlightTest, ANameThatIsLongerThanNetcdfAllowsIsRefused) {
   const std::filesystem::path seeds = std::filesystem::path(PCOR_SOURCE_DIR) / "tests/fuzz/seeds/flight";
   std::filesystem::copy_file(seeds / "long_attribute_name.nc", path());
-  EXPECT_THAT(refusal(), HasSubstr("is truncated or damaged: its header cannot be read"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::file));
   std::filesystem::copy_file(seeds / "long_names_hdf5.nc", path(),
                              std::filesystem::copy_options::overwrite_existing);
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("is called '"), HasSubstr("netCDF allows 256 bytes")));
+  EXPECT_THAT(refusal(), IsError(Error::Code::file, "256"));
 }
 
 TEST_F(FlightTest, AnEmptyTimeDimensionIsRefused) {
   NetcdfMaker(path()).time({});
-  EXPECT_THAT(refusal(), HasSubstr("has no records"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::samples, "Time"));
 }
 
 TEST_F(FlightTest, AFileWithoutTimeIsRefused) {
   { NetcdfMaker(path()).dimension("x", 3); }
-  EXPECT_THAT(refusal(), HasSubstr("neither a variable Time nor base_time and time_offset"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::time, "Time", "base_time", "time_offset"));
 }
 
 // Time
@@ -286,7 +286,7 @@ TEST_F(FlightTest, WithoutBaseTimeTheFlightDateServes) {
 TEST_F(FlightTest, MonthsAndYearsAreInvalidTimeUnits) {
   for (const char* units : {"months since 2004-01-01", "years since 2004-01-01"}) {
     { NetcdfMaker(path()).time({1, 2}, units); }
-    EXPECT_THAT(refusal(), AllOf(HasSubstr(units), HasSubstr("ncatted -a units,Time")));
+    EXPECT_THAT(refusal(), IsError(Error::Code::time, units, "ncatted -a units,Time"));
   }
   { NetcdfMaker(path()).time({1, 2}, "days since 2004-02-18"); }
   EXPECT_EQ(Flight(path()).time().step, 86400) << "slow, and not wrong";
@@ -294,8 +294,7 @@ TEST_F(FlightTest, MonthsAndYearsAreInvalidTimeUnits) {
 
 TEST_F(FlightTest, AmbiguousTimeStatesHowToDefineIt) {
   { NetcdfMaker(path()).time({51720, 51721}, "seconds since 1141-01-00 00:00:00 +0000"); }
-  EXPECT_THAT(refusal(),
-              AllOf(HasSubstr("Time"), HasSubstr("1141-01-00"), HasSubstr("ncatted -a units,Time")));
+  EXPECT_THAT(refusal(), IsError(Error::Code::time, "1141-01-00", "ncatted -a units,Time"));
 }
 
 TEST_F(FlightTest, ACalendarWhoseYearsHaveOtherDaysIsRefused) {
@@ -308,7 +307,7 @@ TEST_F(FlightTest, ACalendarWhoseYearsHaveOtherDaysIsRefused) {
   const std::string units = "seconds since 2004-02-18 00:00:00 +0000";
   for (const char* calendar : {"noleap", "365_day", "all_leap", "360_day", "julian", "tai"}) {
     make(calendar, units);
-    EXPECT_THAT(refusal(), AllOf(HasSubstr("Time counts"), HasSubstr(calendar)));
+    EXPECT_THAT(refusal(), IsError(Error::Code::time, "Time", calendar));
   }
   for (const char* calendar : {"standard", "Gregorian", "proleptic_gregorian"}) {
     make(calendar, units);
@@ -316,7 +315,7 @@ TEST_F(FlightTest, ACalendarWhoseYearsHaveOtherDaysIsRefused) {
   }
   // Before 1582 the standard calendar is the Julian one, two days apart.
   make("proleptic_gregorian", "seconds since 1500-01-01");
-  EXPECT_THAT(refusal(), HasSubstr("year 1500"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::time, "1500"));
 }
 
 TEST_F(FlightTest, AZoneIsAnOffsetOrThatOfUtc) {
@@ -332,15 +331,14 @@ TEST_F(FlightTest, AZoneIsAnOffsetOrThatOfUtc) {
       maker.text(NC_GLOBAL, "FlightDate", "02/18/2004");  // the day in that zone, so no help
       maker.time({51720, 51721}, std::string("seconds since 2004-02-18 00:00:00") + rest);
     }
-    EXPECT_THAT(refusal(), AllOf(HasSubstr(rest), HasSubstr("not a time of day in UTC"),
-                                 HasSubstr("ncatted -a units,Time")));
+    EXPECT_THAT(refusal(), IsError(Error::Code::time, rest, "UTC", "ncatted -a units,Time"));
   }
 }
 
 TEST_F(FlightTest, ADateThatDoesNotExistTellsNoTime) {
   for (const char* date : {"2011-13-45", "2011-02-30", "2011-00-10", "2004-049", "0000-01-01"}) {
     { NetcdfMaker(path()).time({51720, 51721}, std::string("seconds since ") + date); }
-    EXPECT_THAT(refusal(), AllOf(HasSubstr("Time"), HasSubstr(date)));
+    EXPECT_THAT(refusal(), IsError(Error::Code::time, "Time", date));
   }
   { NetcdfMaker(path()).time({51720, 51721}, "seconds since 2004-02-29"); }
   EXPECT_EQ(utc_text(Flight(path()).time().first), "2004-02-29 14:22:00");
@@ -354,17 +352,17 @@ TEST_F(FlightTest, AYearBeforeOrAfterAllFlightsIsRefused) {
       maker.text(NC_GLOBAL, "FlightDate", "02/18/2004");
       maker.time({151720, 151721}, units);
     }
-    EXPECT_THAT(refusal(), AllOf(HasSubstr(units), HasSubstr("ncatted -a units,Time")));
+    EXPECT_THAT(refusal(), IsError(Error::Code::time, units, "ncatted -a units,Time"));
   }
   make_with_times({100, 101, 1e12}, NC_DOUBLE);
-  EXPECT_THAT(refusal(), HasSubstr("the time of record 2 is 1.00108e+12 s after 1970-01-01"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::time, "record 2", "1.00108e+12 s"));
 }
 
 // 20:05:00 in 16 bits is 01:52:44, and the file gives no hint.
 TEST_F(FlightTest, ATimeInTooFewBitsForADayIsRefused) {
   for (const int type : {NC_SHORT, NC_USHORT, NC_BYTE}) {
     make_with_times({100, 101}, type);
-    EXPECT_THAT(refusal(), HasSubstr("32-bit integers"));
+    EXPECT_THAT(refusal(), IsError(Error::Code::time, "Time", "32-bit"));
   }
 }
 
@@ -380,7 +378,7 @@ TEST_F(FlightTest, TwoVariablesOfOneNameAreRefused) {
   std::string bytes = text.str();
   bytes.replace(bytes.find("PSFX"), 4, "PSFD");
   std::ofstream(path(), std::ios::binary) << bytes;
-  EXPECT_THAT(refusal(), HasSubstr("has two variables PSFD"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::file, "PSFD"));
 }
 
 TEST_F(FlightTest, RatesAbove1000HzAreRefusedOnRead) {
@@ -393,12 +391,11 @@ TEST_F(FlightTest, RatesAbove1000HzAreRefusedOnRead) {
   EXPECT_EQ(read("FAST").size(), 2000U);
   make(60000, 60);
   EXPECT_EQ(read("FAST").size(), 120000U);
-  const auto refused = [this] { return pcor::test::message_of<Error>([&] { read("FAST"); }); };
+  const auto refused = [this] { return error_of([&] { read("FAST"); }); };
   make(1001, 1);
-  EXPECT_THAT(refused(), HasSubstr("FAST has 1001 samples a second, 1001 in each record of 1 s"));
+  EXPECT_THAT(refused(), IsError(Error::Code::variable, "FAST", "1001", "1 s"));
   make(1, 1e-6);
-  EXPECT_THAT(refused(),
-              AllOf(HasSubstr("FAST has 1.0"), HasSubstr("e+06 samples a second, 1 in each record")));
+  EXPECT_THAT(refused(), IsError(Error::Code::variable, "FAST", "1"));
 }
 
 TEST_F(FlightTest, MoreRecordsThanAFlightCanHaveAreRefusedAtOnce) {
@@ -408,19 +405,18 @@ TEST_F(FlightTest, MoreRecordsThanAFlightCanHaveAreRefusedAtOnce) {
   file.put('\x08');
   file.close();
   std::filesystem::resize_file(path(), std::uintmax_t{1} << 40);  // a hole
-  EXPECT_THAT(refusal(), HasSubstr("and a flight has at most 100000000"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::file, "100000000"));
 }
 
 TEST_F(FlightTest, BackwardTimeReportsRecordAndCount) {
   make_with_times({100, 101, 102, 101, 102, 90, 91});
-  EXPECT_THAT(refusal(),
-              AllOf(HasSubstr("runs backwards at record 3 (2004-02-18 00:01:41 after 2004-02-18 00:01:42)"),
-                    HasSubstr("2 backward and 0 repeated"), HasSubstr("ncks -d Time,0,2")));
+  EXPECT_THAT(refusal(), IsError(Error::Code::time, "record 3", "2004-02-18 00:01:41", "2004-02-18 00:01:42",
+                                 "2 backward", "0 repeated", "ncks -d Time,0,2"));
 }
 
 TEST_F(FlightTest, ARepeatedTimeNamesTheRecord) {
   make_with_times({100, 101, 101, 102});
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("repeats at record 2"), HasSubstr("0 backward and 1 repeated")));
+  EXPECT_THAT(refusal(), IsError(Error::Code::time, "record 2", "0 backward", "1 repeated"));
 }
 
 TEST_F(FlightTest, AMissingTimeNamesTheRecord) {
@@ -430,7 +426,7 @@ TEST_F(FlightTest, AMissingTimeNamesTheRecord) {
     maker.numbers(time, "missing_value", NC_INT, {-32767});
     maker.values(time, {100, 101, -32767, 103});
   }
-  EXPECT_THAT(refusal(), HasSubstr("the time of record 2 is missing"));
+  EXPECT_THAT(refusal(), IsError(Error::Code::time, "record 2"));
 }
 
 TEST_F(FlightTest, GapsAreAllowedAndListed) {
@@ -455,7 +451,7 @@ TEST_F(FlightTest, TimeIsCheckedAcrossBlocks) {
   std::vector<double> seconds = sequence(0, 2 * pcor::records_per_block);
   seconds[pcor::records_per_block] = seconds[pcor::records_per_block - 1];
   make_with_times(seconds);
-  EXPECT_THAT(refusal(), HasSubstr("repeats at record " + std::to_string(pcor::records_per_block)));
+  EXPECT_THAT(refusal(), IsError(Error::Code::time, "record " + std::to_string(pcor::records_per_block)));
 }
 
 TEST_F(FlightTest, SamplesLieInTheMiddleOfTheirIntervals) {
@@ -481,8 +477,8 @@ TEST_F(FlightTest, AMissingVariableSuggestsThoseThatLookLikeIt) {
     for (const char* name : {"TASX", "QCR", "QCFR", "QCX", "PSFD"}) maker.series(name, "hPa", {1});
   }
   const Flight flight(path());
-  EXPECT_EQ(pcor::test::message_of<Error>([&] { flight.variable("QCF"); }),
-            path().string() + ": QCF is not in this file; it has QCFR, QCR, QCX");
+  EXPECT_THAT(error_of([&] { flight.variable("QCF"); }),
+              IsError(Error::Code::variable, path().string(), "QCF", "QCFR, QCR, QCX"));
   EXPECT_TRUE(flight.has("QCR"));
   EXPECT_FALSE(flight.has("QCF"));
 }
@@ -503,23 +499,19 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
   }
   const Flight flight(path());
   const auto refusal_of = [&](const char* name, const char* unit, const char* role) {
-    return pcor::test::message_of<Error>([&] { flight.conversion(name, unit, role); });
+    return error_of([&] { flight.conversion(name, unit, role); });
   };
-  EXPECT_EQ(
-      refusal_of("QCF", "hPa", "dynamic_pressure"),
-      path().string() +
-          ": QCF is not in this file; it has QCFR, QCR, QCX; change dynamic_pressure in the [variables] of "
-          "the model");
-  EXPECT_EQ(refusal_of("RTF1", "K", "recovery_temperature"),
-            path().string() +
-                ": RTF1 (recovery_temperature of the model) is not in this file; it has TTRR, TTRL, TTWH in "
-                "degC, QCFK in K, ATX, RSTB1 in degC (units that fit); change [variables] of the model")
+  EXPECT_THAT(refusal_of("QCF", "hPa", "dynamic_pressure"),
+              IsError(Error::Code::variable, path().string(), "QCF", "QCFR, QCR, QCX", "dynamic_pressure",
+                      "[variables]"));
+  EXPECT_THAT(refusal_of("RTF1", "K", "recovery_temperature"),
+              IsError(Error::Code::variable, path().string(), "RTF1", "recovery_temperature",
+                      "TTRR, TTRL, TTWH in degC, QCFK in K, ATX, RSTB1 in degC", "[variables]"))
       << "the words of the role first";
   EXPECT_THAT(refusal_of("ALT", "degree", "attack"),
-              AllOf(HasSubstr("ALT (attack of the model) is not in this file"),
-                    HasSubstr("no time series in degree"), HasSubstr("[variables]")));
-  EXPECT_EQ(pcor::test::message_of<Error>([&] { flight.conversion("QCF", "hPa"); }),
-            pcor::test::message_of<Error>([&] { flight.variable("QCF"); }))
+              IsError(Error::Code::variable, "ALT", "attack", "degree", "[variables]"));
+  EXPECT_STREQ(error_of([&] { flight.conversion("QCF", "hPa"); })->what(),
+               error_of([&] { flight.variable("QCF"); })->what())
       << "no role, so no model to change";
 }
 
@@ -530,9 +522,8 @@ TEST_F(FlightTest, NoMoreThanSixVariablesThatFitAreNamed) {
     for (int i = 1; i < 10; ++i) maker.series("ABCD" + std::to_string(i), "degC", {1});
   }
   const Flight flight(path());
-  EXPECT_THAT(
-      pcor::test::message_of<Error>([&] { flight.conversion("ZZ", "K", "ambient_temperature"); }),
-      HasSubstr("it has ABCD1, ABCD2, ABCD3, ABCD4, ABCD5, ABCD6 in degC and 3 more (units that fit)"));
+  EXPECT_THAT(error_of([&] { flight.conversion("ZZ", "K", "ambient_temperature"); }),
+              IsError(Error::Code::variable, "ABCD1, ABCD2, ABCD3, ABCD4, ABCD5, ABCD6 in degC and 3"));
 }
 
 TEST_F(FlightTest, ModelUnitOverridesFileUnit) {
@@ -555,12 +546,11 @@ TEST_F(FlightTest, ModelUnitOverridesFileUnit) {
   EXPECT_EQ(stated("HEAT", "hPa"), 1) << "its kind, too";
   EXPECT_EQ(stated("PSFD", "-1 hPa"), -1) << "a minus turns the sign";
   const auto refusal_of = [&](const char* name, const char* unit) {
-    return pcor::test::message_of<Error>([&] { stated(name, unit); });
+    return error_of([&] { stated(name, unit); });
   };
   for (const char* wrong : {"furlong", "K", "furlong-ish"})
     EXPECT_THAT(refusal_of("BARE", wrong),
-                AllOf(HasSubstr(std::string("the unit \"") + wrong + "\" that the model states for BARE"),
-                      HasSubstr("correct unit.static_pressure in the [units]")));
+                IsError(Error::Code::unit, wrong, "BARE", "unit.static_pressure", "[units]"));
 }
 
 TEST_F(FlightTest, AttributesComeWithoutTrailingNul) {
@@ -751,10 +741,10 @@ TEST_F(FlightTest, AdviceOnTheTimeNamesTheDayOfTheFlightOrNone) {
       if (*date != 0) maker.text(NC_GLOBAL, "FlightDate", date);
       maker.text(NC_GLOBAL, "TimeInterval", "09:00:00-10:00:00");
     }
-    return pcor::test::message_of<Error>([this] { Flight flight(path()); });
+    return error_of([this] { Flight flight(path()); });
   };
-  EXPECT_THAT(refusal_with("07/05/1995"), HasSubstr("seconds since 1995-07-05 00:00:00"));
-  EXPECT_THAT(refusal_with(""), HasSubstr("seconds since DAY 00:00:00"));
+  EXPECT_THAT(refusal_with("07/05/1995"), IsError(Error::Code::time, "seconds since 1995-07-05 00:00:00"));
+  EXPECT_THAT(refusal_with(""), IsError(Error::Code::time, "seconds since DAY 00:00:00"));
 }
 
 TEST_F(FlightTest, WhatIsTooMuchToBeMeasuredIsMissing) {
@@ -791,19 +781,15 @@ TEST_F(FlightTest, AmbiguousNumbersAreRefusedOnRead) {
     maker.numbers(packed, "valid_max", NC_DOUBLE, {20});
     maker.text(put("DIGITS"), "scale_factor", "0.5");
   }
-  const auto refusal_of = [this](const char* name) {
-    return pcor::test::message_of<Error>([&] { read(name); });
-  };
+  const auto refusal_of = [this](const char* name) { return error_of([&] { read(name); }); };
   EXPECT_THAT(refusal_of("SCALE"),
-              AllOf(HasSubstr(path().string()), HasSubstr("scale_factor of SCALE is \"text\""),
-                    HasSubstr("ncatted -a scale_factor,SCALE")));
-  EXPECT_THAT(refusal_of("ZERO"), HasSubstr("scale_factor of ZERO is \"0\""));
-  EXPECT_THAT(refusal_of("NAN"), HasSubstr("add_offset of NAN"));
-  EXPECT_THAT(refusal_of("TWO"), HasSubstr("add_offset of TWO is \"1, 2\""));
-  EXPECT_THAT(refusal_of("RANGE"), HasSubstr("valid_range of RANGE leaves no value"));
-  EXPECT_THAT(refusal_of("ONE"), HasSubstr("valid_range of ONE is not two numbers"));
-  EXPECT_THAT(refusal_of("PACKED"),
-              HasSubstr("valid_max of PACKED has another type than the packed integers"));
+              IsError(Error::Code::variable, path().string(), "\"text\"", "ncatted -a scale_factor,SCALE"));
+  EXPECT_THAT(refusal_of("ZERO"), IsError(Error::Code::variable, "scale_factor", "ZERO", "\"0\""));
+  EXPECT_THAT(refusal_of("NAN"), IsError(Error::Code::variable, "add_offset", "NAN"));
+  EXPECT_THAT(refusal_of("TWO"), IsError(Error::Code::variable, "add_offset", "TWO", "\"1, 2\""));
+  EXPECT_THAT(refusal_of("RANGE"), IsError(Error::Code::variable, "valid_range", "RANGE"));
+  EXPECT_THAT(refusal_of("ONE"), IsError(Error::Code::variable, "valid_range", "ONE"));
+  EXPECT_THAT(refusal_of("PACKED"), IsError(Error::Code::variable, "valid_max", "PACKED"));
   EXPECT_THAT(read("DIGITS"), ElementsAre(5, 5.5));
 }
 
@@ -901,8 +887,7 @@ TEST_F(FlightTest, RequiredVariableWithoutValuesIsAnError) {
     maker.series("QCF", "hPa", {-32767, 3});
   }
   const Flight flight(path());
-  EXPECT_THAT(pcor::test::message_of<Error>([&] { flight.require_values("PSFD"); }),
-              HasSubstr("PSFD has no value, all 2 records are missing"));
+  EXPECT_THAT(error_of([&] { flight.require_values("PSFD"); }), IsError(Error::Code::variable, "PSFD", "2"));
   EXPECT_NO_THROW(flight.require_values("QCF"));
 }
 
@@ -916,13 +901,12 @@ TEST_F(FlightTest, UnitsAreConvertedByTheFilesAttribute) {
   }
   const Flight flight(path());
   EXPECT_THAT(read("ATX", flight.conversion("ATX", "K")), ElementsAre(DoubleEq(283.15), IsNan()));
-  EXPECT_THAT(
-      pcor::test::message_of<Error>([&] { flight.conversion("PSF", "hPa", "static_pressure"); }),
-      AllOf(HasSubstr("PSF has no unit"), HasSubstr("unit.static_pressure = \"hPa\""), HasSubstr("[units]")));
-  EXPECT_THAT(pcor::test::message_of<Error>([&] { flight.conversion("ODD", "hPa", "static_pressure"); }),
-              HasSubstr("ODD has the unit \"furlong-ish\", which is not known"));
-  EXPECT_THAT(pcor::test::message_of<Error>([&] { flight.conversion("ATX", "hPa", "static_pressure"); }),
-              HasSubstr("cannot be converted to hPa"));
+  EXPECT_THAT(error_of([&] { flight.conversion("PSF", "hPa", "static_pressure"); }),
+              IsError(Error::Code::unit, "PSF", "unit.static_pressure = \"hPa\"", "[units]"));
+  EXPECT_THAT(error_of([&] { flight.conversion("ODD", "hPa", "static_pressure"); }),
+              IsError(Error::Code::unit, "ODD", "furlong-ish"));
+  EXPECT_THAT(error_of([&] { flight.conversion("ATX", "hPa", "static_pressure"); }),
+              IsError(Error::Code::unit, "ATX", "C", "hPa"));
   EXPECT_EQ(flight.conversion("PSF", "hPa", "static_pressure", "kPa")(85), 850)
       << "the unit that a model file states";
 }
@@ -953,14 +937,14 @@ TEST_F(FlightTest, OtherVariablesAreListedAndRefused) {
   EXPECT_THAT(flight.variables(), ElementsAre("Time", "CDP", "WORDS", "ONE"));
   EXPECT_FALSE(flight.variable("CDP").is_series);
   double value = 0;
-  EXPECT_THAT(pcor::test::message_of<Error>([&] {
+  EXPECT_THAT(error_of([&] {
                 flight.read("CDP", {0, 1}, {}, &value);
               }),
-              HasSubstr("CDP(Time, sps1, Vector64) is not a time series"));
-  EXPECT_THAT(pcor::test::message_of<Error>([&] {
+              IsError(Error::Code::variable, "CDP(Time, sps1, Vector64)"));
+  EXPECT_THAT(error_of([&] {
                 flight.read("WORDS", {0, 1}, {}, &value);
               }),
-              HasSubstr("not a time series"));
+              IsError(Error::Code::variable, "WORDS(Time)"));
   EXPECT_EQ(flight.variable("ONE").rate, 1);
 }
 
@@ -982,10 +966,10 @@ TEST_F(FlightTest, LeavesTheChunkCacheOfTheProgramAlone) {
 TEST_F(FlightTest, ABlockBeyondTheEndIsRefused) {
   make_with_times({100, 101});
   double values[3];
-  EXPECT_THAT(pcor::test::message_of<Error>([&] {
+  EXPECT_THAT(error_of([&] {
                 Flight(path()).read("Time", {1, 2}, {}, values);
               }),
-              HasSubstr("cannot read Time at records 1 to 3, there are 2"));
+              IsError(Error::Code::usage, "Time", "1 to 3", "2"));
 }
 
 // Rates
@@ -1009,10 +993,9 @@ TEST_F(FlightTest, RatesSideBySideAreReadAtEither) {
   EXPECT_THAT(at(1, "FAST"), ElementsAre(3, IsNan())) << "the mean of the existing samples";
   EXPECT_THAT(at(2, "FAST"), ElementsAre(1.5, 6, IsNan(), IsNan()));
   EXPECT_THAT(at(4, "FAST"), ElementsAre(1, 2, IsNan(), 6, IsNan(), IsNan(), IsNan(), IsNan()));
-  EXPECT_THAT(pcor::test::message_of<Error>([&] { at(3, "FAST"); }),
-              AllOf(HasSubstr("FAST has 4 samples a record"), HasSubstr("1 samples a record")));
-  EXPECT_THAT(pcor::test::message_of<Error>([&] { at(6, "FAST"); }),
-              HasSubstr("FAST has 4 samples a record, which cannot be brought to 6"));
+  EXPECT_THAT(error_of([&] { at(3, "FAST"); }),
+              IsError(Error::Code::samples, "FAST", "4 samples", "1 samples"));
+  EXPECT_THAT(error_of([&] { at(6, "FAST"); }), IsError(Error::Code::samples, "FAST", "4", "6"));
 }
 
 TEST_F(FlightTest, AnglesAverageOnTheCircle) {
@@ -1093,8 +1076,7 @@ TEST(RealFlight, OfJuly2004IsRead) {
   EXPECT_EQ(flight.aircraft(), "N130AR");
   EXPECT_EQ(flight.project(), "Ocean Waves");
   EXPECT_EQ(flight.flight_number(), "rf06");
-  EXPECT_THAT(pcor::test::message_of<Error>([&] { flight.variable("VLAMS"); }),
-              HasSubstr("VLAMS is not in this file"));
+  EXPECT_THAT(error_of([&] { flight.variable("VLAMS"); }), IsError(Error::Code::variable, "VLAMS"));
   for (const std::string& name : flight.variables()) {
     const pcor::VariableInfo& info = flight.variable(name);
     EXPECT_TRUE(info.units.empty() || pcor::is_known_unit(info.units)) << name << " " << info.units;

@@ -8,7 +8,7 @@
 #include <pcor/flight/flight.hpp>
 #include <pcor/flight/flight_writer.hpp>
 #include "flight/flight_file.hpp"
-#include "support/netcdf_file.hpp"
+#include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace pcor::internal {
@@ -72,15 +72,16 @@ TEST_F(Icartt, IsCopiedToNetcdf) {
 TEST_F(Icartt, WhatIsWrongIsToldWithItsLine) {
   const auto refusal = [this](const std::string& text) {
     write(text);
-    return test::message_of<Error>([this] { Flight flight(path_); });
+    return test::error_of([this] { Flight flight(path_); });
   };
-  EXPECT_THAT(refusal(head + values + "47079, 850\n"), HasSubstr("flight.ict:28: 4 numbers"));
-  EXPECT_THAT(refusal(head + "47076, 850, x, 0.3\n"), HasSubstr("flight.ict:25: 4 numbers"));
-  EXPECT_THAT(refusal("25, 2110\n"), HasSubstr("flight.ict:1: the file format index is 2110"));
-  EXPECT_THAT(refusal("25, 1001\nDoe\n"), HasSubstr("the header ends too early"));
-  EXPECT_THAT(refusal("23" + head.substr(2) + values), HasSubstr("but 23 according to its first line"));
-  EXPECT_THAT(refusal(head), HasSubstr("has no records"));
-  EXPECT_THAT(refusal("70 people"), HasSubstr("is not a netCDF file, nor one of ICARTT"));
+  EXPECT_THAT(refusal(head + values + "47079, 850\n"),
+              test::IsError(Error::Code::file, "flight.ict:28", "4"));
+  EXPECT_THAT(refusal(head + "47076, 850, x, 0.3\n"), test::IsError(Error::Code::file, "flight.ict:25", "4"));
+  EXPECT_THAT(refusal("25, 2110\n"), test::IsError(Error::Code::file, "flight.ict:1", "2110"));
+  EXPECT_THAT(refusal("25, 1001\nDoe\n"), test::IsError(Error::Code::file, "flight.ict:3"));
+  EXPECT_THAT(refusal("23" + head.substr(2) + values), test::IsError(Error::Code::file, "23"));
+  EXPECT_THAT(refusal(head), test::IsError(Error::Code::samples, "flight.ict"));
+  EXPECT_THAT(refusal("70 people"), test::IsError(Error::Code::file, "flight.ict"));
 }
 
 TEST_F(Icartt, RecordWithoutLineEndIsLeftOut) {
@@ -113,8 +114,8 @@ TEST_F(Icartt, RecordWithoutLineEndIsKeptWhereComplete) {
 TEST_F(Icartt, ACompressedFileIsToUnpack) {
   path_ = folder_.path() / "flight.ict.gz";
   write("\x1f\x8b");
-  EXPECT_THAT(test::message_of<Error>([this] { Flight flight(path_); }),
-              HasSubstr("unpack it with gunzip -k"));
+  EXPECT_THAT(test::error_of([this] { Flight flight(path_); }),
+              test::IsError(Error::Code::file, "gunzip -k"));
 }
 
 }  // namespace

@@ -23,18 +23,18 @@
 #include <pcor/physics/lams.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 #include "model_io/output_table.hpp"
+#include "support/error_of.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace pcor;
-using testing::AllOf;
+using test::error_of;
+using test::IsError;
 using testing::AnyOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
-using testing::StartsWith;
 
 // The example of the interface, word for word.
 const std::string published_example = R"(format = "pcor-model/1"
@@ -94,22 +94,12 @@ static_pressure = "PSFD"
 dynamic_pressure = "QCF"
 )";
 
-std::string error_of(std::string_view text) {
-  try {
-    parse_model(text, "m.toml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+std::optional<Error> parse_error_of(std::string_view text) {
+  return error_of([&] { parse_model(text, "m.toml"); });
 }
 
-std::string write_error_of(const ModelDefinition& file) {
-  try {
-    write_model(file);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+std::optional<Error> write_error_of(const ModelDefinition& file) {
+  return error_of([&] { write_model(file); });
 }
 
 // Every bit of a model file as text, to compare two of them.
@@ -490,13 +480,8 @@ class ModelFileOnDisk : public testing::Test {
     return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   }
 
-  static std::string read_error_of(const fs::path& path) {
-    try {
-      read_model(path);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+  static std::optional<Error> read_error_of(const fs::path& path) {
+    return error_of([&] { read_model(path); });
   }
 
   fs::path directory_;
@@ -741,35 +726,35 @@ TEST(ModelDefinition, ArbitraryTextGivesAnErrorOnly) {
           text.insert(below(text.size()), text.substr(place, below(60)));
       }
     }
-    const std::string message = error_of(text);
-    EXPECT_THAT(message, Not(HasSubstr("\n")));
-    EXPECT_THAT(message, AnyOf("no error", StartsWith("m.toml:"))) << text;
+    EXPECT_THAT(parse_error_of(text),
+                AnyOf(testing::Eq(std::nullopt), IsError(Error::Code::definition, "m.toml")))
+        << text;
   }
 }
 
 TEST(ModelDefinition, DeepNestingIsRefused) {
-  EXPECT_THAT(error_of("a = " + std::string(100000, '[')), StartsWith("m.toml:1:"));
-  EXPECT_THAT(error_of(std::string(100000, '{')), StartsWith("m.toml:1:"));
+  EXPECT_THAT(parse_error_of("a = " + std::string(100000, '[')),
+              IsError(Error::Code::definition, "m.toml:1"));
+  EXPECT_THAT(parse_error_of(std::string(100000, '{')), IsError(Error::Code::definition, "m.toml:1"));
 }
 
 struct BadInput {
   std::string name;
   std::string text;  // added to the least model; the whole file where it begins with "format" or "\n"
   std::string place;
-  std::vector<std::string> parts;
+  std::vector<std::string> names;
 };
 
 void PrintTo(const BadInput& input, std::ostream* stream) { *stream << input.text; }
 
 class BadInputTest : public testing::TestWithParam<BadInput> {};
 
-TEST_P(BadInputTest, IsRefusedWithItsPlaceAndAdvice) {
+TEST_P(BadInputTest, IsRefusedWithItsPlaceAndNames) {
   const BadInput& input = GetParam();
   const bool whole = input.text[0] == '\n' || input.text.rfind("format", 0) == 0;
-  const std::string message = error_of(whole ? input.text : least + input.text);
-  EXPECT_THAT(message, StartsWith("m.toml:" + input.place + ": "));
-  for (const std::string& part : input.parts) EXPECT_THAT(message, HasSubstr(part));
-  EXPECT_THAT(message, Not(AnyOf(HasSubstr("?;"), HasSubstr("?."))));
+  const std::optional<Error> error = parse_error_of(whole ? input.text : least + input.text);
+  EXPECT_THAT(error, IsError(Error::Code::definition, "m.toml:" + input.place));
+  for (const std::string& name : input.names) EXPECT_THAT(error, IsError(Error::Code::definition, name));
 }
 
 const std::string own = "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\nparameters = { k = 1 }\n";
@@ -778,201 +763,146 @@ const std::string constant = "[[effect]]\nid = \"static-constant\"\n";
 INSTANTIATE_TEST_SUITE_P(
     ModelDefinition, BadInputTest,
     testing::Values(
-        BadInput{"NoFormat", "\nname = \"x\"\n", "1:1", {"format = \"pcor-model/1\""}},
-        BadInput{"NewerFormat",
-                 "format = \"pcor-model/2\"\nnew = 1\n",
-                 "1:10",
-                 {"'pcor-model/2'", "'pcor-model/1'"}},
-        BadInput{"OtherFormat", "format = \"yaml\"\n", "1:10", {"'yaml'", "write format = \"pcor-model/1\""}},
-        BadInput{"FormatOfWrongType", "format = 1\n", "1:10", {"'format' is a number"}},
-        BadInput{"Syntax", "[lams\n", "5:6", {"syntax"}},
-        BadInput{"SyntaxThatOnceAborted", "[ = \"x", "5:3", {"syntax"}},
-        BadInput{"UnclosedText", "\nformat = \"pcor", "2:15", {"syntax"}},
-        BadInput{"KeyTwice", "dynamic_pressure = \"QCR\"\n", "5:20", {"dynamic_pressure"}},
-        BadInput{"UnknownTable", "[lamps]\n", "5:2", {"no table 'lamps'", "did you mean lams?"}},
-        BadInput{"UnknownTopKey",
-                 "\nformat = \"pcor-model/1\"\nnmae = \"x\"",
-                 "3:1",
-                 {"no key 'nmae'", "did you mean name?"}},
+        BadInput{"NoFormat", "\nname = \"x\"\n", "1:1", {"pcor-model/1"}},
         BadInput{
-            "TableThatIsNone", "[temperature]\n[lams]\n[variables.units]\n", "7:12", {"no role 'units'"}},
+            "NewerFormat", "format = \"pcor-model/2\"\nnew = 1\n", "1:10", {"pcor-model/2", "pcor-model/1"}},
+        BadInput{"OtherFormat", "format = \"yaml\"\n", "1:10", {"yaml", "pcor-model/1"}},
+        BadInput{"FormatOfWrongType", "format = 1\n", "1:10", {"format"}},
+        BadInput{"Syntax", "[lams\n", "5:6", {}}, BadInput{"SyntaxThatOnceAborted", "[ = \"x", "5:3", {}},
+        BadInput{"UnclosedText", "\nformat = \"pcor", "2:15", {}},
+        BadInput{"KeyTwice", "dynamic_pressure = \"QCR\"\n", "5:20", {"dynamic_pressure"}},
+        BadInput{"UnknownTable", "[lamps]\n", "5:2", {"lamps", "lams"}},
+        BadInput{"UnknownTopKey", "\nformat = \"pcor-model/1\"\nnmae = \"x\"", "3:1", {"nmae", "name"}},
+        BadInput{"TableThatIsNone", "[temperature]\n[lams]\n[variables.units]\n", "7:12", {"units"}},
         BadInput{"NoDynamicPressure",
                  "format = \"pcor-model/1\"\n[variables]\nstatic_pressure = \"PSFD\"\n",
                  "2:2",
-                 {"the role 'dynamic_pressure' has no variable"}},
+                 {"dynamic_pressure"}},
         BadInput{"OneVariableForBothPressures",
                  "\nformat = \"pcor-model/1\"\n[variables]\ndynamic_pressure = \"PSFD\"\n"
                  "static_pressure = \"PSFD\"\n",
                  "5:1",
-                 {"'static_pressure' and 'dynamic_pressure' are both 'PSFD'", "give each its own"}},
+                 {"static_pressure", "dynamic_pressure", "PSFD"}},
         BadInput{"ImpossibleElevation",
                  "[[effect]]\nid = \"lams-elevation\"\nparameters = { dtheta1 = 60 }\n",
                  "7:26",
-                 {"'dtheta1' = 60", "within [-45, 45] deg"}},
+                 {"dtheta1", "60", "[-45, 45]", "deg"}},
         BadInput{"VapourPressureAndDewPoint",
                  "vapor_pressure = \"EWX\"\ndew_point = \"DPXC\"\n",
                  "6:1",
-                 {"'vapor_pressure' and 'dew_point'", "give one for the humidity"}},
+                 {"vapor_pressure", "dew_point"}},
         BadInput{"FrostPointAndVapourPressure",
                  "frost_point = \"DPT\"\nvapor_pressure = \"EWX\"\n",
                  "6:1",
-                 {"'frost_point' and 'vapor_pressure'", "give one for the humidity"}},
+                 {"frost_point", "vapor_pressure"}},
         BadInput{"DewPointAndFrostPoint",
                  "dew_point = \"DPXC\"\nfrost_point = \"DPT\"\n",
                  "6:1",
-                 {"'dew_point' and 'frost_point'", "give one for the humidity"}},
+                 {"dew_point", "frost_point"}},
         BadInput{"BothTemperatures",
                  "recovery_temperature = \"RTF1\"\nambient_temperature = \"ATX\"\n[lams]\napproach = 2\n",
                  "6:1",
-                 {"'recovery_temperature' and 'ambient_temperature'", "give one", "approach = 3"}},
+                 {"recovery_temperature", "ambient_temperature", "approach = 3"}},
         BadInput{"UnknownRole",
                  "recovery_temprature = \"RTF1\"\n",
                  "5:1",
-                 {"no role 'recovery_temprature'", "did you mean recovery_temperature"}},
-        BadInput{"DerivedQuantityAsRole", "dynamic_ratio = \"X\"\n", "5:1", {"'dynamic_ratio' is computed"}},
-        BadInput{"VariableOfWrongType", "attack = 3\n", "5:10", {"'attack' in [variables] is a number"}},
-        BadInput{"EmptyVariable", "attack = \"\"\n", "5:10", {"cannot be the name"}},
-        BadInput{"UnknownUnit", "[units]\nstatic_pressure = \"mBarr\"\n", "6:19", {"'mBarr'", "hPa"}},
-        BadInput{"UnitOfAnotherKind",
-                 "[units]\nunit.static_pressure = \"K\"\n",
-                 "6:24",
-                 {"'K' does not convert to hPa"}},
-        BadInput{"UnitOfUnknownRole",
-                 "[units]\nunit.static_presure = \"hPa\"\n",
-                 "6:6",
-                 {"did you mean static_pressure"}},
-        BadInput{"UnitWithoutVariable", "[units]\nflaps = \"percent\"\n", "6:1", {"no variable"}},
+                 {"recovery_temprature", "recovery_temperature"}},
+        BadInput{"DerivedQuantityAsRole", "dynamic_ratio = \"X\"\n", "5:1", {"dynamic_ratio"}},
+        BadInput{"VariableOfWrongType", "attack = 3\n", "5:10", {"attack", "[variables]"}},
+        BadInput{"EmptyVariable", "attack = \"\"\n", "5:10", {}},
+        BadInput{"UnknownUnit", "[units]\nstatic_pressure = \"mBarr\"\n", "6:19", {"mBarr", "hPa"}},
+        BadInput{"UnitOfAnotherKind", "[units]\nunit.static_pressure = \"K\"\n", "6:24", {"K", "hPa"}},
+        BadInput{"UnitOfUnknownRole", "[units]\nunit.static_presure = \"hPa\"\n", "6:6", {"static_pressure"}},
+        BadInput{"UnitWithoutVariable", "[units]\nflaps = \"percent\"\n", "6:1", {}},
         BadInput{"UnitTwice",
                  "[units]\nunit.static_pressure = \"hPa\"\nstatic_pressure = \"hPa\"\n",
                  "7:1",
-                 {"'static_pressure'", "twice"}},
-        BadInput{
-            "UnknownOutput", "[output]\nPSCX = \"P\"\n", "6:1", {"no output 'PSCX'", "did you mean PSXC"}},
-        BadInput{"OutputsOfOneName", "[output]\nATX = \"TASX\"\n", "6:7", {"'ATX' and 'TASX' would both"}},
-        BadInput{"OutputThatNetcdfRefuses", "[output]\nATX = \"a/b\"\n", "6:7", {"'a/b' cannot be the name"}},
-        BadInput{"UnknownLamsKey",
-                 "[lams]\nelevaton = 1\n",
-                 "6:1",
-                 {"no key 'elevaton' in [lams]", "did you mean elevation?"}},
-        BadInput{"LamsKeyOfWrongType",
-                 "[lams]\nelevation = \"1\"\n",
-                 "6:13",
-                 {"'elevation' in [lams] is a text; give a number"}},
-        BadInput{"NotANumber", "[lams]\nelevation = nan\n", "6:13", {"'elevation' in [lams] is not finite"}},
-        BadInput{"Infinite", "[lams]\nazimuth = -inf\n", "6:11", {"not finite"}},
+                 {"static_pressure"}},
+        BadInput{"UnknownOutput", "[output]\nPSCX = \"P\"\n", "6:1", {"PSCX", "PSXC"}},
+        BadInput{"OutputsOfOneName", "[output]\nATX = \"TASX\"\n", "6:7", {"ATX", "TASX"}},
+        BadInput{"OutputThatNetcdfRefuses", "[output]\nATX = \"a/b\"\n", "6:7", {"a/b"}},
+        BadInput{"UnknownLamsKey", "[lams]\nelevaton = 1\n", "6:1", {"elevaton", "[lams]", "elevation"}},
+        BadInput{"LamsKeyOfWrongType", "[lams]\nelevation = \"1\"\n", "6:13", {"elevation", "[lams]"}},
+        BadInput{"NotANumber", "[lams]\nelevation = nan\n", "6:13", {"elevation", "[lams]"}},
+        BadInput{"Infinite", "[lams]\nazimuth = -inf\n", "6:11", {}},
         BadInput{"TooLarge", "[lams]\nazimuth = 1e999\n", "6:16", {"1e999"}},
         BadInput{"Approach4", "[lams]\napproach = 4\n", "6:12", {std::string(approach_4_refusal)}},
-        BadInput{"Approach5", "[lams]\napproach = 5\n", "6:12", {"give 1, 2 or 3"}},
-        BadInput{"ApproachWithFraction", "[lams]\napproach = 1.5\n", "6:12", {"a whole number"}},
+        BadInput{"Approach5", "[lams]\napproach = 5\n", "6:12", {"1", "2", "3"}},
+        BadInput{"ApproachWithFraction", "[lams]\napproach = 1.5\n", "6:12", {}},
         BadInput{"LamsIsNoTable",
                  "\nlams = 3\nformat = \"pcor-model/1\"\nvariables = { static_pressure = \"P\", "
                  "dynamic_pressure = \"Q\" }",
                  "2:8",
-                 {"'lams' is a number; give a table [lams]"}},
+                 {"lams", "[lams]"}},
         BadInput{"UnknownRecoveryFactor",
                  "[temperature]\nrecovery_factor = \"harco-heated-2015\"\n",
                  "6:19",
-                 {"'harco-heated-2015'", "did you mean harco-heated-2014"}},
-        BadInput{
-            "RecoveryFactorOfZero", "[temperature]\nrecovery_factor = 0\n", "6:19", {"recovery factor 0"}},
+                 {"harco-heated-2015", "harco-heated-2014"}},
+        BadInput{"RecoveryFactorOfZero", "[temperature]\nrecovery_factor = 0\n", "6:19", {"0"}},
         BadInput{"RecoveryFactorTooLarge", "[temperature]\nrecovery_factor = 1.3\n", "6:19", {"1.3", "1.2"}},
-        BadInput{"RecoveryFactorNaN", "[temperature]\nrecovery_factor = nan\n", "6:19", {"not finite"}},
-        BadInput{"RecoveryFactorOfWrongType",
-                 "[temperature]\nrecovery_factor = true\n",
-                 "6:19",
-                 {"the name of a published law"}},
-        BadInput{"RecoveryFactorOfThreeNumbers",
-                 "[temperature]\nrecovery_factor = [1, 2, 3]\n",
-                 "6:19",
-                 {"has 3 numbers"}},
-        BadInput{"MoistOfWrongType", "[humidity]\nmoist = 1\n", "6:9", {"true or false"}},
+        BadInput{"RecoveryFactorNaN", "[temperature]\nrecovery_factor = nan\n", "6:19", {}},
+        BadInput{"RecoveryFactorOfWrongType", "[temperature]\nrecovery_factor = true\n", "6:19", {}},
         BadInput{
-            "RadomeOfOneNumber", "[radome]\nattack = [1]\n", "6:10", {"has 1 numbers; give [offset, slope]"}},
-        BadInput{"RadomeOfText", "[radome]\nattack = [1, \"2\"]\n", "6:14", {"give a number"}},
-        BadInput{"RadomeUnknown", "[radome]\natack = [1, 2]\n", "6:1", {"did you mean attack?"}},
-        BadInput{"NegativeTaper", "[policy]\ntaper_below = -1\n", "6:15", {"negative"}},
-        BadInput{"UnknownPolicy", "[policy]\ntaper = 1\n", "6:1", {"did you mean taper_"}},
-        BadInput{
-            "UnknownDomain", "[domain]\nmahc = [0, 1]\n", "6:1", {"no quantity 'mahc'", "did you mean mach"}},
-        BadInput{"DomainUpsideDown",
-                 "[domain]\nmach = [1, 0]\n",
-                 "6:8",
-                 {"lower end 1 is not below the upper end 0"}},
-        BadInput{"DomainOfOneNumber", "[domain]\nmach = [1]\n", "6:8", {"give [lower, upper]"}},
-        BadInput{"DomainInfinite", "[domain]\nmach = [0, inf]\n", "6:12", {"not finite"}},
+            "RecoveryFactorOfThreeNumbers", "[temperature]\nrecovery_factor = [1, 2, 3]\n", "6:19", {"3"}},
+        BadInput{"MoistOfWrongType", "[humidity]\nmoist = 1\n", "6:9", {}},
+        BadInput{"RadomeOfOneNumber", "[radome]\nattack = [1]\n", "6:10", {"1"}},
+        BadInput{"RadomeOfText", "[radome]\nattack = [1, \"2\"]\n", "6:14", {}},
+        BadInput{"RadomeUnknown", "[radome]\natack = [1, 2]\n", "6:1", {"attack"}},
+        BadInput{"NegativeTaper", "[policy]\ntaper_below = -1\n", "6:15", {}},
+        BadInput{"UnknownPolicy", "[policy]\ntaper = 1\n", "6:1", {"taper_below"}},
+        BadInput{"UnknownDomain", "[domain]\nmahc = [0, 1]\n", "6:1", {"mahc", "mach"}},
+        BadInput{"DomainUpsideDown", "[domain]\nmach = [1, 0]\n", "6:8", {"1", "0"}},
+        BadInput{"DomainOfOneNumber", "[domain]\nmach = [1]\n", "6:8", {}},
+        BadInput{"DomainInfinite", "[domain]\nmach = [0, inf]\n", "6:12", {}},
         BadInput{"EffectIsATable", "[effect]\nid = \"static-qp\"\n", "5:1", {"[[effect]]"}},
-        BadInput{"EffectWithoutId", "[[effect]]\nparameters = { a0 = 1 }\n", "5:1", {"no id"}},
-        BadInput{"UnknownEffect",
-                 "[[effect]]\nid = \"static-pq\"\n",
-                 "6:6",
-                 {"no effect 'static-pq'", "did you mean static-qp"}},
-        BadInput{"EffectTwice",
-                 constant + constant,
-                 "8:6",
-                 {"'static-constant' is in the model already, at line 6"}},
-        BadInput{"FormulaTwice", own + own, "10:6", {"'own' is in the model already, at line 6"}},
+        BadInput{"EffectWithoutId", "[[effect]]\nparameters = { a0 = 1 }\n", "5:1", {}},
+        BadInput{"UnknownEffect", "[[effect]]\nid = \"static-pq\"\n", "6:6", {"static-pq", "static-qp"}},
+        BadInput{"EffectTwice", constant + constant, "8:6", {"static-constant", "6"}},
+        BadInput{"FormulaTwice", own + own, "10:6", {"own", "6"}},
         BadInput{"FormulaOfTheCatalogue",
                  constant + "formula = \"k * mach\"\nparameters = { k = 1 }\n",
                  "7:1",
-                 {"remove 'formula'"}},
-        BadInput{"UnknownEffectKey",
-                 constant + "fixd = []\n",
-                 "7:1",
-                 {"no key 'fixd' in [[effect]]", "did you mean fixed"}},
+                 {"formula"}},
+        BadInput{"UnknownEffectKey", constant + "fixd = []\n", "7:1", {"fixd", "[[effect]]", "fixed"}},
         BadInput{"UnknownParameter",
                  constant + "parameters = { a1 = 1 }\n",
                  "7:16",
-                 {"effect 'static-constant' has no parameter 'a1'", "did you mean a0?"}},
-        BadInput{
-            "ParameterOfWrongType", constant + "parameters = { a0 = \"1\" }\n", "7:21", {"give a number"}},
-        BadInput{"ParameterNaN", constant + "parameters = { a0 = nan }\n", "7:21", {"not finite"}},
-        BadInput{"ParametersOfWrongType", constant + "parameters = [1]\n", "7:14", {"give { name = value }"}},
+                 {"static-constant", "a1", "a0"}},
+        BadInput{"ParameterOfWrongType", constant + "parameters = { a0 = \"1\" }\n", "7:21", {}},
+        BadInput{"ParameterNaN", constant + "parameters = { a0 = nan }\n", "7:21", {}},
+        BadInput{"ParametersOfWrongType", constant + "parameters = [1]\n", "7:14", {}},
         BadInput{"ScalingByAnotherQuantity",
                  constant + "scaling = { mach = 1 }\n",
                  "7:13",
-                 {"powers of the two pressures, not of 'mach'", "{ static_pressure = POWER"}},
+                 {"mach", "static_pressure"}},
         BadInput{"ScalingByABrokenPower",
                  constant + "scaling = { dynamic_pressure = 0.5 }\n",
                  "7:32",
-                 {"exponent 0.5", "-3 to 3"}},
+                 {"0.5", "-3 to 3"}},
         BadInput{"ScalingByALargePower",
                  constant + "scaling = { static_pressure = -4 }\n",
                  "7:31",
                  {"-4", "-3 to 3"}},
-        BadInput{"ScalingOfAFormula",
-                 own + "scaling = { static_pressure = 1 }\n",
-                 "9:1",
-                 {"'own'", "write the scaling into it"}},
-        BadInput{"PlaceOfACatalogueEffect", constant + "where = \"static\"\n", "7:1", {"'where'"}},
-        BadInput{"UnknownStderr", constant + "stderr = { b = 1 }\n", "7:12", {"no parameter 'b'"}},
-        BadInput{"NegativeStderr", constant + "stderr = { a0 = -1 }\n", "7:17", {"negative"}},
-        BadInput{"UnknownFixed",
-                 constant + "fixed = [\"a2\"]\n",
-                 "7:10",
-                 {"no parameter 'a2'", "did you mean a0?"}},
-        BadInput{"FixedTwice", constant + "fixed = [\"a0\", \"a0\"]\n", "7:16", {"named twice"}},
-        BadInput{"FixedOfWrongType", constant + "fixed = true\n", "7:9", {"the names of parameters"}},
-        BadInput{"BoundsUpsideDown", constant + "bounds = { a0 = [1, -1] }\n", "7:17", {"not below"}},
+        BadInput{"ScalingOfAFormula", own + "scaling = { static_pressure = 1 }\n", "9:1", {"own"}},
+        BadInput{"PlaceOfACatalogueEffect", constant + "where = \"static\"\n", "7:1", {"where"}},
+        BadInput{"UnknownStderr", constant + "stderr = { b = 1 }\n", "7:12", {"b"}},
+        BadInput{"NegativeStderr", constant + "stderr = { a0 = -1 }\n", "7:17", {}},
+        BadInput{"UnknownFixed", constant + "fixed = [\"a2\"]\n", "7:10", {"a2", "a0"}},
+        BadInput{"FixedTwice", constant + "fixed = [\"a0\", \"a0\"]\n", "7:16", {}},
+        BadInput{"FixedOfWrongType", constant + "fixed = true\n", "7:9", {}},
+        BadInput{"BoundsUpsideDown", constant + "bounds = { a0 = [1, -1] }\n", "7:17", {}},
         BadInput{"ImpossibleParameter",
                  constant + "parameters = { a0 = 0.62 }\n",
                  "7:21",
-                 {"'a0' = 0.62 is outside the bounds of the catalogue", "within [-0.5, 0.5]"}},
-        BadInput{"BoundsBeyondTheCatalogue",
-                 constant + "bounds = { a0 = [-1, 0.01] }\n",
-                 "7:17",
-                 {"within [-0.5, 0.5]"}},
-        BadInput{"ValueOutsideItsBounds",
-                 constant + "bounds = { a0 = [0.01, 0.02] }\n",
-                 "7:17",
-                 {"outside its bounds"}},
-        BadInput{"FormulaWithoutParameters",
-                 "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\n",
-                 "7:1",
-                 {"no parameters"}},
+                 {"a0", "0.62", "[-0.5, 0.5]"}},
+        BadInput{
+            "BoundsBeyondTheCatalogue", constant + "bounds = { a0 = [-1, 0.01] }\n", "7:17", {"[-0.5, 0.5]"}},
+        BadInput{"ValueOutsideItsBounds", constant + "bounds = { a0 = [0.01, 0.02] }\n", "7:17", {}},
+        BadInput{"FormulaWithoutParameters", "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\n", "7:1", {}},
         BadInput{"FormulaThatIsNone",
                  "[[effect]]\nid = \"own\"\nformula = \"k * (mach\"\nparameters = { k = 1 }\n",
                  "7:11",
-                 {"the formula of effect 'own'", "column 10"}},
+                 {"own", "10"}},
         BadInput{"FormulaParameterOfAFunction",
                  "[[effect]]\nid = \"own\"\nformula = \"mach\"\nparameters = { sqrt = 1 }\n",
                  "8:14",
@@ -980,92 +910,84 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"UnusedFormulaParameter",
                  "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\nparameters = { kk = 1 }\n",
                  "8:14",
-                 {"does not use its parameter 'kk'", "did you mean k?"}},
-        BadInput{"UnknownPlace", own + "where = \"statc\"\n", "9:9", {"'statc'", "did you mean static"}},
-        BadInput{"WrongUnitOfAFormula", own + "unit = \"Pa\"\n", "9:8", {"'static' is in hPa, not in 'Pa'"}},
+                 {"kk", "k"}},
+        BadInput{"UnknownPlace", own + "where = \"statc\"\n", "9:9", {"statc", "static"}},
+        BadInput{"WrongUnitOfAFormula", own + "unit = \"Pa\"\n", "9:8", {"static", "Pa", "hPa"}},
         BadInput{"WrongUnitAtAnotherPlace",
                  own + "where = \"attack\"\nunit = \"hPa\"\n",
                  "10:8",
-                 {"'attack' is in deg"}},
-        BadInput{"UnknownLawKey", "[law]\nvalid_form = \"2011-11-02\"\n", "6:1", {"did you mean valid_from"}},
-        BadInput{
-            "DateThatIsNone", "[law]\nvalid_from = \"2011-02-29\"\n", "6:14", {"'2011-02-29' is not a date"}},
-        BadInput{"DateOfWrongType", "[law]\nvalid_from = 2011\n", "6:14", {"give a date like"}},
+                 {"attack", "deg"}},
+        BadInput{"UnknownLawKey", "[law]\nvalid_form = \"2011-11-02\"\n", "6:1", {"valid_from"}},
+        BadInput{"DateThatIsNone", "[law]\nvalid_from = \"2011-02-29\"\n", "6:14", {"2011-02-29"}},
+        BadInput{"DateOfWrongType", "[law]\nvalid_from = 2011\n", "6:14", {}},
         BadInput{"LawEndsBeforeItBegins",
                  "[law]\nvalid_to = \"2011-01-01\"\nvalid_from = \"2011-11-02\"\n",
                  "6:12",
-                 {"ends at 2011-01-01"}},
-        BadInput{"NegativeRms", "[law]\nrms_hpa = -1\n", "6:11", {"negative"}},
-        BadInput{"CovarianceWithoutMatrix", "[covariance]\nparameters = []\n", "5:2", {"no 'matrix'"}},
+                 {"2011-01-01"}},
+        BadInput{"NegativeRms", "[law]\nrms_hpa = -1\n", "6:11", {}},
+        BadInput{"CovarianceWithoutMatrix", "[covariance]\nparameters = []\n", "5:2", {"matrix"}},
         BadInput{"CovarianceOfUnknownParameter",
                  constant + "[covariance]\nparameters = [\"static-constant.a1\"]\nmatrix = [[1]]\n",
                  "8:15",
-                 {"no parameter 'static-constant.a1'", "did you mean static-constant.a0?"}},
+                 {"static-constant.a1", "static-constant.a0"}},
         BadInput{"CovarianceOfWrongSize",
                  constant + "[covariance]\nparameters = [\"static-constant.a0\"]\nmatrix = [[1, 2]]\n",
                  "9:11",
-                 {"1 rows of 1 numbers"}},
+                 {"1"}},
         BadInput{"CovarianceNaN",
                  constant + "[covariance]\nparameters = [\"static-constant.a0\"]\nmatrix = [[nan]]\n",
                  "9:12",
-                 {"not finite"}},
+                 {}},
         BadInput{"NegativeVariance",
                  constant + "[covariance]\nparameters = [\"static-constant.a0\"]\nmatrix = [[-1]]\n",
                  "9:10",
-                 {"negative"}},
+                 {}},
         BadInput{"CovarianceNotSymmetric",
                  constant + "[[effect]]\nid = \"static-qp\"\n[covariance]\nparameters = "
                             "[\"static-constant.a0\", \"static-qp.a2\"]\nmatrix = [[1, 2], [3, 4]]\n",
                  "11:10",
-                 {"not symmetric"}},
+                 {}},
         BadInput{"CovarianceNotPositive",
                  constant + "[[effect]]\nid = \"static-qp\"\n[covariance]\nparameters = "
                             "[\"static-constant.a0\", \"static-qp.a2\"]\nmatrix = [[1, 2], [2, 1]]\n",
                  "11:10",
-                 {"positive semidefinite", "refit the model"}},
+                 {}},
         BadInput{"CovarianceOfOtherValues",
                  constant + "[covariance]\nparameters = [\"static-constant.a0\"]\nvalues = [0.5]\nmatrix = "
                             "[[1]]\n",
                  "9:10",
-                 {"[covariance]", "static-constant.a0 = 0.5 in values", "refit the model"}},
+                 {"[covariance]", "0.5", "static-constant.a0"}},
         BadInput{
             "CovarianceOfMoreValues",
             constant + "[covariance]\nparameters = [\"static-constant.a0\"]\nvalues = []\nmatrix = [[1]]\n",
             "9:10",
-            {"'values' has 0 numbers; give 1"}},
+            {"values", "0", "1"}},
         BadInput{"CovarianceOfOtherErrors",
                  constant + "stderr = { a0 = 0.2 }\n[covariance]\nparameters = [\"static-constant.a0\"]\n"
                             "matrix = [[0.01]]\n",
                  "10:10",
-                 {"[covariance]", "0.1 in the matrix, 0.2 in the effect"}},
-        BadInput{"UncertaintyOfNothing",
-                 "[uncertainty]\nstatic_presure = 0.1\n",
-                 "6:1",
-                 {"did you mean static_pressure"}},
-        BadInput{"UncertaintyWithoutVariable",
-                 "[uncertainty]\nattack = 0.1\n",
-                 "6:1",
-                 {"'attack' has an uncertainty but no variable"}},
-        BadInput{"NegativeUncertainty", "[uncertainty]\nstatic_defect = -0.1\n", "6:17", {"negative"}},
-        BadInput{"ProvenanceNaN", "[provenance]\nrms = { a = [nan] }\n", "6:14", {"not finite"}}),
+                 {"[covariance]", "0.1", "0.2"}},
+        BadInput{"UncertaintyOfNothing", "[uncertainty]\nstatic_presure = 0.1\n", "6:1", {"static_pressure"}},
+        BadInput{"UncertaintyWithoutVariable", "[uncertainty]\nattack = 0.1\n", "6:1", {"attack"}},
+        BadInput{"NegativeUncertainty", "[uncertainty]\nstatic_defect = -0.1\n", "6:17", {}},
+        BadInput{"ProvenanceNaN", "[provenance]\nrms = { a = [nan] }\n", "6:14", {}}),
     [](const auto& test) { return test.param.name; });
 
 TEST(ModelDefinition, UnreadableDefinitionCannotBeWritten) {
   ModelDefinition file = parse_model(published_example, "m.toml");
   file.model.effects[0].parameters[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(write_error_of(file),
-              AllOf(HasSubstr("cannot be written"), HasSubstr("static-constant.a0 is nan")));
+  EXPECT_THAT(write_error_of(file), IsError(Error::Code::definition, "static-constant.a0", "nan"));
   file = parse_model(published_example, "m.toml");
   file.model.effects[0].parameters.clear();
-  EXPECT_THAT(write_error_of(file), HasSubstr("'static-constant' has 1 parameters, not 0"));
+  EXPECT_THAT(write_error_of(file), IsError(Error::Code::definition, "'static-constant'", "1", "0"));
   file.model.effects[0].id = "static-constnat";
-  EXPECT_THAT(write_error_of(file), HasSubstr("did you mean static-constant"));
+  EXPECT_THAT(write_error_of(file), IsError(Error::Code::usage, "'static-constnat'", "static-constant"));
   file = parse_model(published_example, "m.toml");
   file.variables.erase(Quantity::static_pressure);
-  EXPECT_THAT(write_error_of(file), HasSubstr("static_pressure"));
+  EXPECT_THAT(write_error_of(file), IsError(Error::Code::definition, "static_pressure"));
   file = parse_model(published_example, "m.toml");
   file.model.name = "latin \xe9";
-  EXPECT_THAT(write_error_of(file), HasSubstr("cannot be written"));
+  EXPECT_THAT(write_error_of(file), IsError(Error::Code::definition));
 }
 
 TEST(ModelDefinition, ChangedRecoveryFactorLosesPublishedName) {
@@ -1078,12 +1000,12 @@ TEST(ModelDefinition, ChangedRecoveryFactorLosesPublishedName) {
 
 TEST_F(ModelFileOnDisk, IsNamedInMessages) {
   const fs::path path = write("bad.toml", least + "[lams]\nelevation = nan\n");
-  EXPECT_THAT(read_error_of(path), StartsWith(path.string() + ":6:13: "));
+  EXPECT_THAT(read_error_of(path), IsError(Error::Code::definition, path.string() + ":6:13"));
 }
 
 TEST_F(ModelFileOnDisk, AbsentFileOrDirectoryIsRefused) {
-  EXPECT_THAT(read_error_of(directory_ / "none.toml"), HasSubstr("none.toml: there is no such file"));
-  EXPECT_THAT(read_error_of(directory_), HasSubstr("is a directory"));
+  EXPECT_THAT(read_error_of(directory_ / "none.toml"), IsError(Error::Code::file, "none.toml"));
+  EXPECT_THAT(read_error_of(directory_), IsError(Error::Code::file, directory_.string()));
 }
 
 TEST_F(ModelFileOnDisk, IsSavedAndReplacesAnOlderOne) {
@@ -1100,12 +1022,11 @@ TEST_F(ModelFileOnDisk, ThatWasReadIsNeverWrittenOver) {
   fs::create_symlink(input, directory_ / "link.toml");
   fs::create_hard_link(input, directory_ / "hard.toml");
   for (const char* name : {"in.toml", "link.toml", "hard.toml", "./in.toml"}) {
-    try {
-      save_model(file, directory_ / name, {directory_ / "other.toml", input});
-      ADD_FAILURE() << name;
-    } catch (const Error& error) {
-      EXPECT_THAT(error.what(), HasSubstr("never overwritten; give the output another name"));
-    }
+    const fs::path output = directory_ / name;
+    EXPECT_THAT(error_of([&] {
+                  save_model(file, output, {directory_ / "other.toml", input});
+                }),
+                IsError(Error::Code::usage, output.string()));
   }
   EXPECT_EQ(content(input), published_example);
 }

@@ -43,7 +43,7 @@ TEST(SumOfEachFlight, FailsOnAllMembers) {
   run_with_communicator(3, [&](Communicator& comm) {
     try {
       share_of_many(comm).sum_of_each_flight<double>([](std::size_t flight) {
-        if (flight == 41 || flight == 43) throw Error("flight " + std::to_string(flight));
+        if (flight == 41 || flight == 43) throw Error(Error::Code::file, "flight " + std::to_string(flight));
         return 1.0;
       });
     } catch (const Error& error) {

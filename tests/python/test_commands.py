@@ -231,10 +231,11 @@ def test_pictures_are_drawn(in_folder):
 
 @pytest.mark.parametrize("call, code", [
     (lambda: pcor.compare("absent.nc", model="model.toml"), "file"),
-    (lambda: pcor.compare("first.nc", model="absent-model"), "other"),
+    (lambda: pcor.compare("first.nc", model="absent-model"), "file"),
     (lambda: pcor.compare("first.nc", model="model.toml", min_airsped=60), "usage"),
     (lambda: pcor.compare("model.toml", model="model.toml"), "file"),
     (lambda: pcor.Model("absent-model"), "file"),
+    (lambda: pcor.Model("format = 1\n"), "definition"),
     (lambda: pcor.open("model.toml"), "file"),
     (lambda: pcor.run(["compare"]), "usage"),
 ])

@@ -7,16 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "support/error_of.hpp"
 #include "support/synthetic_samples.hpp"
 
 using namespace pcor::internal;
 
+using pcor::Error;
 using pcor::ModelDefinition;
 using pcor::ModelEffect;
 using pcor::Quantity;
-using testing::AllOf;
+using pcor::test::IsError;
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 namespace {
 
@@ -67,14 +68,9 @@ ModelEffect of_catalogue(const std::string& id) {
   return effect;
 }
 
-std::string message_of(const std::vector<ModelEffect>& effects,
-                       const std::vector<std::string>& variables = {}) {
-  try {
-    add_effects(model(), effects, variables);
-  } catch (const pcor::Error& error) {
-    return error.what();
-  }
-  return "";
+std::optional<Error> refusal(const std::vector<ModelEffect>& effects,
+                             const std::vector<std::string>& variables = {}) {
+  return pcor::test::error_of([&] { add_effects(model(), effects, variables); });
 }
 
 }  // namespace
@@ -128,14 +124,13 @@ TEST(WithEffects, ChoosesAmongTheVariablesOfAFlight) {
 }
 
 TEST(WithEffects, MissingFlightVariablesAreReported) {
-  EXPECT_THAT(message_of({of_catalogue("static-attack")}, {"PSFD", "QCF"}),
-              AllOf(HasSubstr("'static-attack'"), HasSubstr("'attack'"), HasSubstr("ATTACK, AKRD")));
+  EXPECT_THAT(refusal({of_catalogue("static-attack")}, {"PSFD", "QCF"}),
+              IsError(Error::Code::model, "'static-attack'", "'attack'", "ATTACK, AKRD"));
 }
 
 TEST(WithEffects, AmbiguousRoleIsReported) {
-  EXPECT_THAT(
-      message_of({thrust("k * lams_airspeed")}),
-      AllOf(HasSubstr("'my-thrust'"), HasSubstr("'lams_airspeed'"), HasSubstr("lams_airspeed = \"...\"")));
+  EXPECT_THAT(refusal({thrust("k * lams_airspeed")}),
+              IsError(Error::Code::model, "'my-thrust'", "'lams_airspeed'", "lams_airspeed = \"...\""));
 }
 
 TEST(WithEffects, TakesAFormula) {
@@ -147,17 +142,17 @@ TEST(WithEffects, TakesAFormula) {
 }
 
 TEST(WithEffects, RefusesWhatHasNoMeaning) {
-  EXPECT_THAT(message_of({of_catalogue("static-constant")}),
-              HasSubstr("has the effect 'static-constant' already"));
-  EXPECT_THAT(message_of({of_catalogue("static-qp"), of_catalogue("static-qp")}), HasSubstr("already"));
-  EXPECT_THAT(message_of({of_catalogue("static-lg")}), HasSubstr("did you mean static-lag"));
-  EXPECT_THAT(message_of({thrust("k * (ENGTRQ")}), AllOf(HasSubstr("'my-thrust'"), HasSubstr("column")));
+  EXPECT_THAT(refusal({of_catalogue("static-constant")}), IsError(Error::Code::usage, "'static-constant'"));
+  EXPECT_THAT(refusal({of_catalogue("static-qp"), of_catalogue("static-qp")}),
+              IsError(Error::Code::usage, "'static-qp'"));
+  EXPECT_THAT(refusal({of_catalogue("static-lg")}), IsError(Error::Code::usage, "'static-lg'", "static-lag"));
+  EXPECT_THAT(refusal({thrust("k * (ENGTRQ")}), IsError(Error::Code::model, "'my-thrust'", "column 12"));
   ModelEffect catalogued = thrust();
   catalogued.id = "static-lag";
-  EXPECT_THAT(message_of({catalogued}), HasSubstr("formula in the catalogue"));
+  EXPECT_THAT(refusal({catalogued}), IsError(Error::Code::usage, "'static-lag'"));
   ModelEffect wrong = of_catalogue("static-lag");
   wrong.parameters = {1.0, 2.0};
-  EXPECT_THAT(message_of({wrong}), HasSubstr("takes 1 parameter(s), not 2"));
+  EXPECT_THAT(refusal({wrong}), IsError(Error::Code::usage, "'static-lag'", "1", "2"));
 }
 
 TEST(WithEffects, HoldsWhatOnlyShapesAnEffect) {

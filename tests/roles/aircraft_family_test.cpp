@@ -9,16 +9,16 @@
 #include <pcor/units/units.hpp>
 #include "model_io/model_names.hpp"
 #include "roles/usual_variables.hpp"
+#include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 
 namespace pcor::internal {
 namespace {
 
 using testing::Contains;
-using testing::HasSubstr;
 
-std::string refusal_of(const std::string& text) {
-  return test::message_of<Error>([&] { parse_family(text, "mine.toml"); });
+std::optional<Error> refusal_of(const std::string& text) {
+  return test::error_of([&] { parse_family(text, "mine.toml"); });
 }
 
 const std::string head = "format = \"pcor-aircraft/1\"\nname = \"mine\"\ntitle = \"my aircraft\"\n";
@@ -54,25 +54,31 @@ TEST(VariableNaming, DataAreWhole) {
 }
 
 TEST(VariableNaming, RefusesWhatHasNoMeaning) {
-  EXPECT_THAT(refusal_of("name = \"mine\""), HasSubstr("mine.toml:1:"));
-  EXPECT_THAT(refusal_of("format = \"pcor-aircraft/1\"\nname = \"mine\""), HasSubstr("has no title"));
-  EXPECT_THAT(refusal_of(head + "[series]\nheigth = [\"ALT\"]"), HasSubstr("heigth"));
-  EXPECT_THAT(refusal_of(head + "[series]\naltitude = \"ALT\""), HasSubstr("a list of texts"));
-  EXPECT_THAT(refusal_of(head + "[series]\naltitude = [7]"), HasSubstr("a text in quotes"));
-  EXPECT_THAT(refusal_of(head + "[pressures]\nmeasured = [[\"PS\"]]"), HasSubstr("a pair has two texts"));
-  EXPECT_THAT(refusal_of(head + "[pressures]\nboth = []"), HasSubstr("both"));
-  EXPECT_THAT(refusal_of(head + "[[thermometer]]\nvariable = \"T\""), HasSubstr("give both"));
+  EXPECT_THAT(refusal_of("name = \"mine\""), test::IsError(Error::Code::definition, "mine.toml:1"));
+  EXPECT_THAT(refusal_of("format = \"pcor-aircraft/1\"\nname = \"mine\""),
+              test::IsError(Error::Code::definition, "title"));
+  EXPECT_THAT(refusal_of(head + "[series]\nheigth = [\"ALT\"]"),
+              test::IsError(Error::Code::definition, "heigth"));
+  EXPECT_THAT(refusal_of(head + "[series]\naltitude = \"ALT\""),
+              test::IsError(Error::Code::definition, "mine.toml:5"));
+  EXPECT_THAT(refusal_of(head + "[series]\naltitude = [7]"),
+              test::IsError(Error::Code::definition, "mine.toml:5"));
+  EXPECT_THAT(refusal_of(head + "[pressures]\nmeasured = [[\"PS\"]]"),
+              test::IsError(Error::Code::definition, "mine.toml:5"));
+  EXPECT_THAT(refusal_of(head + "[pressures]\nboth = []"), test::IsError(Error::Code::definition, "both"));
+  EXPECT_THAT(refusal_of(head + "[[thermometer]]\nvariable = \"T\""),
+              test::IsError(Error::Code::definition, "mine.toml:4"));
   EXPECT_THAT(refusal_of(head + "[[thermometer]]\nvariable = \"T\"\nrecovery_factor = \"mine\""),
-              HasSubstr("mine.toml:6:"));
+              test::IsError(Error::Code::definition, "mine.toml:6"));
 }
 
 TEST(VariableNaming, IsNamed) {
   EXPECT_EQ(family_named("faam-core").unit_of("VELD_GIN"), "-1 m s-1");
   EXPECT_EQ(family_named("faam-core").unit_of("ALT_GIN"), "") << "unit of the file";
-  EXPECT_THAT(test::message_of<Error>([] { family_named("fam-core"); }),
-              HasSubstr("did you mean faam-core?"));
-  EXPECT_THAT(test::message_of<Error>([] { family_named("/nowhere/mine.toml"); }),
-              HasSubstr("/nowhere/mine.toml"));
+  EXPECT_THAT(test::error_of([] { family_named("fam-core"); }),
+              test::IsError(Error::Code::model, "fam-core", "faam-core"));
+  EXPECT_THAT(test::error_of([] { family_named("/nowhere/mine.toml"); }),
+              test::IsError(Error::Code::file, "/nowhere/mine.toml"));
 }
 
 }  // namespace

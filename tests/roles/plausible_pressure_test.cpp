@@ -8,14 +8,12 @@
 #include <vector>
 
 #include <pcor/base/error.hpp>
+#include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace pcor::internal {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 class PlausiblePressure : public testing::Test {
  protected:
@@ -63,9 +61,8 @@ class PlausiblePressure : public testing::Test {
 
 TEST_F(PlausiblePressure, HectopascalsLabelledPascalsAreRefused) {
   const Flight wrong = flight("Pa", 700.0, "GGALT", 3000.0);
-  EXPECT_THAT(test::message_of<Error>([&] { require_possible_pressure(wrong, model()); }),
-              AllOf(HasSubstr("PSFD in 'Pa'"), HasSubstr("the height GGALT"),
-                    HasSubstr("static_pressure = \"hPa\"")));
+  EXPECT_THAT(test::error_of([&] { require_possible_pressure(wrong, model()); }),
+              test::IsError(Error::Code::unit, "PSFD", "'Pa'", "GGALT", "static_pressure = \"hPa\""));
   ModelDefinition stated = model();
   stated.units[Quantity::static_pressure] = "Pa";
   EXPECT_FALSE(impossible_pressure(wrong, stated)) << "a unit stated in the model is not checked";

@@ -19,6 +19,7 @@
 #include <pcor/model_io/model_definition.hpp>
 #include "simulate/random.hpp"
 #include "simulate/turbulence.hpp"
+#include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/test_name.hpp"
 
@@ -27,10 +28,7 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::ThrowsMessage;
 
 const std::string head = R"(
 format = "pcor-scenario/1"
@@ -694,9 +692,8 @@ TEST(Simulate, RefusesToStall) {
   const Scenario scenario =
       parse_scenario(head + systems + aloft + leg("climb", "altitude = 8000\nspeed = 76"), "test.toml");
   const test::TemporaryDirectory directory;
-  EXPECT_THAT(
-      [&] { simulate_flight(scenario, directory / "out.nc"); },
-      ThrowsMessage<Error>(AllOf(HasSubstr("test.toml:"), HasSubstr("stalls"), HasSubstr("fly faster"))));
+  EXPECT_THAT(test::error_of([&] { simulate_flight(scenario, directory / "out.nc"); }),
+              test::IsError(Error::Code::definition, "test.toml"));
   EXPECT_EQ(directory.entries(), 0U);
 }
 
@@ -723,57 +720,51 @@ INSTANTIATE_TEST_SUITE_P(All, DataScenario,
 
 struct Refusal {
   std::string text;
-  std::vector<std::string> said;
+  std::vector<std::string> names;
 };
 
 void PrintTo(const Refusal& refusal, std::ostream* stream) { *stream << refusal.text; }
 
 class ScenarioRefusal : public testing::TestWithParam<Refusal> {};
 
-TEST_P(ScenarioRefusal, SaysWhereWhatAndWhatToDo) {
-  try {
-    parse_scenario(GetParam().text, "test.toml");
-    ADD_FAILURE() << "accepted";
-  } catch (const Error& error) {
-    const std::string message = error.what();
-    EXPECT_EQ(message.find('\n'), std::string::npos);
-    EXPECT_THAT(message, HasSubstr("; "));
-    for (const std::string& part : GetParam().said) EXPECT_THAT(message, HasSubstr(part));
-  }
+TEST_P(ScenarioRefusal, HasTheCodeAndNames) {
+  const std::optional<Error> error = test::error_of([] { parse_scenario(GetParam().text, "test.toml"); });
+  EXPECT_THAT(error, test::IsError(Error::Code::definition, "test.toml"));
+  for (const std::string& name : GetParam().names)
+    EXPECT_THAT(error, test::IsError(Error::Code::definition, name));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, ScenarioRefusal,
     testing::Values(
-        Refusal{"a = [", {"test.toml:1:", "TOML"}}, Refusal{"name = \"x\"", {"1:1", "format ="}},
+        Refusal{"a = [", {"test.toml:1"}}, Refusal{"name = \"x\"", {"1:1", "format ="}},
         Refusal{"format = \"pcor-model/1\"", {"test.toml:1:10", "pcor-scenario/1"}},
         Refusal{head + "sead = 3\n", {"test.toml:7:1", "sead", "seed"}},
         Refusal{head + "rate = 10\n", {"rate = 10", "1, 5 or 25"}}, Refusal{head, {"[[system]]"}},
         Refusal{head + systems, {"[[leg]]"}},
         Refusal{head + "[atmosphere]\nlapse_rte = 6\n", {"lapse_rte", "lapse_rate", "[atmosphere]"}},
-        Refusal{head + "[atmosphere]\nlapse_rate = 60\n", {"lapse_rate = 60 K/km", "from -5 to 12"}},
-        Refusal{head + "[[system]]\nstatic = \"PSFD\"\ndynamic = \"PSFD\"\n", {"one variable"}},
+        Refusal{head + "[atmosphere]\nlapse_rate = 60\n", {"lapse_rate = 60 K/km", "-5 to 12"}},
+        Refusal{head + "[[system]]\nstatic = \"PSFD\"\ndynamic = \"PSFD\"\n", {"static", "dynamic"}},
         Refusal{head + systems + aloft + "[[leg]]\nkind = \"levl\"\n", {"levl", "level"}},
-        Refusal{head + systems + aloft + leg("level", "duration = -5"), {"duration = -5 s", "impossible"}},
+        Refusal{head + systems + aloft + leg("level", "duration = -5"), {"duration = -5 s"}},
         Refusal{head + systems + aloft + leg("level", "speed = 300"), {"speed = 300 m/s", "75 to 155"}},
-        Refusal{head + systems + aloft + leg("level", "speed = \"fast\""),
-                {"'speed'", "is a text; give a number"}},
+        Refusal{head + systems + aloft + leg("level", "speed = \"fast\""), {"'speed'"}},
         Refusal{head + systems + aloft + leg("level", "cycles = 3"), {"cycles", "level"}},
-        Refusal{head + systems + aloft + leg("climb"), {"no altitude"}},
-        Refusal{head + systems + leg("level"), {"ground", "take-off"}},
+        Refusal{head + systems + aloft + leg("climb"), {"altitude"}},
+        Refusal{head + systems + leg("level"), {"ground"}},
         Refusal{head + systems + aloft + leg("climb", "altitude = 1000"), {"descent"}},
-        Refusal{head + systems + aloft + leg("turn", "angle = 0"), {"angle = 0 deg", "either side"}},
+        Refusal{head + systems + aloft + leg("turn", "angle = 0"), {"angle = 0 deg"}},
         Refusal{head + systems + aloft + "[[effect]]\nid = \"lams-cloud\"\nerror = -1\n",
-                {"test.toml:21", "needs a cloud"}},
-        Refusal{head + systems + aloft + "[[gap]]\nstart = 5\n", {"no duration"}},
-        Refusal{head + systems + aloft + leg("speed-run", "low = 120\nhigh = 100"), {"low < high"}},
+                {"test.toml:21", "cloud"}},
+        Refusal{head + systems + aloft + "[[gap]]\nstart = 5\n", {"duration"}},
+        Refusal{head + systems + aloft + leg("speed-run", "low = 120\nhigh = 100"), {"low", "high"}},
         Refusal{head + systems + aloft + "[[effect]]\nid = \"static-lagg\"\n", {"static-lagg", "static-lag"}},
-        Refusal{head + systems + aloft + "[[effect]]\nid = \"static-lag\"\n", {"no tau", "add tau"}},
+        Refusal{head + systems + aloft + "[[effect]]\nid = \"static-lag\"\n", {"tau"}},
         Refusal{head + systems + aloft + "[[effect]]\nid = \"static-lag\"\ntau = -1\n", {"tau = -1 s"}},
         Refusal{head + systems + aloft + "[[effect]]\nid = \"static-lag\"\ntua = 1\n", {"tua", "tau"}},
         Refusal{head + systems + aloft + "[[effect]]\nid = \"static-lag\"\ntau = 1\non = \"PSFX\"\n",
                 {"PSFX", "PSFD"}},
-        Refusal{head + systems + aloft + "[[effect]]\nid = \"clock-skew\"\nseconds = 1\n", {"no variable"}},
+        Refusal{head + systems + aloft + "[[effect]]\nid = \"clock-skew\"\nseconds = 1\n", {"variable"}},
         Refusal{head + systems + aloft +
                     "[[effect]]\nid = \"unknown\"\nstrength = 1\nof = \"ENGTRK\"\nwhere = \"static\"\n",
                 {"ENGTRK", "ENGTRQ"}},
@@ -787,9 +778,8 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(Scenario, RefusesAFileThatIsNotThere) {
-  EXPECT_THAT([] { read_scenario("/nowhere/flight.toml"); },
-              ThrowsMessage<Error>(
-                  HasSubstr("/nowhere/flight.toml: there is no such file; give the path of a scenario")));
+  EXPECT_THAT(test::error_of([] { read_scenario("/nowhere/flight.toml"); }),
+              test::IsError(Error::Code::file, "/nowhere/flight.toml"));
 }
 
 }  // namespace

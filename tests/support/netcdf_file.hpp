@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace pcor::test {
@@ -111,17 +110,6 @@ inline std::vector<double> sequence(double first, std::size_t count) {
   std::vector<double> numbers(count);
   for (std::size_t i = 0; i < count; ++i) numbers[i] = first + static_cast<double>(i);
   return numbers;
-}
-
-/// The message of the error that `work` throws, or "no error".
-template <class Error, class Work>
-std::string message_of(Work&& work) {
-  try {
-    std::forward<Work>(work)();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 }  // namespace pcor::test

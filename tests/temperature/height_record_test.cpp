@@ -9,17 +9,19 @@
 #include <memory>
 
 #include <pcor/base/error.hpp>
+#include "support/error_of.hpp"
 #include "support/synthetic_air.hpp"
 
 using namespace pcor::internal;
 
 namespace {
 
+using pcor::Error;
 using pcor::internal::height_record;
 using pcor::internal::HeightBlock;
 using pcor::internal::HeightRecord;
 using pcor::internal::WayKnown;
-using testing::HasSubstr;
+using pcor::test::IsError;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -39,13 +41,8 @@ double range_of_excess(const HeightRecord& record) {
   return highest - lowest;
 }
 
-std::string message_for(const pcor::internal::FlightAir& air) {
-  try {
-    record_of(air);
-  } catch (const pcor::Error& error) {
-    return error.what();
-  }
-  return "";
+std::optional<Error> refusal(const pcor::internal::FlightAir& air) {
+  return pcor::test::error_of([&] { record_of(air); });
 }
 
 TEST(HeightRecord, IntegralClosesInAirThatIsKnownInClosedForm) {
@@ -270,29 +267,28 @@ TEST(HeightRecord, KnowsWhetherTheFlightComesBack) {
 TEST(HeightRecord, SaysWhatIsWrongWithTheHeight) {
   pcor::internal::FlightAir feet = made::air({});
   for (double& height : feet.geopotential_height) height /= 0.3048;
-  EXPECT_THAT(message_for(feet), HasSubstr("feet"));
-  EXPECT_THAT(message_for(feet), HasSubstr("[units] altitude = \"ft\""));
+  EXPECT_THAT(refusal(feet), IsError(Error::Code::variable, "[units] altitude = \"ft\""));
 
   pcor::internal::FlightAir rising = made::air({});
   std::reverse(rising.pressure_altitude.begin(), rising.pressure_altitude.end());
   for (double& p : rising.pressure_altitude) p = 7000.0 - p;
   for (std::size_t i = 0; i < rising.size(); ++i) rising.pressure_altitude[i] = 7000.0 - rising.height[i];
-  EXPECT_THAT(message_for(rising), HasSubstr("times as fast as the pressure altitude"));
+  EXPECT_THAT(refusal(rising), IsError(Error::Code::variable, "GGALT"));
 
   made::AirPlan level;
   level.low = 3000.0;
   level.high = 3100.0;
-  EXPECT_THAT(message_for(made::air(level)), HasSubstr("climbs by 100 m only"));
+  EXPECT_THAT(refusal(made::air(level)), IsError(Error::Code::samples, "100 m", "300 m"));
 
   pcor::internal::FlightAir none = made::air({});
   none.height.clear();
-  EXPECT_THAT(message_for(none), HasSubstr("GGALT has no unit"));
+  EXPECT_THAT(refusal(none), IsError(Error::Code::variable, "GGALT"));
   none.height_variable.clear();
-  EXPECT_THAT(message_for(none), HasSubstr("no GPS height"));
+  EXPECT_THAT(refusal(none), IsError(Error::Code::variable, "GPS height"));
 
   pcor::internal::FlightAir cold = made::air({});
   cold.temperature.clear();
-  EXPECT_THAT(message_for(cold), HasSubstr("thermometer"));
+  EXPECT_THAT(refusal(cold), IsError(Error::Code::model, "recovery_temperature"));
 }
 
 TEST(HeightRecord, ThermometerWithoutValuesIsAnErrorOfAVariable) {

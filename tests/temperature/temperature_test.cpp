@@ -24,6 +24,7 @@
 #include <pcor/simulate/simulate.hpp>
 #include "campaign/flight_air.hpp"
 #include "model_io/calibration.hpp"
+#include "support/error_of.hpp"
 #include "support/many_seeds.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -32,13 +33,14 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
+using test::error_of;
+using test::IsError;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
-using testing::ThrowsMessage;
 
 namespace fs = std::filesystem;
 
@@ -303,8 +305,8 @@ TEST_F(Temperature, DryAirIsRefusedUnlessItIsWanted) {
   const fs::path flight = fly(one_climb(), 1);
   ModelDefinition dry = model();
   dry.model.moist = false;
-  EXPECT_THAT([&] { fit_temperature({flight}, dry, of_degree(1)); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("flight1.nc"), HasSubstr("dry"))));
+  EXPECT_THAT(error_of([&] { fit_temperature({flight}, dry, of_degree(1)); }),
+              IsError(Error::Code::variable, "flight1.nc", "--force"));
   TemperatureOptions options = of_degree(1);
   options.dry_air = true;
   const TemperatureResult result = fit_temperature({flight}, dry, options);
@@ -672,31 +674,30 @@ TEST_F(Temperature, MakesAReport) {
 // Unsupported requests
 
 TEST_F(Temperature, UninformativeFlightsAreRefused) {
-  EXPECT_THAT([] { fit_temperature({}, model()); }, ThrowsMessage<Error>(HasSubstr("one flight")));
+  EXPECT_THAT(error_of([] { fit_temperature({}, model()); }), IsError(Error::Code::usage));
   EXPECT_THROW(calibrate_iteratively({}, model(), {pcor::lams_reference()}, {}, {}), Error);
   TemperatureOptions archived;
   archived.archived = true;
-  EXPECT_THAT(
-      [&] { calibrate_iteratively({fly(one_climb(), 3)}, model(), {pcor::lams_reference()}, {}, archived); },
-      ThrowsMessage<Error>(HasSubstr("archived")));
+  EXPECT_THAT(error_of([&] {
+                calibrate_iteratively({fly(one_climb(), 3)}, model(), {pcor::lams_reference()}, {}, archived);
+              }),
+              IsError(Error::Code::usage));
   const std::vector<fs::path> flights = fly_several(no_climb(), 1, 2);
-  EXPECT_THAT([&] { fit_temperature({flights[0]}, model()); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("flight1.nc"), HasSubstr("climbs by"), HasSubstr("300 m"),
-                                         Not(HasSubstr("usable")))));
-  EXPECT_THAT([&] { fit_temperature(flights, model()); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("2 flights"), HasSubstr("flight1.nc"))));
-  EXPECT_THAT(
-      [&] {
-        fit_temperature({flights[0], flights[0]}, model());
-      },
-      ThrowsMessage<Error>(HasSubstr("twice")));
+  EXPECT_THAT(error_of([&] { fit_temperature({flights[0]}, model()); }),
+              IsError(Error::Code::samples, "flight1.nc", "300 m"));
+  EXPECT_THAT(error_of([&] { fit_temperature(flights, model()); }),
+              IsError(Error::Code::samples, "2 flights", "flight1.nc"));
+  EXPECT_THAT(error_of([&] {
+                fit_temperature({flights[0], flights[0]}, model());
+              }),
+              IsError(Error::Code::usage, "flight1.nc"));
 }
 
 TEST_F(Temperature, RefusesADegreeThatThereIsNot) {
   const fs::path flight = fly(one_climb(), 1);
   for (const int degree : {-1, 3, 100}) {
-    EXPECT_THAT([&] { fit_temperature({flight}, model(), of_degree(degree)); },
-                ThrowsMessage<Error>(AllOf(HasSubstr(std::to_string(degree)), HasSubstr("0 to 2"))));
+    EXPECT_THAT(error_of([&] { fit_temperature({flight}, model(), of_degree(degree)); }),
+                IsError(Error::Code::usage, std::to_string(degree), "0 to 2"));
   }
 }
 

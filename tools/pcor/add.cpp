@@ -36,14 +36,16 @@ struct AddArguments {
 /// User-defined effect. @throws Error if the options do not define one.
 ModelEffect own_effect(const AddArguments& options, const std::vector<std::string>& variables) {
   if (options.effects.size() != 1) {
-    throw Error(fmt::format("--formula defines one effect, but {} are named: {}; give one name",
+    throw Error(Error::Code::usage,
+                fmt::format("--formula defines one effect, but {} are named: {}; give one name",
                             options.effects.size(), fmt::join(options.effects, ", ")));
   }
   ModelEffect effect = formula_effect(options.effects.front(), options.formula, "--formula");
   effect.location = location_named(options.location);
   const std::string wanted(info_of(effect.location).unit);
   if (!options.unit.empty() && standard_unit(options.unit) != standard_unit(wanted)) {
-    throw Error(fmt::format("--unit {}: the quantity at '{}' is in {}; write the formula in {}", options.unit,
+    throw Error(Error::Code::usage,
+                fmt::format("--unit {}: the quantity at '{}' is in {}; write the formula in {}", options.unit,
                             options.location, wanted, wanted));
   }
   effect.unit = wanted;
@@ -142,7 +144,8 @@ void run(const AddArguments& options) {
   const FlightSet flights = options.flight.empty() ? FlightSet() : FlightSet{options.flight};
   const ModelDefinition model = read_model_for(options.model, flights, options.common);
   if (model.variables.count(Quantity::static_pressure) == 0) {
-    throw Error(fmt::format("{}: the model leaves its variables to the flight; give one with --flight",
+    throw Error(Error::Code::usage,
+                fmt::format("{}: the model leaves its variables to the flight; give one with --flight",
                             options.model));
   }
   std::vector<std::string> variables;

@@ -144,7 +144,8 @@ void JsonResult::write_text(const std::string& text) {
   stream << text;
   stream.close();
   if (!stream) {
-    throw Error(fmt::format("{}: cannot write the JSON result; check the space and the permissions", place_));
+    throw Error(Error::Code::output,
+                fmt::format("{}: cannot write the JSON result; check the space and the permissions", place_));
   }
   file_->commit();
 }
@@ -157,20 +158,24 @@ void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (const fs::path& input : inputs) {
       if (same_place(outputs[i], input)) {
-        throw Error(fmt::format("{} is also an input; choose another output", outputs[i].string()));
+        throw Error(Error::Code::usage,
+                    fmt::format("{} is also an input; choose another output", outputs[i].string()));
       }
     }
     for (std::size_t j = 0; j < i; ++j) {
       if (outputs[i] == standard_output && outputs[j] == standard_output)
-        throw Error("standard output ('-') is given twice; name a file for one of the results");
+        throw Error(Error::Code::usage,
+                    "standard output ('-') is given twice; name a file for one of the results");
       if (same_place(outputs[i], outputs[j])) {
-        throw Error(fmt::format("{} is given twice as an output; choose two names", outputs[i].string()));
+        throw Error(Error::Code::usage,
+                    fmt::format("{} is given twice as an output; choose two names", outputs[i].string()));
       }
     }
     std::error_code code;
     if (!is_file(outputs[i]) || !fs::is_regular_file(outputs[i], code)) continue;
     if (keeps_existing)
-      throw Error(fmt::format("{}: the file exists; choose another output or omit --no-clobber",
+      throw Error(Error::Code::usage,
+                  fmt::format("{}: the file exists; choose another output or omit --no-clobber",
                               outputs[i].string()));
     remember_existing(outputs[i]);
   }

@@ -48,7 +48,8 @@ void leave_out_unreadable(std::vector<std::string>& flights) {
   for (const UnreadableFlight& unreadable : readable.unreadable)
     tell_choices({fmt::format("skipped: {}", unreadable.why)}, false);
   if (readable.flights.empty())
-    throw Error(fmt::format("all {} flights are unreadable; check the files", flights.size()));
+    throw Error(Error::Code::file,
+                fmt::format("all {} flights are unreadable; check the files", flights.size()));
   flights.clear();
   for (const std::filesystem::path& flight : readable.flights) flights.push_back(flight.string());
 }
@@ -91,7 +92,8 @@ Regime regime_of(const std::string& name, const std::string& option) {
   std::vector<std::string> known;
   for (const RegimeInfo& info : regime_info) known.emplace_back(info.name);
   const std::string meant = did_you_mean(name, known);
-  throw Error(fmt::format("{} '{}': unknown regime; {}", option, name,
+  throw Error(Error::Code::usage,
+              fmt::format("{} '{}': unknown regime; {}", option, name,
                           meant.empty() ? fmt::format("the regimes are {}", fmt::join(known, ", ")) : meant));
 }
 

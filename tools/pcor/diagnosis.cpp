@@ -53,9 +53,12 @@ ModelEffect formula_effect(const std::string& id, const std::string& formula, co
   effect.unit = info_of(effect.location).unit;
   FormulaError error;
   const auto parsed = Formula::parse(formula, effect.parameter_names, &error);
-  if (!parsed) throw Error(fmt::format("{} '{}': {}; correct it", option, formula, error.message));
+  if (!parsed)
+    throw Error(Error::Code::definition,
+                fmt::format("{} '{}': {}; correct it", option, formula, error.message));
   if (!parsed->unused_parameters().empty()) {
-    throw Error(fmt::format("{} '{}': the formula has no coefficient k to fit; write e.g. 'k * ENGTRQ / 100'",
+    throw Error(Error::Code::definition,
+                fmt::format("{} '{}': the formula has no coefficient k to fit; write e.g. 'k * ENGTRQ / 100'",
                             option, formula));
   }
   return effect;
@@ -68,7 +71,8 @@ void require_known_variables(const ModelEffect& effect, const std::string& optio
     if (quantity_named(name) != Quantity::count) continue;
     if (std::find(variables.begin(), variables.end(), name) != variables.end()) continue;
     const std::string meant = did_you_mean(name, variables);
-    throw Error(fmt::format("{} '{}': {} is neither a variable of {} nor a quantity; {}", option,
+    throw Error(Error::Code::variable,
+                fmt::format("{} '{}': {} is neither a variable of {} nor a quantity; {}", option,
                             effect.formula, name, place, meant.empty() ? "correct the formula" : meant));
   }
 }

@@ -28,7 +28,8 @@ void set_fixed(ModelDefinition& model, const std::string& name, bool fixed, cons
   }
   if (found) return;
   const std::string meant = did_you_mean(name, known);
-  throw Error(fmt::format("{} {}: the model has no such parameter or effect; {}", option, name,
+  throw Error(Error::Code::usage,
+              fmt::format("{} {}: the model has no such parameter or effect; {}", option, name,
                           meant.empty() ? fmt::format("it has {}", fmt::join(known, ", ")) : meant));
 }
 

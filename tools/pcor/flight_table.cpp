@@ -34,7 +34,8 @@ void FlightTable::write(const std::string& path) const {
   }
   stream.close();
   if (!stream)
-    throw Error(fmt::format("{}: cannot write the table; check the space and the permissions", path));
+    throw Error(Error::Code::output,
+                fmt::format("{}: cannot write the table; check the space and the permissions", path));
   file.commit();
 }
 

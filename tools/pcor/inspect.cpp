@@ -305,7 +305,8 @@ std::vector<Inspection> look(const InspectArguments& options, bool text) {
     if (text) print(all.back());
   }
   if (std::none_of(all.begin(), all.end(), is_readable))
-    throw Error(fmt::format("all {} flights are unreadable; check the files", options.flights.size()));
+    throw Error(Error::Code::file,
+                fmt::format("all {} flights are unreadable; check the files", options.flights.size()));
   return all;
 }
 
@@ -342,7 +343,8 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
   std::ofstream stream(file.path(), std::ios::binary);
   stream << text;
   stream.close();
-  if (!stream) throw Error(output + ": cannot be written; check the space and the permissions");
+  if (!stream)
+    throw Error(Error::Code::output, output + ": cannot be written; check the space and the permissions");
   file.commit();
 }
 
@@ -362,9 +364,11 @@ void run(const InspectArguments& options) {
   if (!options.model.empty()) {
     if (first.path != options.flights.front())
       throw Error(
+          Error::Code::file,
           fmt::format("{}: no model can be written, because the first flight cannot be read", options.model));
     if (!first.model)
-      throw Error(fmt::format("{}: no model can be written: {}", first.path, first.why_no_model));
+      throw Error(Error::Code::variable,
+                  fmt::format("{}: no model can be written: {}", first.path, first.why_no_model));
     deliver_with_candidates(first, options.model);
   }
   if (wants_report(options.common)) {

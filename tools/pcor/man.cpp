@@ -130,7 +130,9 @@ void write_page(const std::filesystem::path& path, const std::string& page) {
   std::ofstream stream(path, std::ios::binary);
   stream << page;
   stream.close();
-  if (!stream) throw Error(fmt::format("{}: cannot be written; make its folder first", path.string()));
+  if (!stream)
+    throw Error(Error::Code::output,
+                fmt::format("{}: cannot be written; make its folder first", path.string()));
 }
 
 void run(const CLI::App& program, const ManArguments& options) {
@@ -152,6 +154,7 @@ void run(const CLI::App& program, const ManArguments& options) {
     return;
   }
   throw Error(
+      Error::Code::usage,
       fmt::format("there is no manual page of '{}', because it is not a sub-command", options.command));
 }
 

@@ -69,7 +69,8 @@ std::string model_file(const std::string& given) {
     for (const fs::path& other : files_in(folder)) known.insert(other.stem().string());
   }
   const std::string meant = did_you_mean(given, {known.begin(), known.end()});
-  throw Error(fmt::format("there is no model file or model named '{}'; {}", given,
+  throw Error(Error::Code::file,
+              fmt::format("there is no model file or model named '{}'; {}", given,
                           meant.empty() ? "name a file, or a model in a folder of PCOR_MODELS" : meant));
 }
 
@@ -86,11 +87,14 @@ std::vector<fs::path> named_models() {
 
 std::vector<fs::path> models_in(const fs::path& folder) {
   if (fs::is_regular_file(folder))
-    throw Error(fmt::format("'{}' is a file; give a model with --model", folder.string()));
-  if (!fs::is_directory(folder)) throw Error(fmt::format("there is no folder '{}'", folder.string()));
+    throw Error(Error::Code::usage,
+                fmt::format("'{}' is a file; give a model with --model", folder.string()));
+  if (!fs::is_directory(folder))
+    throw Error(Error::Code::file, fmt::format("there is no folder '{}'", folder.string()));
   std::vector<fs::path> models = files_in(folder);
   if (models.empty()) {
-    throw Error(fmt::format("there is no model in '{}'; name a folder with files that end in {}",
+    throw Error(Error::Code::file,
+                fmt::format("there is no model in '{}'; name a folder with files that end in {}",
                             folder.string(), model_ending));
   }
   return models;

@@ -205,7 +205,8 @@ bool wants_folder(const ProcessArguments& options) {
   const bool looks_like_a_folder = !options.output.empty() && options.output.back() == '/';
   if (options.inputs.size() == 1 && !looks_like_a_folder) return false;
   if (is_there || fs::path(options.output).extension() == ".nc") {
-    throw Error(fmt::format("{} {}; several flights need an output directory; give an existing or a new one",
+    throw Error(Error::Code::usage,
+                fmt::format("{} {}; several flights need an output directory; give an existing or a new one",
                             options.output, is_there ? "is a file" : "has the extension of a file"));
   }
   return true;
@@ -235,7 +236,8 @@ class OutputFolder {
     std::error_code code;
     is_new_ = fs::create_directories(folder_, code);
     if (code) {
-      throw Error(fmt::format("{}: the folder cannot be created: {}; choose another output", folder_.string(),
+      throw Error(Error::Code::output,
+                  fmt::format("{}: the folder cannot be created: {}; choose another output", folder_.string(),
                               code.message()));
     }
   }
@@ -336,8 +338,8 @@ void run(const ProcessArguments& options) {
   if (together) together->appear();
   if (table) Table::end(flights, options.output);
   if (none) {
-    throw Error(many ? fmt::format("processing failed for all {} flights", flights.size())
-                     : flights.front().reason);
+    throw Error(Error::Code::file, many ? fmt::format("processing failed for all {} flights", flights.size())
+                                        : flights.front().reason);
   }
   if (!text) return;
   const ProcessedFlight& first = flights.front();

@@ -159,6 +159,7 @@ Ending run_program(int argc, char** argv) {
     return run_program(argc, argv, comm, comm.rank() == 0 ? work_not_done : ForkCommunicator::has_told);
   } catch (const Error& error) {
     tell(fmt::format("pcor: {}", error.what()));
+    send_error(error.what(), to_string(error.code()));
     return {work_not_done};
   }
 }
@@ -174,26 +175,30 @@ Ending run_program(int argc, char** argv, Communicator& comm, int status_of_cras
     const int status = run(argc, argv);
     finish_text();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      throw Error("standard output: cannot be written; check the space at its destination");
+      throw Error(Error::Code::output,
+                  "standard output: cannot be written; check the space at its destination");
     if (const auto error = comm.leave()) return failed(*error, false);
     return {status};
   } catch (const Error& error) {
     return failed(error, false);
   } catch (const std::filesystem::filesystem_error& error) {
-    return failed(Error(fmt::format("{}: {}; check this path and its permissions", error.path1().string(),
-                                    error.code().message())),
+    return failed(Error(Error::Code::system, fmt::format("{}: {}; check this path and its permissions",
+                                                         error.path1().string(), error.code().message())),
                   false);
   } catch (const std::system_error& error) {
     // Exception of fmt::print if the output fails.
     return failed(
-        Error(fmt::format("standard output: {}; check the space at its destination", error.code().message())),
+        Error(Error::Code::output,
+              fmt::format("standard output: {}; check the space at its destination", error.code().message())),
         false);
   } catch (const std::bad_alloc&) {
     return failed(
-        Error("the memory is exhausted; give fewer or shorter flights, or use a machine with more memory"),
+        Error(Error::Code::system,
+              "the memory is exhausted; give fewer or shorter flights, or use a machine with more memory"),
         true);
   } catch (const std::exception& error) {
-    return failed(Error(fmt::format("internal error, please report it: {}", error.what())), false);
+    return failed(
+        Error(Error::Code::system, fmt::format("internal error, please report it: {}", error.what())), false);
   }
 }
 

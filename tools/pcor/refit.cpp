@@ -61,8 +61,10 @@ std::vector<std::string> parts_of(const std::string& text) {
 FitStage parse_stage(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
-    throw Error(fmt::format(
-        "--stage '{}': give regimes and parameters, e.g. 'pitch manoeuvre: static-alpha.a1'", text));
+    throw Error(
+        Error::Code::usage,
+        fmt::format("--stage '{}': give regimes and parameters, e.g. 'pitch manoeuvre: static-alpha.a1'",
+                    text));
   }
   FitStage stage;
   for (const std::string& name : parts_of(text.substr(0, colon)))

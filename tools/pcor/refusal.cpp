@@ -19,7 +19,8 @@ void refuse_worse(const std::string& worse, bool force, ModelDefinition& model) 
   all.erase(std::remove_if(all.begin(), all.end(), [](const auto& entry) { return entry.first == "forced"; }),
             all.end());
   if (worse.empty()) return;
-  if (!force) throw Error(fmt::format("no model was written: {}; use --force to write it", worse));
+  if (!force)
+    throw Error(Error::Code::fit, fmt::format("no model was written: {}; use --force to write it", worse));
   all.emplace_back("forced", ProvenanceValue{worse});
 }
 

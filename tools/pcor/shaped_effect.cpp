@@ -22,15 +22,16 @@ double number_in(const std::string& text, const std::string& argument) {
   const char* const end = text.data() + text.size();
   const auto [rest, status] = std::from_chars(text.data(), end, value);
   if (status != std::errc() || rest != end)
-    throw Error(fmt::format("{}: '{}' is not a number; write NAME=NUMBER", argument, text));
+    throw Error(Error::Code::usage,
+                fmt::format("{}: '{}' is not a number; write NAME=NUMBER", argument, text));
   return value;
 }
 
 int power_in(const std::string& text, const std::string& argument) {
   const double power = number_in(text, argument);
   if (power != std::floor(power) || std::abs(power) > max_power) {
-    throw Error(fmt::format("{}: a power must be a whole number from {} to {}, not {}", argument, -max_power,
-                            max_power, text));
+    throw Error(Error::Code::usage, fmt::format("{}: a power must be a whole number from {} to {}, not {}",
+                                                argument, -max_power, max_power, text));
   }
   return static_cast<int>(power);
 }
@@ -53,14 +54,14 @@ void set_shape(ModelEffect& effect, const std::string& name, const std::string& 
     if (shape.name == name) {
       effect.parameters[i] = number_in(value, argument);
       if (effect.parameters[i] >= shape.lower && effect.parameters[i] <= shape.upper) return;
-      throw Error(fmt::format("{}: {} = {} is out of range [{}, {}]", argument, name, value, shape.lower,
-                              shape.upper));
+      throw Error(Error::Code::usage, fmt::format("{}: {} = {} is out of range [{}, {}]", argument, name,
+                                                  value, shape.lower, shape.upper));
     }
     shapes.push_back(shape.name);
   }
   shapes.insert(shapes.end(), {"static_pressure", "dynamic_pressure"});
-  throw Error(fmt::format("{}: '{}' is not a shape parameter of the effect {}; use {}", argument, name,
-                          effect.id, fmt::join(shapes, ", ")));
+  throw Error(Error::Code::usage, fmt::format("{}: '{}' is not a shape parameter of the effect {}; use {}",
+                                              argument, name, effect.id, fmt::join(shapes, ", ")));
 }
 
 }  // namespace
@@ -88,14 +89,16 @@ std::optional<ModelEffect> surface_argument(const std::string& argument, const F
   const std::string id = argument.substr(0, colon);
   if (surface_named(id) == nullptr) return std::nullopt;
   if (flight == nullptr)
-    throw Error(fmt::format("{}: the knots of a surface span what was flown; give --flight IN.nc", id));
+    throw Error(Error::Code::usage,
+                fmt::format("{}: the knots of a surface span what was flown; give --flight IN.nc", id));
   const auto the_flight = [flight](std::size_t) -> const Flight& { return *flight; };
   if (colon == std::string::npos) return surface_over(1, the_flight, model, id);
   constexpr std::string_view wanted = "splines=";
   const std::string shape = argument.substr(colon + 1);
   const double splines = shape.rfind(wanted, 0) == 0 ? number_in(shape.substr(wanted.size()), argument) : 0.0;
   if (!(splines >= SurfaceAxis::min_count && splines <= SurfaceAxis::max_count))
-    throw Error(fmt::format("{}: '{}' shapes no surface; give splines= and a number from {} to {}", argument,
+    throw Error(Error::Code::usage,
+                fmt::format("{}: '{}' shapes no surface; give splines= and a number from {} to {}", argument,
                             shape, SurfaceAxis::min_count, SurfaceAxis::max_count));
   return surface_over(1, the_flight, model, id, static_cast<std::size_t>(splines));
 }
@@ -108,7 +111,8 @@ ModelEffect shaped_effect(const std::string& argument) {
   for (std::string shape; std::getline(text, shape, ',');) {
     const std::size_t sign = shape.find('=');
     if (sign == std::string::npos)
-      throw Error(fmt::format("{}: '{}' is not a shape; write {}:NAME=NUMBER", argument, shape, id));
+      throw Error(Error::Code::usage,
+                  fmt::format("{}: '{}' is not a shape; write {}:NAME=NUMBER", argument, shape, id));
     set_shape(effect, shape.substr(0, sign), shape.substr(sign + 1), argument);
   }
   return effect;

@@ -173,9 +173,10 @@ void run(const TemperatureArguments& options) {
                      inputs);
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   if (options.iterate && options.archived)
-    throw Error("--iterate refits the pressures and requires flights as recorded; remove --archived");
+    throw Error(Error::Code::usage,
+                "--iterate refits the pressures and requires flights as recorded; remove --archived");
   if (!options.iterate && !options.comparison.references.empty())
-    throw Error("--reference gives the references of --iterate; give both or neither");
+    throw Error(Error::Code::usage, "--reference gives the references of --iterate; give both or neither");
   require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;

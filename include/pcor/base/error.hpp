@@ -13,15 +13,19 @@ namespace pcor {
 class Error : public std::runtime_error {
  public:
   enum class Code : std::uint8_t {
-    other,
-    file,      ///< a file cannot be read, or is damaged
-    variable,  ///< a variable is absent or has no value
-    unit,      ///< a unit is missing, unknown or not convertible
-    model,     ///< the model cannot be used on the recorded variables
-    output     ///< an output cannot be written to its path
+    file,        ///< a file cannot be read, or is damaged
+    variable,    ///< a variable is absent, has no value or cannot be used
+    unit,        ///< a unit is missing, unknown or not convertible
+    time,        ///< a time is missing or ambiguous, or the times do not increase
+    samples,     ///< the usable samples are too few, or their rate cannot be used
+    definition,  ///< a model file, scenario, file of intervals or formula is not valid
+    model,       ///< no model is determined, or the model cannot be used on the recorded variables
+    fit,         ///< a fit has no solution, does not determine it, or gives a worse model
+    usage,       ///< an option or argument is impossible, or contradicts another one
+    output,      ///< an output cannot be written to its path
+    system       ///< memory, a process or another program is not available, or pcor has an internal error
   };
 
-  explicit Error(const std::string& message) : Error(Code::other, message) {}
   Error(Code code, const std::string& message) : std::runtime_error(message), code_(code) {}
 
   Code code() const { return code_; }

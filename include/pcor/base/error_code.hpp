@@ -15,14 +15,24 @@ constexpr std::string_view to_string(Error::Code code) {
       return "variable";
     case Error::Code::unit:
       return "unit";
+    case Error::Code::time:
+      return "time";
+    case Error::Code::samples:
+      return "samples";
+    case Error::Code::definition:
+      return "definition";
     case Error::Code::model:
       return "model";
+    case Error::Code::fit:
+      return "fit";
+    case Error::Code::usage:
+      return "usage";
     case Error::Code::output:
       return "output";
-    case Error::Code::other:
+    case Error::Code::system:
       break;
   }
-  return "other";
+  return "system";
 }
 
 }  // namespace pcor

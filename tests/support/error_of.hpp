@@ -1,0 +1,47 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <pcor/base/error.hpp>
+
+#include <cctype>
+#include <optional>
+#include <string>
+
+namespace pcor::test {
+
+/// The error that `work` throws, if any.
+template <class Work>
+std::optional<Error> error_of(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+/// A text with `name`, which may be a number, and not only as a part of a longer name or number.
+MATCHER_P(HasName, name, "has the name " + testing::PrintToString(name)) {
+  const std::string text(arg);
+  const auto continues = [&text](std::size_t i) {
+    return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) != 0 || text[i] == '_');
+  };
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    const bool begins = at == 0 || !continues(at) || !continues(at - 1);
+    if (begins && !(continues(end - 1) && continues(end))) return true;
+  }
+  return false;
+}
+
+/// An error with this code. Its message is one line, which has all these names and numbers.
+template <class... Names>
+auto IsError(Error::Code code, const Names&... names) {
+  using testing::AllOf;
+  using testing::Property;
+  return testing::Optional(AllOf(Property("code", &Error::code, code),
+                                 Property("what", &Error::what, testing::Not(testing::HasSubstr("\n"))),
+                                 Property("what", &Error::what, HasName(std::string(names)))...));
+}
+
+}  // namespace pcor::test
