@@ -345,8 +345,10 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
   require(options.pressure_noise >= 0.0 && options.static_bias >= 0.0 && options.static_change >= 0.0 &&
               options.gradient.value_or(0.0) >= 0.0,
           "standard deviations must not be negative");
-  require(!air.temperature.empty(), "the model has no thermometer, so no temperature to test", Error::Code::variable);
-  require(!air.geopotential_height.empty(), "the flight has no GPS height or no latitude", Error::Code::variable);
+  require(!air.temperature.empty(), "the model has no thermometer, so no temperature to test",
+          Error::Code::variable);
+  require(!air.geopotential_height.empty(), "the flight has no GPS height or no latitude",
+          Error::Code::variable);
 
   FlightLayers found;
   found.flight = air.samples->name;

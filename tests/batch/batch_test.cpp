@@ -20,7 +20,6 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
-
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Recorded values, an array for each quantity.
