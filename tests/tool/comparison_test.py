@@ -52,7 +52,7 @@ kind = "level"
 duration = 120
 """
 
-MADE = tempfile.TemporaryDirectory()
+MADE = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
 FLIGHTS = Path(MADE.name)
 ONE, TWO, GV, STEADY = (FLIGHTS / name for name in ("one.nc", "two.nc", "gv.nc", "steady.nc"))
 

@@ -149,7 +149,8 @@ class Folder(ManyFlights):
             return int(subprocess.run([sys.executable, "-c", code, *command], check=True, capture_output=True,
                                       text=True).stdout)
 
-        self.assertLess(memory(61), memory(3) + 4096)  # KiB
+        # The heap of equal runs differs by up to 4 MiB; 200 KiB kept of each flight would be 11 MiB.
+        self.assertLess(memory(61), memory(3) + 8192)  # KiB
 
 
 class Unreadable(ManyFlights):
