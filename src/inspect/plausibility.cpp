@@ -75,11 +75,12 @@ class Plausibility {
 
   /// Values beyond the limits of a role are missing: usually their unit is not the stated one.
   void limits() {
+    const VariableNaming& family = family_of(model_, flight_);
     for (const auto& [role, variable] : model_.variables) {
       const QuantityInfo& info = info_of(role);
-      if (!has_values(flight_, variable, std::string(info.unit), stated_unit(role))) continue;
-      const UnitConversion conversion =
-          flight_.conversion(variable, std::string(info.unit), "", stated_unit(role));
+      const std::string unit = unit_of_role(model_, family, role);
+      if (!has_values(flight_, variable, std::string(info.unit), unit)) continue;
+      const UnitConversion conversion = flight_.conversion(variable, std::string(info.unit), "", unit);
       const ReadValues read = read_values(flight_, variable, believed(conversion, info));
       const auto impossible = static_cast<double>(read.left_out.impossible);
       const auto present = static_cast<double>(
@@ -89,11 +90,6 @@ class Plausibility {
             100.0 * impossible / (impossible + present), "%",
             "these values are missing; state the unit of the variable in the [units] of the model");
     }
-  }
-
-  std::string stated_unit(Quantity role) const {
-    const auto stated = model_.units.find(role);
-    return stated == model_.units.end() ? "" : stated->second;
   }
 
   void pressure() {

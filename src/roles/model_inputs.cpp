@@ -61,8 +61,7 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
   const auto conversion_of = [&](Quantity role) {
     const QuantityInfo& info = info_of(role);
     const std::string& variable = file.variables.at(role);
-    const auto stated = file.units.find(role);
-    const std::string unit = stated == file.units.end() ? family.unit_of(variable) : stated->second;
+    const std::string unit = unit_of_role(file, family, role);
     if (flight.has(variable)) note_other_unit(flight.variable(variable), info, unit, notes);
     return believed(flight.conversion(variable, std::string(info.unit), std::string(info.name), unit), info);
   };

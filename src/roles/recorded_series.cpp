@@ -72,11 +72,8 @@ RecordedSeries read_role(const Flight& flight, const ModelDefinition& model, Qua
   const VariableNaming& family = family_of(model, flight);
   RecordedSeries series;
   const auto given = model.variables.find(role);
-  if (given != model.variables.end()) {
-    const auto stated = model.units.find(role);
-    try_variable(flight, given->second,
-                 stated == model.units.end() ? family.unit_of(given->second) : stated->second, info, series);
-  }
+  if (given != model.variables.end())
+    try_variable(flight, given->second, unit_of_role(model, family, role), info, series);
   for (const std::string& name : usual_variables(family, role)) {
     if (given == model.variables.end() || name != given->second)
       try_variable(flight, name, family.unit_of(name), info, series);

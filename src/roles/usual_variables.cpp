@@ -63,4 +63,9 @@ std::vector<std::string> usual_heights(const VariableNaming& family) {
   return names;
 }
 
+std::string unit_of_role(const ModelDefinition& model, const VariableNaming& family, Quantity role) {
+  const auto stated = model.units.find(role);
+  return stated == model.units.end() ? family.unit_of(model.variables.at(role)) : stated->second;
+}
+
 }  // namespace pcor::internal

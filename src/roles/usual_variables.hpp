@@ -21,6 +21,10 @@ std::vector<std::string> names_of_series();
 /// The family whose names complete a model on a flight: the family of the model, otherwise of the flight.
 const VariableNaming& family_of(const ModelDefinition& model, const Flight& flight);
 
+/// Unit of the variable of a role in `model`, as the model states it, otherwise the data of the aircraft;
+/// empty if neither does, so that the unit of the file holds.
+std::string unit_of_role(const ModelDefinition& model, const VariableNaming& family, Quantity role);
+
 /// The names of the usual variables of a role in files of a family. Empty for the roles that a model must
 /// name itself, because several instruments measure them: pressures, temperatures, humidity, the laser, the
 /// Mach number.

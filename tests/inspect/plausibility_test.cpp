@@ -110,7 +110,7 @@ TEST(Plausibility, PressureLabelledWithAnotherUnitIsRefused) {
 TEST(Plausibility, TemperatureInCelsiusLabelledKelvinIsFound) {
   const std::vector<Problem> problems =
       problems_after([](Recording& recording) { recording.units["ATX"] = "K"; });
-  // 5 "K" is no temperature of air: all values are missing, and the contradiction is the share of them.
+  // Air never has 5 K: all values are missing, and the contradiction is the share of them.
   EXPECT_THAT(problems, Contains(problem("ATX", "%", 100.0, 0.0)));
 }
 
