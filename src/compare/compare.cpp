@@ -15,6 +15,7 @@
 #include <pcor/flight/flight_writer.hpp>
 
 #include "base/phrasing.hpp"
+#include "campaign/gps_parts.hpp"
 #include "campaign/reference_doubt.hpp"
 #include "campaign/whitened.hpp"
 #include "numerics/binned_residual.hpp"
@@ -470,6 +471,21 @@ void add_variances(std::size_t model, const FlightPartition& share,
   }
 }
 
+/// Adds the products from which the mean residuals against wind and height follow.
+void separate_atmosphere(const Pairing& pairing, const FlightSamples& samples,
+                         const std::vector<std::vector<std::size_t>>& parts, ModelSums& sums) {
+  const std::optional<GpsKind> kind = gps_kind(pairing.reference);
+  if (!kind || parts.front().empty()) return;
+  const ModelDefinition& model = pairing.contender.model;
+  std::vector<double> parameters;
+  for (const ModelEffect& effect : model.model.effects)
+    parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
+  std::vector<Eigen::MatrixXd> products =
+      gps_products_of_parts(*kind, samples, model, parameters, parts.front(), parts);
+  auto next = products.begin();
+  sums.each_part([&](ResidualSums& part) { part.by_gps = std::move(*next++); });
+}
+
 /// Compares models with a reference. Without samples the result has no models.
 Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& flights,
                         const CompareOptions& options, const std::function<void()>& tell) {
@@ -492,8 +508,11 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     std::vector<std::string> notes;
     FlightPart part = part_of(residuals_on(samples, pairings, options.mask, notes), with_series, records);
     part.notes = std::move(notes);
-    for (std::size_t m = 0; m < pairings.size(); ++m)
+    for (std::size_t m = 0; m < pairings.size(); ++m) {
       part.models[m].doubt = doubts[m].columns(samples[m], records[m].parts.front()).colwise().sum();
+      if (options.separates_atmosphere)
+        separate_atmosphere(pairings[m], *samples[m], records[m].parts, part.models[m]);
+    }
     return part;
   };
   const bool keeps_all = flights.size() <= options.max_series;

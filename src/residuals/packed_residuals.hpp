@@ -13,7 +13,8 @@ namespace cereal {
 
 template <class Archive>
 void serialize(Archive& archive, pcor::Statistics& statistics) {
-  archive(statistics.samples, statistics.bias, statistics.bias_error, statistics.rms, statistics.noise_rms);
+  archive(statistics.samples, statistics.mean, statistics.bias, statistics.bias_error, statistics.rms,
+          statistics.noise_rms);
 }
 
 template <class Archive>
@@ -58,7 +59,7 @@ void serialize(Archive& archive, pcor::FlightSamples& samples) {
 
 template <class Archive>
 void serialize(Archive& archive, pcor::internal::ResidualSums& sums) {
-  archive(sums.samples, sums.sum, sums.squares, sums.noise_squares, sums.sum_variance);
+  archive(sums.samples, sums.sum, sums.squares, sums.noise_squares, sums.sum_variance, sums.by_gps);
 }
 
 /// Shared samples of a flight, or null: each receiver gets its copy.

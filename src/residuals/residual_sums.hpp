@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <pcor/residuals/statistics.hpp>
 
 #include <cstddef>
@@ -13,6 +14,9 @@ struct ResidualSums {
   double squares = 0.0;
   double noise_squares = 0.0;
   double sum_variance = 0.0;  ///< variance of `sum` due to the noise; NaN: unknown
+  /// Against wind or height, if the atmosphere is separated: products of `gps_products_of_parts`. The mean
+  /// residual then follows from these.
+  Eigen::MatrixXd by_gps{};
 
   /// Adds a sample, without its contribution to `sum_variance`.
   void add(double residual, double noise);

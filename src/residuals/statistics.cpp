@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "numerics/chi_squared.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "residuals/residual_sums.hpp"
 
@@ -26,20 +27,34 @@ void ResidualSums::add(const ResidualSums& other) {
   squares += other.squares;
   noise_squares += other.noise_squares;
   sum_variance += other.sum_variance;
+  if (by_gps.size() == 0)
+    by_gps = other.by_gps;
+  else if (other.by_gps.size() > 0)
+    by_gps += other.by_gps;
 }
 
 Statistics ResidualSums::statistics() const {
   Statistics result;
   result.samples = samples;
   if (samples == 0) {
-    result.bias = result.bias_error = result.rms = result.noise_rms = nan;
+    result.mean = result.bias = result.bias_error = result.rms = result.noise_rms = nan;
     return result;
   }
   const auto count = static_cast<double>(samples);
-  result.bias = sum / count;
+  result.mean = result.bias = sum / count;
   result.rms = std::sqrt(squares / count);
   result.noise_rms = std::sqrt(noise_squares / count);
   result.bias_error = std::sqrt(sum_variance) / count;
+  if (by_gps.size() > 0) {
+    const Eigen::Index nuisances = by_gps.cols() - 3;
+    Eigen::MatrixXd products = by_gps;
+    products.diagonal().head(nuisances).array() += 1.0;  // their priors
+    const Eigen::MatrixXd left = products_after(products, nuisances);
+    const Eigen::Vector2d both = pseudo_solution(left.topLeftCorner(2, 2), Eigen::Vector2d::Ones());
+    // What delta-p lacks, the corrected static pressure has too much.
+    result.bias = -both.dot(left.col(2).head(2));
+    result.bias_error = std::sqrt(both.sum());
+  }
   return result;
 }
 
@@ -53,7 +68,7 @@ bool fails_more(const Statistics& a, const Statistics& b) {
   return failure(a) > failure(b);
 }
 
-double Statistics::scatter() const { return std::sqrt(std::max(rms * rms - bias * bias, 0.0)); }
+double Statistics::scatter() const { return std::sqrt(std::max(rms * rms - mean * mean, 0.0)); }
 
 std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_what) {
   if (flaps_out.samples == 0) return "";

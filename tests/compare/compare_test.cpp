@@ -87,6 +87,38 @@ TEST(Compare, ShowsAShiftAsABias) {
   EXPECT_LT(result.models[1].r_squared, result.models[0].r_squared);
 }
 
+// The mean residual of a climb contains the shear of the wind, up to three of its stated errors.
+TEST(Compare, SeparatesTheAtmosphereFromTheBiasAgainstWind) {
+  std::vector<ComparedModel> contenders{laser_contender(), laser_contender(0.001)};
+  for (ComparedModel& contender : contenders) contender.references = {pcor::wind_reference(contender.model)};
+  const Comparison comparison = compare(pcor::FlightSet({flight_file()}), contenders, {});
+  ASSERT_EQ(comparison.models.size(), 2U);
+  double squares = 0.0;
+  std::size_t parts = 0;
+  for (const auto* list : {&comparison.models[0].regimes, &comparison.models[0].bands}) {
+    for (const pcor::PartStatistics& part : *list) {
+      const double score = part.statistics.bias / part.statistics.bias_error;
+      EXPECT_LT(std::abs(score), 3.5) << part.name;  // some thirty parts: 1.4 % by chance
+      squares += score * score;
+      ++parts;
+    }
+  }
+  ASSERT_GT(parts, 20U);
+  // All parts contain the error of the level; three standard errors of the rms of two independent scores.
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(parts)), 1.0 + 3.0 / std::sqrt(2.0 * 2.0));
+  // A thousandth of 600 to 1000 hPa; the noise is the same in both models but for its estimate.
+  const double shift = comparison.models[1].all.bias - comparison.models[0].all.bias;
+  EXPECT_NEAR(shift, 0.75, 0.1);
+  EXPECT_LT(comparison.models[0].all.bias_error, 0.2);
+  // The residuals as measured keep their scatter.
+  const pcor::Statistics& all = comparison.models[0].all;
+  EXPECT_NEAR(all.scatter() * all.scatter(), all.rms * all.rms - all.mean * all.mean, 1e-9);
+  CompareOptions as_measured;
+  as_measured.separates_atmosphere = false;
+  const Comparison measured = compare(pcor::FlightSet({flight_file()}), contenders, as_measured);
+  EXPECT_EQ(measured.models[0].all.bias, all.mean);
+}
+
 TEST(Compare, ReportsBiasFromLaserCalibration) {
   ComparedModel given = laser_contender();
   given.model.uncertainty.sensors = {{"lams-elevation.dtheta1", 0.0},

@@ -304,6 +304,7 @@ void run(const CompareArguments& options) {
   name_by_file(contenders, options.models);
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
+  compare_options.separates_atmosphere = !options.comparison.references.empty();
   if (!options.residuals.empty())
     compare_options.max_series = options.comparison.flights.size();
   else if (!wants_report(options.common))
@@ -320,9 +321,11 @@ void run(const CompareArguments& options) {
                                     [](const auto& reference) { return reference->name() == "wind"; });
   if (has_wind) {
     comparison.notes.emplace_back(
-        "residuals by wind contain gusts and the drift of the wind, which are not errors of a model; "
-        "--reference "
-        "wind also prints the mean error of delta-p by GPS, which does not contain them");
+        compare_options.separates_atmosphere
+            ? "rms and scatter by wind contain gusts and the drift of the wind; the bias does not"
+            : "residuals by wind contain gusts and the drift of the wind; with --reference wind the bias "
+              "does "
+              "not");
   }
   if (!is_speaker()) return;
   OutputTransaction together;

@@ -8,13 +8,16 @@ namespace pcor {
 /// Statistics of residuals, hPa. NaN if there are too few samples.
 struct Statistics {
   std::size_t samples = 0;
-  double bias = 0.0;  ///< mean residual, hPa
+  double mean = 0.0;  ///< mean residual, hPa
+  /// Bias of the corrected static pressure, hPa: the mean residual; against wind or height its estimate
+  /// without variations of the atmosphere, if they were separated.
+  double bias = 0.0;
   /// Standard error of the bias, hPa, includes autocorrelation and drift of the noise.
   double bias_error = 0.0;
   double rms = 0.0;        ///< about zero, hPa
   double noise_rms = 0.0;  ///< noise floor over the same samples, hPa: the lowest of all models
 
-  /// Standard deviation about the bias, hPa.
+  /// Standard deviation about the mean, hPa.
   double scatter() const;
   /// Ratio of the rms to that of the noise; NaN if the noise is unknown.
   double rms_over_noise() const;
@@ -23,7 +26,7 @@ struct Statistics {
 template <class Field>
 void describe(const Statistics& self, Field& field) {
   field("samples", self.samples, "number of samples");
-  field("bias_hpa", self.bias, "mean residual");
+  field("bias_hpa", self.bias, "mean residual; against wind or height without variations of the atmosphere");
   field("bias_stderr_hpa", self.bias_error, "standard error of the bias, with the correlation of the noise");
   field("rms_hpa", self.rms, "rms residual");
   field("scatter_hpa", self.scatter(), "standard deviation of the residual");

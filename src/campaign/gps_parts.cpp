@@ -1,0 +1,45 @@
+#include "campaign/gps_parts.hpp"
+
+#include "campaign/gps_system.hpp"
+#include "campaign/model_parameters.hpp"
+#include "numerics/triangular_factor.hpp"
+
+namespace pcor::internal {
+
+std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSamples& samples,
+                                                   const ModelDefinition& model,
+                                                   const std::vector<double>& parameters,
+                                                   const std::vector<std::size_t>& used,
+                                                   const std::vector<std::vector<std::size_t>>& parts) {
+  const std::vector<std::size_t> law = free_parameters(model);
+  ModelDefinition with_amount = model;
+  with_amount.model.additions = {EffectLocation::static_defect};
+  std::vector<double> all = parameters;
+  all.resize(parameter_count(model.model));
+  all.push_back(0.0);
+  AddedEffects effects;
+  effects.amounts_of_model = {all.size() - 1};
+  effects.at.assign(parts.size(), 0);
+  effects.amounts = [&](const ModelSamples&) {
+    Eigen::MatrixXd amounts = Eigen::MatrixXd::Zero(as_index(samples.time.size()), as_index(parts.size()));
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      for (const std::size_t i : parts[part]) amounts(as_index(i), as_index(part)) = 1.0;
+    }
+    return amounts;
+  };
+  // The coefficients of the law are free in the noise, with wide priors.
+  const GpsSystem system = gps_system(gps_rows(kind, samples, with_amount, used, all.data(), law, effects),
+                                      std::vector<double>(law.size(), 0.0));
+  const Eigen::MatrixXd rows = system.rows.cast<double>();
+  const auto of_parts = rows.middleCols(as_index(law.size()), as_index(parts.size()));
+  std::vector<Eigen::MatrixXd> products;
+  for (Eigen::Index part = 0; part < of_parts.cols(); ++part) {
+    Eigen::MatrixXd own(rows.rows(), gps_shared_nuisances + 3);
+    own << rows.middleCols(rows.cols() - 1 - gps_shared_nuisances, gps_shared_nuisances), of_parts.col(0),
+        of_parts.col(part), rows.rightCols(1);
+    products.emplace_back(own.transpose() * own);
+  }
+  return products;
+}
+
+}  // namespace pcor::internal
