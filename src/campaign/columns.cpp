@@ -280,8 +280,12 @@ void put_wind_columns(const GpsRows& rows, const std::vector<std::size_t>& used,
 void put_gps(GpsKind kind, const CandidateModels& set, const System& own, const LinearRows& rows,
              FlightColumns& columns) {
   const FlightSamples& samples = *columns.samples;
-  const GpsRows found = gps_rows(kind, samples, own.model, rows.used(), rows.residuals().parameters().data(),
-                                 own.free, effects_of(set, columns.reference, own, samples, rows.used()));
+  const AddedEffects effects = effects_of(set, columns.reference, own, samples, rows.used());
+  const auto rows_at = [&](double warmer) {
+    return gps_rows(kind, samples, own.model, rows.used(), rows.residuals().parameters().data(), own.free,
+                    effects, warmer);
+  };
+  const GpsRows found = rows_at(0.0);
   const Eigen::Index free = as_index(own.free.size());
   std::vector<double> usual;
   for (std::size_t k = 0; k < own.free.size(); ++k) usual.push_back(set.base[k].usual);
@@ -289,6 +293,7 @@ void put_gps(GpsKind kind, const CandidateModels& set, const System& own, const 
   if (kind == GpsKind::wind) put_wind_columns(found, rows.used(), free, columns);
   if (found.defect.rows() == 0) return;
   columns.gps = gps_system(found, usual);
+  if (kind == GpsKind::height) columns.gps = gps_system(rows_at(thermometer_of(columns.gps, usual)), usual);
   // The coefficients of other systems do not change a comparison with GPS.
   const Eigen::MatrixXf own_columns = std::move(columns.gps.rows);
   const Eigen::Index others = columns.base.cols() - free;

@@ -454,7 +454,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
 
 GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
                     const std::vector<std::size_t>& used, const double* parameters,
-                    const std::vector<std::size_t>& wanted, const AddedEffects& effects) {
+                    const std::vector<std::size_t>& wanted, const AddedEffects& effects, double warmer) {
   const ModelOnSamples law(file, samples.model);
   const Air air = air_of(samples, law, parameters);
   const std::size_t size = samples.time.size();
@@ -514,7 +514,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
                             fall * mean * (by.log_pressure - before.log_pressure);
       height[count + thermometer] += calm_step;
       height[count + recovery] += 0.5 * calm_step * (by_recovery + recovery_before);
-      height[columns] += mean * step;
+      height[columns] += mean * step + warmer * (step - calm_step);
       result.rise[i] = mean * calm_step;
       result.is_break[i] = false;
     }
@@ -560,9 +560,9 @@ Eigen::VectorXd gps_nuisance_deviations() {
 
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
-                 const std::vector<std::size_t>& wanted, const AddedEffects& effects) {
+                 const std::vector<std::size_t>& wanted, const AddedEffects& effects, double warmer) {
   return kind == GpsKind::wind ? wind_rows(samples, model, used, parameters, wanted, effects)
-                               : height_rows(samples, model, used, parameters, wanted, effects);
+                               : height_rows(samples, model, used, parameters, wanted, effects, warmer);
 }
 
 }  // namespace pcor::internal

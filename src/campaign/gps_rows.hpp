@@ -27,11 +27,12 @@ struct GpsNuisance {
   std::string_view name;
   double deviation;
   bool of_flight;
+  std::string_view same_as = {};  ///< coefficient of the catalogue for the same error
 };
 
 inline constexpr std::array<GpsNuisance, 11> gps_nuisances{{
-    {"thermometer, K", 0.3, false},
-    {"recovery factor", 0.005, false},
+    {"thermometer, K", 0.3, false, "temp-offset.offset"},
+    {"recovery factor", 0.005, false, "recovery-factor.da"},
     {"heading, deg", 0.2, false},
     {"sideslip, deg", 0.3, false},
     {"attack, deg", 0.3, false},
@@ -86,9 +87,11 @@ struct AddedEffects {
 /// low-passed by 15 s, because even a thousandth of the noise of pressure or GPS in them would appear as a
 /// temperature error of a few tenths of a kelvin.
 /// @param used samples of the fit @param parameters all parameters of the model; the rows have derivatives by
-/// `wanted` @param effects have further columns, after those of `wanted`
+/// `wanted` @param effects have further columns, after those of `wanted` @param warmer estimate of the
+/// thermometer's nuisance, K: the part of it that its low-passed column lacks is taken from the residual
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
-                 const std::vector<std::size_t>& wanted, const AddedEffects& effects = {});
+                 const std::vector<std::size_t>& wanted, const AddedEffects& effects = {},
+                 double warmer = 0.0);
 
 }  // namespace pcor::internal

@@ -1,6 +1,9 @@
 #include "campaign/gps_system.hpp"
 
+#include <numeric>
+
 #include "campaign/gps_noise.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -68,6 +71,25 @@ GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& usual) {
   system.rows = eliminate_own(white.rows(with_value, Eigen::all)).cast<float>();
   system.record.resize(static_cast<std::size_t>(system.rows.rows()), system.record.front());
   return system;
+}
+
+double thermometer_of(const GpsSystem& system, const std::vector<double>& usual) {
+  const Eigen::Index law = as_index(usual.size());
+  const Eigen::Index columns = system.rows.cols() - 1;
+  std::vector<Eigen::Index> places(usual.size());
+  std::iota(places.begin(), places.end(), Eigen::Index{0});
+  for (Eigen::Index n = columns - gps_shared_nuisances; n <= columns; ++n) places.push_back(n);
+  const Eigen::MatrixXd rows = system.rows(Eigen::all, places).cast<double>();
+  Eigen::MatrixXd products = rows.transpose() * rows;
+  for (Eigen::Index k = 0; k < law; ++k) {
+    const double deviation = gps_prior_in_typical_sizes * usual[static_cast<std::size_t>(k)];
+    if (deviation > 0.0) products(k, k) += 1.0 / (deviation * deviation);
+  }
+  // Not of the thermometer: the law, whose change of temperature looks the same, would take most of it.
+  products.diagonal().segment(law + 1, gps_shared_nuisances - 1).array() += 1.0;
+  const Eigen::Index count = law + gps_shared_nuisances;
+  return gps_nuisances.front().deviation *
+         pseudo_solution(products.topLeftCorner(count, count), products.col(count).head(count))[law];
 }
 
 }  // namespace pcor::internal

@@ -272,7 +272,8 @@ void Analysis::find_search(const std::vector<std::size_t>& chosen) {
   }
   take_out_common_noise(*scores_);
   marginalize(*scores_, shape_columns * as_index(added_.size()) + nuisances_);
-  scores_->information.diagonal().head(base_) += prior_;
+  for (Eigen::MatrixXd* const products : {&scores_->information, &scores_->plain})
+    products->diagonal().head(base_) += prior_;
   search_ = std::make_unique<Search>(*scores_, base_, groups_);
 }
 

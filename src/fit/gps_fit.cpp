@@ -69,6 +69,13 @@ class GpsSolver {
     for (Eigen::Index k = 0; k < count_; ++k)
       prior_deviation_[k] =
           gps_prior_in_typical_sizes * task_.parameters[wanted_[static_cast<std::size_t>(k)]].typical;
+    // A fitted coefficient replaces the nuisance for the same error.
+    constexpr double held = 1e-3;
+    for (std::size_t n = 0; n < gps_nuisances.size(); ++n) {
+      if (std::any_of(wanted.begin(), wanted.end(),
+                      [&](std::size_t p) { return task_.parameters[p].name == gps_nuisances[n].same_as; }))
+        nuisance_deviation_[as_index(n)] *= held;
+    }
   }
 
   GpsFit solve() {
@@ -101,7 +108,7 @@ class GpsSolver {
     const Eigen::VectorXd own = own_parameters(fit.residuals(), task_, values_);
     const FlightSamples& samples = fit.residuals().samples();
     Part part;
-    const GpsRows rows = gps_rows(kind, samples, task_.model, fit.kept(), own.data(), wanted_);
+    const GpsRows rows = gps_rows(kind, samples, task_.model, fit.kept(), own.data(), wanted_, {}, warmer_);
     part.samples = static_cast<std::size_t>(rows.defect.rows());
     part.defects = rows.defect.transpose() * rows.defect;
     if (part.samples == 0) return part;
@@ -245,6 +252,7 @@ class GpsSolver {
     change_.head(count_) = level_held() * change_.head(count_);
     keep_bounds();
     values_(wanted_) = before_.values + change_.head(count_);
+    warmer_ = change_[count_];
   }
 
   const Bounds& bounds_of(Eigen::Index k) const {
@@ -418,7 +426,8 @@ class GpsSolver {
   const std::vector<std::size_t>& wanted_;
   Eigen::Index count_;
   Eigen::VectorXd prior_deviation_{};
-  const Eigen::VectorXd nuisance_deviation_ = gps_nuisance_deviations();
+  Eigen::VectorXd nuisance_deviation_ = gps_nuisance_deviations();
+  double warmer_ = 0.0;                           // nuisance of the thermometer, K
   std::vector<std::vector<FlightState>> states_;  // indexed by reference and flight
   Equations equations_{};
   Eigen::MatrixXd defects_{};

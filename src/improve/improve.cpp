@@ -13,6 +13,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/effects/static_surface.hpp>
 #include <pcor/flight/flight.hpp>
+#include "campaign/gps_rows.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/traced_effect.hpp"
 #include "fit/lineage.hpp"
@@ -604,7 +605,15 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     tell("fitting with " + last_of(trial.file));
     RefitOptions refit_with = options.refit;
     refit_with.alike = trial.alike;
-    return refit(flights, trial.file, ordered, refit_with);
+    if (!gps_kind(first_of(ordered))) return refit(flights, trial.file, ordered, refit_with);
+    // By GPS alone the prior is about the start. It is the given model's, not the estimate of a diagnosis.
+    ModelDefinition start = trial.file;
+    const std::vector<double> coefficients = coefficients_in(model, start);
+    auto next = coefficients.begin();
+    for (ModelEffect& effect : start.model.effects) {
+      for (double& parameter : effect.parameters) parameter = *next++;
+    }
+    return refit(flights, start, ordered, refit_with);
   };
   loop.diagnose = [&](const TrialModel& trial) {
     tell("diagnosing with " + last_of(trial.file));

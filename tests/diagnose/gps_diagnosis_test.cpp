@@ -22,7 +22,7 @@ namespace {
 
 const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
 
-/// A simulated flight of two hours. @param effect of the scenario, hidden
+/// A simulated flight of two hours. @param effect more of the scenario: hidden, or noise
 std::filesystem::path flight(int seed, const std::string& effect = "") {
   static const pcor::test::TemporaryDirectory directory;
   std::ifstream file(scenarios / "c130-eq18.toml");
@@ -108,6 +108,14 @@ TEST(GpsDiagnosis, CompleteModelIsSilent) {
     const pcor::Diagnosis diagnosis = pcor::diagnose({flight(4)}, law(), references_of(with_height));
     EXPECT_EQ(diagnosis.verdict, pcor::Verdict::silent);
   }
+}
+
+// Columns of the height are without the fast part of climbs. In the residual this part of the error looked
+// like a load factor, and like a static transducer that is 5 hPa off.
+TEST(GpsDiagnosis, WarmThermometerNamesNoOtherEffect) {
+  const std::string hot = "\n[noise]\nTTRR = { rms = 0.03, bias = 2.0 }\n";
+  const pcor::Diagnosis diagnosis = pcor::diagnose({flight(5, hot)}, law(), {pcor::height_reference(law())});
+  for (const pcor::Finding& finding : diagnosis.findings) EXPECT_EQ(finding.effect.id, "temp-offset");
 }
 
 TEST(GpsDiagnosis, FindsHiddenEffect) {

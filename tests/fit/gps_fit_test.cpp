@@ -94,6 +94,17 @@ TEST(GpsFit, FindsTheLawAndTheThermometerByWindAndHeight) {
   EXPECT_THAT(result.notes, Contains(HasSubstr("the thermometer reads high by 0.")));
 }
 
+// Shared with the nuisance, the offset was 0.3 K too small.
+TEST(GpsFit, ThermometerOfTheModelReplacesItsNuisance) {
+  const ModelDefinition model = pcor::add_effects(law(), {pcor::neutral_effect("temp-offset")});
+  const std::string hot = "\n[noise]\nTTRR = { rms = 0.03, bias = 2.0 }\n";
+  const RefitResult result = fit(flight("c130-eq18", hot), model, {"wind", "height"});
+  const FittedParameter& offset = result.parameters[3];
+  ASSERT_EQ(offset.name, "temp-offset.offset");
+  EXPECT_NEAR(offset.value, 2.0, 3.0 * offset.standard_error);
+  EXPECT_LT(offset.standard_error, 0.1);
+}
+
 TEST(GpsFit, HoldsWhatOneHeadingLeavesOpen) {
   const RefitResult result = fit(flight("c130-one-heading"), law(), {"wind"});
   EXPECT_LT(std::abs(error_of(result)), 0.3) << "the law was right";
