@@ -27,8 +27,8 @@ constexpr std::size_t max_variables = 10;
 /// Twice the gain in log-likelihood by drift. Noise of short memory gains 17 at most in a dozen flights
 /// without drift, since no autoregression describes it wholly.
 constexpr double min_drift_gain = 30.0;
-/// Drift of transducers, hPa rms; smaller drift, or drift below the noise, is counted as noise.
-constexpr double usual_drift = 0.06;
+/// Drift of transducers, hPa rms, not exceeded in 95 % of flights: 1.96 times the usual drift, 0.06 hPa.
+constexpr double max_usual_drift = 0.12;
 
 std::set<std::string> left_out(const FlightSet& files, const ModelDefinition& model,
                                const Reference& reference, const DiagnoseOptions& options) {
@@ -414,8 +414,7 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   const Tested& shown = result.overrules ? *beside_base : beside_all;
 
   found.drift_rms = drift_rms;
-  const bool drifts =
-      analysis.drift_gain() > min_drift_gain && found.drift_rms > std::max(usual_drift, noise_rms);
+  const bool drifts = analysis.drift_gain() > min_drift_gain && found.drift_rms > max_usual_drift;
   found.steps = steps_between(analysis, chosen);
   found.significant = by_variables < chance || drifts || !found.steps.empty() || result.overrules;
   if (!found.significant) return result;
