@@ -11,7 +11,7 @@ namespace pcor::internal {
 /// Evidence of one flight against wind or height about the error of delta-p in parts of its samples.
 ///
 /// @param parameters all parameters of the model @param used samples of the comparison
-/// @param parts samples of each part, those of all parts first
+/// @param parts samples of each part; the first part has all samples
 /// @return for each part the products of whitened columns: the shared nuisances, in units of their priors; 1
 /// hPa added to the static defect in all samples, and in the part; the residual. Products of flights are
 /// additive. Empty if the flight has no row.

@@ -55,7 +55,7 @@ std::string how_large(const Finding& finding, const Law& law) {
   if (const double ratio = size_to_usual(finding.estimates); ratio > 0.0) text += ", " + times_usual(ratio);
   text += ".";
   if (!law.size.empty()) text += fmt::format(" Sizes met in practice: {}.", law.size);
-  text += fmt::format(" Over the samples used it adds {} hPa rms to the residual", hpa(finding.rms));
+  text += fmt::format(" Over the samples used it adds {} hPa rms to the residual, without the part that the model absorbs", hpa(finding.rms));
   if (!finding.worst_flight.empty() && std::isfinite(finding.worst)) {
     text += fmt::format(", and at most {:+.3f} hPa, in {} at {} UTC", finding.worst, finding.worst_flight,
                         utc_text(finding.worst_time));

@@ -264,8 +264,8 @@ struct Added {
   }
 };
 
-/// Rms and extreme over all used records: against the first reference or, for an effect on another system,
-/// against the references that see it.
+/// Rms that the model does not absorb, and extreme, over all used records: against the first reference or,
+/// for an effect on another system, against the references that see it.
 void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
              const Eigen::VectorXd& estimate, const Candidate& candidate, Finding& finding) {
   const auto of_flights = analysis.whole_share().of_each_flight<Added>([&](std::size_t f) {
@@ -288,7 +288,7 @@ void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, s
     finding.worst_flight = analysis.flight(f).samples->name;
     finding.worst_time = of_flights[f].worst_time;
   }
-  finding.rms = sum.rms();
+  finding.rms = std::sqrt(analysis.search().remaining(chosen[which])) * sum.rms();
 }
 
 /// Part of the tried shape that a model file cannot represent; empty if it can represent all.

@@ -51,7 +51,7 @@ Statistics ResidualSums::statistics() const {
     products.diagonal().head(nuisances).array() += 1.0;  // their priors
     const Eigen::MatrixXd left = products_after(products, nuisances);
     const Eigen::Vector2d both = pseudo_solution(left.topLeftCorner(2, 2), Eigen::Vector2d::Ones());
-    // What delta-p lacks, the corrected static pressure has too much.
+    // A lack in delta-p is an excess of the corrected static pressure.
     result.bias = -both.dot(left.col(2).head(2));
     result.bias_error = std::sqrt(both.sum());
   }

@@ -106,7 +106,7 @@ TEST(Compare, SeparatesTheAtmosphereFromTheBiasAgainstWind) {
   ASSERT_GT(parts, 20U);
   // All parts contain the error of the level; three standard errors of the rms of two independent scores.
   EXPECT_LT(std::sqrt(squares / static_cast<double>(parts)), 1.0 + 3.0 / std::sqrt(2.0 * 2.0));
-  // A thousandth of 600 to 1000 hPa; the noise is the same in both models but for its estimate.
+  // A thousandth of 600 to 1000 hPa; both models have the same noise, estimated separately.
   const double shift = comparison.models[1].all.bias - comparison.models[0].all.bias;
   EXPECT_NEAR(shift, 0.75, 0.1);
   EXPECT_LT(comparison.models[0].all.bias_error, 0.2);

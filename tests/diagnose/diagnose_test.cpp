@@ -352,7 +352,9 @@ TEST(Diagnose, AlongAFlightPartsAddUp) {
     squares += along.added[0][i] * along.added[0][i];
     count += 1.0;
   }
-  EXPECT_NEAR(std::sqrt(squares / count), diagnosis.findings[0].rms, 1e-9);
+  // The law absorbs little of an effect that its terms do not resemble.
+  EXPECT_LE(diagnosis.findings[0].rms, std::sqrt(squares / count));
+  EXPECT_GT(diagnosis.findings[0].rms, 0.9 * std::sqrt(squares / count));
 }
 
 TEST(Diagnose, AModelWithoutFreeCoefficientsIsDiagnosedToo) {

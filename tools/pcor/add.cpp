@@ -14,6 +14,7 @@
 #include <pcor/roles/add_effects.hpp>
 #include <pcor/units/units.hpp>
 #include "command.hpp"
+#include "comparison.hpp"
 #include "diagnosis.hpp"
 #include "model_selector.hpp"
 #include "shaped_effect.hpp"
@@ -103,8 +104,9 @@ void print(const ModelDefinition& model, const ModelDefinition& extended, const 
     say("variable selected: {} = \"{}\"\n", info_of(role).name, extended.variables.at(role));
   say("\n");
   say_written({options.output, options.common.json});
-  say("To fit it: {} refit {} -m {} -o fitted.toml\n", program(),
-      options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output));
+  say("To fit it: {} refit {} -m {} -o {}\n", program(),
+      options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output),
+      fitted_file(options.output));
 }
 
 /// JSON result of the command.

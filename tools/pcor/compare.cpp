@@ -166,7 +166,7 @@ std::string next_step(const Comparison& comparison, const std::vector<ComparedMo
         best->name, program(), shell_path(options.comparison.flights.front()), shell_path(model));
   }
   const std::string refit =
-      fmt::format("{} refit {} -m {} -o fitted.toml", program(), flights, shell_path(model));
+      fmt::format("{} refit {} -m {} -o {}", program(), flights, shell_path(model), fitted_file(model));
   if (is_verbose() && comparison.total_pressure && comparison.is_static_pressure) {
     return fmt::format(
         "{0}To refit its coefficients: {1}\nTo refit both systems together: {1} --refit-reference "

@@ -32,10 +32,11 @@ CLI::Validator is_amount() {
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_flight_options(command, options);
-  add_list_option(command, "--reference", options.references,
-                  "measurement compared with the model: " + reference_forms() +
-                      "; default: compare uses lams and the available ones of total, height and wind; refit, "
-                      "diagnose and improve use lams and, if available, total")
+  add_list_option(
+      command, "--reference", options.references,
+      "measurement compared with the model: " + reference_forms() +
+          "; default: lams and, if available, total; compare also height and wind; a flight without "
+          "laser needs this option")
       ->type_name("REFERENCE");
 }
 
@@ -154,6 +155,10 @@ std::string command_line(const ComparisonOptions& options) {
   std::string flights;
   for (const std::string& flight : options.flights) flights += shell_path(flight) + " ";
   return with_options(std::move(flights), options);
+}
+
+std::string fitted_file(const std::string& model) {
+  return std::filesystem::path(model).filename() == "fitted.toml" ? "refitted.toml" : "fitted.toml";
 }
 
 std::string advised_command_line(const ComparisonOptions& options) {

@@ -60,6 +60,9 @@ std::string command_line(const ComparisonOptions& options);
 /// last.
 std::string advised_command_line(const ComparisonOptions& options);
 
+/// File of a fitted model in advice: fitted.toml, but no file that the fit reads.
+std::string fitted_file(const std::string& model);
+
 std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options);
 
 /// References of a fit: the references given by the options, otherwise LAMS and the total pressure of a

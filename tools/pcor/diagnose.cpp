@@ -137,9 +137,9 @@ std::string next_command(const Diagnosis& diagnosis, const DiagnoseArguments& op
     return fmt::format("To apply the model: {} process {} -m {} -o corrected.nc", program(),
                        shell_path(options.comparison.flights.front()), model);
   }
-  const std::string and_fit =
-      fmt::format(" -m {} --flight {} -o extended.toml && {} refit {} -m extended.toml -o fitted.toml", model,
-                  shell_path(options.comparison.flights.front()), program(), flights);
+  const std::string and_fit = fmt::format(
+      " -m {} --flight {} -o extended.toml && {} refit {} -m extended.toml -o {}", model,
+      shell_path(options.comparison.flights.front()), program(), flights, fitted_file(options.model));
   const auto add_formula = [&and_fit](const std::string& id, const std::string& formula,
                                       const std::string& location) {
     return fmt::format("{} add {} {} --where {}{}", program(), shell_quote(id),

@@ -64,12 +64,14 @@ std::vector<std::string> next_commands(const InspectArguments& options, const In
                                  [](const ModelCandidate& law) { return law.fits(); });
   if (options.model.empty() && fits != flight.laws.end()) {
     const std::string law = " -m " + shell_quote(fits->path.stem().string());
-    std::vector<std::string> commands{command("process", flight, law + stamp + output),
-                                      command("check", flight, law + stamp + " --report check.html")};
-    if (const std::string best = reference_for(flight, *fits); !best.empty())
-      commands.push_back(
-          command("compare", flight,
-                  fmt::format("{}{} --reference {} --report compare.html", law, stamp, shell_quote(best))));
+    const std::string best = reference_for(flight, *fits);
+    const std::string against = best.empty() ? "" : " --reference " + shell_quote(best);
+    std::vector<std::string> commands{
+        command("check", flight, law + stamp + against + " --report check.html"),
+        command("process", flight, law + stamp + output)};
+    if (!best.empty())
+      commands.insert(commands.begin(),
+                      command("compare", flight, law + stamp + against + " --report compare.html"));
     return commands;
   }
   std::vector<std::string> commands;
