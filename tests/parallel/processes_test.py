@@ -30,6 +30,7 @@ ENVIRONMENT = dict(
     OMPI_MCA_rmaps_base_oversubscribe="1",
     OMPI_MCA_hwloc_base_binding_policy="none",
     OMPI_MCA_mpi_yield_when_idle="1",
+    MPIR_CVAR_POLLS_BEFORE_YIELD="1",  # MPICH: waiting processes yield the processor
 )
 SECONDS = 120
 

@@ -1,69 +1,27 @@
 #!/usr/bin/env python3
-"""The report of every command in browsers: Chromium and, where it is installed, Firefox.
+"""The report of every command in Chromium.
 
-    every_report_test.py TOOL SOURCE_DIRECTORY BUILD_DIRECTORY
+    every_report_test.py TOOL SOURCE_DIRECTORY FOLDER BUILD_DIRECTORY      FOLDER: where reports.py made them
 
 Each picture has a text alternative and numbers. The pages of improve and check, or of all commands where
 PCOR_EVERY_REPORT is set, test themselves, wide and narrow, and axe-core, which is fetched from npm into the build
 directory, finds no violation in them. Without Chromium the test is skipped (status 77), or
-fails if PCOR_REQUIRE_CHROMIUM is set; without axe-core or Firefox its part of it is.
+fails if PCOR_REQUIRE_CHROMIUM is set; without axe-core its part of it is.
 """
 
-import json
-import os
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-from browser import Browser
-from firefox import Firefox
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+from browser import Browser  # noqa: E402
+from reports import CHROMIUM, COMMANDS, LOOKED_AT, SOURCE, page, skip_without  # noqa: E402
 
-TOOL, SOURCE, BUILD = (Path(word).resolve() for word in sys.argv[1:4])
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
-# Slow checks run on the reports with most kinds of pictures, and on all of them in the long tests.
-EVERY_REPORT = os.environ.get("PCOR_EVERY_REPORT")
+BUILD = Path(sys.argv[4]).resolve()
 AXE_VERSION = "4.14.1"
-MADE = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
-FOLDER = Path(MADE.name)
-FITTED = ("one.nc", "two.nc")
-COMMANDS = {
-    "inspect": ("one.nc",),
-    "compare": (*FITTED, "-m", "model.toml"),
-    "refit": (*FITTED, "-m", "model.toml", "-o", "fitted.toml"),
-    "diagnose": (*FITTED, "-m", "fitted.toml"),
-    "improve": (*FITTED, "-m", "model.toml", "--holdout", "three.nc", "--trace-variables", "-o", "best.toml"),
-    "check": (*FITTED, "three.nc", "-m", "fitted.toml"),
-    "process": ("three.nc", "-m", "fitted.toml", "-o", "corrected.nc"),
-    "temperature": ("climbs.nc", "-m", "model.toml", "-o", "calibrated.toml", "--force"),
-}
-LOOKED_AT = COMMANDS if EVERY_REPORT else ("improve", "check")
-
-
-def run(*words, **more):
-    return subprocess.run([str(word) for word in words], cwd=FOLDER, check=True, capture_output=True, text=True, timeout=280, **more)
-
-
-def page(command):
-    return (FOLDER / f"{command}.html").as_uri()
-
-
-def setUpModule():
-    hidden = SOURCE / "data/scenarios/c130-hidden.toml"
-    for name, scenario, seed in (("one", hidden, 101), ("two", hidden, 102), ("three", hidden, 103),
-                                 ("climbs", SOURCE / "data/scenarios/c130-climbs.toml", 1)):
-        run(TOOL, "simulate", scenario, "--seed", seed, "-o", f"{name}.nc", "--quiet")
-    shutil.copy(SOURCE / "data/scenarios/models/c130-psfd-eq18.toml", FOLDER / "model.toml")
-    for command, words in COMMANDS.items():
-        run(TOOL, command, *words, "--report", f"{command}.html", "--quiet")
-
-
-def tearDownModule():
-    MADE.cleanup()
 
 
 def axe_core():
@@ -80,7 +38,9 @@ def axe_core():
 class EveryReport(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.browser = Browser(CHROMIUM, FOLDER / "profile", 1400)
+        profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
+        cls.addClassCleanup(profile.cleanup)
+        cls.browser = Browser(CHROMIUM, profile.name, 1400)
 
     @classmethod
     def tearDownClass(cls):
@@ -167,108 +127,6 @@ class EveryReport(unittest.TestCase):
                     self.assertNotIn("undefined", label)
 
 
-@unittest.skipUnless(FIREFOX, "Firefox is not installed")
-class InFirefox(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.browser = Firefox(FIREFOX, FOLDER / "firefox", 1400)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-
-    def test_every_panel_has_data(self):
-        for command in LOOKED_AT:
-            with self.subTest(command=command):
-                self.browser.open(page(command) + "#selftest")
-                result = json.loads(self.browser.value("document.getElementById('selftest').textContent"))
-                self.assertEqual(result["wrong"], [])
-
-    def test_a_drag_selects(self):
-        self.browser.open(page("compare"))
-        left, top, width, height = self.browser.value("""(() => {
-          const {canvas, drawn: {plot}} = pcorReport.panels[0];
-          canvas.scrollIntoView({block: 'center'});
-          const box = canvas.getBoundingClientRect();
-          return [box.left + plot.x, box.top + plot.y, plot.width, plot.height];
-        })()""")
-        before = self.browser.value("pcorReport.selection.count")
-        self.browser.drag(left + 0.25 * width, top + 0.5 * height, left + 0.75 * width, top + 0.5 * height)
-        view = self.browser.value("pcorReport.samples.view.map((position) => position / pcorReport.samples.length)")
-        for found, wanted in zip(view, (0.25, 0.75)):
-            self.assertAlmostEqual(found, wanted, delta=0.01)  # some pixels
-        self.assertLess(self.browser.value("pcorReport.selection.count"), before)
-
-
-class Figures(unittest.TestCase):
-    def test_a_command_writes_them(self):
-        result = run(TOOL, "compare", *COMMANDS["compare"], "--figures", "figures", "--figures-for", "column")
-        self.assertIn("wrote figures\n", result.stdout)
-        names = sorted(each.name for each in (FOLDER / "figures").iterdir())
-        self.assertIn("captions.txt", names)
-        self.assertEqual(len([name for name in names if name.endswith(".svg")]), len([name for name in names if name.endswith(".png")]))
-        text = (FOLDER / "figures" / "captions.txt").read_text()
-        self.assertIn("Command: pcor compare one.nc two.nc -m model.toml", text)
-
-    def test_what_cannot_be_drawn_is_said_before_the_work(self):
-        words = [str(TOOL), "refit", *FITTED, "-m", "model.toml", "-o", "none.toml", "--figures"]
-        for folder, browser, said in (("figures2", "/nowhere", "CHROMIUM names"), ("model.toml", CHROMIUM, "model.toml is also an input"),
-                                      ("one.nc/figures", CHROMIUM, "cannot be a folder")):
-            found = subprocess.run([*words, folder], cwd=FOLDER, env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
-            self.assertEqual((found.returncode, found.stdout), (1, ""))
-            self.assertIn(said, found.stderr)
-            self.assertEqual(found.stderr.count("\n"), 1)
-            self.assertFalse((FOLDER / "none.toml").exists() or (FOLDER / "figures2").exists())
-
-    def test_a_run_that_fails_later_leaves_what_was_there(self):
-        run(TOOL, "inspect", "one.nc", "--figures", "kept")
-        before = {each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}
-        # The folder of the table goes while figures are drawn, so that it cannot be written.
-        gone = FOLDER / "gone"
-        slow = FOLDER / "removes"
-        slow.write_text(f"#!/bin/sh\nrm -rf '{gone}'\nexec '{CHROMIUM}' \"$@\"\n")
-        slow.chmod(0o755)
-        for folder in ("kept", "new/of/new"):
-            gone.mkdir()
-            words = [TOOL, "inspect", "one.nc", "--quiet", "--json", "gone/out.json", "--figures", folder]
-            found = subprocess.run(words, cwd=FOLDER, env={**os.environ, "CHROMIUM": str(slow)}, capture_output=True, text=True)
-            self.assertEqual(found.returncode, 1, found.stderr)
-        self.assertEqual({each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}, before)
-        self.assertFalse((FOLDER / "new").exists())
-
-    def test_the_folder_of_temporary_files_may_be_called_anything(self):
-        temporary = FOLDER / "it's my $HOME"
-        beside = FOLDER / "it's"
-        temporary.mkdir()
-        beside.mkdir()
-        found = subprocess.run([TOOL, "inspect", "one.nc", "--figures", "quoted", "--quiet"], cwd=FOLDER,
-                               env={**os.environ, "TMPDIR": str(temporary)}, capture_output=True, text=True)
-        self.assertEqual(found.returncode, 0, found.stderr)
-        self.assertEqual(list(temporary.iterdir()), [])
-        self.assertTrue(beside.exists())
-
-    def test_a_stopped_run_leaves_nothing(self):
-        temporary = FOLDER / "temporary"
-        temporary.mkdir()
-        slow = FOLDER / "slow"
-        slow.write_text("#!/bin/sh\nsleep 2\n")
-        slow.chmod(0o755)
-        child = subprocess.Popen([TOOL, "inspect", "one.nc", "--figures", "stopped", "--quiet"], cwd=FOLDER,
-                                 env={**os.environ, "CHROMIUM": str(slow), "TMPDIR": str(temporary)})
-        end = 120
-        while not list(temporary.iterdir()) and end:
-            end -= 1
-            subprocess.run(["sleep", "0.1"], check=True)
-        self.assertGreater(end, 0, "the browser was not started")
-        child.terminate()
-        self.assertEqual(child.wait(), -signal.SIGTERM)
-        subprocess.run(["sleep", "3"], check=True)
-        self.assertEqual(list(temporary.iterdir()), [])
-        self.assertFalse((FOLDER / "stopped").exists())
-
-
 if __name__ == "__main__":
-    if CHROMIUM is None:
-        print("chromium is not installed; reports were not looked at", file=sys.stderr)
-        sys.exit(1 if os.environ.get("PCOR_REQUIRE_CHROMIUM") else 77)
+    skip_without(CHROMIUM, "chromium")
     unittest.main(argv=sys.argv[:1])

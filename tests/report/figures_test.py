@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Pictures of a report as files, by the option --figures.
+
+    figures_test.py TOOL SOURCE_DIRECTORY FOLDER      FOLDER: where reports.py made flights and reports
+
+Without Chromium the test is skipped (status 77), or fails if PCOR_REQUIRE_CHROMIUM is set.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import unittest
+
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+from reports import CHROMIUM, COMMANDS, FITTED, FOLDER, TOOL, run, skip_without  # noqa: E402
+
+
+class Figures(unittest.TestCase):
+    def test_a_command_writes_them(self):
+        result = run(TOOL, "compare", *COMMANDS["compare"], "--figures", "figures", "--figures-for", "column")
+        self.assertIn("wrote figures\n", result.stdout)
+        names = sorted(each.name for each in (FOLDER / "figures").iterdir())
+        self.assertIn("captions.txt", names)
+        self.assertEqual(len([name for name in names if name.endswith(".svg")]), len([name for name in names if name.endswith(".png")]))
+        text = (FOLDER / "figures" / "captions.txt").read_text()
+        self.assertIn("Command: pcor compare one.nc two.nc -m model.toml", text)
+
+    def test_what_cannot_be_drawn_is_said_before_the_work(self):
+        words = [str(TOOL), "refit", *FITTED, "-m", "model.toml", "-o", "none.toml", "--figures"]
+        for folder, browser, said in (("figures2", "/nowhere", "CHROMIUM names"), ("model.toml", CHROMIUM, "model.toml is also an input"),
+                                      ("one.nc/figures", CHROMIUM, "cannot be a folder")):
+            found = subprocess.run([*words, folder], cwd=FOLDER, env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
+            self.assertEqual((found.returncode, found.stdout), (1, ""))
+            self.assertIn(said, found.stderr)
+            self.assertEqual(found.stderr.count("\n"), 1)
+            self.assertFalse((FOLDER / "none.toml").exists() or (FOLDER / "figures2").exists())
+
+    def test_a_run_that_fails_later_leaves_what_was_there(self):
+        run(TOOL, "inspect", "one.nc", "--figures", "kept")
+        before = {each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}
+        # The folder of the table goes while figures are drawn, so that it cannot be written.
+        gone = FOLDER / "gone"
+        slow = FOLDER / "removes"
+        slow.write_text(f"#!/bin/sh\nrm -rf '{gone}'\nexec '{CHROMIUM}' \"$@\"\n")
+        slow.chmod(0o755)
+        for folder in ("kept", "new/of/new"):
+            gone.mkdir()
+            words = [TOOL, "inspect", "one.nc", "--quiet", "--json", "gone/out.json", "--figures", folder]
+            found = subprocess.run(words, cwd=FOLDER, env={**os.environ, "CHROMIUM": str(slow)}, capture_output=True, text=True)
+            self.assertEqual(found.returncode, 1, found.stderr)
+        self.assertEqual({each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}, before)
+        self.assertFalse((FOLDER / "new").exists())
+
+    def test_the_folder_of_temporary_files_may_be_called_anything(self):
+        temporary = FOLDER / "it's my $HOME"
+        beside = FOLDER / "it's"
+        temporary.mkdir()
+        beside.mkdir()
+        found = subprocess.run([TOOL, "inspect", "one.nc", "--figures", "quoted", "--quiet"], cwd=FOLDER,
+                               env={**os.environ, "TMPDIR": str(temporary)}, capture_output=True, text=True)
+        self.assertEqual(found.returncode, 0, found.stderr)
+        self.assertEqual(list(temporary.iterdir()), [])
+        self.assertTrue(beside.exists())
+
+    def test_a_stopped_run_leaves_nothing(self):
+        temporary = FOLDER / "temporary"
+        temporary.mkdir()
+        slow = FOLDER / "slow"
+        slow.write_text("#!/bin/sh\nsleep 2\n")
+        slow.chmod(0o755)
+        child = subprocess.Popen([TOOL, "inspect", "one.nc", "--figures", "stopped", "--quiet"], cwd=FOLDER,
+                                 env={**os.environ, "CHROMIUM": str(slow), "TMPDIR": str(temporary)})
+        end = 120
+        while not list(temporary.iterdir()) and end:
+            end -= 1
+            subprocess.run(["sleep", "0.1"], check=True)
+        self.assertGreater(end, 0, "the browser was not started")
+        child.terminate()
+        self.assertEqual(child.wait(), -signal.SIGTERM)
+        subprocess.run(["sleep", "3"], check=True)
+        self.assertEqual(list(temporary.iterdir()), [])
+        self.assertFalse((FOLDER / "stopped").exists())
+
+
+if __name__ == "__main__":
+    skip_without(CHROMIUM, "chromium")
+    unittest.main(argv=sys.argv[:1])
