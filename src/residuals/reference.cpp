@@ -28,8 +28,10 @@ Pointer read_lams(const std::string&, const ModelDefinition& model) {
     throw Error(
         Error::Code::model,
         fmt::format(
-            "model '{}' has no lams_airspeed; name its variable in the table [variables], or give another "
-            "--reference: static:OTHER.toml, pressure:VARIABLE, height or wind",
+            "model '{}' has no lams_airspeed, and the default reference is the laser; for a flight without "
+            "laser "
+            "give --reference static:OTHER.toml, total:PS+QC, height or wind ('pcor inspect' lists what the "
+            "flight allows); otherwise name the variable in the table [variables]",
             model.model.name));
   }
   return lams_reference();

@@ -216,10 +216,10 @@ void print_by_gps(const GpsDesign& gps) {
     return error < known ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
                          : fmt::format("undetermined; requires {}", manoeuvre);
   };
-  say("\ndetermination of delta-p by GPS ({}) from the manoeuvres\n", gps.by_wind && gps.by_height
-                                                                          ? "wind and height"
-                                                                      : gps.by_wind ? "wind"
-                                                                                    : "height");
+  say("\nstandard errors of delta-p by GPS ({}), from the manoeuvres; a fit may state larger ones\n",
+      gps.by_wind && gps.by_height ? "wind and height"
+      : gps.by_wind                ? "wind"
+                                   : "height");
   say("  the level                     {}\n", text(gps.level, "circles or reverse headings"));
   say("  its change with the airspeed  {}\n", text(gps.slope, "a speed run"));
   say("  its change with the attack    {}\n", text(gps.attack, "a pitch manoeuvre"));
