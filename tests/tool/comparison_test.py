@@ -378,7 +378,7 @@ class References(ComparisonTest):
 
     def test_help_says_which_references_are_taken_without_a_name(self):
         for command in ("compare", "refit"):
-            self.assertIn("compare uses lams", self.done(command, "--help").stdout)
+            self.assertIn("default: lams", self.done(command, "--help").stdout)
 
     def test_each_reference_has_its_own_table(self):
         text = self.done("compare", ONE, "-m", self.model(), "--reference", "pressure:TRUE_PS", "--reference", "height",
