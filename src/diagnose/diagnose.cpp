@@ -152,8 +152,10 @@ std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoe
 
 double noise_with_findings(const FlightPartition& share, const std::vector<FlightDiagnosis>& flights) {
   ResidualSums sums;
-  for (const ResidualSums& one : share.of_each_flight<ResidualSums>(
-           [&flights](std::size_t f) { return sums_of_flight(*flights[f].samples, flights[f].after); })) {
+  for (const ResidualSums& one : share.of_each_flight<ResidualSums>([&flights](std::size_t f) {
+         const std::vector<double>& after = flights[f].after;
+         return sums_of_samples(after, noise_of_flight(*flights[f].samples, after));
+       })) {
     if (std::isfinite(one.noise_squares)) sums.add(one);
   }
   return sums.statistics().noise_rms;
@@ -181,7 +183,7 @@ GivenStatistics statistics_of(const FlightColumns& flight, double share) {
   later.erase(later.begin(), later.begin() + static_cast<std::ptrdiff_t>(first.size()));
   const NoiseFloor noise = noise_of_flight(samples, masked(flight.exact, flight.mask, Mask::none));
   const std::vector<double> residual = only_at(flight.exact, first);
-  found.used = sums_of_flight(samples, residual, noise);
+  found.used = sums_of_samples(residual, noise);
   found.blocks = means_of_blocks(samples, residual);
   const std::vector<double> out = masked(flight.exact, flight.mask, Mask::flaps);
   if (has_value(out)) found.with_flaps = sums_of_flight(samples, out);

@@ -32,26 +32,24 @@ Eigen::VectorXd rotated(const Eigen::VectorXd& series, double part) {
   return result;
 }
 
-/// Residuals of a flight without dependence on any variable, by columns: first shifted in time, then with
-/// random signs for each minute.
 /// @param shift_seed seed of the shifts; @param sign_seed seed of the signs, combined with the minute
-Eigen::MatrixXd drawn(const Eigen::VectorXd& left, const Binning& bins, std::uint64_t shift_seed,
-                      std::uint64_t sign_seed) {
-  constexpr double minute = 60.0;  // s
-  Eigen::MatrixXd result(left.size(), 2 * draws);
+DrawnResiduals drawn(const Eigen::VectorXd& left, const Binning& bins, std::uint64_t shift_seed,
+                     std::uint64_t sign_seed) {
+  constexpr double length = 60.0;  // s
+  DrawnResiduals result{Eigen::MatrixXd(left.size(), draws), left};
   std::mt19937_64 shifts(shift_seed);
   std::uniform_real_distribution<double> part(0.1, 0.9);
-  for (Eigen::Index k = 0; k < draws; ++k) result.col(k) = rotated(left, part(shifts));
-  double now = -1.0;
-  Eigen::RowVectorXd signs(draws);
-  for (Eigen::Index i = 0; i < left.size(); ++i) {
-    const double begin = std::floor(bins.time()[static_cast<std::size_t>(i)] / minute);
-    if (begin != now) {
-      std::mt19937_64 engine(sign_seed + static_cast<std::uint64_t>(begin));
-      for (Eigen::Index k = 0; k < draws; ++k) signs[k] = (engine() & 1U) != 0 ? 1.0 : -1.0;
-      now = begin;
-    }
-    result.row(i).tail(draws) = left[i] * signs;
+  for (Eigen::Index k = 0; k < draws; ++k) result.shifted.col(k) = rotated(left, part(shifts));
+  std::vector<double> minutes;
+  for (const double time : bins.time()) {
+    const double minute = std::floor(time / length);
+    if (minutes.empty() || minute != minutes.back()) minutes.push_back(minute);
+    result.minute.push_back(as_index(minutes.size()) - 1);
+  }
+  result.signs.resize(as_index(minutes.size()), draws);
+  for (std::size_t m = 0; m < minutes.size(); ++m) {
+    std::mt19937_64 engine(sign_seed + static_cast<std::uint64_t>(minutes[m]));
+    for (Eigen::Index k = 0; k < draws; ++k) result.signs(as_index(m), k) = (engine() & 1U) != 0 ? 1.0 : -1.0;
   }
   return result;
 }
@@ -89,6 +87,15 @@ bool misses_too_much(const VariableValues& values) {
 
 }  // namespace
 
+Eigen::MatrixXd DrawnResiduals::products_with(const Eigen::MatrixXd& columns) const {
+  Eigen::MatrixXd by_minutes = Eigen::MatrixXd::Zero(signs.rows(), columns.cols());
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    for (std::size_t i = 0; i < minute.size(); ++i)
+      by_minutes(minute[i], c) += left[as_index(i)] * columns(as_index(i), c);
+  }
+  return side_by_side(columns.transpose() * shifted, by_minutes.transpose() * signs);
+}
+
 StructureTest::StructureTest(const FlightPartition& share, const std::vector<Binning>& bins,
                              const std::vector<Eigen::MatrixXd>& columns,
                              const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise,
@@ -120,7 +127,7 @@ StructureTest::StructureTest(const FlightPartition& share, const std::vector<Bin
     flights.drawn.resize(bins.size());
     flights.model_with_drawn = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
       flights.drawn[f] = drawn(noise_alone[f], bins[f], seed + f, seed);
-      return Eigen::MatrixXd(flights.model[f].transpose() * flights.drawn[f]);
+      return flights.drawn[f].products_with(flights.model[f]);
     });
     alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
   }
@@ -188,7 +195,7 @@ Eigen::MatrixXd StructureTest::products(std::size_t flight, const Eigen::MatrixX
     part.leftCols(count) = white.transpose() * white;
     part.middleCols(count, model) = white.transpose() * flights.model[flight];
     part.col(count + model) = white.transpose() * flights.left[flight];
-    part.rightCols(2 * draws) = white.transpose() * flights.drawn[flight];
+    part.rightCols(2 * draws) = flights.drawn[flight].products_with(white);
   }
   return all;
 }

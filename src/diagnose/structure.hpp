@@ -28,6 +28,18 @@ struct Structure {
   double centre = 0.0;  ///< mean of the variable
 };
 
+/// Residuals of a flight without dependence on any variable: first shifted in time, then with random signs
+/// for each minute.
+struct DrawnResiduals {
+  Eigen::MatrixXd shifted{};           ///< one column per draw
+  Eigen::VectorXd left{};              ///< the residuals
+  std::vector<Eigen::Index> minute{};  ///< number of the minute of each bin
+  Eigen::MatrixXd signs{};             ///< one row per minute, one column per draw
+
+  /// Products of columns with all drawn residuals.
+  Eigen::MatrixXd products_with(const Eigen::MatrixXd& columns) const;
+};
+
 /// Tests whether residuals hold structure that a model does not explain: functions of variables, one variable
 /// at a time. The flights are those against one reference.
 ///
@@ -76,8 +88,7 @@ class StructureTest {
     std::vector<Whitening> whitening{};
     std::vector<Eigen::MatrixXd> model{};  // columns of each flight
     std::vector<Eigen::VectorXd> left{};   // residuals after the model
-    std::vector<Eigen::MatrixXd>
-        drawn{};  // drawn residuals after the model, shifted or with random signs, by columns
+    std::vector<DrawnResiduals> drawn{};   // of the residuals after the model
     Eigen::MatrixXd model_with_drawn{};
     Eigen::MatrixXd inverse{};  // inverse of the information of the model
     double squares = 0.0;       // sum of the remaining squares

@@ -78,10 +78,9 @@ Determined determined(const Products& products, const PriorRows& prior, double u
 
 }  // namespace
 
-Eigen::MatrixXd SurfaceRoughness::rows(double of_differences, double of_coefficients) const {
+Eigen::MatrixXd SurfaceRoughness::rows() const {
   Eigen::MatrixXd rows(differences.rows() + differences.cols(), differences.cols());
-  rows << differences / of_differences,
-      Eigen::MatrixXd::Identity(differences.cols(), differences.cols()) / of_coefficients;
+  rows << differences / size, Eigen::MatrixXd::Identity(differences.cols(), differences.cols()) / coefficient;
   return rows;
 }
 
@@ -152,10 +151,12 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
     surface.inflation = has_new_noise ? std::sqrt(inflation * surface.inflation) : inflation;
     const double weight = 1.0 / (surface.inflation * unit);
     const SurfaceRoughness before = surface;
+    const Eigen::MatrixXd of_differences = precision(surface.differences);
+    const auto identity = Eigen::MatrixXd::Identity(of_differences.rows(), of_differences.cols());
     double best = -infinity;
     for (double size = min_size; size < 1.1 * max_size; size *= next_size) {
       for (double coefficient = min_size; coefficient < 1.1 * max_size; coefficient *= next_size) {
-        const Eigen::MatrixXd prior = precision(before.rows(size, coefficient));
+        const Eigen::MatrixXd prior = of_differences / (size * size) + identity / (coefficient * coefficient);
         const Eigen::LLT<Eigen::MatrixXd> alone(prior);
         const Eigen::LLT<Eigen::MatrixXd> factor(weight * found.information + prior);
         const double gain = 0.5 * weight * weight * found.right.dot(factor.solve(found.right)) +

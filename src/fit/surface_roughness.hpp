@@ -31,9 +31,8 @@ struct SurfaceRoughness {
 
   bool has(std::size_t parameter) const { return parameter >= first && parameter < first + count; }
 
-  /// Rows of the prior with these sizes, each of variance 1.
-  Eigen::MatrixXd rows(double of_differences, double of_coefficients) const;
-  Eigen::MatrixXd rows() const { return rows(size, coefficient); }
+  /// Rows of the prior, each of variance 1.
+  Eigen::MatrixXd rows() const;
 };
 
 /// Rows of second differences along both axes of a surface: zero for a plane.

@@ -1,11 +1,14 @@
 #include <pcor/numerics/noise.hpp>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
 #include "numerics/local_noise.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 
@@ -194,41 +197,27 @@ std::vector<double> covariance_of_sums(const Autoregression& noise, const std::v
   // The noise is its innovations put through a recursive filter, so a sum (column . noise) is a sum over the
   // innovations of the column put through the same filter backwards in time. Innovations before the first
   // sample matter as long as the filter remembers.
-  constexpr std::size_t run_out = 300;
-  const std::size_t count = columns.size();
-  const std::size_t order = noise.coefficients.size();
-  const double variance = noise.innovation_rms * noise.innovation_rms;
-  std::vector<double> matrix(count * count, 0.0);
-  std::vector<double> state(count * std::max<std::size_t>(order, 1), 0.0);
-  std::vector<double> now(count);
+  constexpr Eigen::Index run_out = 300;
+  const Eigen::Index count = as_index(columns.size());
+  const Eigen::Index order = as_index(noise.coefficients.size());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
   for (const Segment& segment : segments) {
-    std::fill(state.begin(), state.end(), 0.0);
-    std::size_t newest = 0;
-    const std::size_t steps = segment.count + (order > 0 ? run_out : 0);
-    for (std::size_t step = 0; step < steps; ++step) {
-      for (std::size_t c = 0; c < count; ++c) {
-        double value = step < segment.count ? columns[c][segment.first + segment.count - 1 - step] : 0.0;
-        for (std::size_t k = 0; k < order; ++k) {
-          value += noise.coefficients[k] * state[c * order + (newest + order - k) % order];
-        }
-        now[c] = value;
-      }
-      if (order > 0) {
-        newest = (newest + 1) % order;
-        for (std::size_t c = 0; c < count; ++c) state[c * order + newest] = now[c];
-      }
-      for (std::size_t a = 0; a < count; ++a) {
-        for (std::size_t b = 0; b <= a; ++b) matrix[a * count + b] += now[a] * now[b];
+    const Eigen::Index length = as_index(segment.count);
+    Eigen::MatrixXd filtered(length + (order > 0 ? run_out : 0), count);
+    for (Eigen::Index c = 0; c < count; ++c) {
+      const double* const last = columns[static_cast<std::size_t>(c)] + segment.first + segment.count - 1;
+      double* const now = filtered.col(c).data();
+      for (Eigen::Index step = 0; step < filtered.rows(); ++step) {
+        now[step] = step < length ? last[-step] : 0.0;
+        for (Eigen::Index k = 0; k < std::min(order, step); ++k)
+          now[step] += noise.coefficients[static_cast<std::size_t>(k)] * now[step - 1 - k];
       }
     }
+    matrix.selfadjointView<Eigen::Lower>().rankUpdate(filtered.transpose());
   }
-  for (std::size_t a = 0; a < count; ++a) {
-    for (std::size_t b = 0; b <= a; ++b) {
-      matrix[a * count + b] *= variance;
-      matrix[b * count + a] = matrix[a * count + b];
-    }
-  }
-  return matrix;
+  matrix =
+      noise.innovation_rms * noise.innovation_rms * Eigen::MatrixXd(matrix.selfadjointView<Eigen::Lower>());
+  return {matrix.data(), matrix.data() + matrix.size()};
 }
 
 }  // namespace pcor

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "numerics/decompositions.hpp"
@@ -262,9 +263,12 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   const double rms = robust_standard_deviation(all);
   if (!(rms > 0.0)) return found;
   RestrictedLikelihood likelihood(bins, columns, residuals, threads);
+  std::map<std::vector<double>, RestrictedLikelihood::Value> known;
   const auto with = [&](const std::vector<double>& sizes) {
     for (std::size_t k = 0; k < sizes.size(); ++k) noise.slow[k] = sizes[k] * rms;
-    return likelihood(noise);
+    const auto [value, is_new] = known.try_emplace(sizes);
+    if (is_new) value->second = likelihood(noise);
+    return value->second;
   };
   const auto cost = [&](const std::vector<double>& sizes) { return with(sizes).restricted; };
   // Drift slower than half a flight is indistinguishable from the mean of the flight.

@@ -32,14 +32,21 @@ NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<doubl
   return noise_floor(residual, contiguous_segments(residual, samples.time, samples.step), samples.step);
 }
 
+ResidualSums sums_of_samples(const std::vector<double>& residual, const NoiseFloor& noise) {
+  ResidualSums sums;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (!std::isnan(residual[i])) sums.add(residual[i], noise.local_rms[i]);
+  }
+  sums.sum_variance = nan;
+  return sums;
+}
+
 ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
                             const NoiseFloor& noise) {
-  ResidualSums sums;
+  ResidualSums sums = sums_of_samples(residual, noise);
   std::vector<std::size_t> used;
   for (std::size_t i = 0; i < residual.size(); ++i) {
-    if (std::isnan(residual[i])) continue;
-    sums.add(residual[i], noise.local_rms[i]);
-    used.push_back(i);
+    if (!std::isnan(residual[i])) used.push_back(i);
   }
   const BinnedResidual binned(residual, samples.time, samples.step);
   const NoiseModel found = noise_about_mean({binned.bins()}, {binned.means()}, 1);

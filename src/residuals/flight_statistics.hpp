@@ -22,7 +22,11 @@ std::vector<double> masked(const std::vector<double>& values, const std::vector<
 /// Noise floor of a flight. @param residual NaN if a sample is excluded
 NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<double>& residual);
 
-/// Sums of a residual, NaN where excluded. @param noise of the flight, possibly from more samples
+/// Sums of a residual, NaN where excluded, without the variance of their sum. @param noise of the flight,
+/// possibly from more samples
+ResidualSums sums_of_samples(const std::vector<double>& residual, const NoiseFloor& noise);
+
+/// The same with the variance of their sum.
 ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
                             const NoiseFloor& noise);
 
