@@ -233,7 +233,7 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
                     "static system (--reference static:OTHER.toml) and no GPS height with a temperature{}",
                     info_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
   }
-  if (manoeuvres.empty()) return not_run(result.notes.front());
+  if (manoeuvres.empty()) return not_run(result.notes.front().text);
   const Totals totals = totals_of(manoeuvres);
   const AngleReference witness = *witness_of(*manoeuvres.front().flown.flight, check.witnesses);
   std::vector<TestStatistic> numbers{

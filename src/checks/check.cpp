@@ -108,7 +108,7 @@ struct FlightPart {
   std::string unusable{};  ///< reason; empty if the flight is usable
   std::string model{};     ///< name of the model
   std::optional<CheckedFlight> flight{};
-  std::vector<std::string> notes{};
+  Notes notes{};
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -208,7 +208,7 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
     read.push_back(std::move(*part.flight));
     checks.flights.push_back(read.back().air.samples->name);
     if (checks.model.empty()) checks.model = part.model;
-    for (std::string& note : part.notes) notes.emplace_back(checks.flights.back(), std::move(note));
+    for (Note& note : part.notes) notes.emplace_back(checks.flights.back(), std::move(note));
   }
   checks.notes = notes_of_flights(notes);
   for (const std::string& why : unusable) checks.notes.push_back("Not used: " + why);

@@ -182,7 +182,7 @@ Report check_report(const Checks& checks) {
   if (report.flight_names.size() < checks.flights.size())
     report.info.emplace_back("All flights", fmt::format("{}", fmt::join(checks.flights, ", ")));
   report.info.emplace_back("Program", "pcor " PCOR_VERSION);
-  for (const std::string& note : checks.notes) report.info.emplace_back("Note", note);
+  for (const Note& note : checks.notes) report.info.emplace_back(label_of(note), note.text);
   if (DotPanel picture = forest(checks); !picture.rows.empty()) report.items.emplace_back(std::move(picture));
   report.items.emplace_back(verdicts(checks));
   const Shows shows(report.columns);
@@ -192,7 +192,7 @@ Report check_report(const Checks& checks) {
     text.title = fmt::format("{}: {}", heading(result.name), to_string(result.verdict));
     text.paragraphs = {fmt::format("Decided by this number: {}.", result.decided), sentence(result.finding),
                        "Limitations: " + result.cannot_see};
-    for (const std::string& note : result.notes) text.paragraphs.push_back(sentence(note));
+    for (const Note& note : result.notes) text.paragraphs.push_back(sentence(format_note(note)));
     report.items.emplace_back(std::move(text));
     for (const ReportItem& picture : result.pictures) {
       if (std::visit(shows, picture)) report.items.push_back(picture);

@@ -121,7 +121,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
   }
   if (circles.empty()) {
     return not_run(result.notes.empty() ? not_flown(flights, Regime::circle)
-                                        : "no circle can be used: " + result.notes.front());
+                                        : "no circle can be used: " + result.notes.front().text);
   }
   const Estimated error = combined(errors_of(circles));
   const auto to_port = std::count_if(circles.begin(), circles.end(),

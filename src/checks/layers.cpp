@@ -145,8 +145,8 @@ CheckResult check_layers(const CheckedFlights& flights) {
       result.notes.push_back(fmt::format("{}: {}", found.flight, reason));
       found.layers.clear();
     }
-    for (const std::string& note : found.notes)
-      result.notes.push_back(fmt::format("{}: {}", found.flight, note));
+    for (const Note& note : found.notes)
+      result.notes.emplace_back(note.severity, fmt::format("{}: {}", found.flight, note.text));
     all.push_back(std::move(found));
   }
   const LayerFit fit = fit_layers(all);

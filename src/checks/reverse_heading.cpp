@@ -73,8 +73,7 @@ LegMean mean_of_leg(const Flown& leg, const std::vector<double>& tail_wind) {
 }
 
 /// Pairs of legs; legs without a partner are reported in the notes.
-std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights,
-                                              std::vector<std::string>& notes) {
+std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights, Notes& notes) {
   std::map<std::pair<const CheckedFlight*, int>, std::vector<Flown>> legs;
   std::vector<std::pair<Flown, Flown>> pairs;
   for (Flown& leg : all_flown(flights, Regime::reverse_heading)) {
@@ -242,7 +241,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   }
   if (pairs.empty()) {
     return not_run(result.notes.empty() ? not_flown(flights, Regime::reverse_heading)
-                                        : "no pair of legs can be used: " + result.notes.front());
+                                        : "no pair of legs can be used: " + result.notes.front().text);
   }
   const Mean mean = mean_over(pairs);
   const Estimated& error = mean.airspeed;

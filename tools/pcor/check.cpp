@@ -151,9 +151,10 @@ void print_details(const Checks& checks) {
       say("  limitations: {}\n", result.cannot_see);
     }
     if (!result.tables.empty()) print(result.tables.front());
-    for (const std::string& note : result.notes) {
+    for (const Note& note : result.notes) {
       // The first note of a check that was not run repeats its reason.
-      if (result.ran || result.reason.find(note) == std::string::npos) say("  note: {}.\n", note);
+      if (result.ran || result.reason.find(note.text) == std::string::npos)
+        say("  note: {}.\n", format_note(note));
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/report/report.hpp>
@@ -59,7 +60,7 @@ struct CheckResult {
   std::string cannot_see{};
   std::vector<std::pair<std::string, double>> numbers{};  ///< values by name with unit, e.g. "offset_hpa"
   std::vector<ReportTable> tables{};                      ///< e.g. one row for each pair of legs
-  std::vector<std::string> notes{};                       ///< notes for the user, one sentence each
+  Notes notes{};                                          ///< notes for the user, one sentence each
 
   /// Data of the figures, over all records of all flights in order; names start with that of the check.
   std::vector<ReportColumn> columns{};
@@ -100,7 +101,7 @@ struct Checks {
   std::string model;  ///< description of the model, or "as recorded"
   std::vector<std::string> flights;
   std::vector<CheckResult> results;  ///< results of all checks, in the order of the memo
-  std::vector<std::string> notes;
+  Notes notes;
   Report pictures;  ///< time, flights, intervals and columns of the figures
 };
 
