@@ -142,7 +142,7 @@ TEST_F(CheckTest, FindsNothingWrongWhereNothingIs) {
       EXPECT_NE(result.verdict, CheckVerdict::inconsistent) << name << ": " << result.finding;
       EXPECT_THAT(result.finding, Not(HasSubstr("nan"))) << name;
       EXPECT_FALSE(result.cannot_see.empty()) << name;
-      EXPECT_FALSE(result.pictures.empty()) << name;
+      EXPECT_FALSE(result.columns.empty()) << name;
     }
   }
 }
