@@ -305,7 +305,6 @@ void run(const ProcessArguments& options) {
   process.process = process_options(options);
   process.if_stale = options.if_stale;
   process.skip_unreadable = options.skip_unreadable;
-  process.opened_in = place_to_open();
   std::optional<Progress> bar;
   process.begins = [&](std::size_t task) {
     bar.emplace(many ? fmt::format("processing {} of {}", task + 1, tasks.size()) : "processing",
