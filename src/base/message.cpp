@@ -4,10 +4,6 @@
 
 namespace pcor {
 
-namespace {
-constexpr std::string_view warning = "warning: ";
-}  // namespace
-
 std::string sanitize_line(std::string_view message) {
   constexpr std::size_t max_letters = 2000;
   return internal::shortened(internal::one_line(message), max_letters);
@@ -20,13 +16,6 @@ std::string shown_text(std::string_view text) {
     text.remove_prefix(end + 1);
   }
   return shown + internal::one_line(text);
-}
-
-std::string warning_note(std::string_view note) { return std::string(warning).append(note); }
-
-bool is_warning_note(std::string_view note) {
-  const std::size_t at = note.find(warning);
-  return at == 0 || (at != std::string_view::npos && note.substr(0, at).rfind(": ") + 2 == at);
 }
 
 }  // namespace pcor

@@ -37,9 +37,9 @@ int decimals_of_error(double error) {
   return std::max(0, 1 - static_cast<int>(std::floor(std::log10(rounded) + 1e-9)));
 }
 
-std::vector<std::string> notes_of_flights(const std::vector<FlightNote>& notes) {
+Notes notes_of_flights(const std::vector<FlightNote>& notes) {
   constexpr std::size_t max_names = 3;
-  std::vector<std::pair<std::string, std::vector<std::string>>> flights_of;
+  std::vector<std::pair<Note, std::vector<std::string>>> flights_of;
   for (const auto& [flight, note] : notes) {
     auto found = std::find_if(flights_of.begin(), flights_of.end(),
                               [of = note](const auto& each) { return each.first == of; });
@@ -47,16 +47,15 @@ std::vector<std::string> notes_of_flights(const std::vector<FlightNote>& notes) 
     std::vector<std::string>& flights = found->second;
     if (std::find(flights.begin(), flights.end(), flight) == flights.end()) flights.push_back(flight);
   }
-  std::vector<std::string> texts;
+  Notes all;
   for (const auto& [note, flights] : flights_of) {
     std::string names =
         flights.size() > max_names ? std::to_string(flights.size()) + " flights" : flights.front();
     for (std::size_t i = 1; i < flights.size() && flights.size() <= max_names; ++i)
       names.append(", ").append(flights[i]);
-    names.append(": ").append(note);
-    texts.push_back(std::move(names));
+    all.emplace_back(note.severity, names + ": " + note.text);
   }
-  return texts;
+  return all;
 }
 
 }  // namespace pcor::internal

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/note.hpp>
+
 namespace pcor::internal {
 
 /// How texts put sentences, lists and errors.
@@ -19,11 +21,11 @@ std::vector<std::string> split_words(const std::string& text);
 std::string join_list(const std::vector<std::string>& all);
 
 /// Flight and a note about it.
-using FlightNote = std::pair<std::string, std::string>;
+using FlightNote = std::pair<std::string, Note>;
 
 /// Notes on flights without repetition: "first.nc, second.nc: ..."; for more than three flights "16 flights:
 /// ...".
-std::vector<std::string> notes_of_flights(const std::vector<FlightNote>& notes);
+Notes notes_of_flights(const std::vector<FlightNote>& notes);
 
 /// The decimals with which an error has two digits, the first of them that after rounding: 0.0996 is 0.10.
 int decimals_of_error(double error);

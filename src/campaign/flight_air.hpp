@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/residuals/residuals.hpp>
 
@@ -58,7 +59,7 @@ struct FlightAir {
   /// the true airspeed (the memo's UXW).
   std::vector<double> tail_wind;
 
-  std::vector<std::string> notes;  ///< notes for the user, one sentence each
+  Notes notes;  ///< notes for the user, one sentence each
 
   template <class Archive>
   void serialize(Archive& archive) {

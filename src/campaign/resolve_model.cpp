@@ -31,11 +31,10 @@ struct Choice {
 
 }  // namespace
 
-ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flights,
-                              std::vector<std::string>& notes) {
+ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flights, Notes& notes) {
   const auto choices = flights.share().of_each_flight<Choice>([&](std::size_t number) {
     try {
-      std::vector<std::string> unsaid;
+      Notes unsaid;
       const ModelDefinition own = resolve_variables(open, flights[number], unsaid);
       return Choice{true, own.variables, own.model.moist};
     } catch (const Error&) {

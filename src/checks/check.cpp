@@ -11,6 +11,7 @@
 #include "checks/checks.hpp"
 #include "checks/flown.hpp"
 #include "flight/trouble_with_values.hpp"
+#include "numerics/missing.hpp"
 #include "parallel/flight_partition.hpp"
 #include "residuals/packed_residuals.hpp"
 #include "roles/recorded_model.hpp"
@@ -18,6 +19,17 @@
 namespace pcor {
 
 using namespace internal;
+
+template <class Archive>
+void serialize(Archive& archive, TestStatistic& number) {
+  archive(number.value, number.standard_error, number.matters, number.unit, number.what, number.verdict);
+}
+
+/// The members of `check_per_flight`.
+template <class Archive>
+void serialize(Archive& archive, CheckResult& check) {
+  archive(check.name, check.ran, check.reason, check.verdict, check.key);
+}
 
 namespace {
 
@@ -108,7 +120,7 @@ struct FlightPart {
   std::string unusable{};  ///< reason; empty if the flight is usable
   std::string model{};     ///< name of the model
   std::optional<CheckedFlight> flight{};
-  std::vector<std::string> notes{};
+  Notes notes{};
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -178,6 +190,12 @@ std::string_view to_string(CheckVerdict verdict) {
   return "";
 }
 
+double CheckResult::number(std::string_view of) const {
+  const auto found =
+      std::find_if(numbers.begin(), numbers.end(), [of](const auto& each) { return each.first == of; });
+  return found == numbers.end() ? nan : found->second;
+}
+
 Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& model,
              const CheckOptions& options) {
   if (flights.empty()) throw Error(Error::Code::usage, "give at least one flight to check");
@@ -208,7 +226,7 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
     read.push_back(std::move(*part.flight));
     checks.flights.push_back(read.back().air.samples->name);
     if (checks.model.empty()) checks.model = part.model;
-    for (std::string& note : part.notes) notes.emplace_back(checks.flights.back(), std::move(note));
+    for (Note& note : part.notes) notes.emplace_back(checks.flights.back(), std::move(note));
   }
   checks.notes = notes_of_flights(notes);
   for (const std::string& why : unusable) checks.notes.push_back("Not used: " + why);
@@ -220,6 +238,15 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
   for (CheckResult& result : checks.results) add_note_on_small(result);
   checks.pictures = pictures_of(read);
   return checks;
+}
+
+std::vector<std::vector<CheckResult>> check_per_flight(const FlightSet& flights,
+                                                       const std::optional<ModelDefinition>& model,
+                                                       const CheckOptions& options) {
+  CheckOptions own = options;
+  own.progress = nullptr;
+  return flights.share().of_each_flight<std::vector<CheckResult>>(
+      [&](std::size_t number) { return check(flights.only(number), model, own).results; });
 }
 
 }  // namespace pcor

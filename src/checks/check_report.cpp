@@ -4,14 +4,15 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <pcor/base/utc.hpp>
 #include <pcor/checks/check.hpp>
 #include "base/phrasing.hpp"
+#include "numerics/missing.hpp"
 #include "report/columns.hpp"
 #include "report/shown_flights.hpp"
 
@@ -29,50 +30,119 @@ std::string heading(std::string name) {
   return name;
 }
 
-/// Whether a picture has values: a report refuses an empty one.
-class Shows {
- public:
-  explicit Shows(const std::vector<ReportColumn>& columns) : columns_(columns) {}
+/// Picture of a check. Names of columns are without the name of the check.
+struct Figure {
+  enum class Kind { bars, over_time, against, pair };
 
-  // One column with values is enough.
-  template <class Panel>
-  bool operator()(const Panel& panel) const {
-    return std::any_of(panel.columns.begin(), panel.columns.end(),
-                       [this](const std::string& name) { return meet({name}); });
-  }
-  bool operator()(const TrackPanel& panel) const {
-    return meet({panel.latitude, panel.longitude, panel.colour});
-  }
-  bool operator()(const DotPanel& panel) const { return !panel.rows.empty(); }
-  bool operator()(const BinnedPanel& panel) const {
-    return std::all_of(panel.x_choices.begin(), panel.x_choices.end(), [&](const std::string& x) {
-      return std::any_of(panel.y.begin(), panel.y.end(), [&](const std::string& y) { return meet({x, y}); });
-    });
-  }
-  bool operator()(const PlanePanel& panel) const { return meet({panel.x, panel.y, panel.colour}); }
-  bool operator()(const PairPanel& panel) const { return meet({panel.x, panel.y}); }
-  bool operator()(const CurvePanel& panel) const { return !panel.curves.empty(); }
-  bool operator()(const WhatIfPanel& panel) const { return meet({panel.residual}); }
-  bool operator()(const BarPanel& panel) const {
-    return std::any_of(panel.bars.begin(), panel.bars.end(),
-                       [](const ReportBar& bar) { return std::isfinite(bar.value); });
-  }
-  bool operator()(const ReportTable& table) const { return !table.rows.empty(); }
-  bool operator()(const ReportText&) const { return true; }
-
- private:
-  bool meet(const std::vector<std::string>& names) const { return internal::meet(columns_, names); }
-
-  const std::vector<ReportColumn>& columns_;
+  std::string_view check;
+  Kind kind;
+  const char* title;
+  const char* caption;
+  const char* axis = "";    ///< label of the axis of bars and lines over time
+  const char* unit = "";    ///< unit of bars
+  const char* first = "";   ///< column, vertical
+  const char* second = "";  ///< column, horizontal; over time a second line
+  double autocorrelation_time = 1.0;
 };
 
+constexpr const char* angle_caption =
+    "Static pressure implied by the manoeuvre minus static pressure of the model. A slope indicates a wrong "
+    "or missing term of the model.";
+
+constexpr Figure figures[] = {
+    {"total-pressure", Figure::Kind::pair, "Total pressures of the two systems",
+     "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
+     "pitots and the lines.",
+     "", "", "two", "one"},
+    {"static-pressure", Figure::Kind::pair, "Static pressures of the two systems",
+     "The line is an orthogonal fit.", "", "", "two", "one"},
+    {"reverse-heading", Figure::Kind::bars, "Error of the airspeed from each reverse heading",
+     "Error bars include the typical change of the wind between two legs.",
+     "airspeed minus airspeed of the headings", "m/s"},
+    {"reverse-heading", Figure::Kind::over_time, "Tail wind on the legs",
+     "Wind along the aircraft's axis. It has opposite signs on the two legs of a pair; an error of the "
+     "airspeed has the same sign.",
+     "", "", "tail wind"},
+    {"circles", Figure::Kind::bars, "Error of the airspeed from each circle",
+     "Error bars include the typical drift of the wind during a circle.",
+     "airspeed minus airspeed of the circle", "m/s"},
+    {"circles", Figure::Kind::against, "Residual of the circle fit",
+     "Ground speed along the heading minus wind, airspeed and its error. A wave over the heading indicates a "
+     "wind that changed during the circle.",
+     "", "", "left", "heading", 5.0},
+    {"speed-run", Figure::Kind::against, "DVALUE minus its mean in speed runs",
+     "A pressure error that depends on the speed causes a slope; sloping isobars cause a drift.", "", "",
+     "height", "airspeed", 10.0},
+    {"speed-run", Figure::Kind::against, "Tail wind minus its mean in speed runs",
+     "The wind is independent of the airspeed: a slope is an error of the airspeed.", "", "", "wind",
+     "airspeed", 10.0},
+    {"pitch", Figure::Kind::against, "Residual against the angle of attack in pitch manoeuvres",
+     angle_caption, "", "", "residual", "angle", 3.0},
+    {"yaw", Figure::Kind::against, "Residual against the sideslip in yaw manoeuvres", angle_caption, "", "",
+     "residual", "angle", 3.0},
+    {"layers", Figure::Kind::bars, "Correction required by the thermometer",
+     "T_p - T_m of every layer. Errors are shared: layers of one climb have an end in common, and layers of "
+     "one flight the slope of the isobars.",
+     "T_p - T_m", "K"},
+    {"layers", Figure::Kind::over_time, "Temperature of the layers", "One line over each layer.",
+     "temperature", "", "hydrostatic", "measured"},
+    {"layers", Figure::Kind::over_time, "D-value",
+     "Geopotential height minus pressure altitude. In level flight its slope is the slope of the isobars "
+     "along the track; in a climb it follows the temperature of the air.",
+     "", "", "d-value"},
+    {"lams-temperature", Figure::Kind::over_time, "Temperature from the laser and from the thermometer",
+     "ATLAMS from the pressures of the model, and the thermometer (Cooper 2012, figure 3).", "temperature",
+     "", "laser", "thermometer"},
+    {"lams-temperature", Figure::Kind::against, "The difference against altitude",
+     "ATLAMS minus the thermometer: a slope is an error of one of them.", "", "", "difference", "altitude",
+     10.0},
+    {"lams-temperature", Figure::Kind::bars, "Noise of the difference by period",
+     "Noise of means over half the period. Below 3 s the air at the laser's volume differs from the air at "
+     "the pitot tube.",
+     "noise", "K"},
+    {"spectrum", Figure::Kind::bars, "Power by period",
+     "Rms in octaves of the period. For white noise the bars fall by the square root of two from one octave "
+     "to the next longer one; for turbulence they grow.",
+     "rms", "hPa"},
+    {"spectrum", Figure::Kind::over_time, "Analysed series", "The series of the spectrum in time.", "", "",
+     "series"}};
+
+/// Adds the pictures of a check that have values: a report refuses an empty one.
+void add_figures(const CheckResult& result, Report& report) {
+  using Kind = Figure::Kind;
+  for (const Figure& figure : figures) {
+    if (figure.check != result.name) continue;
+    const std::string first = result.name + " " + figure.first;
+    const std::string second = result.name + " " + figure.second;
+    if (figure.kind == Kind::bars) {
+      if (std::any_of(result.bars.begin(), result.bars.end(),
+                      [](const ReportBar& bar) { return std::isfinite(bar.value); }))
+        report.items.emplace_back(
+            BarPanel{figure.title, figure.caption, result.bars, figure.axis, figure.unit});
+    } else if (figure.kind == Kind::over_time) {
+      add_if_present(report, TimePanel{figure.title, figure.caption, {first, second}, figure.axis});
+    } else if (!meet(report.columns, {first, second})) {
+      continue;
+    } else if (figure.kind == Kind::against) {
+      BinnedPanel panel{figure.title, figure.caption, {first}, {second}};
+      panel.autocorrelation_time = figure.autocorrelation_time;
+      report.items.emplace_back(std::move(panel));
+    } else {
+      const ReportLine fitted{result.number("orthogonal_slope"), result.number("orthogonal_offset_hpa"),
+                              "fitted line"};
+      report.items.emplace_back(
+          PairPanel{figure.title, figure.caption, second, first, {{1.0, 0.0, "equal"}, fitted}});
+    }
+  }
+}
+
 ReportTable verdicts(const Checks& checks) {
-  ReportTable table;
-  table.title = "Verdicts";
-  table.caption =
+  ReportTable table{
+      "Verdicts",
       "Inconsistent: larger than the tolerance and than three standard errors. Consistent: within the "
-      "tolerance by two standard errors. Otherwise the check is inconclusive.";
-  table.headers = {"check", "verdict", "number", "tolerance", "result"};
+      "tolerance by two standard errors. Otherwise the check is inconclusive.",
+      {"check", "verdict", "number", "tolerance", "result"},
+      {}};
   for (const CheckResult& result : checks.results) {
     if (!result.ran) {
       table.rows.push_back({heading(result.name), "not run", "", "", sentence(result.reason)});
@@ -134,43 +204,35 @@ ReportTable numbers_of(const CheckResult& result) {
   return table;
 }
 
-std::vector<std::string> summary_of(const Checks& checks) {
-  const auto count = [&](CheckVerdict verdict) {
-    return std::count_if(checks.results.begin(), checks.results.end(), [verdict](const CheckResult& result) {
-      return result.ran && result.verdict == verdict;
-    });
-  };
-  const auto ran = std::count_if(checks.results.begin(), checks.results.end(),
-                                 [](const CheckResult& result) { return result.ran; });
-  std::vector<std::string> summary{
-      fmt::format("{} checks, {} with sufficient data: {} consistent, {} inconsistent, {} inconclusive.",
-                  checks.results.size(), ran, count(CheckVerdict::consistent),
-                  count(CheckVerdict::inconsistent), count(CheckVerdict::inconclusive))};
-  for (const CheckResult& result : checks.results) {
-    if (result.ran && result.verdict == CheckVerdict::inconsistent)
-      summary.push_back(heading(result.name) + ": " + sentence(result.finding));
-  }
-  return summary;
-}
-
 }  // namespace
 
 Report check_report(const Checks& checks) {
   Report report = checks.pictures;
-  std::vector<std::string> inconsistent;
-  std::size_t ran = 0;
+  std::map<CheckVerdict, std::vector<std::string>> names;
   for (const CheckResult& result : checks.results) {
-    if (result.ran) ++ran;
-    if (result.ran && result.verdict == CheckVerdict::inconsistent) inconsistent.push_back(result.name);
+    if (!result.ran) continue;
+    names[result.verdict].push_back(result.name);
+    if (result.verdict == CheckVerdict::inconsistent)
+      report.summary.push_back(heading(result.name) + ": " + sentence(result.finding));
   }
+  const std::vector<std::string>& inconsistent = names[CheckVerdict::inconsistent];
+  const std::size_t consistent = names[CheckVerdict::consistent].size();
+  const std::size_t inconclusive = names[CheckVerdict::inconclusive].size();
+  const std::size_t ran = consistent + inconclusive + inconsistent.size();
   report.title = inconsistent.empty() ? "No check is inconsistent"
                                       : fmt::format("{} of {} checks inconsistent: {}", inconsistent.size(),
                                                     ran, fmt::join(inconsistent, ", "));
   report.subtitle = "Independent checks" + (checks.model.empty() ? "" : " of " + checks.model);
-  report.summary = summary_of(checks);
+  report.summary.insert(
+      report.summary.begin(),
+      fmt::format("{} checks, {} with sufficient data: {} consistent, {} inconsistent, {} inconclusive.",
+                  checks.results.size(), ran, consistent, inconsistent.size(), inconclusive));
   for (const CheckResult& result : checks.results)
     report.columns.insert(report.columns.end(), result.columns.begin(), result.columns.end());
   show_flights_over_time(report);
+  report.columns.erase(std::remove_if(report.columns.begin(), report.columns.end(),
+                                      [](const ReportColumn& column) { return !has_value(column.values); }),
+                       report.columns.end());
   for (std::size_t i = 0; i < report.flight_names.size(); ++i) {
     const std::size_t first = report.flight_starts[i];
     const std::size_t end =
@@ -182,21 +244,18 @@ Report check_report(const Checks& checks) {
   if (report.flight_names.size() < checks.flights.size())
     report.info.emplace_back("All flights", fmt::format("{}", fmt::join(checks.flights, ", ")));
   report.info.emplace_back("Program", "pcor " PCOR_VERSION);
-  for (const std::string& note : checks.notes) report.info.emplace_back("Note", note);
+  for (const Note& note : checks.notes) report.info.emplace_back(label_of(note), note.text);
   if (DotPanel picture = forest(checks); !picture.rows.empty()) report.items.emplace_back(std::move(picture));
   report.items.emplace_back(verdicts(checks));
-  const Shows shows(report.columns);
   for (const CheckResult& result : checks.results) {
     if (!result.ran) continue;
     ReportText text;
     text.title = fmt::format("{}: {}", heading(result.name), to_string(result.verdict));
     text.paragraphs = {fmt::format("Decided by this number: {}.", result.decided), sentence(result.finding),
                        "Limitations: " + result.cannot_see};
-    for (const std::string& note : result.notes) text.paragraphs.push_back(sentence(note));
+    for (const Note& note : result.notes) text.paragraphs.push_back(sentence(format_note(note)));
     report.items.emplace_back(std::move(text));
-    for (const ReportItem& picture : result.pictures) {
-      if (std::visit(shows, picture)) report.items.push_back(picture);
-    }
+    add_figures(result, report);
     for (const ReportTable& table : result.tables) {
       if (!table.rows.empty()) report.items.emplace_back(table);
     }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/base/utc.hpp>
 #include "checks/circle_fit.hpp"
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
@@ -19,83 +18,30 @@ constexpr double min_turn = 300.0;  // deg
 
 /// Noise of one circle that its samples cannot show, m/s: the wind drifts during the circle. A quarter of the
 /// change between the legs of a reverse heading, as in simulated air with all its drifts.
-constexpr double drift_of_wind = 0.25 * change_of_wind;
+constexpr double wind_drift_of_circle = 0.25 * change_of_wind;
 
 struct Circle {
   Flown flown;
   CircleFit fit;
 };
 
-Estimated with_drift(const Estimated& number) {
-  return {number.value, std::hypot(number.error, drift_of_wind)};
-}
-
-std::vector<Estimated> errors_of(const std::vector<Circle>& circles) {
-  std::vector<Estimated> errors;
-  for (const Circle& circle : circles) errors.push_back(with_drift(circle.fit.airspeed_error));
-  return errors;
-}
-
 ReportTable table_of(const std::vector<Circle>& circles) {
-  ReportTable table;
-  table.title = "Circles";
-  table.caption =
+  ReportTable table{
+      "Circles",
       "Wind, error of the airspeed (too high positive) and error of the heading minus the sideslip, from the "
-      "ground velocity around one turn. Errors exclude the drift of the wind.";
-  table.headers = {"circle",        "turn, deg",    "wind from, deg", "wind, m/s",
-                   "airspeed, m/s", "heading, deg", "rms, m/s"};
-  for (const Circle& circle : circles) {
-    const CircleFit& fit = circle.fit;
+      "ground velocity around one turn. Errors exclude the drift of the wind.",
+      {"circle", "turn, deg", "wind from, deg", "wind, m/s", "airspeed, m/s", "heading, deg", "rms, m/s"},
+      {}};
+  for (const auto& [flown, fit] : circles) {
     const double from =
         std::atan2(-fit.east_wind.value, -fit.north_wind.value) / constants::radians_per_degree;
-    table.rows.push_back({circle.flown.location(), fmt::format("{:+.0f}", fit.turned),
+    table.rows.push_back({flown.location(), fmt::format("{:+.0f}", fit.turned),
                           fmt::format("{:.0f}", from < 0.0 ? from + 360.0 : from),
                           fmt::format("{:.1f}", std::hypot(fit.east_wind.value, fit.north_wind.value)),
                           with_error(fit.airspeed_error, ""), with_error(fit.heading_error, ""),
                           fmt::format("{:.2f}", fit.rms)});
   }
   return table;
-}
-
-void add_pictures(const CheckedFlights& flights, const std::vector<Circle>& circles, CheckResult& result) {
-  BarPanel bars;
-  bars.title = "Error of the airspeed from each circle";
-  bars.caption = "Error bars include the typical drift of the wind during a circle.";
-  bars.axis = "airspeed minus airspeed of the circle";
-  bars.unit = "m/s";
-  for (const Circle& circle : circles) {
-    const Estimated error = with_drift(circle.fit.airspeed_error);
-    bars.bars.push_back({fmt::format("{} {} {}", circle.flown.flight->air.samples->name,
-                                     utc_text(circle.flown.interval.begin, "%H:%M"),
-                                     circle.fit.turned < 0.0 ? "left" : "right"),
-                         error.value, error.error});
-  }
-  result.pictures.emplace_back(std::move(bars));
-  std::vector<Flown> all;
-  for (const Circle& circle : circles) all.push_back(circle.flown);
-  const auto left_over = [&](const CheckedFlight& flight) {
-    std::vector<double> values(flight.air.size(), std::nan(""));
-    for (const Circle& circle : circles) {
-      if (circle.flown.flight != &flight) continue;
-      for (std::size_t i = 0; i < circle.flown.places.size(); ++i)
-        values[circle.flown.places[i]] = circle.fit.along[i];
-    }
-    return values;
-  };
-  result.columns.push_back(
-      column_of(flights, "circles left", "residual ground speed along the heading", "m/s", left_over));
-  result.columns.push_back(column_of(
-      flights, "circles heading", "heading", "deg",
-      [&](const CheckedFlight& flight) { return only_in(flight, all, flight.air.samples->motion.heading); }));
-  BinnedPanel binned;
-  binned.title = "Residual of the circle fit";
-  binned.caption =
-      "Ground speed along the heading minus wind, airspeed and its error. A wave over the heading indicates "
-      "a wind that changed during the circle.";
-  binned.y = {"circles left"};
-  binned.x_choices = {"circles heading"};
-  binned.autocorrelation_time = 5.0;
-  result.pictures.emplace_back(std::move(binned));
 }
 
 }  // namespace
@@ -119,11 +65,15 @@ CheckResult check_circles(const CheckedFlights& flights) {
       circles.push_back(std::move(circle));
     }
   }
-  if (circles.empty()) {
-    return not_run(result.notes.empty() ? not_flown(flights, Regime::circle)
-                                        : "no circle can be used: " + result.notes.front());
+  if (circles.empty()) return not_flown(flights, Regime::circle, result.notes);
+  std::vector<Estimated> errors;
+  for (const Circle& circle : circles) {
+    const Estimated& of_fit = circle.fit.airspeed_error;
+    errors.push_back({of_fit.value, std::hypot(of_fit.error, wind_drift_of_circle)});
+    result.bars.push_back({circle.flown.label() + (circle.fit.turned < 0.0 ? " left" : " right"),
+                           errors.back().value, errors.back().error});
   }
-  const Estimated error = combined(errors_of(circles));
+  const Estimated error = combined(errors);
   const auto to_port = std::count_if(circles.begin(), circles.end(),
                                      [](const Circle& circle) { return circle.fit.turned < 0.0; });
   std::vector<double> factors;
@@ -132,7 +82,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
     factors.push_back(pressure_per_airspeed(circle.flown.mean(air.pressure), circle.flown.mean(air.mach),
                                             circle.flown.mean(air.airspeed)));
   }
-  const Estimated hpa{mean_of(factors) * error.value, std::abs(mean_of(factors)) * error.error};
+  const Estimated hpa = mean_of(factors) * error;
   decide({judged(error, min_circle_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "
@@ -144,13 +94,16 @@ CheckResult check_circles(const CheckedFlights& flights) {
       "The check cannot separate errors of pressure, temperature and laser: it depends on the airspeed only, "
       "in a bank. Sideslip, an offset of the heading and the angle of attack times the bank are "
       "indistinguishable, and a wind that drifts during the turn appears as an error of the airspeed.";
-  result.numbers = {{"circles", static_cast<double>(circles.size())},
-                    {"airspeed_error_m_s", error.value},
-                    {"airspeed_error_stderr_m_s", error.error},
-                    {"delta_p_error_hpa", hpa.value},
-                    {"delta_p_error_stderr_hpa", hpa.error}};
-  result.tables.push_back(table_of(circles));
-  add_pictures(flights, circles, result);
+  result.numbers = {{"circles", static_cast<double>(circles.size())}};
+  add_number("airspeed_error", "_m_s", error, result);
+  add_number("delta_p_error", "_hpa", hpa, result);
+  result.tables = {table_of(circles)};
+  result.columns = {
+      column_in(flights, "circles left", "residual ground speed along the heading", "m/s", circles,
+                [](const Circle& circle) { return circle.fit.along; }),
+      column_in(flights, "circles heading", "heading", "deg", circles, [](const Circle& circle) {
+        return circle.flown.of(circle.flown.flight->air.samples->motion.heading);
+      })};
   return result;
 }
 

@@ -165,7 +165,7 @@ std::vector<Piece> look_at_pieces(const FlightAir& air, const std::vector<double
 
 /// Reports a lag of the pressure relative to the height: layers in which a climb begins or ends then have
 /// errors of several kelvins, with opposite signs.
-void note_lag(const std::vector<Piece>& pieces, std::vector<std::string>& notes) {
+void note_lag(const std::vector<Piece>& pieces, Notes& notes) {
   constexpr double significant = 4.0;  // standard errors
   std::vector<Estimated> lags;
   for (const Piece& piece : pieces) lags.push_back(piece.lag);
@@ -179,7 +179,7 @@ void note_lag(const std::vector<Piece>& pieces, std::vector<std::string>& notes)
 
 /// @param all pieces of the flight; @param level pieces in level flight
 LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<Piece>& all,
-                                const std::vector<Piece>& level, std::vector<std::string>& notes) {
+                                const std::vector<Piece>& level, Notes& notes) {
   LayerUncertainty uncertainty;
   uncertainty.pressure_noise = options.pressure_noise;
   uncertainty.static_bias = options.static_bias;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
+
 #include "campaign/flight_air.hpp"
 
 namespace pcor::internal {
@@ -84,7 +86,7 @@ struct FlightLayers {
   std::string flight;
   LayerUncertainty uncertainty{};
   std::vector<Layer> layers{};
-  std::vector<std::string> notes{};  ///< notes for the user, one sentence each
+  Notes notes{};  ///< notes for the user, one sentence each
 };
 
 /// Finds the climbs and descents of a flight and divides them into layers of equal thickness. Heights are

@@ -29,6 +29,8 @@ std::string Flown::location() const {
                      utc_text(interval.end, "%H:%M:%S"));
 }
 
+std::string Flown::label() const { return flight->air.samples->name + utc_text(interval.begin, " %H:%M"); }
+
 std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime) {
   std::vector<Flown> all;
   for (const CheckedFlight& flight : flights) {
@@ -87,11 +89,13 @@ std::string missing_for_tail_wind(const CheckedFlights& flights) {
   return "has heading, ground velocity and true airspeed together";
 }
 
-std::string not_flown(const CheckedFlights& flights, Regime regime) {
+CheckResult not_flown(const CheckedFlights& flights, Regime regime, const Notes& notes) {
+  if (!notes.empty())
+    return not_run(fmt::format("no {} can be used: {}", info_of(regime).name, notes.front().text));
   const std::string& aircraft = flights.front().air.samples->aircraft;
   const RegimeCriteria criteria = RegimeCriteria::of(aircraft).value_or(RegimeCriteria::c130());
-  return fmt::format("no {} was found in the flights ({}); --intervals adds one", info_of(regime).name,
-                     criterion_of(regime, criteria));
+  return not_run(fmt::format("no {} was found in the flights ({}); --intervals adds one",
+                             info_of(regime).name, criterion_of(regime, criteria)));
 }
 
 ReportColumn column_of(const CheckedFlights& flights, std::string name, std::string title, std::string unit,
@@ -110,24 +114,6 @@ std::vector<double> masked(std::vector<double> series, const std::vector<bool>& 
     if (!used[i]) series[i] = nan;
   }
   return series;
-}
-
-std::vector<double> only_in(const CheckedFlight& flight, const std::vector<Flown>& all,
-                            const std::vector<double>& series) {
-  std::vector<bool> used(series.size(), false);
-  for (const Flown& flown : all) {
-    if (flown.flight != &flight || series.empty()) continue;
-    for (const std::size_t place : flown.places) used[place] = true;
-  }
-  return masked(series, used);
-}
-
-const std::vector<double>& attack_of(const FlightAir& air) {
-  return air.attack.empty() ? air.samples->motion.attack : air.attack;
-}
-
-const std::vector<double>& sideslip_of(const FlightAir& air) {
-  return air.sideslip.empty() ? air.samples->motion.sideslip : air.sideslip;
 }
 
 CheckResult not_run(std::string reason) {

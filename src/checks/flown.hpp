@@ -26,6 +26,8 @@ struct Flown {
   double step() const { return flight->air.step(); }
   /// Name like "rf05.nc, 2011-11-17 22:51:00 to 22:53:00".
   std::string location() const;
+  /// Short name like "rf05.nc 22:51", for pictures.
+  std::string label() const;
 };
 
 /// All stretches of all flights in the given regime.
@@ -45,25 +47,34 @@ inline constexpr double change_of_wind = 0.85;
 /// flight has all of them.
 std::string missing_for_tail_wind(const CheckedFlights& flights);
 
-/// Text like "no speed run (airspeed changes by ...) was found in the flights; --intervals adds one".
-std::string not_flown(const CheckedFlights& flights, Regime regime);
+/// Result of a check whose flights have no manoeuvre that can be used: the first of the `notes` is the
+/// reason, otherwise the criterion of the regime.
+CheckResult not_flown(const CheckedFlights& flights, Regime regime, const Notes& notes = {});
 
-/// Column of a report's pictures over all records of all flights. `series` returns the series of a flight, of
-/// its length or empty.
+/// Column over all records of all flights. `series` returns the series of a flight, of its length or empty.
 ReportColumn column_of(const CheckedFlights& flights, std::string name, std::string title, std::string unit,
                        const std::function<std::vector<double>(const CheckedFlight&)>& series);
 
+/// Column over all records of all flights with values in manoeuvres, NaN elsewhere.
+/// @param all objects with a member `flown`
+/// @param series function of such an object: the values at the records of the manoeuvre
+template <class Manoeuvre, class Series>
+ReportColumn column_in(const CheckedFlights& flights, std::string name, std::string title, std::string unit,
+                       const std::vector<Manoeuvre>& all, const Series& series) {
+  return column_of(flights, std::move(name), std::move(title), std::move(unit),
+                   [&](const CheckedFlight& flight) {
+                     std::vector<double> values(flight.air.size(), nan);
+                     for (const Manoeuvre& each : all) {
+                       if (each.flown.flight != &flight) continue;
+                       const std::vector<double> here = series(each);
+                       for (std::size_t i = 0; i < here.size(); ++i) values[each.flown.places[i]] = here[i];
+                     }
+                     return values;
+                   });
+}
+
 /// Series of a flight where it is `used`, NaN elsewhere. An empty series stays empty.
 std::vector<double> masked(std::vector<double> series, const std::vector<bool>& used);
-
-/// Series in the stretches of this flight, NaN elsewhere.
-std::vector<double> only_in(const CheckedFlight& flight, const std::vector<Flown>& all,
-                            const std::vector<double>& series);
-
-/// Angle of attack of a flight, deg: from the model, otherwise as recorded; empty if it has neither.
-const std::vector<double>& attack_of(const FlightAir& air);
-/// Sideslip of a flight, deg, with the same precedence.
-const std::vector<double>& sideslip_of(const FlightAir& air);
 
 /// Result with the reason why the check was not run.
 CheckResult not_run(std::string reason);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -99,10 +100,10 @@ Part part_of(const Differences& all, std::string name, const Condition& conditio
 }
 
 ReportTable part_table(const std::vector<Part>& parts) {
-  ReportTable table;
-  table.title = "Laser temperature minus thermometer";
-  table.caption = "Errors include autocorrelation and slow drift of the differences.";
-  table.headers = {"where", "samples", "mean, K", "std. error", "scatter, K"};
+  ReportTable table{"Laser temperature minus thermometer",
+                    "Errors include autocorrelation and slow drift of the differences.",
+                    {"where", "samples", "mean, K", "std. error", "scatter, K"},
+                    {}};
   for (const Part& part : parts) {
     if (part.fit.samples < min_samples) continue;
     table.rows.push_back(
@@ -134,33 +135,40 @@ double allan_deviation(const std::vector<double>& values, const std::vector<Segm
   return count < 10 ? nan : std::sqrt(squares / static_cast<double>(count));
 }
 
-struct PeriodNoise {
-  double period;       ///< s
-  double near_ground;  ///< K
-  double above;        ///< K
-};
-
-std::vector<PeriodNoise> noise_by_period(const Differences& all) {
-  const std::vector<double> low =
-      location(all, [&](std::size_t i) { return all.near_ground[i] && !all.in_cloud[i]; });
-  const std::vector<double> high =
-      location(all, [&](std::size_t i) { return !all.near_ground[i] && !all.in_cloud[i]; });
-  const std::vector<Segment> low_parts = contiguous_segments(low, all.time, all.step);
-  const std::vector<Segment> high_parts = contiguous_segments(high, all.time, all.step);
-  std::vector<PeriodNoise> noise;
-  for (std::size_t width = 1; 2.0 * static_cast<double>(width) * all.step <= max_period; width *= 2) {
-    noise.push_back({2.0 * static_cast<double>(width) * all.step, allan_deviation(low, low_parts, width),
-                     allan_deviation(high, high_parts, width)});
+/// Adds the table and the bars of the noise by period.
+void add_noise_by_period(const Differences& all, CheckResult& result) {
+  ReportTable table{
+      "Noise of the difference by period: numbers",
+      "K, means over half the period: out of cloud, in the lowest kilometre above the field, and above it.",
+      {"period, s", "lowest km", "above"},
+      {}};
+  std::array<std::vector<double>, 2> values;  // near the ground, and above
+  std::array<std::vector<Segment>, 2> segments;
+  for (const std::size_t part : {0U, 1U}) {
+    values[part] =
+        location(all, [&](std::size_t i) { return all.near_ground[i] == (part == 0) && !all.in_cloud[i]; });
+    segments[part] = contiguous_segments(values[part], all.time, all.step);
   }
-  return noise;
+  for (std::size_t width = 1; 2.0 * static_cast<double>(width) * all.step <= max_period; width *= 2) {
+    const std::string period = fmt::format("{:.0f}", 2.0 * static_cast<double>(width) * all.step);
+    std::vector<std::string> row{period};
+    for (const std::size_t part : {0U, 1U}) {
+      const double noise = allan_deviation(values[part], segments[part], width);
+      row.push_back(std::isnan(noise) ? "" : fmt::format("{:.3f}", noise));
+      if (!std::isnan(noise))
+        result.bars.push_back({fmt::format("{} s, {}", period, part == 0 ? "lowest km" : "above"), noise});
+    }
+    table.rows.push_back(std::move(row));
+  }
+  result.tables.push_back(std::move(table));
 }
 
 /// The clouds, with the state of the laser there; the last cell of a suspect one has a remark.
 ReportTable cloud_table(const CheckedFlights& flights, double outside) {
-  ReportTable table;
-  table.title = "Clouds";
-  table.caption = "ATLAMS minus the thermometer in each cloud of 30 samples or more.";
-  table.headers = {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"};
+  ReportTable table{"Clouds",
+                    "ATLAMS minus the thermometer in each cloud of 30 samples or more.",
+                    {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"},
+                    {}};
   for (const Flown& cloud : all_flown(flights, Regime::cloud)) {
     const FlightAir& air = cloud.flight->air;
     if (!air.laser || air.temperature.empty() || cloud.places.size() < min_in_cloud) continue;
@@ -184,52 +192,10 @@ ReportTable cloud_table(const CheckedFlights& flights, double outside) {
   return table;
 }
 
-void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>& noise, CheckResult& result) {
-  result.columns.push_back(column_of(flights, "lams-temperature difference", "ATLAMS - thermometer", "K",
-                                     [](const CheckedFlight& flight) { return difference_of(flight.air); }));
-  result.columns.push_back(
-      column_of(flights, "lams-temperature altitude", "pressure altitude", "m",
-                [](const CheckedFlight& flight) { return flight.air.pressure_altitude; }));
-  const auto celsius = [](std::vector<double> values, const FlightAir& air) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] = air.flying[i] ? values[i] - constants::ice_point : nan;
-    return values;
-  };
-  result.columns.push_back(
-      column_of(flights, "lams-temperature laser", "ATLAMS", "degC", [&celsius](const CheckedFlight& flight) {
-        return flight.air.laser ? celsius(flight.air.laser->temperature, flight.air) : std::vector<double>{};
-      }));
-  result.columns.push_back(column_of(
-      flights, "lams-temperature thermometer", "thermometer", "degC",
-      [&celsius](const CheckedFlight& flight) { return celsius(flight.air.temperature, flight.air); }));
-  TimePanel temperatures;
-  temperatures.title = "Temperature from the laser and from the thermometer";
-  temperatures.caption =
-      "ATLAMS from the pressures of the model, and the thermometer (Cooper 2012, figure 3).";
-  temperatures.columns = {"lams-temperature laser", "lams-temperature thermometer"};
-  temperatures.axis = "temperature";
-  result.pictures.emplace_back(std::move(temperatures));
-  BinnedPanel binned;
-  binned.title = "The difference against altitude";
-  binned.caption = "ATLAMS minus the thermometer: a slope is an error of one of them.";
-  binned.y = {"lams-temperature difference"};
-  binned.x_choices = {"lams-temperature altitude"};
-  binned.autocorrelation_time = 10.0;
-  result.pictures.emplace_back(std::move(binned));
-  BarPanel bars;
-  bars.title = "Noise of the difference by period";
-  bars.caption =
-      "Noise of means over half the period. Below 3 s the air at the laser's volume differs from the air at "
-      "the pitot tube.";
-  bars.axis = "noise";
-  bars.unit = "K";
-  for (const PeriodNoise& each : noise) {
-    if (!std::isnan(each.near_ground))
-      bars.bars.push_back({fmt::format("{:.0f} s, lowest km", each.period), each.near_ground});
-    if (!std::isnan(each.above))
-      bars.bars.push_back({fmt::format("{:.0f} s, above", each.period), each.above});
-  }
-  if (!bars.bars.empty()) result.pictures.emplace_back(std::move(bars));
+/// A temperature in the air, degC.
+std::vector<double> celsius(std::vector<double> values, const FlightAir& air) {
+  for (double& value : values) value -= constants::ice_point;
+  return masked(std::move(values), air.flying);
 }
 
 }  // namespace
@@ -265,16 +231,14 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
       "Out of cloud the laser temperature minus the thermometer temperature is {}, with a scatter of {:.2f} "
       "K, of which {:.2f} K is noise",
       with_error(offset, "K"), outside.fit.rms, noise);
-  result.numbers = {{"offset_k", offset.value},
-                    {"offset_stderr_k", offset.error},
-                    {"scatter_k", outside.fit.rms},
-                    {"noise_k", noise},
-                    {"samples", static_cast<double>(outside.fit.samples)}};
+  add_number("offset", "_k", offset, result);
+  result.numbers.insert(result.numbers.end(), {{"scatter_k", outside.fit.rms},
+                                               {"noise_k", noise},
+                                               {"samples", static_cast<double>(outside.fit.samples)}});
   if (inside.fit.samples >= min_samples) {
     const Estimated in_cloud_offset = inside.fit.coefficients[0];
     result.finding += fmt::format("; in cloud it is {}", with_error(in_cloud_offset, "K"));
-    result.numbers.emplace_back("cloud_offset_k", in_cloud_offset.value);
-    result.numbers.emplace_back("cloud_offset_stderr_k", in_cloud_offset.error);
+    add_number("cloud_offset", "_k", in_cloud_offset, result);
     const Estimated change{in_cloud_offset.value - offset.value,
                            std::hypot(in_cloud_offset.error, offset.error)};
     if (judge(change, min_temperature_difference) == CheckVerdict::inconsistent) {
@@ -285,15 +249,6 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   }
   result.finding += ".";
 
-  const std::vector<PeriodNoise> by_period = noise_by_period(all);
-  ReportTable periods;
-  periods.title = "Noise of the difference by period: numbers";
-  periods.caption =
-      "K, means over half the period: out of cloud, in the lowest kilometre above the field, and above it.";
-  periods.headers = {"period, s", "lowest km", "above"};
-  const auto text = [](double kelvin) { return std::isnan(kelvin) ? "" : fmt::format("{:.3f}", kelvin); };
-  for (const PeriodNoise& each : by_period)
-    periods.rows.push_back({fmt::format("{:.0f}", each.period), text(each.near_ground), text(each.above)});
   std::vector<Part> parts{
       outside, inside,
       part_of(all, "lowest km above the field, out of cloud",
@@ -309,7 +264,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
                 }));
   }
   result.tables.push_back(part_table(parts));
-  result.tables.push_back(std::move(periods));
+  add_noise_by_period(all, result);
   ReportTable clouds = cloud_table(flights, offset.value);
   const auto suspect = std::count_if(clouds.rows.begin(), clouds.rows.end(),
                                      [](const auto& row) { return !row.back().empty(); });
@@ -324,7 +279,18 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
       "sample by sample the laser temperature equals the thermometer temperature exactly. An offset of the "
       "thermometer, a wrong recovery factor, the scale of the laser and the elevation of its beam are "
       "indistinguishable.";
-  add_pictures(flights, by_period, result);
+  const auto add_column = [&](const char* name, const char* title, const char* unit, const auto& series) {
+    result.columns.push_back(column_of(flights, name, title, unit,
+                                       [&](const CheckedFlight& flight) { return series(flight.air); }));
+  };
+  add_column("lams-temperature difference", "ATLAMS - thermometer", "K", difference_of);
+  add_column("lams-temperature altitude", "pressure altitude", "m",
+             [](const FlightAir& air) { return air.pressure_altitude; });
+  add_column("lams-temperature laser", "ATLAMS", "degC", [](const FlightAir& air) {
+    return air.laser ? celsius(air.laser->temperature, air) : std::vector<double>{};
+  });
+  add_column("lams-temperature thermometer", "thermometer", "degC",
+             [](const FlightAir& air) { return celsius(air.temperature, air); });
   return result;
 }
 

@@ -32,100 +32,52 @@ std::string trouble_with(const FlightAir& air, const FlightLayers& found) {
       options.min_thickness, options.min_climb_rate);
 }
 
-ReportTable layer_table(const std::vector<FlightLayers>& flights) {
-  ReportTable table;
-  table.title = "Layers";
-  table.caption =
+/// Adds the two tables and the bars.
+void show_layers(const std::vector<FlightLayers>& flights, CheckResult& result) {
+  ReportTable layers{
+      "Layers",
       "T_p is the temperature from height and pressure, T_m the temperature of the thermometer; both are "
-      "means over the height of the layer. The error applies to T_p.";
-  table.headers = {"flight",    "start (UTC)", "end",          "from, m", "to, m",
-                   "T_p, degC", "T_m, degC",   "T_p - T_m, K", "error, K"};
-  for (const FlightLayers& flight : flights) {
-    for (const Layer& layer : flight.layers) {
-      table.rows.push_back(
-          {flight.flight, utc_text(layer.begin), utc_text(layer.end, "%H:%M:%S"),
-           fmt::format("{:.0f}", layer.height_begin), fmt::format("{:.0f}", layer.height_end),
-           fmt::format("{:.2f}", layer.hydrostatic_temperature() - constants::ice_point),
-           fmt::format("{:.2f}", layer.measured_temperature() - constants::ice_point),
-           fmt::format("{:+.2f}", layer.difference()), fmt::format("{:.2f}", layer.errors.total())});
-    }
-  }
-  return table;
-}
-
-ReportTable error_table(const std::vector<FlightLayers>& flights) {
-  ReportTable table;
-  table.title = "Sources of the error of a layer";
-  table.caption =
+      "means over the height of the layer. The error applies to T_p.",
+      {"flight", "start (UTC)", "end", "from, m", "to, m", "T_p, degC", "T_m, degC", "T_p - T_m, K",
+       "error, K"},
+      {}};
+  ReportTable errors{
+      "Sources of the error of a layer",
       "Standard errors of T_p, K. Noise counts at the two ends of a layer alone, because the steps between "
-      "them cancel, and does not fall with the number of samples.";
-  table.headers = {"flight",         "start (UTC)",       "GPS height",
-                   "pressure noise", "delta-p, constant", "delta-p, changing",
-                   "isobars"};
-  const auto kelvin = [](double error) { return fmt::format("{:.2f}", error); };
+      "them cancel, and does not fall with the number of samples.",
+      {"flight", "start (UTC)", "GPS height", "pressure noise", "delta-p, constant", "delta-p, changing",
+       "isobars"},
+      {}};
+  const auto kelvin = [](double value) { return fmt::format("{:.2f}", value); };
+  const auto metres = [](double value) { return fmt::format("{:.0f}", value); };
   for (const FlightLayers& flight : flights) {
     for (const Layer& layer : flight.layers) {
-      table.rows.push_back({flight.flight, utc_text(layer.begin), kelvin(layer.errors.height_noise),
-                            kelvin(layer.errors.pressure_noise), kelvin(layer.errors.static_bias),
-                            kelvin(layer.errors.static_change), kelvin(layer.errors.gradient)});
+      layers.rows.push_back({flight.flight, utc_text(layer.begin), utc_text(layer.end, "%H:%M:%S"),
+                             metres(layer.height_begin), metres(layer.height_end),
+                             kelvin(layer.hydrostatic_temperature() - constants::ice_point),
+                             kelvin(layer.measured_temperature() - constants::ice_point),
+                             fmt::format("{:+.2f}", layer.difference()), kelvin(layer.errors.total())});
+      errors.rows.push_back({flight.flight, utc_text(layer.begin), kelvin(layer.errors.height_noise),
+                             kelvin(layer.errors.pressure_noise), kelvin(layer.errors.static_bias),
+                             kelvin(layer.errors.static_change), kelvin(layer.errors.gradient)});
+      result.bars.push_back({fmt::format("{} {:.0f} to {:.0f} m", utc_text(layer.begin, "%H:%M"),
+                                         layer.height_begin, layer.height_end),
+                             layer.difference(), layer.errors.total()});
     }
   }
-  return table;
+  result.tables = {std::move(layers), std::move(errors)};
 }
 
-/// Number of each layer at the records of its flight in the layer.
-std::vector<double> spread(const CheckedFlight& flight, const FlightLayers& found,
-                           double (Layer::*number)() const, double less) {
-  std::vector<double> values(flight.air.size(), nan);
-  for (const Layer& layer : found.layers) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(layer.first);
-    std::fill(begin, begin + static_cast<std::ptrdiff_t>(layer.last - layer.first + 1),
-              (layer.*number)() - less);
-  }
-  return values;
-}
-
-void add_pictures(const CheckedFlights& flights, const std::vector<FlightLayers>& all, CheckResult& result) {
-  BarPanel bars;
-  bars.title = "Correction required by the thermometer";
-  bars.caption =
-      "T_p - T_m of every layer. Errors are shared: layers of one climb have an end in common, and layers of "
-      "one flight the slope of the isobars.";
-  bars.axis = "T_p - T_m";
-  bars.unit = "K";
-  for (const FlightLayers& flight : all) {
-    for (const Layer& layer : flight.layers) {
-      bars.bars.push_back({fmt::format("{} {:.0f} to {:.0f} m", utc_text(layer.begin, "%H:%M"),
-                                       layer.height_begin, layer.height_end),
-                           layer.difference(), layer.errors.total()});
-    }
-  }
-  result.pictures.emplace_back(std::move(bars));
-  const auto column = [&](const char* name, const char* title, double (Layer::*number)() const, double less,
-                          const char* unit) {
-    result.columns.push_back(column_of(flights, name, title, unit, [&](const CheckedFlight& flight) {
-      return spread(flight, all[static_cast<std::size_t>(&flight - flights.data())], number, less);
-    }));
-  };
-  column("layers hydrostatic", "T_p, hydrostatic", &Layer::hydrostatic_temperature, constants::ice_point,
-         "degC");
-  column("layers measured", "T_m, thermometer", &Layer::measured_temperature, constants::ice_point, "degC");
-  result.columns.push_back(
-      column_of(flights, "layers d-value", "D-value", "m",
-                [](const CheckedFlight& flight) { return masked(flight.air.d_value, flight.air.flying); }));
-  TimePanel temperatures;
-  temperatures.title = "Temperature of the layers";
-  temperatures.caption = "One line over each layer.";
-  temperatures.columns = {"layers hydrostatic", "layers measured"};
-  temperatures.axis = "temperature";
-  result.pictures.emplace_back(std::move(temperatures));
-  TimePanel heights;
-  heights.title = "D-value";
-  heights.caption =
-      "Geopotential height minus pressure altitude. In level flight its slope is the slope of the isobars "
-      "along the track; in a climb it follows the temperature of the air.";
-  heights.columns = {"layers d-value"};
-  result.pictures.emplace_back(std::move(heights));
+/// Adds a temperature of each layer, degC, at its records.
+void add_column(const CheckedFlights& flights, const std::vector<FlightLayers>& all, const char* name,
+                const char* title, double (Layer::*temperature)() const, CheckResult& result) {
+  result.columns.push_back(column_of(flights, name, title, "degC", [&](const CheckedFlight& flight) {
+    std::vector<double> values(flight.air.size(), nan);
+    for (const Layer& layer : all[static_cast<std::size_t>(&flight - flights.data())].layers)
+      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(layer.first), layer.last - layer.first + 1,
+                  (layer.*temperature)() - constants::ice_point);
+    return values;
+  }));
 }
 
 }  // namespace
@@ -145,8 +97,8 @@ CheckResult check_layers(const CheckedFlights& flights) {
       result.notes.push_back(fmt::format("{}: {}", found.flight, reason));
       found.layers.clear();
     }
-    for (const std::string& note : found.notes)
-      result.notes.push_back(fmt::format("{}: {}", found.flight, note));
+    for (const Note& note : found.notes)
+      result.notes.emplace_back(note.severity, fmt::format("{}: {}", found.flight, note.text));
     all.push_back(std::move(found));
   }
   const LayerFit fit = fit_layers(all);
@@ -165,31 +117,25 @@ CheckResult check_layers(const CheckedFlights& flights) {
       warmest = std::max(warmest, layer.measured_temperature());
     }
   }
+  const double range = warmest - coldest;
+  const std::string span =
+      fmt::format("{:.0f} to {:.0f} degC", coldest - constants::ice_point, warmest - constants::ice_point);
+  const Estimated change{fit.c1 * range, fit.c1_error * range};
+  const Estimated at_freezing{fit.correction_at(constants::ice_point),
+                              fit.correction_error_at(constants::ice_point)};
   if (std::isnan(fit.c1)) {
     result.finding += fmt::format(
-        "; the layers are too few or too similar ({:.0f} to {:.0f} degC) to determine a slope with "
-        "temperature.",
-        coldest - constants::ice_point, warmest - constants::ice_point);
+        "; the layers are too few or too similar ({}) to determine a slope with temperature.", span);
   } else {
-    const double range = warmest - coldest;
     // An uncertain slope leaves the verdict to the mean.
-    TestStatistic change =
-        judged({fit.c1 * range, fit.c1_error * range}, min_thermometer_error, "K",
-               fmt::format("change from {:.0f} to {:.0f} degC", coldest - constants::ice_point,
-                           warmest - constants::ice_point));
-    result.numbers = {{"change_over_range_k", change.value},
-                      {"change_over_range_stderr_k", change.standard_error}};
-    if (change.verdict == CheckVerdict::inconsistent) numbers.push_back(std::move(change));
+    TestStatistic over_range = judged(change, min_thermometer_error, "K", "change from " + span);
+    if (over_range.verdict == CheckVerdict::inconsistent) numbers.push_back(std::move(over_range));
     const Estimated slope{fit.c1, fit.c1_error};
-    const Estimated at_freezing{fit.correction_at(constants::ice_point),
-                                fit.correction_error_at(constants::ice_point)};
-    result.finding +=
-        at_freezing.error > max_useful_error
-            ? fmt::format("; its slope from {:.0f} to {:.0f} degC is undetermined ({} per degree).",
-                          coldest - constants::ice_point, warmest - constants::ice_point,
-                          with_error(slope, "K", 3))
-            : fmt::format("; as a line, {} at 0 degC and {} per degree.", with_error(at_freezing, "K"),
-                          with_error(slope, "K", 4));
+    result.finding += at_freezing.error > max_useful_error
+                          ? fmt::format("; its slope from {} is undetermined ({} per degree).", span,
+                                        with_error(slope, "K", 3))
+                          : fmt::format("; as a line, {} at 0 degC and {} per degree.",
+                                        with_error(at_freezing, "K"), with_error(slope, "K", 4));
     const double absolute = fit.correction_at(0.0);
     result.notes.push_back(
         fmt::format("the form of Cooper (2012) is T_m + c0 + c1 T_m with absolute temperatures; c0 is {} "
@@ -211,17 +157,17 @@ CheckResult check_layers(const CheckedFlights& flights) {
       "offset of the thermometer, a wrong recovery factor, heat of de-icing and neglected humidity are "
       "indistinguishable. A lag of a thermometer or a static line causes errors of opposite signs in climb "
       "and descent.";
-  result.numbers.insert(result.numbers.begin(),
-                        {{"offset_k", fit.offset},
-                         {"offset_stderr_k", fit.offset_error},
-                         {"offset_at_0_degc_k", fit.correction_at(constants::ice_point)},
-                         {"offset_at_0_degc_stderr_k", fit.correction_error_at(constants::ice_point)},
-                         {"slope", fit.c1},
-                         {"slope_stderr", fit.c1_error},
-                         {"layers", static_cast<double>(fit.layers)}});
-  result.tables.push_back(layer_table(all));
-  result.tables.push_back(error_table(all));
-  add_pictures(flights, all, result);
+  add_number("offset", "_k", {fit.offset, fit.offset_error}, result);
+  add_number("offset_at_0_degc", "_k", at_freezing, result);
+  add_number("slope", "", {fit.c1, fit.c1_error}, result);
+  result.numbers.emplace_back("layers", static_cast<double>(fit.layers));
+  if (!std::isnan(fit.c1)) add_number("change_over_range", "_k", change, result);
+  show_layers(all, result);
+  add_column(flights, all, "layers hydrostatic", "T_p, hydrostatic", &Layer::hydrostatic_temperature, result);
+  add_column(flights, all, "layers measured", "T_m, thermometer", &Layer::measured_temperature, result);
+  result.columns.push_back(
+      column_of(flights, "layers d-value", "D-value", "m",
+                [](const CheckedFlight& flight) { return masked(flight.air.d_value, flight.air.flying); }));
   return result;
 }
 

@@ -46,11 +46,8 @@ LegPair pair_of(const LegMean& first, const LegMean& second) {
   pair.pressure_per_airspeed = pressure_per_airspeed(0.5 * (first.pressure + second.pressure),
                                                      0.5 * (first.mach + second.mach), airspeed);
   pair.temperature_per_airspeed = (first.temperature + second.temperature) / airspeed;
-  const auto times = [&](double factor) {
-    return Estimated{factor * pair.airspeed_error.value, std::abs(factor) * pair.airspeed_error.error};
-  };
-  pair.pressure_error = times(pair.pressure_per_airspeed);
-  pair.temperature_error = times(pair.temperature_per_airspeed);
+  pair.pressure_error = pair.pressure_per_airspeed * pair.airspeed_error;
+  pair.temperature_error = pair.temperature_per_airspeed * pair.airspeed_error;
   return pair;
 }
 

@@ -3,16 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
 
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
 
+using SeriesOfFlight = std::function<std::vector<double>(const CheckedFlight&)>;
+
 /// The avionics delay and smooth their pressures by about half a second, which is 0.05 hPa at this rate,
 /// hPa/s.
 constexpr double fastest_of_avionics = 0.1;
+
+std::vector<double> total_of(const MeasuredPair& pair) {
+  std::vector<double> total = pair.static_pressure;
+  for (std::size_t i = 0; i < total.size(); ++i) total[i] += pair.dynamic_pressure[i];
+  return total;
+}
+
+std::vector<double> static_of(const MeasuredPair& pair) { return pair.static_pressure; }
 
 /// Whether one of the two systems is the avionics.
 bool with_avionics(const CheckedFlight& flight) {
@@ -35,41 +49,46 @@ std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>&
 std::vector<bool> comparable(const CheckedFlight& flight) {
   if (!with_avionics(flight)) return flight.air.flying;
   const MeasuredPair& pair = flight.measured.front();
-  std::vector<double> total = pair.static_pressure;
-  for (std::size_t i = 0; i < total.size(); ++i) total[i] += pair.dynamic_pressure[i];
-  const std::vector<bool> one = steady(flight, total);
+  const std::vector<bool> one = steady(flight, total_of(pair));
   const std::vector<bool> two = steady(flight, pair.static_pressure);
   std::vector<bool> both(one.size());
   for (std::size_t i = 0; i < both.size(); ++i) both[i] = one[i] && two[i];
   return both;
 }
 
-void add_numbers(const RedundantFit& fit, CheckResult& result) {
-  result.numbers.insert(result.numbers.end(), {{"slope", fit.ordinary.slope},
-                                               {"slope_stderr", fit.ordinary.slope_error},
-                                               {"offset_hpa", fit.ordinary.offset},
-                                               {"offset_stderr_hpa", fit.ordinary.offset_error},
-                                               {"rms_hpa", fit.ordinary.rms},
-                                               {"mean_difference_hpa", fit.difference.value},
-                                               {"mean_difference_stderr_hpa", fit.difference.error},
-                                               {"across_hpa", fit.across.value},
-                                               {"across_stderr_hpa", fit.across.error},
-                                               {"scatter_hpa", fit.scatter},
-                                               {"orthogonal_slope", fit.orthogonal.slope},
-                                               {"orthogonal_slope_stderr", fit.orthogonal.slope_error},
-                                               {"orthogonal_offset_hpa", fit.orthogonal.offset},
-                                               {"orthogonal_offset_stderr_hpa", fit.orthogonal.offset_error},
-                                               {"orthogonal_rms_hpa", fit.orthogonal.rms},
-                                               {"samples", static_cast<double>(fit.samples)}});
+/// Smallest relevant difference of two total pressures, hPa: twice the combined uncertainty of the
+/// transducers of two pairs (memo, Background: 0.1 hPa of PSF, 0.05 hPa of QCF).
+constexpr double min_total_difference = 0.3;
+
+bool has_two(const CheckedFlight& flight) { return flight.measured.size() > 1; }
+
+SeriesOfFlight of_pair(std::size_t number, std::vector<double> (*series)(const MeasuredPair& pair)) {
+  return [=](const CheckedFlight& flight) {
+    return has_two(flight) ? series(flight.measured[number]) : std::vector<double>{};
+  };
 }
 
-ReportTable table_of(const RedundantFit& fit, const std::string& title) {
-  ReportTable table;
-  table.title = title;
-  table.caption =
+/// Smallest relevant difference of two corrected static pressures, hPa: the rms difference of the memo's eq.
+/// 18 and LAMS.
+constexpr double min_static_difference = 0.3;
+
+bool has_second(const CheckedFlight& flight) { return flight.second.has_value(); }
+
+std::vector<double> own(const CheckedFlight& flight) {
+  return has_second(flight) ? flight.air.pressure : std::vector<double>{};
+}
+
+std::vector<double> other(const CheckedFlight& flight) {
+  return has_second(flight) ? flight.second->pressure : std::vector<double>{};
+}
+
+ReportTable table_of(const RedundantFit& fit, std::string title) {
+  ReportTable table{
+      std::move(title),
       "Standard errors include autocorrelation and slow drift of the differences. The offset is the value at "
-      "0 hPa.";
-  table.headers = {"fit", "slope", "std. error", "offset, hPa", "std. error", "rms, hPa"};
+      "0 hPa.",
+      {"fit", "slope", "std. error", "offset, hPa", "std. error", "rms, hPa"},
+      {}};
   const auto row = [&](const char* name, const LineFit& line) {
     table.rows.push_back({name, fmt::format("{:.6f}", line.slope), fmt::format("{:.6f}", line.slope_error),
                           fmt::format("{:+.3f}", line.offset), fmt::format("{:.3f}", line.offset_error),
@@ -80,8 +99,9 @@ ReportTable table_of(const RedundantFit& fit, const std::string& title) {
   return table;
 }
 
-}  // namespace
-
+/// Two series at the airborne records at which both systems measure the same air, over all flights: with the
+/// avionics, PS_A/QC_A, records at which neither static nor total pressure changes faster than 0.1 hPa/s over
+/// five seconds (memo, Supporting Evidence for Accuracy of p_t). Both may be empty for a flight.
 Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first,
                     const SeriesOfFlight& second) {
   Redundant both;
@@ -100,6 +120,38 @@ Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first,
   }
   return both;
 }
+
+/// Adds the numbers of a fit, numbers of the interface first, its table and its columns, and a note on the
+/// avionics. @param names of the two series
+void add_results(const CheckedFlights& flights, const std::string& check, const SeriesOfFlight& first,
+                 const SeriesOfFlight& second, const std::array<std::string, 2>& names,
+                 const RedundantFit& fit, std::string table, CheckResult& result) {
+  const auto add_line = [&result](const std::string& prefix, const LineFit& line) {
+    add_number(prefix + "slope", "", {line.slope, line.slope_error}, result);
+    add_number(prefix + "offset", "_hpa", {line.offset, line.offset_error}, result);
+    result.numbers.emplace_back(prefix + "rms_hpa", line.rms);
+  };
+  add_line("", fit.ordinary);
+  add_number("mean_difference", "_hpa", fit.difference, result);
+  add_number("across", "_hpa", fit.across, result);
+  result.numbers.emplace_back("scatter_hpa", fit.scatter);
+  add_line("orthogonal_", fit.orthogonal);
+  result.numbers.emplace_back("samples", static_cast<double>(fit.samples));
+  if (std::any_of(flights.begin(), flights.end(), with_avionics)) {
+    result.notes.push_back(fmt::format(
+        "The avionics smooth their pressures; samples with a pressure change above {} hPa/s are excluded",
+        fastest_of_avionics));
+  }
+  result.tables = {table_of(fit, std::move(table))};
+  const auto column = [&](const char* name, const std::string& title, const SeriesOfFlight& series) {
+    return column_of(flights, check + name, title, "hPa", [&series](const CheckedFlight& flight) {
+      return masked(series(flight), comparable(flight));
+    });
+  };
+  result.columns = {column(" one", names[0], first), column(" two", names[1], second)};
+}
+
+}  // namespace
 
 RedundantFit fit_of(const Redundant& both) {
   RedundantFit fit;
@@ -129,29 +181,77 @@ std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size) {
           judged(fit.across, size, "hPa", "change over the range of pressure")};
 }
 
-void show(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second,
-          const RedundantFit& fit, const RedundantTexts& texts, CheckResult& result) {
-  add_numbers(fit, result);
-  if (std::any_of(flights.begin(), flights.end(), with_avionics)) {
-    result.notes.push_back(fmt::format(
-        "The avionics smooth their pressures; samples with a pressure change above {} hPa/s are excluded",
-        fastest_of_avionics));
+CheckResult check_total_pressure(const CheckedFlights& flights) {
+  const auto first = std::find_if(flights.begin(), flights.end(), has_two);
+  if (first == flights.end()) {
+    return not_run(
+        "no flight has a second pair of pressures (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
+        "PS_A/QC_A); --reference static:OTHER.toml names one");
   }
-  result.tables.push_back(table_of(fit, texts.table));
-  PairPanel panel;
-  const auto add_column = [&](const std::string& name, const std::string& title,
-                              const SeriesOfFlight& series) {
-    result.columns.push_back(column_of(flights, name, title, "hPa", [&series](const CheckedFlight& flight) {
-      return masked(series(flight), comparable(flight));
-    }));
-    return name;
-  };
-  panel.title = texts.picture;
-  panel.caption = texts.caption;
-  panel.x = add_column(texts.name + " one", texts.first, first);
-  panel.y = add_column(texts.name + " two", texts.second, second);
-  panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};
-  result.pictures.emplace_back(std::move(panel));
+  const std::string& one = first->measured[0].name;
+  const std::string& two = first->measured[1].name;
+  const SeriesOfFlight first_total = of_pair(0, total_of);
+  const SeriesOfFlight second_total = of_pair(1, total_of);
+  const RedundantFit fit = fit_of(redundant(flights, first_total, second_total));
+  if (std::isnan(fit.ordinary.slope)) {
+    return not_run(fmt::format("{} and {} have too few values at the same time in the air", one, two));
+  }
+  const RedundantFit statics = fit_of(redundant(flights, of_pair(0, static_of), of_pair(1, static_of)));
+
+  CheckResult result;
+  decide(judged_of(fit, min_total_difference), result);
+  result.finding = fmt::format(
+      "The total pressure of {} minus total pressure of {} is {} on average, with slope {:.6f} +- {:.6f} and "
+      "rms {:.3f} hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter "
+      "of {:.2f} hPa.",
+      two, one, with_error(fit.difference, "hPa", 3), fit.ordinary.slope, fit.ordinary.slope_error,
+      fit.ordinary.rms, statics.difference.value, statics.scatter);
+  result.cannot_see =
+      "The check does not detect static defects, which cancel in the total pressure, and losses common to "
+      "both pitots, for example at large angles.";
+  add_results(flights, "total-pressure", first_total, second_total,
+              {"total pressure, " + one, "total pressure, " + two}, fit,
+              fmt::format("Total pressure of {} against {}", two, one), result);
+  add_number("static_mean_difference", "_hpa", statics.difference, result);
+  result.numbers.emplace_back("static_scatter_hpa", statics.scatter);
+  return result;
+}
+
+CheckResult check_static_pressure(const CheckedFlights& flights) {
+  const auto first = std::find_if(flights.begin(), flights.end(), has_second);
+  if (first == flights.end()) {
+    return not_run(
+        "no flight has a second static system (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
+        "PS_A/QC_A); --reference static:OTHER.toml names one with its correction");
+  }
+  const RedundantFit fit = fit_of(redundant(flights, own, other));
+  if (std::isnan(fit.ordinary.slope)) {
+    return not_run(
+        fmt::format("{} and the model have too few values at the same time in the air", first->second_name));
+  }
+  CheckResult result;
+  decide(judged_of(fit, min_static_difference), result);
+  result.finding = fmt::format(
+      "The static pressure of {} minus static pressure of the model is {} on average, with slope {:.6f} +- "
+      "{:.6f} and rms {:.3f} hPa about the orthogonal line.",
+      first->second_name, with_error(fit.difference, "hPa", 3), fit.orthogonal.slope,
+      fit.orthogonal.slope_error, fit.orthogonal.rms);
+  if (!first->second_corrected) {
+    // The defect of the second system is unknown, so a difference does not contradict the model.
+    withhold("the second system is uncorrected, so it does not test the model", result);
+    result.finding += fmt::format(
+        " The pressure of {} is uncorrected, so the difference includes its defect: --reference "
+        "static:OTHER.toml gives its correction.",
+        first->second_name);
+  }
+  result.cannot_see =
+      "The check does not detect errors common to both systems: errors of the reference of both fits (the "
+      "scale of LAMS, the temperature), and effects that act equally on both ports.";
+  add_results(flights, "static-pressure", own, other,
+              {"static pressure of the model", "static pressure of " + first->second_name}, fit,
+              fmt::format("Static pressure of {} against static pressure of the model", first->second_name),
+              result);
+  return result;
 }
 
 }  // namespace pcor::internal

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <string>
 #include <vector>
 
 #include <pcor/numerics/line_fit.hpp>
@@ -27,31 +25,9 @@ struct RedundantFit {
   std::size_t samples = 0;  ///< number of samples used
 };
 
-using SeriesOfFlight = std::function<std::vector<double>(const CheckedFlight&)>;
-
-/// Two series at the airborne records at which both systems measure the same air, over all flights: with the
-/// avionics, PS_A/QC_A, records at which neither static nor total pressure changes faster than 0.1 hPa/s over
-/// five seconds (memo, Supporting Evidence for Accuracy of p_t). Both may be empty for a flight.
-Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second);
-
 RedundantFit fit_of(const Redundant& both);
 
 /// Test statistics of a fit: the difference, and its change with the pressure.
 std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size);
-
-/// Name of the check, titles of the two series, of the table and of the picture, and its caption.
-struct RedundantTexts {
-  std::string name{};
-  std::string first{};
-  std::string second{};
-  std::string table{};
-  std::string picture{};
-  std::string caption{};
-};
-
-/// Adds the numbers of a fit, numbers of the interface first, its table and its picture, and a note on the
-/// avionics.
-void show(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second,
-          const RedundantFit& fit, const RedundantTexts& texts, CheckResult& result);
 
 }  // namespace pcor::internal

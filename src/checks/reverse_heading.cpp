@@ -5,7 +5,6 @@
 #include <map>
 #include <utility>
 
-#include <pcor/base/utc.hpp>
 #include <pcor/physics/constants.hpp>
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
@@ -28,12 +27,22 @@ constexpr double pairs_of_assumption = 2.0;
 /// With fewer pairs the assumption dominates the error, and a note reports it.
 constexpr std::size_t min_for_scatter = 3;
 
-struct Pair {
-  Flown first;
-  Flown second;
-  LegMean means[2];
-  LegPair result;
+struct Leg {
+  Flown flown;
+  LegMean mean{};
 };
+
+struct Pair {
+  Leg first;
+  Leg second;
+  LegPair result{};
+};
+
+/// Direction of a vector, deg.
+double direction_of(double east, double north) {
+  const double direction = std::atan2(east, north) / constants::radians_per_degree;
+  return direction < 0.0 ? direction + 360.0 : direction;
+}
 
 /// Mean direction of angles, deg.
 double mean_direction(const std::vector<double>& angles) {
@@ -44,16 +53,7 @@ double mean_direction(const std::vector<double>& angles) {
     east += std::sin(angle * constants::radians_per_degree);
     north += std::cos(angle * constants::radians_per_degree);
   }
-  const double direction = std::atan2(east, north) / constants::radians_per_degree;
-  return direction < 0.0 ? direction + 360.0 : direction;
-}
-
-/// Mean direction of the ground velocity, deg.
-double track_of(const Flown& leg) {
-  const FlightAir& air = leg.flight->air;
-  const double direction =
-      std::atan2(leg.mean(air.east_speed), leg.mean(air.north_speed)) / constants::radians_per_degree;
-  return direction < 0.0 ? direction + 360.0 : direction;
+  return direction_of(east, north);
 }
 
 LegMean mean_of_leg(const Flown& leg, const std::vector<double>& tail_wind) {
@@ -73,8 +73,7 @@ LegMean mean_of_leg(const Flown& leg, const std::vector<double>& tail_wind) {
 }
 
 /// Pairs of legs; legs without a partner are reported in the notes.
-std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights,
-                                              std::vector<std::string>& notes) {
+std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights, Notes& notes) {
   std::map<std::pair<const CheckedFlight*, int>, std::vector<Flown>> legs;
   std::vector<std::pair<Flown, Flown>> pairs;
   for (Flown& leg : all_flown(flights, Regime::reverse_heading)) {
@@ -130,36 +129,33 @@ Mean mean_over(const std::vector<Pair>& pairs) {
   return mean;
 }
 
-ReportTable table_of_legs(const std::vector<Pair>& pairs) {
-  ReportTable table;
-  table.title = "Legs of reverse headings";
-  table.caption = "Tail wind: ground speed along the heading minus true airspeed, with its scatter.";
-  table.headers = {"leg", "heading, deg", "track, deg", "airspeed, m/s", "tail wind, m/s"};
-  const auto add = [&](const Flown& flown, const LegMean& mean) {
-    table.rows.push_back({flown.location(), fmt::format("{:.1f}", mean.heading),
-                          fmt::format("{:.1f}", track_of(flown)), fmt::format("{:.1f}", mean.airspeed),
+ReportTable table_of_legs(const std::vector<Leg>& legs) {
+  ReportTable table{"Legs of reverse headings",
+                    "Tail wind: ground speed along the heading minus true airspeed, with its scatter.",
+                    {"leg", "heading, deg", "track, deg", "airspeed, m/s", "tail wind, m/s"},
+                    {}};
+  for (const auto& [flown, mean] : legs) {
+    const FlightAir& air = flown.flight->air;
+    const double track = direction_of(flown.mean(air.east_speed), flown.mean(air.north_speed));
+    table.rows.push_back({flown.location(), fmt::format("{:.1f}", mean.heading), fmt::format("{:.1f}", track),
+                          fmt::format("{:.1f}", mean.airspeed),
                           fmt::format("{:+.2f} +- {:.2f}", mean.tail_wind.value, mean.scatter)});
-  };
-  for (const Pair& pair : pairs) {
-    add(pair.first, pair.means[0]);
-    add(pair.second, pair.means[1]);
   }
   return table;
 }
 
 ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
-  ReportTable table;
-  table.title = "Reverse headings";
-  table.caption =
+  ReportTable table{
+      "Reverse headings",
       "Without errors the sum of the tail winds of both legs is zero. After subtraction of the part due to "
       "headings that are not opposite, the sum is minus twice the error of the airspeed; delta-p and "
       "temperature are the errors that alone would cause it. Errors of the pairs exclude changes of the wind "
-      "between the legs.";
-  table.headers = {"first leg",     "sum, m/s",     "due to headings",
-                   "airspeed, m/s", "delta-p, hPa", "temperature, K"};
+      "between the legs.",
+      {"first leg", "sum, m/s", "due to headings", "airspeed, m/s", "delta-p, hPa", "temperature, K"},
+      {}};
   for (const Pair& pair : pairs) {
     const LegPair& result = pair.result;
-    table.rows.push_back({pair.first.location(), with_error(result.sum, ""),
+    table.rows.push_back({pair.first.flown.location(), with_error(result.sum, ""),
                           fmt::format("{:+.2f}", result.heading_share), with_error(result.airspeed_error, ""),
                           with_error(result.pressure_error, ""),
                           with_error(result.temperature_error, "", 1)});
@@ -167,48 +163,25 @@ ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
   return table;
 }
 
-/// Legs evaluated with the airspeed of the laser.
-std::vector<Pair> with_laser(std::vector<Pair> pairs) {
+Pair evaluated(Flown first, Flown second, const std::vector<double>& tail_wind) {
+  Pair pair{{std::move(first)}, {std::move(second)}};
+  for (Leg* const leg : {&pair.first, &pair.second}) leg->mean = mean_of_leg(leg->flown, tail_wind);
+  pair.result = pair_of(pair.first.mean, pair.second.mean);
+  return pair;
+}
+
+/// Pairs evaluated with the airspeed of the laser.
+std::vector<Pair> with_laser(const std::vector<Pair>& pairs) {
   std::vector<Pair> result;
-  for (Pair& pair : pairs) {
-    const FlightAir& air = pair.first.flight->air;
+  for (const Pair& pair : pairs) {
+    const FlightAir& air = pair.first.flown.flight->air;
     if (!air.laser) continue;
     std::vector<double> wind = air.tail_wind;
     for (std::size_t i = 0; i < wind.size(); ++i) wind[i] += air.airspeed[i] - air.laser->airspeed[i];
-    pair.means[0] = mean_of_leg(pair.first, wind);
-    pair.means[1] = mean_of_leg(pair.second, wind);
-    pair.result = pair_of(pair.means[0], pair.means[1]);
-    if (std::isfinite(pair.result.airspeed_error.value)) result.push_back(std::move(pair));
+    Pair by_laser = evaluated(pair.first.flown, pair.second.flown, wind);
+    if (std::isfinite(by_laser.result.airspeed_error.value)) result.push_back(std::move(by_laser));
   }
   return result;
-}
-
-void add_pictures(const CheckedFlights& flights, const std::vector<Pair>& pairs, CheckResult& result) {
-  std::vector<Flown> legs;
-  BarPanel bars;
-  bars.title = "Error of the airspeed from each reverse heading";
-  bars.caption = "Error bars include the typical change of the wind between two legs.";
-  bars.axis = "airspeed minus airspeed of the headings";
-  bars.unit = "m/s";
-  for (const Pair& pair : pairs) {
-    legs.push_back(pair.first);
-    legs.push_back(pair.second);
-    bars.bars.push_back({fmt::format("{} {}", pair.first.flight->air.samples->name,
-                                     utc_text(pair.first.interval.begin, "%H:%M")),
-                         pair.result.airspeed_error.value,
-                         std::hypot(pair.result.airspeed_error.error, 0.5 * change_of_wind)});
-  }
-  result.pictures.emplace_back(std::move(bars));
-  result.columns.push_back(
-      column_of(flights, "reverse-heading tail wind", "tail wind", "m/s",
-                [&](const CheckedFlight& flight) { return only_in(flight, legs, flight.air.tail_wind); }));
-  TimePanel time;
-  time.title = "Tail wind on the legs";
-  time.caption =
-      "Wind along the aircraft's axis. It has opposite signs on the two legs of a pair; an error of the "
-      "airspeed has the same sign.";
-  time.columns = {"reverse-heading tail wind"};
-  result.pictures.emplace_back(std::move(time));
 }
 
 }  // namespace
@@ -219,38 +192,32 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   CheckResult result;
   std::vector<Pair> pairs;
   for (auto& [first, second] : pairs_of(flights, result.notes)) {
-    Pair pair{std::move(first), std::move(second), {}, {}};
-    pair.means[0] = mean_of_leg(pair.first, pair.first.flight->air.tail_wind);
-    pair.means[1] = mean_of_leg(pair.second, pair.second.flight->air.tail_wind);
-    pair.result = pair_of(pair.means[0], pair.means[1]);
+    const FlightAir& air = first.flight->air;
+    Pair pair = evaluated(std::move(first), std::move(second), air.tail_wind);
+    const std::string location = pair.first.flown.location();
     const double off = std::abs(pair.result.heading_error);
     if (!std::isfinite(pair.result.airspeed_error.value)) {
-      result.notes.push_back(pair.first.location() +
-                             ": the tail wind has too few values on a leg of this pair");
+      result.notes.push_back(location + ": the tail wind has too few values on a leg of this pair");
     } else if (off > max_heading) {
       result.notes.push_back(
           fmt::format("{}: headings differ from opposite by {:.0f} deg; not used as a reverse-heading pair",
-                      pair.first.location(), off));
+                      location, off));
     } else {
       if (off > aimed_heading)
         result.notes.push_back(
             fmt::format("{}: headings differ from opposite by {:.1f} deg; the wind component of {:+.2f} m/s "
                         "was subtracted, with an error due to the sideslip",
-                        pair.first.location(), off, pair.result.heading_share));
+                        location, off, pair.result.heading_share));
       pairs.push_back(std::move(pair));
     }
   }
-  if (pairs.empty()) {
-    return not_run(result.notes.empty() ? not_flown(flights, Regime::reverse_heading)
-                                        : "no pair of legs can be used: " + result.notes.front());
-  }
+  if (pairs.empty()) return not_flown(flights, Regime::reverse_heading, result.notes);
   const Mean mean = mean_over(pairs);
   const Estimated& error = mean.airspeed;
   const auto as_other = [&](double LegPair::*factor) {
     std::vector<double> factors;
     for (const Pair& pair : pairs) factors.push_back(pair.result.*factor);
-    const double usual = mean_of(factors);
-    return Estimated{usual * error.value, std::abs(usual) * error.error};
+    return mean_of(factors) * error;
   };
   const Estimated hpa = as_other(&LegPair::pressure_per_airspeed);
   const Estimated kelvin = as_other(&LegPair::temperature_per_airspeed);
@@ -266,21 +233,16 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
       "If pressures were corrected sample by sample with LAMS, or the model was fitted to LAMS, the airspeed "
       "is the LAMS airspeed for any temperature, and the check tests LAMS alone. An error of the airspeed "
       "that has opposite signs on the two legs cancels.";
-  result.numbers = {{"pairs", static_cast<double>(pairs.size())},
-                    {"sum_m_s", -2.0 * error.value},
-                    {"sum_stderr_m_s", 2.0 * error.error},
-                    {"sum_stderr_assumed_m_s", 2.0 * mean.from_assumption},
-                    {"sum_stderr_scatter_m_s", 2.0 * mean.from_scatter},
-                    {"airspeed_error_m_s", error.value},
-                    {"airspeed_error_stderr_m_s", error.error},
-                    {"delta_p_error_hpa", hpa.value},
-                    {"delta_p_error_stderr_hpa", hpa.error},
-                    {"temperature_error_k", kelvin.value},
-                    {"temperature_error_stderr_k", kelvin.error}};
+  result.numbers = {{"pairs", static_cast<double>(pairs.size())}};
+  add_number("sum", "_m_s", {-2.0 * error.value, 2.0 * error.error}, result);
+  result.numbers.emplace_back("sum_stderr_assumed_m_s", 2.0 * mean.from_assumption);
+  result.numbers.emplace_back("sum_stderr_scatter_m_s", 2.0 * mean.from_scatter);
+  add_number("airspeed_error", "_m_s", error, result);
+  add_number("delta_p_error", "_hpa", hpa, result);
+  add_number("temperature_error", "_k", kelvin, result);
   if (const std::vector<Pair> lasers = with_laser(pairs); !lasers.empty()) {
     const Estimated laser = mean_over(lasers).airspeed;
-    result.numbers.emplace_back("laser_airspeed_error_m_s", laser.value);
-    result.numbers.emplace_back("laser_airspeed_error_stderr_m_s", laser.error);
+    add_number("laser_airspeed_error", "_m_s", laser, result);
     result.notes.push_back(
         "With the airspeed of the laser, equivalent to a correction sample by sample with LAMS, the airspeed "
         "is off by " +
@@ -291,8 +253,16 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
         fmt::format("With fewer than {} pairs the error depends on an assumed change of the wind of {} m/s "
                     "between the legs; about 18 pairs reach +-0.2 m/s in the sum",
                     min_for_scatter, change_of_wind));
-  result.tables = {table_of_pairs(pairs), table_of_legs(pairs)};
-  add_pictures(flights, pairs, result);
+  std::vector<Leg> legs;
+  for (const Pair& pair : pairs) {
+    legs.insert(legs.end(), {pair.first, pair.second});
+    const Estimated& of_pair = pair.result.airspeed_error;
+    result.bars.push_back(
+        {pair.first.flown.label(), of_pair.value, std::hypot(of_pair.error, 0.5 * change_of_wind)});
+  }
+  result.tables = {table_of_pairs(pairs), table_of_legs(legs)};
+  result.columns = {column_in(flights, "reverse-heading tail wind", "tail wind", "m/s", legs,
+                              [](const Leg& leg) { return leg.flown.of(leg.flown.flight->air.tail_wind); })};
   return result;
 }
 

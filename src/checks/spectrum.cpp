@@ -182,7 +182,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   if (flights.empty()) return not_run("there is no flight");
   const std::vector<Source> sources{{"delta-p from LAMS", laser_defect},
                                     {"the difference of the two static systems", second_system},
-                                    {"the D-value, as a pressure,", d_value_as_pressure}};
+                                    {"the D-value as a pressure", d_value_as_pressure}};
   Spectrum spectrum;
   const Source* source = nullptr;
   for (const Source& each : sources) {
@@ -229,39 +229,22 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
       "and pitot tube add up. Noise of the transducers and small eddies are indistinguishable unless the "
       "spectrum flattens, and means over the sample interval hide part of both. Errors that last longer than "
       "two minutes are not tested.";
-  result.numbers = {{"floor_hpa", floor.value},
-                    {"floor_stderr_hpa", floor.error},
-                    {"floor_m_s", floor.value / per_speed},
-                    {"slope", fall.value},
-                    {"slope_stderr", fall.error},
-                    {"segments", static_cast<double>(spectrum.periodograms.size())}};
-  ReportTable table;
-  table.title = "Power by period: numbers";
-  table.caption = fmt::format("Spectrum of {}, over {} segments of {} samples.", source->name,
-                              spectrum.periodograms.size(), segment_length);
-  table.headers = {"periods, s", "rms, hPa", "std. error"};
-  BarPanel bars;
-  bars.title = "Power by period";
-  bars.caption =
-      "Rms in octaves of the period. For white noise the bars fall by the square root of two from one octave "
-      "to the next longer one; for turbulence they grow.";
-  bars.axis = "rms";
-  bars.unit = "hPa";
+  add_number("floor", "_hpa", floor, result);
+  result.numbers.emplace_back("floor_m_s", floor.value / per_speed);
+  add_number("slope", "", fall, result);
+  result.numbers.emplace_back("segments", static_cast<double>(spectrum.periodograms.size()));
+  ReportTable table{"Power by period: numbers",
+                    fmt::format("Spectrum of {}, over {} segments of {} samples.", source->name,
+                                spectrum.periodograms.size(), segment_length),
+                    {"periods, s", "rms, hPa", "std. error"},
+                    {}};
   for (const Octave& octave : octaves) {
     const std::string periods = fmt::format("{:.3g} to {:.3g} s", octave.shortest, octave.longest);
     table.rows.push_back({periods, fmt::format("{:.4f}", octave.rms), fmt::format("{:.4f}", octave.error)});
-    bars.bars.push_back({periods, octave.rms, octave.error});
+    result.bars.push_back({periods, octave.rms, octave.error});
   }
-  result.tables.push_back(std::move(table));
-  result.pictures.emplace_back(std::move(bars));
-  result.columns.push_back(
-      column_of(flights, "spectrum series", "analysed series", "hPa",
-                [source](const CheckedFlight& flight) { return source->series(flight); }));
-  TimePanel series;
-  series.title = "Analysed series";
-  series.caption = fmt::format("In time: {}.", source->name);
-  series.columns = {"spectrum series"};
-  result.pictures.emplace_back(std::move(series));
+  result.tables = {std::move(table)};
+  result.columns = {column_of(flights, "spectrum series", source->name, "hPa", source->series)};
   return result;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/base/utc.hpp>
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include "checks/flown.hpp"
@@ -19,7 +18,7 @@ constexpr double min_run_change = 0.3;
 /// wind on the scale of a run, m/s, half the change between the legs of a reverse heading; and the error of a
 /// GPS height, m, at least the error of differential GPS. Neither is below the scatter about the line.
 /// Simulated flights show drifts of this size.
-constexpr double drift_of_wind = 0.5 * change_of_wind;
+constexpr double wind_drift_of_run = 0.5 * change_of_wind;
 constexpr double min_drift_of_height = 0.15;
 constexpr double drift_in_scatter = 1.0;
 
@@ -79,16 +78,16 @@ Run run_of(const Flown& flown) {
   // The tail wind is too low if the airspeed is too high.
   run.wind = trend_of(air.tail_wind, flown, run.airspeed_range,
                       -pressure_per_airspeed(pressure, flown.mean(air.mach), flown.mean(air.airspeed)),
-                      drift_of_wind);
+                      wind_drift_of_run);
   return run;
 }
 
 bool known(const Trend& trend) { return std::isfinite(trend.slope.value); }
 
-std::vector<Estimated> errors_of(const std::vector<Run>& runs, Trend Run::*trend) {
+Estimated combined_error(const std::vector<Run>& runs, Trend Run::*trend) {
   std::vector<Estimated> errors;
   for (const Run& run : runs) errors.push_back((run.*trend).pressure_error);
-  return errors;
+  return combined(errors);
 }
 
 /// Height and wind are blind to different errors, so one inconsistent result is enough; otherwise the more
@@ -100,76 +99,28 @@ Estimated decisive(const Estimated& height, const Estimated& wind) {
   return !(height.error <= wind.error) && std::isfinite(wind.error) ? wind : height;
 }
 
-ReportTable table_of_heights(const std::vector<Run>& runs) {
-  ReportTable table;
-  table.title = "DVALUE in speed runs";
-  table.caption =
-      "Scatter and range of DVALUE (GPS height minus pressure altitude), its slopes against the airspeed and "
-      "the dynamic pressure fitted with a drift in time, and the error of delta-p from the slow to the fast "
-      "end that the first slope implies.";
-  table.headers = {"run",         "airspeed, m/s",    "sd, m",
-                   "range, m",    "slope, m per m/s", "slope, m per hPa of q",
-                   "delta-p, hPa"};
+/// @param digits of the scatter and the range; slopes have two more
+ReportTable table_of(const std::vector<Run>& runs, Trend Run::*trend, const char* title, const char* caption,
+                     const std::string& unit, int digits) {
+  const bool is_height = trend == &Run::height;
+  ReportTable table{title,
+                    caption,
+                    {"run", "airspeed, m/s", "sd, " + unit, "range, " + unit, "slope, " + unit + " per m/s"},
+                    {}};
+  if (is_height) table.headers.emplace_back("slope, m per hPa of q");
+  table.headers.emplace_back("delta-p, hPa");
   for (const Run& run : runs) {
-    if (!known(run.height)) continue;
-    table.rows.push_back({run.flown.location(), fmt::format("{:.0f}", run.airspeed_range),
-                          fmt::format("{:.1f}", run.height.scatter), fmt::format("{:.1f}", run.height.range),
-                          with_error(run.height.slope, "", 3), with_error(run.dynamic_slope, "", 3),
-                          with_error(run.height.pressure_error, "")});
+    const Trend& of_run = run.*trend;
+    if (!known(of_run)) continue;
+    std::vector<std::string> row{run.flown.location(), fmt::format("{:.0f}", run.airspeed_range),
+                                 fmt::format("{:.{}f}", of_run.scatter, digits),
+                                 fmt::format("{:.{}f}", of_run.range, digits),
+                                 with_error(of_run.slope, "", digits + 2)};
+    if (is_height) row.push_back(with_error(run.dynamic_slope, "", digits + 2));
+    row.push_back(with_error(of_run.pressure_error, ""));
+    table.rows.push_back(std::move(row));
   }
   return table;
-}
-
-ReportTable table_of_winds(const std::vector<Run>& runs) {
-  ReportTable table;
-  table.title = "Tail wind in speed runs";
-  table.caption =
-      "Scatter and range of the tail wind, its slope against the airspeed fitted with a drift in time, and "
-      "the error of delta-p from the slow to the fast end that it implies.";
-  table.headers = {"run", "airspeed, m/s", "sd, m/s", "range, m/s", "slope, m/s per m/s", "delta-p, hPa"};
-  for (const Run& run : runs) {
-    if (!known(run.wind)) continue;
-    table.rows.push_back({run.flown.location(), fmt::format("{:.0f}", run.airspeed_range),
-                          fmt::format("{:.2f}", run.wind.scatter), fmt::format("{:.2f}", run.wind.range),
-                          with_error(run.wind.slope, "", 4), with_error(run.wind.pressure_error, "")});
-  }
-  return table;
-}
-
-void add_pictures(const CheckedFlights& flights, const std::vector<Run>& runs, CheckResult& result) {
-  const auto departures = [&](std::vector<double> FlightAir::*series) {
-    return [&runs, series](const CheckedFlight& flight) {
-      std::vector<double> values(flight.air.size(), std::nan(""));
-      for (const Run& run : runs) {
-        if (run.flown.flight != &flight) continue;
-        const std::vector<double> here = less_mean(run.flown.of(flight.air.*series));
-        for (std::size_t i = 0; i < here.size(); ++i) values[run.flown.places[i]] = here[i];
-      }
-      return values;
-    };
-  };
-  std::vector<Flown> all;
-  for (const Run& run : runs) all.push_back(run.flown);
-  result.columns.push_back(
-      column_of(flights, "speed-run airspeed", "true airspeed", "m/s",
-                [&](const CheckedFlight& flight) { return only_in(flight, all, flight.air.airspeed); }));
-  const auto panel = [&](const char* name, const char* title, const char* unit, const char* caption,
-                         std::vector<double> FlightAir::*series) {
-    result.columns.push_back(column_of(flights, name, title, unit, departures(series)));
-    BinnedPanel binned;
-    binned.title = fmt::format("{} in speed runs", title);
-    binned.caption = caption;
-    binned.y = {name};
-    binned.x_choices = {"speed-run airspeed"};
-    binned.autocorrelation_time = 10.0;
-    result.pictures.emplace_back(std::move(binned));
-  };
-  panel("speed-run height", "DVALUE minus its mean", "m",
-        "A pressure error that depends on the speed causes a slope; sloping isobars cause a drift.",
-        &FlightAir::d_value);
-  panel("speed-run wind", "Tail wind minus its mean", "m/s",
-        "The wind is independent of the airspeed: a slope is an error of the airspeed.",
-        &FlightAir::tail_wind);
 }
 
 }  // namespace
@@ -178,8 +129,8 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   if (std::none_of(flights.begin(), flights.end(),
                    [](const CheckedFlight& flight) { return !flight.air.airspeed.empty(); }))
     return not_run("no flight " + missing_for_tail_wind(flights));
-  std::vector<Flown> flown = all_flown(flights, Regime::speed_run);
-  if (flown.empty()) return not_run(not_flown(flights, Regime::speed_run));
+  const std::vector<Flown> flown = all_flown(flights, Regime::speed_run);
+  if (flown.empty()) return not_flown(flights, Regime::speed_run);
   std::vector<Run> runs;
   for (const Flown& each : flown) {
     Run run = run_of(each);
@@ -192,8 +143,8 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
                                wind.empty() ? "" : " (no flight " + wind + ")"));
   }
   CheckResult result;
-  const Estimated height = combined(errors_of(runs, &Run::height));
-  const Estimated wind = combined(errors_of(runs, &Run::wind));
+  const Estimated height = combined_error(runs, &Run::height);
+  const Estimated wind = combined_error(runs, &Run::wind);
   const bool has_height = std::isfinite(height.value);
   const bool has_wind = std::isfinite(wind.value);
   const Estimated across = decisive(height, wind);
@@ -230,15 +181,32 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
                     {"d_value_sd_m", average(&Run::height, &Trend::scatter)},
                     {"d_value_range_m", average(&Run::height, &Trend::range)},
                     {"tail_wind_sd_m_s", average(&Run::wind, &Trend::scatter)},
-                    {"tail_wind_range_m_s", average(&Run::wind, &Trend::range)},
-                    {"delta_p_across_hpa", height.value},
-                    {"delta_p_across_stderr_hpa", height.error},
-                    {"delta_p_across_from_wind_hpa", wind.value},
-                    {"delta_p_across_from_wind_stderr_hpa", wind.error}};
-  for (ReportTable table : {table_of_heights(runs), table_of_winds(runs)}) {
-    if (!table.rows.empty()) result.tables.push_back(std::move(table));
-  }
-  add_pictures(flights, runs, result);
+                    {"tail_wind_range_m_s", average(&Run::wind, &Trend::range)}};
+  add_number("delta_p_across", "_hpa", height, result);
+  add_number("delta_p_across_from_wind", "_hpa", wind, result);
+  result.tables = {
+      table_of(runs, &Run::height, "DVALUE in speed runs",
+               "Scatter and range of DVALUE (GPS height minus pressure altitude), its slopes against the "
+               "airspeed and the dynamic pressure fitted with a drift in time, and the error of delta-p from "
+               "the slow to the fast end that the first slope implies.",
+               "m", 1),
+      table_of(runs, &Run::wind, "Tail wind in speed runs",
+               "Scatter and range of the tail wind, its slope against the airspeed fitted with a drift in "
+               "time, and the error of delta-p from the slow to the fast end that it implies.",
+               "m/s", 2)};
+  result.tables.erase(std::remove_if(result.tables.begin(), result.tables.end(),
+                                     [](const ReportTable& table) { return table.rows.empty(); }),
+                      result.tables.end());
+  const auto column = [&](const char* name, const char* title, const char* unit,
+                          std::vector<double> FlightAir::*series, bool is_departure) {
+    result.columns.push_back(column_in(flights, name, title, unit, runs, [=](const Run& run) {
+      const std::vector<double> values = run.flown.of(run.flown.flight->air.*series);
+      return is_departure ? less_mean(values) : values;
+    }));
+  };
+  column("speed-run airspeed", "true airspeed", "m/s", &FlightAir::airspeed, false);
+  column("speed-run height", "DVALUE minus its mean", "m", &FlightAir::d_value, true);
+  column("speed-run wind", "Tail wind minus its mean", "m/s", &FlightAir::tail_wind, true);
   return result;
 }
 

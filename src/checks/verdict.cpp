@@ -79,6 +79,12 @@ void withhold(const std::string& reason, CheckResult& result) {
   result.decided += ", but " + reason;
 }
 
+void add_number(const std::string& name, const std::string& unit, const Estimated& number,
+                CheckResult& result) {
+  result.numbers.emplace_back(name + unit, number.value);
+  result.numbers.emplace_back(name + "_stderr" + unit, number.error);
+}
+
 std::string with_error(const Estimated& number, const std::string& unit, int digits) {
   return fmt::format("{:+.{}f} +- {:.{}f}{}{}", number.value, digits, number.error, digits,
                      unit.empty() ? "" : " ", unit);

@@ -27,6 +27,11 @@ void decide(std::vector<TestStatistic> numbers, CheckResult& result);
 /// Sets a verdict to inconclusive, for any number, with the given `reason`.
 void withhold(const std::string& reason, CheckResult& result);
 
+/// Adds a number and its standard error: "offset_k" and "offset_stderr_k" for the name "offset" and the unit
+/// "_k".
+void add_number(const std::string& name, const std::string& unit, const Estimated& number,
+                CheckResult& result);
+
 /// Text like "+0.31 +- 0.04 hPa".
 std::string with_error(const Estimated& number, const std::string& unit, int digits = 2);
 

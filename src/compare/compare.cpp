@@ -330,8 +330,7 @@ std::vector<std::size_t> by_rank(const std::vector<Pairing>& pairings) {
 /// The residuals of models to one reference on one flight, at samples at which all models have one.
 /// @param samples_of each pairing
 FlightResiduals residuals_on(const std::vector<std::shared_ptr<const FlightSamples>>& samples_of,
-                             const std::vector<Pairing>& pairings, const MaskOptions& options,
-                             std::vector<std::string>& notes) {
+                             const std::vector<Pairing>& pairings, const MaskOptions& options, Notes& notes) {
   FlightResiduals result;
   for (auto* const series :
        {&result.values, &result.reference_defects, &result.model_defects, &result.corrected_pressures})
@@ -377,7 +376,7 @@ struct FlightPart {
   std::vector<ModelSums> models{};
   std::array<std::size_t, mask_count> masks{};
   PairMoments total_pressures{};  // first model by name, and reference
-  std::vector<std::string> notes{};
+  Notes notes{};
   std::optional<FlightResiduals> series{};
 
   template <class Archive>
@@ -505,7 +504,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     doubts.emplace_back(each.contender.model, each.reference, !each.reference.is_of_one_sample());
   const auto make = [&](const SamplesOfPairings& samples, bool with_series,
                         std::vector<SummedRecords>& records) {
-    std::vector<std::string> notes;
+    Notes notes;
     FlightPart part = part_of(residuals_on(samples, pairings, options.mask, notes), with_series, records);
     part.notes = std::move(notes);
     for (std::size_t m = 0; m < pairings.size(); ++m) {
@@ -530,7 +529,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   std::vector<FlightNote> notes;
   PairMoments total_pressures;
   for (FlightPart& part : parts) {
-    for (const std::string& note : part.notes) notes.emplace_back(part.name, note);
+    for (const Note& note : part.notes) notes.emplace_back(part.name, note);
     for (const Interval& interval : part.intervals) result.intervals.emplace_back(part.name, interval);
     for (std::size_t m = 0; m < mask_count; ++m) result.masks[m] += part.masks[m];
     total_pressures.add(part.total_pressures);

@@ -298,7 +298,7 @@ void ComparisonPanels::summarise() {
                                           utc_text(samples.time.back(), "%H:%M:%S")));
   }
   report_.info.emplace_back("Program", "pcor " PCOR_VERSION);
-  for (const std::string& note : comparison_.notes) report_.info.emplace_back("Note", note);
+  for (const Note& note : comparison_.notes) report_.info.emplace_back(label_of(note), note.text);
 }
 
 }  // namespace pcor::internal

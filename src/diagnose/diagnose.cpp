@@ -458,7 +458,7 @@ void judge_held_out(Diagnosis& diagnosis) {
   for (const HeldOutPart& part : diagnosis.held_out) {
     if (!part.is_off()) continue;
     const std::string text = part.text();
-    std::vector<std::string>& notes = diagnosis.notes;
+    Notes& notes = diagnosis.notes;
     if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(text);
     if (diagnosis.verdict == Verdict::silent) diagnosis.verdict = Verdict::unexplained;
   }

@@ -328,7 +328,7 @@ void add_info(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelDe
   if (!left_out.empty()) info.emplace_back("Not used", fmt::format("{}", fmt::join(left_out, "; ")));
   panels.add_flight_info();
   info.emplace_back("Program", "pcor " PCOR_VERSION);
-  for (const std::string& note : diagnosis.notes) info.emplace_back("Note", note);
+  for (const Note& note : diagnosis.notes) info.emplace_back(label_of(note), note.text);
 }
 
 void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {

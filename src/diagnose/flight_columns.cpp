@@ -82,8 +82,7 @@ TeamColumns columns_of_entries(const FlightPartition& share,
 }
 
 TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelDefinition& model,
-                               const CandidateSet& set, const DiagnoseOptions& options,
-                               std::vector<std::string>& notes) {
+                               const CandidateSet& set, const DiagnoseOptions& options, Notes& notes) {
   std::vector<std::size_t> file_of_each;
   for (std::size_t r = 0; r < set.references.size(); ++r) {
     for (std::size_t file = 0; file < count; ++file) file_of_each.push_back(file);

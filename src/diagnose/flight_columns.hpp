@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/diagnose/diagnose.hpp>
 #include "campaign/columns.hpp"
@@ -52,8 +53,7 @@ TeamColumns columns_of_entries(const FlightPartition& share,
 /// Columns of the first `count` flights against each reference of the set.
 /// @param notes receives notes about the flights for the user
 TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelDefinition& model,
-                               const CandidateSet& set, const DiagnoseOptions& options,
-                               std::vector<std::string>& notes);
+                               const CandidateSet& set, const DiagnoseOptions& options, Notes& notes);
 
 /// Removes flights without a residual, or with too few samples against a further reference.
 void leave_out_empty(TeamColumns& columns);

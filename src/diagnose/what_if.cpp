@@ -333,7 +333,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
                                   [](const auto& each) { return gps_kind(*each).has_value(); }),
                    references.end());
   if (references.empty()) return {};
-  std::vector<std::string> notes;  // reported by the diagnosis
+  Notes notes;  // reported by the diagnosis
   std::vector<ModelEffect> formulas = options.diagnose.formulas;
   for (const WhatIfCandidate& each : wanted) {
     const auto same = [&each](const ModelEffect& formula) { return formula.id == each.id; };

@@ -135,7 +135,7 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
   result.sums = sums_of(*fitted, task, before, after, noise);
   result.longest_run = longest_run_of(*fitted, after, noise);
   result.flaps_out = flaps_out(residuals, values.data());
-  for (const std::string& note : samples.notes) result.notes.emplace_back(samples.name, note);
+  for (const Note& note : samples.notes) result.notes.emplace_back(samples.name, note);
   for (const Interval& interval : samples.intervals)
     result.flown.set(static_cast<std::size_t>(interval.regime));
   return result;
@@ -210,7 +210,7 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
     notes.insert(notes.end(), one.notes.begin(), one.notes.end());
     all.flown |= one.flown;
   }
-  for (std::string& note : notes_of_flights(notes)) all.notes.push_back(std::move(note));
+  for (Note& note : notes_of_flights(notes)) all.notes.push_back(std::move(note));
   for (const std::unique_ptr<FitFlights>& with : flights.further()) {
     for (const Compared& one : compared(*with, values, false))
       all.further.insert(all.further.end(), one.parts.begin(), one.parts.end());

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include "fit/fit_flights.hpp"
 
@@ -59,7 +60,7 @@ struct BeforeAndAfter {
   OutlierRun longest_run{};          ///< fitted samples, first reference
   std::vector<FlightFit> flights{};  ///< the parts that were fitted and those that were held out
   std::vector<FlightFit> further{};  ///< results with each further reference
-  std::vector<std::string> notes{};  ///< about fitted flights
+  Notes notes{};                     ///< about fitted flights
   RegimeSet flown{};                 ///< regimes in the fitted flights
   Statistics flaps_out{};            ///< fitted flights
 };

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
+
 #include "fit/fit_flights.hpp"
 
 namespace pcor::internal {
@@ -29,7 +31,7 @@ struct GpsFit {
   double thermometer = 0.0;  ///< negative bias of the thermometer, K
   double thermometer_error = 0.0;
   std::vector<std::string> warnings{};  ///< held coefficients, and manoeuvres that determine them
-  std::vector<std::string> notes{};
+  Notes notes{};
 };
 
 /// Whether a reference is one of GPS, wind or height.

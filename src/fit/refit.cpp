@@ -321,13 +321,11 @@ void add_thermometer(RefitResult& result, const Fitted& fitted, const FitCovaria
 }
 
 /// Warnings for the user, sorted by decreasing severity.
-std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task, const Fitted& fitted,
-                                  const Eigen::MatrixXd& covariance, const std::optional<GpsFit>& gps,
-                                  const BeforeAndAfter& compared) {
-  std::vector<std::string> notes;
-  const auto add = [&notes](const std::vector<std::string>& more) {
-    notes.insert(notes.end(), more.begin(), more.end());
-  };
+Notes notes_of(const RefitResult& result, const FitTask& task, const Fitted& fitted,
+               const Eigen::MatrixXd& covariance, const std::optional<GpsFit>& gps,
+               const BeforeAndAfter& compared) {
+  Notes notes;
+  const auto add = [&notes](const auto& more) { notes.insert(notes.end(), more.begin(), more.end()); };
   if (gps) add(gps->notes);
   if (!is_by_gps(task.reference)) {
     add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,

@@ -90,10 +90,10 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
         "Held out, {}: rms {:.3f} before and {:.3f} hPa after the fit, scatter {:.3f} and {:.3f} hPa.",
         flight.flight, flight.before.rms, flight.after.rms, flight.before.scatter(), flight.after.scatter()));
   }
-  for (const std::string& note : fit.notes) {
+  for (const Note& note : fit.notes) {
     const bool told =
         std::find(comparison.notes.begin(), comparison.notes.end(), note) != comparison.notes.end();
-    if (!told) report.summary.push_back(sentence(note));
+    if (!told) report.summary.push_back(sentence(format_note(note)));
   }
   panels.summarise();
   if (auto picture = coefficient_picture(fit.parameters, "before the fit", "after the fit"))

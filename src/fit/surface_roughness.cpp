@@ -17,13 +17,13 @@ constexpr double min_size = 1e-5;
 constexpr double max_size = 0.1;
 constexpr double next_size = 1.7782794100389228;  // a quarter of a decade
 
-/// Products of (derivatives, residual) with each other in bins, weighted as least squares weighs them, and
-/// the covariance of the products with the noise.
-struct Products {
+/// SurfaceProducts of (derivatives, residual) with each other in bins, weighted as least squares weighs them,
+/// and the covariance of the products with the noise.
+struct SurfaceProducts {
   Eigen::MatrixXd squares{};
   Eigen::MatrixXd noise{};
 
-  Products& operator+=(const Products& other) {
+  SurfaceProducts& operator+=(const SurfaceProducts& other) {
     squares += other.squares;
     noise += other.noise;
     return *this;
@@ -35,14 +35,14 @@ struct Products {
   }
 };
 
-Products products_of(FitFlights& flights, const Eigen::VectorXd& values) {
+SurfaceProducts products_of(FitFlights& flights, const Eigen::VectorXd& values) {
   const Eigen::Index count = as_index(flights.setup().wanted.size());
-  return flights.share().sum_of_each_flight<Products>([&](std::size_t flight) {
+  return flights.share().sum_of_each_flight<SurfaceProducts>([&](std::size_t flight) {
     const FitRows rows = flights.rows(flight, values, {});
     const Eigen::MatrixXd all = side_by_side(rows.columns.leftCols(count), rows.innovations);
     const Eigen::MatrixXd weighted = flights.weighted(flight, all.leftCols(count));
-    return Products{all.transpose() * all,
-                    noise_covariance(weighted, flights.bins(flight), flights.noise(flight), 0)};
+    return SurfaceProducts{all.transpose() * all,
+                           noise_covariance(weighted, flights.bins(flight), flights.noise(flight), 0)};
   });
 }
 
@@ -53,7 +53,7 @@ struct Determined {
   Eigen::VectorXd right{};
 };
 
-Determined determined(const Products& products, const PriorRows& prior, double unit,
+Determined determined(const SurfaceProducts& products, const PriorRows& prior, double unit,
                       const std::vector<Eigen::Index>& own) {
   const Eigen::Index count = products.noise.cols();
   std::vector<Eigen::Index> others;
@@ -125,7 +125,7 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
   const std::vector<std::size_t>& wanted = flights.setup().wanted;
   if (has_new_noise) flights.measure_noise(solution.values);
   const double unit = solution.deviation * solution.deviation;
-  const Products products = products_of(flights, solution.values);
+  const SurfaceProducts products = products_of(flights, solution.values);
   bool changed = false;
   for (SurfaceRoughness& surface : surfaces) {
     std::vector<Eigen::Index> own;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
 
 namespace pcor::internal {
@@ -62,7 +63,7 @@ class FlightFile {
   virtual std::string ignored_range(int /*variable*/) const { return {}; }
 
   /// Notes on how the file was read, for its user: sentences without a full stop.
-  virtual std::vector<std::string> notes() const { return {}; }
+  virtual Notes notes() const { return {}; }
 
   /// Number of records to read as one block, variable by variable.
   virtual std::size_t records_at_once() const { return records_per_block; }

@@ -80,7 +80,7 @@ class IcarttFile final : public FlightFile {
   double max_number(int variable) const override;
   std::vector<double> missing_values(int /*variable*/) const override { return {}; }
   std::array<double, 2> valid_range(int variable) const override;
-  std::vector<std::string> notes() const override { return notes_; }
+  Notes notes() const override { return notes_; }
   void read(int variable, RecordBlock records, double* out) const override;
 
  private:
@@ -102,7 +102,7 @@ class IcarttFile final : public FlightFile {
   std::filesystem::path path_;
   Attributes attributes_;
   std::vector<Variable> variables_;  // the time first
-  std::vector<std::string> notes_{};
+  Notes notes_{};
 };
 
 /// Reads line after line.

@@ -165,7 +165,7 @@ class Look {
     model.model.aircraft = result_.aircraft;
     model.model.name =
         fmt::format("{} as recorded", result_.aircraft.empty() ? family_.title : result_.aircraft);
-    std::vector<std::string> notes;
+    Notes notes;
     try {
       model = resolve_variables(model, flight_, notes);
     } catch (const Error& error) {
@@ -580,7 +580,7 @@ class Look {
           read_samples(flight_, *result_.model, *pressure_reference(pressure), MaskOptions()));
       result_.frozen = samples->model.frozen;
       result_.intervals = samples->intervals;
-      for (const std::string& note : samples->notes) result_.notes.push_back(note);
+      for (const Note& note : samples->notes) result_.notes.push_back(note);
       result_.samples = samples;
       result_.by_gps = gps_design(flight_, *result_.model);
     } catch (const Error& error) {

@@ -92,7 +92,7 @@ Report inspection_report(const std::vector<Inspection>& flights) {
                                                    flight.records, flight.time.gap_count));
     report.info.emplace_back("Aircraft", flight.aircraft.empty() ? "not stated" : flight.aircraft);
     report.info.emplace_back("Names of", flight.family_title);
-    for (const std::string& note : flight.notes) report.info.emplace_back("Note", note);
+    for (const Note& note : flight.notes) report.info.emplace_back(label_of(note), note.text);
     if (!flight.samples) continue;
     report.flight_starts.push_back(report.time.size());
     report.flight_names.push_back(flight.samples->name);

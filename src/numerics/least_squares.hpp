@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -10,6 +11,10 @@ struct Estimated {
   double value = 0.0;
   double error = 0.0;
 };
+
+inline Estimated operator*(double factor, const Estimated& number) {
+  return {factor * number.value, std::abs(factor) * number.error};
+}
 
 /// Least squares of a few columns, with errors that know the memory and the slow drift of the noise.
 struct LeastSquares {

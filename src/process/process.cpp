@@ -82,6 +82,12 @@ class Processing {
     summary_.notes.push_back(fmt::format(format, values...));
   }
 
+  std::string notes_as_text() const {
+    std::vector<std::string> texts;
+    for (const Note& note : summary_.notes) texts.push_back(format_note(note));
+    return fmt::format("{}", fmt::join(texts, "; "));
+  }
+
   std::string variable_of(Quantity role) const {
     const auto found = file_.variables.find(role);
     return found == file_.variables.end() ? std::string() : found->second;
@@ -368,8 +374,7 @@ FileDescription Processing::describe() const {
   description.attributes.emplace_back(
       "pcor_time_stamp", flight_.timestamp_alignment() == TimestampAlignment::begin ? "begin of the record"
                                                                                     : "middle of the record");
-  if (!summary_.notes.empty())
-    description.attributes.emplace_back("pcor_notes", fmt::format("{}", fmt::join(summary_.notes, "; ")));
+  if (!summary_.notes.empty()) description.attributes.emplace_back("pcor_notes", notes_as_text());
   return description;
 }
 
@@ -583,8 +588,8 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   summary_.max_defect = -std::numeric_limits<double>::infinity();
 
   choose_roles();
-  for (std::string& each : flight_.file().notes()) summary_.notes.push_back(std::move(each));
-  for (std::string& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
+  for (Note& each : flight_.file().notes()) summary_.notes.push_back(std::move(each));
+  for (Note& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
   note_archive();
   choose_inputs();
   find_frozen_sensors();

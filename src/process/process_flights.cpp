@@ -24,22 +24,6 @@ void process_one(const ProcessTask& task, const ProcessFlightsOptions& options, 
   flight.summary = process_flight(task.input, flight.model, task.output, process);
 }
 
-/// Reasons for which flights cannot be opened, if they are probed in advance.
-std::map<fs::path, std::string> troubles_with(const std::vector<ProcessTask>& tasks,
-                                              const ProcessFlightsOptions& options) {
-  std::map<fs::path, std::string> troubles;
-  if (!options.skip_unreadable || options.opened_in == OpenedIn::this_process) return troubles;
-  std::vector<fs::path> flights;
-  for (const ProcessTask& task : tasks) {
-    std::error_code none;
-    if (!options.if_stale || !fs::exists(task.output, none)) flights.push_back(task.input);
-  }
-  for (const UnreadableFlight& unreadable :
-       readable_flights(flights, serial_communicator(), options.opened_in).unreadable)
-    troubles[unreadable.flight] = unreadable.why;
-  return troubles;
-}
-
 }  // namespace
 
 std::string_view to_string(FlightState state) {
@@ -80,7 +64,6 @@ std::vector<ProcessTask> tasks_in_folder(const std::vector<fs::path>& flights, c
 std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks,
                                              const ModelSelector& model_of,
                                              const ProcessFlightsOptions& options) {
-  const std::map<fs::path, std::string> troubles = troubles_with(tasks, options);
   std::vector<ProcessedFlight> flights;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (options.begins) options.begins(i);
@@ -88,8 +71,6 @@ std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tas
     flight.input = tasks[i].input;
     flight.output = tasks[i].output;
     try {
-      if (const auto trouble = troubles.find(flight.input); trouble != troubles.end())
-        throw Error(Error::Code::file, trouble->second);
       flight.model = model_of(flight.input);
       process_one(tasks[i], options, flight);
     } catch (const Error& error) {

@@ -179,8 +179,8 @@ Report process_report(const std::vector<ProcessedFlight>& flights, const std::st
   Outputs outputs(report, suffix);
   for (const ProcessedFlight& flight : flights) {
     if (flight.state != FlightState::unreadable) outputs.add(flight);
-    for (const std::string& note : flight.summary.notes) {
-      const std::pair<std::string, std::string> fact{"Note", note};
+    for (const Note& note : flight.summary.notes) {
+      const std::pair<std::string, std::string> fact{label_of(note), note.text};
       if (std::find(report.info.begin(), report.info.end(), fact) == report.info.end())
         report.info.push_back(fact);
     }

@@ -17,8 +17,8 @@ using namespace internal;
 namespace {
 
 constexpr std::string_view intervals_format = "pcor-intervals/1";
-constexpr double day = 86400.0;           // s
-constexpr double max_of_day = day / 2.0;  // s between two times of day; a longer interval is a mistake
+constexpr double day_length = 86400.0;           // s
+constexpr double max_of_day = day_length / 2.0;  // s between two times of day; a longer interval is a mistake
 constexpr const char* wanted_time =
     "a date and time such as 2011-11-17T20:10:00Z, or a time of the day such as \"20:10:00\"";
 
@@ -134,13 +134,13 @@ class Reader final : TomlReader {
     const toml::node& begin_node = required(table, "begin", title);
     const toml::node& end_node = required(table, "end", title);
     const Span span{time_of(begin_node), time_of(end_node)};
-    const bool of_day = span.begin < day;
-    if (of_day != (span.end < day)) {
+    const bool of_day = span.begin < day_length;
+    if (of_day != (span.end < day_length)) {
       fail(end_node,
            "one of 'begin' and 'end' is a time of the day and the other has a date; give both alike");
     }
     if (of_day && span.end != span.begin) {
-      const double duration = span.end - span.begin + (span.end < span.begin ? day : 0.0);
+      const double duration = span.end - span.begin + (span.end < span.begin ? day_length : 0.0);
       if (duration > max_of_day) {
         fail(end_node,
              "'end' is before 'begin', or more than 12 h after it; correct it, or give both with dates");
@@ -157,7 +157,7 @@ class Reader final : TomlReader {
       const toml::date_time& value = moment->get();
       const double minutes_east = value.offset ? value.offset->minutes : 0;
       const double seconds = seconds_of(value) - minutes_east * 60.0;
-      if (seconds < day) fail(node, "the time is before 1970-01-02; correct the date");
+      if (seconds < day_length) fail(node, "the time is before 1970-01-02; correct the date");
       return seconds;
     }
     const std::optional<toml::time> time =

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include <pcor/base/message.hpp>
+#include <pcor/base/note.hpp>
 #include <pcor/physics/constants.hpp>
 #include "numerics/missing.hpp"
 
@@ -134,8 +134,8 @@ class SignAgreement {
 
 }  // namespace
 
-std::vector<std::string> contradicting_signs(const FlightSamples& samples, double min_airspeed) {
-  std::vector<std::string> contradictions;
+Notes contradicting_signs(const FlightSamples& samples, double min_airspeed) {
+  Notes contradictions;
   if (samples.motion.airspeed.empty()) return contradictions;
   const SignAgreement signs(samples, min_airspeed);
   for (const SignPair& pair : signs.pairs()) {

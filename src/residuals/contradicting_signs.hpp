@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/residuals/samples.hpp>
 
 #include <string>
@@ -14,6 +15,6 @@ namespace pcor::internal {
 /// The pairs are compared over 10 s in the air; they contradict each other if their correlation is below -0.5
 /// in at least ten minutes in which both moved. A missing series is not compared.
 /// @param min_airspeed m/s; slower samples are not used
-std::vector<std::string> contradicting_signs(const FlightSamples& samples, double min_airspeed);
+Notes contradicting_signs(const FlightSamples& samples, double min_airspeed);
 
 }  // namespace pcor::internal

@@ -1,6 +1,6 @@
 #include "residuals/frozen.hpp"
 
-#include <pcor/base/message.hpp>
+#include <pcor/base/note.hpp>
 
 #include "roles/frozen.hpp"
 

@@ -93,7 +93,7 @@ constexpr std::array<Form, 6> forms{{
 
 }  // namespace
 
-ModelSamples Reference::read(const Flight&, const std::vector<double>&, std::vector<std::string>&) const {
+ModelSamples Reference::read(const Flight&, const std::vector<double>&, Notes&) const {
   return {};
 }
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include <pcor/base/error.hpp>
-#include <pcor/base/message.hpp>
+#include <pcor/base/note.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/realtime/chain.hpp>
@@ -104,7 +104,7 @@ FlightMotion read_motion(const Flight& flight, const ModelDefinition& model, Fli
   const std::array<const std::vector<double>*, losses.size()> found{&motion.altitude, &motion.roll,
                                                                     &motion.pitch, &motion.heading};
   for (std::size_t i = 0; i < losses.size(); ++i) {
-    if (found[i]->empty()) samples.notes.emplace_back(losses[i].text);
+    if (found[i]->empty()) samples.notes.emplace_back(std::string(losses[i].text));
   }
   return motion;
 }
@@ -154,7 +154,7 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
 
 /// Reads recorded inputs at some rate.
 ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& inputs, int rate,
-                         std::vector<std::string>& notes) {
+                         Notes& notes) {
   ModelSamples samples;
   for (const ModelInput& input : inputs) {
     ReadValues read = read_values(flight, input.variable, input.conversion, rate);
@@ -167,7 +167,7 @@ ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& in
 }
 
 /// Notes pressures whose resolution is a considerable part of their noise.
-void note_coarse(const ModelSamples& samples, std::vector<std::string>& notes) {
+void note_coarse(const ModelSamples& samples, Notes& notes) {
   for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
     const std::vector<double>* const values = samples.find(quantity);
     const double step = values == nullptr ? 0.0 : resolution_of(*values);
@@ -190,7 +190,7 @@ FastSeries read_along_beam(const Flight& flight, const ModelDefinition& model,
       rate = std::max(rate, flight.variable(input.variable).rate);
   }
   if (rate == 1) return {airspeed_along_beam(model, records), 1};
-  std::vector<std::string> said_already;
+  Notes said_already;
   ModelSamples fast = read_inputs(flight, inputs, rate, said_already);
   const auto in_record = static_cast<std::size_t>(rate);
   for (const auto& [quantity, values] : records.columns) {
@@ -215,7 +215,7 @@ std::vector<double>* ModelSamples::find(Quantity quantity) {
 }
 
 ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefinition& model, bool with_laser,
-                                          const std::vector<double>& time, std::vector<std::string>& notes) {
+                                          const std::vector<double>& time, Notes& notes) {
   const std::vector<Quantity> roles = roles_of(model, with_laser);
   const Chain chain = chain_of(model.model, roles);
   const std::vector<ModelInput> inputs = model_inputs(flight, model, chain, roles, notes);
@@ -270,13 +270,13 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
   samples.step = flight.time().step;
   samples.time = record_times(flight);
   samples.notes = flight.file().notes();
-  for (std::string& note : notes_on_law(flight, model)) samples.notes.push_back(std::move(note));
+  for (Note& note : notes_on_law(flight, model)) samples.notes.push_back(std::move(note));
   samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
   samples.reference = reference.read(flight, samples.time, samples.notes);
   samples.latitude = read_role(flight, model, Quantity::latitude).values;
   samples.longitude = read_longitude(flight, model).values;
   samples.motion = read_motion(flight, model, samples);
-  for (std::string& note : contradicting_signs(samples, options.min_airspeed))
+  for (Note& note : contradicting_signs(samples, options.min_airspeed))
     samples.notes.push_back(std::move(note));
   read_flaps(flight, model, options.min_airspeed, samples);
   for (const auto part : {&FlightSamples::model, &FlightSamples::reference})

@@ -12,6 +12,6 @@ namespace pcor::internal {
 /// each.
 /// @throws Error if the model cannot be used, a variable is absent or has no value, or its unit does not fit.
 ModelSamples read_model_columns(const Flight& flight, const ModelDefinition& model, bool with_laser,
-                                const std::vector<double>& time, std::vector<std::string>& notes);
+                                const std::vector<double>& time, Notes& notes);
 
 }  // namespace pcor::internal

@@ -44,7 +44,7 @@ auto rank_of(const ModelCandidate& law, const VariableNaming& family) {
 /// Reason why a model cannot correct a flight that has its variables; empty if it can.
 std::string why_not(const Flight& flight, const ModelDefinition& model) {
   try {
-    std::vector<std::string> notes;
+    Notes notes;
     const ModelDefinition whole = resolve_variables(model, flight, notes);
     const auto laser = whole.variables.find(Quantity::lams_airspeed);
     const std::vector<Quantity> roles =
@@ -90,8 +90,7 @@ std::string reasons_of(const std::vector<ModelCandidate>& laws) {
 }  // namespace
 
 std::vector<ModelCandidate> model_candidates(const Flight& flight,
-                                             const std::vector<std::filesystem::path>& models,
-                                             std::vector<std::string>& notes) {
+                                             const std::vector<std::filesystem::path>& models, Notes& notes) {
   const VariableNaming& family = family_of(flight);
   std::vector<ModelCandidate> laws;
   for (const std::filesystem::path& path : models) {
@@ -109,10 +108,10 @@ std::vector<ModelCandidate> model_candidates(const Flight& flight,
 }
 
 ModelCandidate model_candidate(const Flight& flight, const std::vector<std::filesystem::path>& models,
-                               std::vector<std::string>& notes) {
-  std::vector<std::string> unread;
+                               Notes& notes) {
+  Notes unread;
   std::vector<ModelCandidate> laws = model_candidates(flight, models, unread);
-  if (!unread.empty()) throw Error(Error::Code::definition, unread.front());
+  if (!unread.empty()) throw Error(Error::Code::definition, unread.front().text);
   if (flight.aircraft().empty())
     throw Error(Error::Code::model, fmt::format("{}: the aircraft is not stated; name the model with --model",
                                                 flight.path().string()));

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include <pcor/base/error.hpp>
-#include <pcor/base/message.hpp>
+#include <pcor/base/note.hpp>
 #include <pcor/base/suggest.hpp>
 #include <pcor/base/utc.hpp>
 #include "base/quoting.hpp"
@@ -26,7 +26,7 @@ bool is_same(const UnitConversion& a, const UnitConversion& b) {
 
 /// The unit in the model replaces the unit in the file. Either may be wrong.
 void note_other_unit(const VariableInfo& variable, const QuantityInfo& role, const std::string& stated,
-                     std::vector<std::string>& notes) {
+                     Notes& notes) {
   const std::string unit(role.unit);
   if (stated.empty() || !is_known_unit(variable.units) || !is_convertible(stated, unit)) return;
   const bool same =
@@ -55,7 +55,7 @@ Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
 }
 
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition& file, const Chain& chain,
-                                     const std::vector<Quantity>& roles, std::vector<std::string>& notes) {
+                                     const std::vector<Quantity>& roles, Notes& notes) {
   require_possible_pressure(flight, file);
   const VariableNaming& family = family_of(file, flight);
   const auto conversion_of = [&](Quantity role) {
@@ -115,7 +115,7 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
   return inputs;
 }
 
-void note_left_out(const ModelInput& input, const RejectedCounts& left_out, std::vector<std::string>& notes) {
+void note_left_out(const ModelInput& input, const RejectedCounts& left_out, Notes& notes) {
   const auto note = [&](std::size_t samples, const std::string& where) {
     if (samples == 0) return;
     notes.push_back(fmt::format("{} {}, and {} taken as missing",
@@ -130,8 +130,8 @@ void note_left_out(const ModelInput& input, const RejectedCounts& left_out, std:
   note(left_out.enormous, "above 1e30, which marks missing values");
 }
 
-std::vector<std::string> notes_on_law(const Flight& flight, const ModelDefinition& file) {
-  std::vector<std::string> notes;
+Notes notes_on_law(const Flight& flight, const ModelDefinition& file) {
+  Notes notes;
   const std::string day = utc_text(flight.time().first, "%Y-%m-%d");
   const LawInfo& law = file.law;
   if (!law.holds_on(day)) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/realtime/chain.hpp>
@@ -27,14 +28,14 @@ Chain chain_of(const Model& model, const std::vector<Quantity>& roles);
 /// roles and of formulas. Adds cautions to `notes`, one sentence each.
 /// @throws Error if a variable is absent or has no value, or its unit does not fit.
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition& file, const Chain& chain,
-                                     const std::vector<Quantity>& roles, std::vector<std::string>& notes);
+                                     const std::vector<Quantity>& roles, Notes& notes);
 
 /// Adds to `notes` the number of samples of an input that are treated as missing without a mark in the file,
 /// and the reason; no note without such samples.
-void note_left_out(const ModelInput& input, const RejectedCounts& left_out, std::vector<std::string>& notes);
+void note_left_out(const ModelInput& input, const RejectedCounts& left_out, Notes& notes);
 
 /// Cautions about a law that was made for another time or aircraft than the flight.
-std::vector<std::string> notes_on_law(const Flight& flight, const ModelDefinition& file);
+Notes notes_on_law(const Flight& flight, const ModelDefinition& file);
 
 /// Whether a model belongs to the flight's aircraft, by the registration in both: "C-130 N130AR" and
 /// "N130AR". False if one of them states no registration.

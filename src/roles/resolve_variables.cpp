@@ -24,7 +24,7 @@ class Completion {
   Completion(ModelDefinition model, const Flight& flight, const VariableNaming& family)
       : file_(std::move(model)), flight_(flight), family_(family) {}
 
-  ModelDefinition complete(std::vector<std::string>& notes) {
+  ModelDefinition complete(Notes& notes) {
     take_pressures();
     take_temperature();
     if (!has(Quantity::vapor_pressure) && !has(Quantity::dew_point) && !has(Quantity::frost_point)) {
@@ -148,8 +148,7 @@ bool names_pressures_alone(const ModelDefinition& model) {
          model.variables.count(Quantity::dynamic_pressure) != 0;
 }
 
-ModelDefinition resolve_variables(const ModelDefinition& model, const Flight& flight,
-                                  std::vector<std::string>& notes) {
+ModelDefinition resolve_variables(const ModelDefinition& model, const Flight& flight, Notes& notes) {
   if (!names_pressures_alone(model) && (model.variables.count(Quantity::static_pressure) != 0 ||
                                         model.variables.count(Quantity::dynamic_pressure) != 0)) {
     return model.roles_from.empty() ? model : with_units(model, family_named(model.roles_from));

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
+
 #include "campaign/flight_air.hpp"
 
 namespace pcor::internal {
@@ -77,7 +79,7 @@ struct HeightRecord {
   std::array<double, height_errors> rms_of_unit{};
   /// Stated variance of delta-p of the model, averaged over the samples, hPa2; nullopt if not stated.
   std::optional<double> law_variance{};
-  std::vector<std::string> notes;
+  Notes notes;
 
   template <class Archive>
   void serialize(Archive& archive) {

@@ -57,7 +57,7 @@ IterativeCalibration calibrate_iteratively(const FlightSet& flights, const Model
   IterativeCalibration result;
   TemperatureOptions options = temperature_options;
   std::vector<DegreeChoice> degrees;
-  std::vector<std::string> notes_on_degree;
+  Notes notes_on_degree;
   ModelDefinition current = model;
   std::vector<double> coefficients;
   for (const ModelEffect& effect : model.model.effects) {
@@ -90,7 +90,7 @@ IterativeCalibration calibrate_iteratively(const FlightSet& flights, const Model
   descend(result.temperature.model, model, "fitted to", flights.title());
   result.temperature.degrees = std::move(degrees);
   if (result.rounds.size() > 1) {
-    std::vector<std::string>& notes = result.temperature.notes;
+    Notes& notes = result.temperature.notes;
     const bool has_graver = !result.temperature.worse.empty();
     notes.insert(notes.begin() + (has_graver ? 1 : 0), notes_on_degree.begin(), notes_on_degree.end());
     result.temperature.notes_on_degree = std::move(notes_on_degree);

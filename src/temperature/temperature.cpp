@@ -632,7 +632,7 @@ class TemperatureCalibration {
   }
 
   void write_notes() {
-    std::vector<std::string>& notes = result_.notes;
+    Notes& notes = result_.notes;
     compare_with_none();
     write_warnings();
     if (!result_.worse.empty()) notes.push_back(result_.worse);
@@ -694,13 +694,14 @@ class TemperatureCalibration {
                       "may be wrong by 10 to 30 %",
                       result_.innovation_correlation));
     }
-    std::map<std::string, std::size_t> said;
+    std::map<Note, std::size_t> said;
     for (const HeightRecord& record : records_) {
-      for (const std::string& note : record.notes) ++said[note];
+      for (const Note& note : record.notes) ++said[note];
     }
-    for (const auto& [note, count] : said)
-      notes.push_back(count == 1 || records_.size() == 1 ? note
-                                                         : fmt::format("{} ({} flights)", note, count));
+    for (const auto& [note, count] : said) {
+      notes.push_back(note);
+      if (count > 1 && records_.size() > 1) notes.back().text += fmt::format(" ({} flights)", count);
+    }
   }
 
   void write_provenance() {

@@ -179,7 +179,8 @@ Report temperature_report(const TemperatureResult& result) {
                              result.worse.empty() ? "" : ", not significant");
   report.subtitle = "Calibration by the GPS height for " + result.model.model.name;
   for (const std::string& warning : result.warnings) report.summary.push_back("Warning: " + warning + ".");
-  for (const std::string& note : result.notes) report.summary.push_back("Note: " + note + ".");
+  for (const Note& note : result.notes)
+    report.summary.push_back(fmt::format("{}: {}.", label_of(note), note.text));
   report.info = {
       {"Samples", std::to_string(result.samples)},
       {"Noise of the GPS height", fmt::format("{:.2f} m in a sample, {:.2f} m correlated over {:.0f} s",

@@ -29,4 +29,14 @@ TEST(Phrasing, ShowsTwoDigitsOfAnError) {
   EXPECT_EQ(decimals_of_error(34.0), 0);
 }
 
+TEST(Phrasing, MergesNotesOfFlightsBySeverityAndText) {
+  using pcor::Note;
+  using pcor::warning_note;
+  const pcor::Notes merged = notes_of_flights({{"a.nc", warning_note("PSFD is frozen")},
+                                               {"a.nc", Note("PSFD is frozen")},
+                                               {"b.nc", warning_note("PSFD is frozen")},
+                                               {"a.nc", warning_note("PSFD is frozen")}});
+  EXPECT_EQ(merged, (pcor::Notes{warning_note("a.nc, b.nc: PSFD is frozen"), Note("a.nc: PSFD is frozen")}));
+}
+
 }  // namespace

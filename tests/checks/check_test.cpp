@@ -14,6 +14,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/simulate/simulate.hpp>
 #include "campaign/flight_air.hpp"
+#include "support/says.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace pcor::internal;
@@ -141,7 +142,7 @@ TEST_F(CheckTest, FindsNothingWrongWhereNothingIs) {
       EXPECT_NE(result.verdict, CheckVerdict::inconsistent) << name << ": " << result.finding;
       EXPECT_THAT(result.finding, Not(HasSubstr("nan"))) << name;
       EXPECT_FALSE(result.cannot_see.empty()) << name;
-      EXPECT_FALSE(result.pictures.empty()) << name;
+      EXPECT_FALSE(result.columns.empty()) << name;
     }
   }
 }
@@ -190,7 +191,7 @@ TEST_F(CheckTest, LeavesClimbsOutForTheAvionics) {
     const CheckResult result = named(checks, name);
     EXPECT_LT(std::abs(number(result, "mean_difference_hpa")), 0.15) << name;
     EXPECT_THAT(result.finding, HasSubstr("PS_A/QC_A"));
-    EXPECT_THAT(result.notes, testing::Contains(HasSubstr("avionics")));
+    EXPECT_THAT(result.notes, testing::Contains(test::Says("avionics")));
   }
 }
 
@@ -259,11 +260,13 @@ TEST_F(CheckTest, LayersSeeALagOfTheStaticLine) {
   const std::string lag = "[[effect]]\nid = \"static-lag\"\ntau = 3.0\n";
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const CheckResult without = named(check({fly(head + there_and_back, seed)}, first_model()), "layers");
-    EXPECT_THAT(without.notes, Not(testing::Contains(HasSubstr("behind the GPS height"))));
+    EXPECT_THAT(without.notes, Not(testing::Contains(test::Says("behind the GPS height"))));
     // To a tenth of it: climb rates are means over half a minute.
     const CheckResult with = named(check({fly(head + lag + there_and_back, seed)}, first_model()), "layers");
-    EXPECT_THAT(with.notes, testing::Contains(testing::ContainsRegex(
-                                "static pressure is (2.[789]|3.[0123]) .* s behind the GPS height")));
+    EXPECT_THAT(with.notes,
+                testing::Contains(testing::Field(
+                    &Note::text, testing::ContainsRegex(
+                                     "static pressure is (2.[789]|3.[0123]) .* s behind the GPS height"))));
   }
 }
 
@@ -346,8 +349,8 @@ TEST_F(CheckTest, MissingInputsAreReported) {
 
 TEST_F(CheckTest, NoteOfSeveralFlightsIsPrintedOnce) {
   const Checks checks = check({fly(head + aloft, 1), fly(head + aloft, 2)}, std::nullopt);
-  EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("recovery factor")).Times(1));
-  EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("flight1.nc, flight2.nc: no model is given")));
+  EXPECT_THAT(checks.notes, testing::Contains(test::Says("recovery factor")).Times(1));
+  EXPECT_THAT(checks.notes, testing::Contains(test::Says("flight1.nc, flight2.nc: no model is given")));
 }
 
 TEST_F(CheckTest, TakesNoSingleLeg) {

@@ -9,6 +9,7 @@
 
 #include <pcor/simulate/simulate.hpp>
 #include "checks/checks.hpp"
+#include "support/says.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace pcor::internal;
@@ -90,7 +91,7 @@ TEST(LamsTemperatureCheck, KeepsCloudsApart) {
   // A thermometer that reads 2 K low when wet, and dries within 10 s.
   EXPECT_GT(numbers.at("cloud_offset_k"), 1.2);
   EXPECT_LT(std::abs(numbers.at("offset_k")), 0.5);
-  EXPECT_THAT(result.notes, Contains(HasSubstr("suspect")));
+  EXPECT_THAT(result.notes, Contains(test::Says("suspect")));
 }
 
 TEST(LamsTemperatureCheck, IsNoisierInTheBoundaryLayer) {

@@ -11,6 +11,7 @@
 
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "checks/checks.hpp"
+#include "support/says.hpp"
 
 using namespace pcor::internal;
 
@@ -109,7 +110,7 @@ TEST(LayersCheck, GoesOnWithTheFlightsThatHaveLayers) {
   without.air.height.clear();
   const CheckResult result = check_layers({without, made(0.0)});
   ASSERT_TRUE(result.ran);
-  EXPECT_THAT(result.notes, testing::Contains(HasSubstr("GPS height")));
+  EXPECT_THAT(result.notes, testing::Contains(test::Says("GPS height")));
   // Pictures have a value for every record of all flights.
   for (const ReportColumn& column : result.columns)
     EXPECT_EQ(column.values.size(), 2U * 1601U) << column.name;

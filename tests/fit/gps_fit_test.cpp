@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/says.hpp"
 #include "support/temporary_directory.hpp"
 
 using pcor::FittedParameter;
@@ -91,7 +92,7 @@ TEST(GpsFit, FindsTheLawAndTheThermometerByWindAndHeight) {
   const RefitResult result = fit(flight("c130-eq18", warm_thermometer), no_law(), {"wind", "height"});
   EXPECT_LT(std::abs(error_of(result)), 0.3);
   EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
-  EXPECT_THAT(result.notes, Contains(HasSubstr("the thermometer reads high by 0.")));
+  EXPECT_THAT(result.notes, Contains(pcor::test::Says("the thermometer reads high by 0.")));
 }
 
 // Shared with the nuisance, the offset was 0.3 K too small.
@@ -156,7 +157,7 @@ TEST(GpsFit, NamesACoefficientAtItsBound) {
   EXPECT_TRUE(result.parameters[1].at_bound);
   EXPECT_DOUBLE_EQ(result.parameters[1].value, 0.014);
   EXPECT_FALSE(result.parameters[0].at_bound);
-  EXPECT_THAT(result.notes, Contains(HasSubstr("static-alpha.a1 is at its bound")));
+  EXPECT_THAT(result.notes, Contains(pcor::test::Says("static-alpha.a1 is at its bound")));
   // The others make up for it: delta-p changes by less than the attack term that is missing.
   EXPECT_LT(std::abs(error_of(result)), 0.9 * pressure * -ratio * (0.021279816 - 0.014));
 }

@@ -117,8 +117,8 @@ TEST(Recovery, Equation20WithRawMachIsReportedCollinear) {
   const pcor::RefitResult raw = fit_of("gv-psf-eq20-raw-mach.toml");
   EXPECT_GT(raw.condition_number, 5.0 * fit_of("gv-psf-eq20.toml").condition_number);
   const auto said = [&](const std::string& text) {
-    for (const std::string& note : raw.notes) {
-      if (note.find(text) != std::string::npos) return true;
+    for (const pcor::Note& note : raw.notes) {
+      if (note.text.find(text) != std::string::npos) return true;
     }
     return false;
   };
@@ -168,5 +168,5 @@ TEST(Recovery, OfAFlightWithoutManoeuvresIsExplained) {
     EXPECT_LT(std::abs(parameter.value - parameter.start), 4.0 * parameter.standard_error) << parameter.name;
   }
   ASSERT_FALSE(fit.notes.empty());
-  EXPECT_NE(fit.notes.front().find("no pitch manoeuvre, yaw manoeuvre or speed run"), std::string::npos);
+  EXPECT_NE(fit.notes.front().text.find("no pitch manoeuvre, yaw manoeuvre or speed run"), std::string::npos);
 }

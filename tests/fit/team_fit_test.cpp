@@ -56,7 +56,7 @@ std::string text_of(const RefitResult& result) {
   }
   for (const Omission& each : result.omissions) add(each.rms);
   for (const std::string& each : result.warnings) text += each;
-  for (const std::string& each : result.notes) text += each;
+  for (const Note& each : result.notes) text += each.text;
   return text + fmt::format("{} {}", result.samples, result.outliers);
 }
 

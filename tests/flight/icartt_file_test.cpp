@@ -9,6 +9,7 @@
 #include <pcor/flight/flight_writer.hpp>
 #include "flight/flight_file.hpp"
 #include "support/error_of.hpp"
+#include "support/says.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace pcor::internal {
@@ -89,7 +90,7 @@ TEST_F(Icartt, RecordWithoutLineEndIsLeftOut) {
   for (const char* const cut : {"47079, 850, 300, 0.35", "47079, 850"}) {
     const Flight flight(write(head + values + cut));
     EXPECT_EQ(flight.records(), 3U);
-    EXPECT_THAT(flight.file().notes(), ElementsAre(HasSubstr("line 28 of flight.ict")));
+    EXPECT_THAT(flight.file().notes(), ElementsAre(test::Says("line 28 of flight.ict")));
   }
   EXPECT_TRUE(Flight(write(head + values)).file().notes().empty());
 }

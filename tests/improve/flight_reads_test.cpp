@@ -33,8 +33,7 @@ class CountingReference final : public Reference {
   std::string name() const override { return laser_->name(); }
   bool reads_laser() const override { return true; }
 
-  ModelSamples read(const Flight& flight, const std::vector<double>& time,
-                    std::vector<std::string>& notes) const override {
+  ModelSamples read(const Flight& flight, const std::vector<double>& time, Notes& notes) const override {
     ++counts_->reads[flight.path()];
     return laser_->read(flight, time, notes);
   }

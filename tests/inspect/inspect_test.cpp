@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/netcdf_file.hpp"
+#include "support/says.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace {
@@ -88,7 +89,7 @@ TEST(Inspect, UnreadableModelFileIsNamedInANoteAndOthersAreUsed) {
   const Inspection inspection = pcor::inspect_flight(
       flight_with(folder, {{"PSFD", "hPa"}, {"QCF", "hPa"}, {"ADIFR", "hPa"}, {"QCR", "hPa"}}),
       {folder / "broken.toml", data / "models" / "c130-psfd-eq18.toml"});
-  EXPECT_THAT(inspection.notes, Contains(testing::HasSubstr("broken.toml")));
+  EXPECT_THAT(inspection.notes, Contains(pcor::test::Says("broken.toml")));
   ASSERT_EQ(inspection.laws.size(), 1U);
   EXPECT_EQ(inspection.laws.front().path.filename(), "c130-psfd-eq18.toml");
 }

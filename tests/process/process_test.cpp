@@ -19,6 +19,7 @@
 #include <pcor/realtime/low_pass.hpp>
 #include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
+#include "support/says.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace pcor {
@@ -259,7 +260,7 @@ TEST_F(Process, GoesOnWithoutALaser) {
   ModelDefinition model = lams_model();
   model.variables[Quantity::lams_airspeed] = "BEAM1";
   const ProcessSummary summary = process_flight(input_, model, output_);
-  EXPECT_THAT(summary.notes, Contains(HasSubstr("BEAM1")));
+  EXPECT_THAT(summary.notes, Contains(test::Says("BEAM1")));
   EXPECT_THAT(summary.outputs, testing::Not(Contains("PCOR_LAMS")));
 }
 
@@ -495,7 +496,7 @@ TEST_F(Process, LeavesOutAFrozenSensorAndSaysSo) {
     ModelDefinition model = lams_model();
     model.variables.erase(Quantity::lams_airspeed);
     const ProcessSummary summary = process_flight(input_, model, output_);
-    EXPECT_THAT(summary.notes, Contains(HasSubstr(frozen + " is frozen")));
+    EXPECT_THAT(summary.notes, Contains(test::Says(frozen + " is frozen")));
     const std::string result = frozen == "TTRR" ? "TASX" : "PSXC";
     const std::vector<double> missing_values = read(result, ""), flags = read("PCORFLAG", "");
     ProcessOptions keep;
@@ -615,8 +616,9 @@ TEST_F(Process, WritesUncertaintiesBesideTheirResults) {
   // a0 is of the measured static pressure, 698 hPa; 32-bit floats. The noise of p moves delta-p by 0.4 %.
   EXPECT_NEAR(read("PCOR_uncertainty_NEW", "hPa")[5], std::hypot(1e-4 * 698.0, 0.004 * 0.03), 1e-5);
   EXPECT_NEAR(read("PSFDC_uncertainty_NEW", "hPa")[5], std::hypot(1e-4 * 698.0, 0.03), 1e-4);
-  const auto is_of_thermometer = [](const std::string& note) {
-    return note.find("temp-offset.offset") != std::string::npos && note.find("0.3") != std::string::npos;
+  const auto is_of_thermometer = [](const Note& note) {
+    return note.text.find("temp-offset.offset") != std::string::npos &&
+           note.text.find("0.3") != std::string::npos;
   };
   EXPECT_EQ(std::count_if(summary.notes.begin(), summary.notes.end(), is_of_thermometer), 1);
   // The thermometer's 0.3 K and 0.005 of the recovery heating, about 8 K: all other terms are smaller.
@@ -801,7 +803,7 @@ double scatter(const std::vector<double>& values, std::size_t first, std::size_t
 TEST_F(NoisyLag, IsUndoneWhereThereIsMoreSignalThanNoise) {
   constexpr double noise = 0.02;
   const ProcessSummary summary = run(-0.06, noise);
-  EXPECT_THAT(summary.notes, Not(Contains(HasSubstr("not applied"))));
+  EXPECT_THAT(summary.notes, Not(Contains(test::Says("not applied"))));
   const std::vector<double> corrected = read("ATX", "K");
   const std::vector<double> recorded = read("TTRR", "K");
   const auto ratio = [&](std::size_t first) {
@@ -817,7 +819,7 @@ TEST_F(NoisyLag, IsUndoneWhereThereIsMoreSignalThanNoise) {
 TEST_F(NoisyLag, LagIsSkippedIfNoiseExceedsErrorReduction) {
   constexpr double noise = 0.1;
   const ProcessSummary summary = run(0.0, noise);
-  EXPECT_THAT(summary.notes, Contains(HasSubstr("temp-lag of 8 s")));
+  EXPECT_THAT(summary.notes, Contains(test::Says("temp-lag of 8 s")));
   EXPECT_LT(scatter(read("ATX", "K"), 100, 1000), 1.05 * noise);
 }
 

@@ -72,16 +72,18 @@ def test_text_is_that_of_the_tool(in_folder):
 
 
 def test_options_of_the_tool_are_those_of_the_functions():
-    # The completion for fish lists the same options from another source than the help.
-    offered = re.findall(r"__fish_seen_subcommand_from (\w+)' (?:-s \w )?-l (\S+) (.*)", run_tool("completion", "fish").stdout)
-    assert len({command for command, *_ in offered} - {"completion", "man"}) == 11
-    for command, option, meaning in offered:
+    # The completion lists the same options from another source than the help; options with a value have a case of their own.
+    script = run_tool("completion", "bash").stdout
+    options = dict(re.findall(r"'(\w+) '\*' -'\*\) words='([^']*)'", script))
+    with_value = set(re.findall(r"'(\w+) --(\S+) '\*", script))
+    offered = [(command, option) for command, words in options.items() for option in re.findall(r"^--(.+)$", words, re.MULTILINE)]
+    assert len(options.keys() - {"completion", "man"}) == 11
+    for command, option in offered:
         name = {"try": "try_"}.get(option, option.replace("-", "_"))
         if command not in ("completion", "man") and name not in ("help", "version", "json", "json_keys", "quiet"):
             assert name in inspect.signature(getattr(pcor, command)).parameters
-            # a flag has no -r
             stub = re.search(rf"^def {command}\(.*", STUB, flags=re.MULTILINE)[0]
-            assert f", {name}: " in stub and (f", {name}: Optional[bool]" in stub) == (" -r " not in f" {meaning}")
+            assert f", {name}: " in stub and (f", {name}: Optional[bool]" in stub) == ((command, option) not in with_value)
 
 
 def test_types_of_results_are_those_of_the_fields(in_folder):

@@ -1,3 +1,4 @@
+#include <pcor/base/note.hpp>
 #include <pcor/report/json.hpp>
 
 #include <gtest/gtest.h>
@@ -92,6 +93,11 @@ TEST(JsonKeys, ListsConditionalKeysAndEntriesOfEmptyLists) {
   EXPECT_EQ(keys.at("used").type, "true or false");
   EXPECT_EQ(keys.at("colours[].colour").type, "text");
   EXPECT_EQ(keys.at("reason").type, "text");
+}
+
+TEST(Json, NoteHasASeverity) {
+  EXPECT_EQ(to_json(Notes{warning_note("PSFD is frozen")}),
+            "[\n  {\n    \"severity\": \"warning\",\n    \"text\": \"PSFD is frozen\"\n  }\n]\n");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/isothermal_air.hpp"
+#include "support/says.hpp"
 #include "support/short_flight.hpp"
 
 using pcor::Quantity;
@@ -126,6 +127,6 @@ TEST(Wind, SeesWhichSensorsOfAFlightAreFrozen) {
     ASSERT_EQ(samples.reference.frozen.size(), 1U) << name;
     EXPECT_EQ(samples.reference.frozen[0].quantity, quantity);
     EXPECT_NEAR(static_cast<double>(samples.reference.frozen[0].count), 120.0, 2.0);
-    EXPECT_THAT(samples.notes, testing::Contains(testing::HasSubstr(std::string(name) + " is frozen")));
+    EXPECT_THAT(samples.notes, testing::Contains(pcor::test::Says(std::string(name) + " is frozen")));
   }
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "support/says.hpp"
 #include "support/synthetic_air.hpp"
 
 using namespace pcor::internal;
@@ -123,7 +124,7 @@ TEST(IsobarSlope, UndeterminedSlopeIsPassedToTheLikelihood) {
   take_off_isobar_slope(no_wind, IsobarSlope::geostrophic);
   EXPECT_EQ(no_wind.slope_left, 1.0);
   EXPECT_EQ(range_of_excess(no_wind), before);
-  EXPECT_THAT(no_wind.notes, ElementsAre(HasSubstr("GGSPD"), HasSubstr("no wind")));
+  EXPECT_THAT(no_wind.notes, ElementsAre(pcor::test::Says("GGSPD"), pcor::test::Says("no wind")));
 
   auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
   samples->motion.heading.clear();
@@ -132,7 +133,8 @@ TEST(IsobarSlope, UndeterminedSlopeIsPassedToTheLikelihood) {
   take_off_isobar_slope(no_directions, IsobarSlope::whole_flight);
   EXPECT_EQ(no_directions.slope_left, 1.0);
   EXPECT_EQ(range_of_excess(no_directions), before);
-  EXPECT_THAT(no_directions.notes, ElementsAre(HasSubstr("heading"), HasSubstr("--slope fitted")));
+  EXPECT_THAT(no_directions.notes,
+              ElementsAre(pcor::test::Says("heading"), pcor::test::Says("--slope fitted")));
 }
 
 TEST(IsobarSlope, StraightFlightAssumesLevelCrossTrack) {

@@ -26,6 +26,7 @@
 #include "model_io/calibration.hpp"
 #include "support/error_of.hpp"
 #include "support/many_seeds.hpp"
+#include "support/says.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace pcor::internal;
@@ -537,7 +538,7 @@ TEST_F(Temperature, StatedErrorsIncludeSlopeEstimateRemainder) {
     const double score =
         (result.likelihood.coefficients[0] - truth(flight)[0]) / result.likelihood.standard_errors[0];
     squares += score * score;
-    EXPECT_THAT(result.notes, testing::Contains(HasSubstr("geostrophic")));
+    EXPECT_THAT(result.notes, testing::Contains(test::Says("geostrophic")));
     fs::remove(flight);
   }
   EXPECT_LT(std::sqrt(squares / static_cast<double>(flights)), 1.7);
@@ -584,7 +585,7 @@ TEST_F(Temperature, AlternatingFitReportsDegreeSelection) {
       calibrate_iteratively(flights, model(), {pcor::lams_reference()}, {}, {});
   EXPECT_TRUE(found.converged);
   EXPECT_THAT(found.temperature.degrees, SizeIs(4));  // none to quadratic
-  EXPECT_THAT(found.temperature.notes_on_degree, ElementsAre(HasSubstr("--degree")));
+  EXPECT_THAT(found.temperature.notes_on_degree, ElementsAre(test::Says("--degree")));
   EXPECT_THAT(found.temperature.notes, testing::Contains(found.temperature.notes_on_degree.front()));
   for (const CalibrationRound& round : found.rounds)
     EXPECT_THAT(round.coefficients, SizeIs(found.rounds.front().coefficients.size()));

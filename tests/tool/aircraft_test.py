@@ -185,7 +185,8 @@ class OtherAircraft(unittest.TestCase):
         self.run_tool("simulate", SOURCE / "data/scenarios/c130-eq18.toml", "-o", flight, "--quiet")
 
         def notes(path):
-            return [note for note in self.json("inspect", path)["flights"][0]["notes"] if "opposite signs" in note]
+            return [note["text"] for note in self.json("inspect", path)["flights"][0]["notes"]
+                    if note["severity"] == "warning" and "opposite signs" in note["text"]]
 
         self.assertEqual(notes(flight), [])
         for variable, words in (("GGVSPD", "the vertical speed and the change of altitude"),
@@ -295,7 +296,7 @@ class OtherAircraft(unittest.TestCase):
         right = self.json("compare", "ncar.nc", "-m", "plain.toml", "--reference", "pressure:PSXC")
         self.assertEqual(stated["models"][0]["rms_hpa"], right["models"][0]["rms_hpa"])
         self.assertIn("PSFD is taken as 'hPa'",
-                      " ".join(stated["notes"] if "notes" in stated else []) +
+                      " ".join(note["text"] for note in stated.get("notes", [])) +
                       self.run_tool("process", "wrong.nc", "-m", "stated.toml", "-o", "w.nc").stdout)
 
     def test_a_flight_without_pressures(self):

@@ -338,39 +338,6 @@ class Shell(ComparisonTest):
             told = self.completed(*words, end='compopt() { echo "$*"; }; _pcor')
             self.assertEqual("filenames" in told, quotes, words)
 
-    def test_zsh_can_read_its_completion(self):
-        script = self.done("completion", "zsh").stdout
-        self.assertTrue(script.startswith("#compdef pcor\n"))
-        for command in commands_of(self.done("--help").stdout):
-            self.assertIn(f"      {command}) _arguments", script)
-        if shutil.which("zsh"):
-            subprocess.run(["zsh", "-n", self.write("_pcor", script)], check=True)
-
-    def test_fish_completes_as_bash_does(self):
-        script = self.done("completion", "fish").stdout
-        for command in commands_of(self.done("--help").stdout):
-            self.assertIn(f"__fish_use_subcommand -a {command} ", script)
-        if not shutil.which("fish"):
-            return
-        path = self.write("pcor.fish", script)
-        for name in ("one.nc", "law.toml", "notes.txt"):
-            self.write(name, "")
-
-        def completed(line):
-            result = subprocess.run(["fish", "--no-config", "-c", f"source {path}; complete -C '{line}'"], cwd=self.path,
-                                    check=True, capture_output=True, text=True)
-            self.assertEqual(result.stderr, "")
-            return {word.split("\t")[0] for word in result.stdout.splitlines()}
-
-        self.assertEqual(completed("pcor ref"), {"refit"})
-        self.assertEqual(completed("pcor refit --ho"), {"--holdout"})
-        self.assertEqual(completed("pcor refit --loss hu"), {"huber"})
-        self.assertEqual(completed("pcor refit --exclude pitch"), {"pitch manoeuvre"})
-        self.assertLessEqual({"one.nc"}, completed("pcor refit o"))
-        self.assertLessEqual({"law.toml"}, completed("pcor refit -m l"))
-        (self.path / "flights").mkdir()
-        self.assertEqual(completed("pcor process --models "), {"flights/"})
-
     def test_manual_pages(self):
         self.done("man", "--folder", self.path)
         pages = {f"pcor-{command}.1" for command in commands_of(self.done("--help").stdout)} | {"pcor.1"}

@@ -27,7 +27,7 @@ import numpy
 import xarray
 
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
-from tool_test import SOURCE, TOOL, ToolTest, replace  # noqa: E402
+from tool_test import SOURCE, TOOL, ToolTest, note_texts, replace  # noqa: E402
 
 LAW = {"static-constant": ("a0", 0.004127875), "static-alpha": ("a1", 0.021279816), "static-qp": ("a2", 0.030849643)}
 
@@ -691,13 +691,13 @@ class Refit(ComparisonTest):
         fit = self.refit(model=model)
         self.assertEqual(fit["effects"][0]["at_bound"], ["a0"])
         self.assertEqual(fit["effects"][0]["parameters"]["a0"], 0.01)
-        self.assertIn("static-constant.a0 is at its bound 0.01", "\n".join(fit["notes"]))
+        self.assertIn("static-constant.a0 is at its bound 0.01", "\n".join(note_texts(fit)))
 
     def test_an_effect_that_the_flight_does_not_show_is_told(self):
         """Without a yaw manoeuvre nothing is known of the square of the sideslip; the rest is still found."""
         model = self.model(with_effect('id = "static-beta-even"\n'))
         fit = self.refit(flights=(STEADY,), model=model)
-        note = next(note for note in fit["notes"] if "static-beta-even.b2" in note)
+        note = next(note for note in note_texts(fit) if "static-beta-even.b2" in note)
         for word in ("is not determined", "--fix static-beta-even.b2", "yaw manoeuvre"):
             self.assertIn(word, note)
         self.assertEqual(fit["effects"].pop()["id"], "static-beta-even")
@@ -720,7 +720,7 @@ class RefitOfTooMuch(ComparisonTest):
         return self.refit(*arguments, flights=(STEADY,), model=self.model(lambda model: model + POWERS_OF_MACH))
 
     def test_notes_name_coefficients_and_a_manoeuvre(self):
-        note = next(note for note in self.fit()["notes"] if note.startswith("static-mach2.m2 is not determined"))
+        note = next(note for note in note_texts(self.fit()) if note.startswith("static-mach2.m2 is not determined"))
         self.assertRegex(note, r"static-(qp\.a2|mach\.m1|mach3\.m3) \([+-]0\.9")
         self.assertIn("--fix static-mach2.m2", note)
         self.assertIn("speed run", note)

@@ -20,7 +20,7 @@ import netCDF4
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, MODEL, PUBLISHED, SHORT_GV, ComparisonTest, contents, with_effect  # noqa: E402
-from tool_test import SOURCE, TOOL, replace  # noqa: E402
+from tool_test import SOURCE, TOOL, note_texts, replace  # noqa: E402
 
 SCENARIO = comparison_test.SCENARIO
 LAG = with_effect('id = "static-lag"\ntau = 1.0\n')(SCENARIO)
@@ -494,7 +494,7 @@ class WhatTakesPart(DiagnosisTest):
         result = self.compare(flights=(flight,))
         self.assertEqual(result["masks"]["frozen"], 160)
         for words in (r"VLAMS is frozen, at .* m/s from .* \(100 samples\)", r"QCF is frozen, .* \(60 samples\)"):
-            self.assertRegex(" ".join(result["notes"]), words)
+            self.assertRegex(" ".join(note_texts(result)), words)
         self.assertEqual(self.compare()["masks"]["frozen"], 0)
 
     def test_a_model_at_zero_keeps_its_flight(self):

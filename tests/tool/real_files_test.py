@@ -107,12 +107,12 @@ class Simulated(Case):
         inspected = self.inspect(flight)
         for role, variable in (("pitch", "PITCH"), ("roll", "ROLL"), ("heading", "THDG")):
             self.assertEqual(inspected["roles"][role]["variable"], variable)
-        self.assertTrue(any("THDG (valid_range = 'as usual')" in note for note in inspected["notes"]), inspected["notes"])
+        self.assertTrue(any("THDG (valid_range = 'as usual')" in note["text"] for note in inspected["notes"]), inspected["notes"])
 
     def test_a_corrected_pair_alone(self):
         flight = self.write(self.CORRECTED, {"institution": "NCAR", "Platform": "N130AR"})
         inspected = self.inspect(flight)
-        self.assertTrue(any(note.startswith("PSXC and QCXC ") for note in inspected["notes"]), inspected["notes"])
+        self.assertTrue(any(note["text"].startswith("PSXC and QCXC ") for note in inspected["notes"]), inspected["notes"])
         self.assertLessEqual(self.follow(flight), 5)
         with netCDF4.Dataset(self.path / "corrected.nc") as corrected:
             self.assertIn("PSXC_NEW", corrected.variables)

@@ -25,7 +25,7 @@ import numpy
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import LASER, PUBLISHED, ComparisonTest, addresses_in, contents, with_a0  # noqa: E402
-from tool_test import SOURCE, TOOL, replace  # noqa: E402
+from tool_test import SOURCE, TOOL, note_texts, replace  # noqa: E402
 
 SCENARIO = (SOURCE / "data/scenarios/c130-climbs.toml").read_text()
 # A wind from the south of g/f times 10 m in 100 km at 40 degrees of latitude: in balance with the slope of isobars.
@@ -276,8 +276,8 @@ class Fit(TemperatureTest):
     def test_a_lag_is_not_taken_for_noise_in_silence(self):
         lag = '\n[[effect]]\nid = "static-lag"\ntau = 3.0\n\n[[leg]]'
         flight = self.simulated(SCENARIO.replace("\n[[leg]]", lag, 1))
-        self.assertIn("a lag of the static line", " ".join(self.temperature(flights=(flight,))["notes"]))
-        self.assertNotIn("lag", " ".join(self.temperature()["notes"]))
+        self.assertIn("a lag of the static line", " ".join(note_texts(self.temperature(flights=(flight,)))))
+        self.assertNotIn("lag", " ".join(note_texts(self.temperature())))
 
     def test_command_to_copy(self):
         self.write("my model.toml", PUBLISHED.read_text())
@@ -514,7 +514,7 @@ class Iterate(TemperatureTest):
         self.assertIn("converged", text)
 
     def test_says_how_the_degree_was_chosen(self):
-        self.assertIn("--degree", self.temperature("--iterate", model=self.with_laser())["notes"][0])
+        self.assertIn("--degree", note_texts(self.temperature("--iterate", model=self.with_laser()))[0])
 
     def test_another_reference(self):
         result = self.temperature("--iterate", "--reference", "pressure:PS_A")
@@ -573,7 +573,7 @@ class Archived(TemperatureTest):
         archive = self.process(flight, PUBLISHED, "--hydrostatic")
         archived = self.temperature("--archived", flights=(archive,))
         self.assert_agree(raw, archived, share=0.1)
-        self.assertNotIn("ground", " ".join(archived["notes"]))
+        self.assertNotIn("ground", " ".join(note_texts(archived)))
 
     def test_slopes(self):
         for slope in SLOPES:
@@ -639,7 +639,7 @@ class Options(TemperatureTest):
                                           flights=(BALANCED,))
                 if slope == "none":
                     self.assertGreater(abs(result["coefficients"]["a0"] - truth()["a0"]), 0.1)
-                    self.assertIn("--slope fitted", " ".join(result["notes"]))
+                    self.assertIn("--slope fitted", " ".join(note_texts(result)))
                 else:
                     self.assert_is_truth(result)
                     self.assertLess(result["stderr"]["a0"], 0.035)  # K: the wind of 10 m in 100 km, at 0.031 by the geostrophic slope
@@ -648,13 +648,13 @@ class Options(TemperatureTest):
         """The wind of the scenario does not match its isobars: the errors include it, with a note."""
         result = self.temperature("--slope", "geostrophic", "--degree", "1")
         self.assert_is_truth(result)
-        self.assertIn("balance", " ".join(result["notes"]))
+        self.assertIn("balance", " ".join(note_texts(result)))
 
     def test_a_slope_of_no_size_is_none(self):
         none = self.temperature("--slope", "none", "--degree", "1")
         zero = self.temperature("--slope-size", "0", "--degree", "1")
         self.assert_agree(none, zero, share=1e-6)
-        self.assertIn("--slope fitted", " ".join(zero["notes"]))
+        self.assertIn("--slope fitted", " ".join(note_texts(zero)))
 
     def test_every_degree(self):
         """A constant serves at the mean temperature, where the flight spends most of its climbs; a quadratic is right
@@ -706,7 +706,7 @@ class BadHeight(TemperatureTest):
 
         result = self.temperature(flights=(self.edited(changed("GGALT", steps)),))
         self.assertEqual(result["flights"][0]["stretches"], 3)
-        self.assertIn("2 step(s)", " ".join(result["notes"]))
+        self.assertIn("2 step(s)", " ".join(note_texts(result)))
         self.assert_is_truth(result)
 
     def test_spikes(self):
@@ -717,7 +717,7 @@ class BadHeight(TemperatureTest):
 
         result = self.temperature(flights=(self.edited(changed("GGALT", spikes)),))
         self.assertEqual(result["samples"], self.temperature()["samples"] - 11)
-        self.assertIn("11 samples", " ".join(result["notes"]))
+        self.assertIn("11 samples", " ".join(note_texts(result)))
         self.assert_is_truth(result)
 
     def test_dropouts(self):
@@ -728,7 +728,7 @@ class BadHeight(TemperatureTest):
 
         result = self.temperature(flights=(self.edited(changed("GGALT", dropouts)),))
         self.assertEqual(result["samples"], self.temperature()["samples"] - 461)
-        self.assertIn("461 samples have no GPS height", " ".join(result["notes"]))
+        self.assertIn("461 samples have no GPS height", " ".join(note_texts(result)))
         self.assert_is_truth(result)
 
     def test_feet_that_are_called_metres(self):
@@ -785,20 +785,20 @@ class BadInput(TemperatureTest):
         flight = self.edited(without("THDG"))
         self.assert_agree(self.temperature(), self.temperature(flights=(flight,)), share=1e-6)
         geostrophic = self.temperature("--slope", "geostrophic", flights=(flight,))
-        self.assertIn("no wind", " ".join(geostrophic["notes"]))
+        self.assertIn("no wind", " ".join(note_texts(geostrophic)))
         self.assert_is_truth(geostrophic)
 
     def test_no_way_over_the_ground(self):
         for slope in ("fitted", "whole-flight", "geostrophic"):
             with self.subTest(slope):
                 result = self.temperature("--slope", slope, flights=(self.edited(without("GGSPD")),))
-                self.assertIn("ground", " ".join(result["notes"]))
+                self.assertIn("ground", " ".join(note_texts(result)))
                 self.assert_is_truth(result)
 
     def test_neither_way_nor_heading(self):
         flight = self.edited(without("GGSPD"), without("THDG"))
         result, whole = (self.temperature("--pressure-error", "0", flights=(each,)) for each in (flight, ONE))
-        self.assertIn("turns", " ".join(result["notes"]))
+        self.assertIn("turns", " ".join(note_texts(result)))
         # 0.09 K, where the doubt of humidity and law leaves 0.03 K.
         self.assertGreater(result["stderr"]["a0"], 3.0 * whole["stderr"]["a0"])
 

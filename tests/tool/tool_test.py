@@ -77,6 +77,11 @@ def replace(pattern, text, count=0):
     return change
 
 
+def note_texts(result):
+    """Texts of the notes of a JSON result."""
+    return [note["text"] for note in result.get("notes", [])]
+
+
 def data_of(name):
     return rf"(^ *{name} =)([^;]*);"
 

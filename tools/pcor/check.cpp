@@ -151,9 +151,10 @@ void print_details(const Checks& checks) {
       say("  limitations: {}\n", result.cannot_see);
     }
     if (!result.tables.empty()) print(result.tables.front());
-    for (const std::string& note : result.notes) {
+    for (const Note& note : result.notes) {
       // The first note of a check that was not run repeats its reason.
-      if (result.ran || result.reason.find(note) == std::string::npos) say("  note: {}.\n", note);
+      if (result.ran || result.reason.find(note.text) == std::string::npos)
+        say("  note: {}.\n", format_note(note));
     }
   }
 }
@@ -181,11 +182,11 @@ void print(const Checks& checks, const CheckArguments& options, bool has_laser) 
 FlightTable flight_table(const FlightSet& flights, const std::optional<ModelDefinition>& model,
                          const CheckOptions& how, const Checks& together) {
   FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
-  std::vector<std::vector<CheckSummary>> alone{in_short(together)};
+  std::vector<std::vector<CheckResult>> alone{together.results};
   if (flights.size() > 1) alone = check_per_flight(flights, model, how);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const std::string name = flights.name(i);
-    for (const CheckSummary& result : alone[i]) {
+    for (const CheckResult& result : alone[i]) {
       if (result.ran) {
         table.add({name, result.name, std::string(to_string(result.verdict)), cell(result.key.value),
                    cell(result.key.standard_error), result.key.unit, result.key.what});

@@ -9,10 +9,10 @@ std::vector<std::string> chosen;
 
 }  // namespace
 
-void tell_choices(const std::vector<std::string>& choices, bool quiet) {
-  for (const std::string& choice : choices) {
-    if (!quiet) tell(choice);
-    chosen.push_back(choice);
+void tell_choices(const Notes& choices, bool quiet) {
+  for (const Note& choice : choices) {
+    if (!quiet) tell(format_note(choice));
+    chosen.push_back(format_note(choice));
   }
 }
 

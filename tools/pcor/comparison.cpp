@@ -44,10 +44,9 @@ namespace {
 
 /// Removes the flights that cannot be opened, and reports them. @throws Error if no flights remain.
 void leave_out_unreadable(std::vector<std::string>& flights) {
-  const ReadableFlights readable =
-      readable_flights({flights.begin(), flights.end()}, comm(), place_to_open());
+  const ReadableFlights readable = readable_flights({flights.begin(), flights.end()}, comm());
   for (const UnreadableFlight& unreadable : readable.unreadable)
-    tell_choices({fmt::format("skipped: {}", unreadable.why)}, false);
+    tell_choices({Note(fmt::format("skipped: {}", unreadable.why))}, false);
   if (readable.flights.empty())
     throw Error(Error::Code::file,
                 fmt::format("all {} flights are unreadable; check the files", flights.size()));

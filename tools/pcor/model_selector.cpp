@@ -19,7 +19,7 @@ ModelDefinition read_model_for(const std::filesystem::path& model, const FlightS
   const bool is_complete = file.roles_from.empty() && file.variables.count(Quantity::static_pressure) != 0 &&
                            !names_pressures_alone(file);
   if (flights.empty() || is_complete) return file;
-  std::vector<std::string> notes;
+  Notes notes;
   ModelDefinition whole = resolve_model(file, flights, notes);
   tell_choices(notes, options.quiet);
   return whole;
@@ -28,11 +28,11 @@ ModelDefinition read_model_for(const std::filesystem::path& model, const FlightS
 ModelDefinition model_for_flight(const std::vector<std::filesystem::path>& models,
                                  const std::filesystem::path& flight, const CommonOptions& options) {
   const Flight opened(flight);
-  std::vector<std::string> notes;
+  Notes notes;
   const ModelCandidate law = model_candidate(opened, models, notes);
   notes.insert(notes.begin(), fmt::format("corrected by {} ({})", law.model.model.name, law.path.string()));
   ModelDefinition model = resolve_variables(law.model, opened, notes);
-  for (std::string& note : notes) note = fmt::format("{}: {}", flight.filename().string(), note);
+  for (Note& note : notes) note.text = fmt::format("{}: {}", flight.filename().string(), note.text);
   tell_choices(notes, options.quiet);
   return model;
 }

@@ -165,14 +165,14 @@ class Table {
   static void end(const std::vector<ProcessedFlight>& flights, const std::string& folder) {
     say("delta-p: mean in flight, hPa, with minimum and maximum\n");
     Flags flagged{};
-    std::map<std::string, std::size_t> notes;
+    std::map<Note, std::size_t> notes;
     for (const ProcessedFlight& flight : flights) {
       for (std::size_t i = 0; i < flagged.size(); ++i) flagged[i] += flight.summary.flagged[i];
-      for (const std::string& note : flight.summary.notes) ++notes[note];
+      for (const Note& note : flight.summary.notes) ++notes[note];
     }
     print_flags(flagged);
     for (const auto& [note, count] : notes) {
-      say("\nNote, {} of {} flights: {}.\n", count, flights.size(), note);
+      say("\n{}, {} of {} flights: {}.\n", label_of(note), count, flights.size(), note.text);
     }
     say("\n{} flights: {} processed into {}, {} up to date, {} unreadable\n", flights.size(),
         count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
@@ -305,7 +305,6 @@ void run(const ProcessArguments& options) {
   process.process = process_options(options);
   process.if_stale = options.if_stale;
   process.skip_unreadable = options.skip_unreadable;
-  process.opened_in = place_to_open();
   std::optional<Progress> bar;
   process.begins = [&](std::size_t task) {
     bar.emplace(many ? fmt::format("processing {} of {}", task + 1, tasks.size()) : "processing",

@@ -63,8 +63,6 @@ void add_processes_option(CLI::App& command) {
       ->default_str("1");
 }
 
-OpenedIn place_to_open() { return may_copy_itself ? OpenedIn::a_copy : OpenedIn::this_process; }
-
 std::size_t processes_to_begin(const std::vector<std::string>& words) {
   may_copy_itself = true;
   return std::max<std::size_t>(processes_in(parted(words).number), 1);

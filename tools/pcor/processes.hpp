@@ -5,15 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <pcor/flight/readable_flights.hpp>
-
 namespace pcor::tool {
 
 /// Adds `--processes` to a command whose flights several processes share.
 void add_processes_option(CLI::App& command);
-
-/// Process in which possibly damaged flights are opened: pcor may fork a child process, pcor_mpi may not.
-OpenedIn place_to_open();
 
 /// Number of processes requested by `--processes`, read before the command line is parsed. 1 if the option is
 /// absent or invalid, which the parser reports.

@@ -172,17 +172,18 @@ void finish_text() {
   unfinished_line().clear();
 }
 
-void say_notes(const std::vector<std::string>& all) {
+void say_notes(Notes notes) {
   constexpr std::size_t max_notes = 3, max_width = 120;
-  std::vector<std::string> notes = all;
-  std::stable_partition(notes.begin(), notes.end(), is_warning_note);
+  std::stable_partition(notes.begin(), notes.end(),
+                        [](const Note& note) { return note.severity == Severity::warning; });
   if (is_verbose()) {
-    for (const std::string& note : notes) say("\nNote: {}.\n", note);
+    for (const Note& note : notes) say("\n{}: {}.\n", label_of(note), note.text);
     say("\n");
     return;
   }
   for (std::size_t i = 0; i < std::min(notes.size(), max_notes); ++i) {
-    std::string_view rest = notes[i];
+    const std::string note = format_note(notes[i]);
+    std::string_view rest = note;
     const std::string_view line = take_line(rest, max_width, false);
     say("note {}: {}{}\n", i + 1, line, rest.empty() ? "." : " ...");
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/base/shell_quote.hpp>
 
 namespace pcor::tool {
@@ -44,7 +45,7 @@ void say_everything();
 
 /// Prints notes without full stops as numbered, shortened lines, warnings first, at most three; all in full
 /// if `is_verbose`.
-void say_notes(const std::vector<std::string>& notes);
+void say_notes(Notes notes);
 
 /// Registers a file that exists before the run, for `say_written`.
 void remember_existing(const std::filesystem::path& file);

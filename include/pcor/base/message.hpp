@@ -12,10 +12,4 @@ std::string sanitize_line(std::string_view message);
 /// Text for display: as `sanitize_line`, but lines and length are kept.
 std::string shown_text(std::string_view text);
 
-/// Note about data that may invalidate a result: "warning: " and the note. Programs print such notes first.
-std::string warning_note(std::string_view note);
-
-/// Whether a note is from `warning_note`, also after the name of its flight.
-bool is_warning_note(std::string_view note);
-
 }  // namespace pcor

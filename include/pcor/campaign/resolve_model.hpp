@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/model_io/model_definition.hpp>
 
@@ -15,7 +16,6 @@ namespace pcor {
 /// @param notes receives the choices, one sentence each
 /// @throws Error of the first flight if no flight resolves the model, or if two flights resolve it
 /// differently
-ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flights,
-                              std::vector<std::string>& notes);
+ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flights, Notes& notes);
 
 }  // namespace pcor

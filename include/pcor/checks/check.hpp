@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/report/report.hpp>
@@ -59,11 +60,14 @@ struct CheckResult {
   std::string cannot_see{};
   std::vector<std::pair<std::string, double>> numbers{};  ///< values by name with unit, e.g. "offset_hpa"
   std::vector<ReportTable> tables{};                      ///< e.g. one row for each pair of legs
-  std::vector<std::string> notes{};                       ///< notes for the user, one sentence each
+  Notes notes{};                                          ///< notes for the user, one sentence each
 
-  /// Data of the figures, over all records of all flights in order; names start with that of the check.
+  /// Series of the pictures, over all records of all flights in order; names start with that of the check.
   std::vector<ReportColumn> columns{};
-  std::vector<ReportItem> pictures{};
+  std::vector<ReportBar> bars{};  ///< values of each manoeuvre, layer or period with their errors
+
+  /// Value of `numbers` by its name; NaN if absent.
+  double number(std::string_view of) const;
 };
 
 template <class Field>
@@ -100,7 +104,7 @@ struct Checks {
   std::string model;  ///< description of the model, or "as recorded"
   std::vector<std::string> flights;
   std::vector<CheckResult> results;  ///< results of all checks, in the order of the memo
-  std::vector<std::string> notes;
+  Notes notes;
   Report pictures;  ///< time, flights, intervals and columns of the figures
 };
 
@@ -127,22 +131,11 @@ void describe(const Checks& self, Field& field) {
 Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& model,
              const CheckOptions& options = {});
 
-/// Summary of a check; members as in `CheckResult`.
-struct CheckSummary {
-  std::string name{};
-  bool ran = false;
-  std::string reason{};
-  CheckVerdict verdict = CheckVerdict::inconclusive;
-  TestStatistic key{};
-};
-
-std::vector<CheckSummary> in_short(const Checks& checks);
-
-/// Summaries of the checks for each flight separately.
+/// Results of the checks for each flight separately: name, ran, reason, verdict and key only.
 /// @throws Error as `check`
-std::vector<std::vector<CheckSummary>> check_per_flight(const FlightSet& flights,
-                                                        const std::optional<ModelDefinition>& model,
-                                                        const CheckOptions& options = {});
+std::vector<std::vector<CheckResult>> check_per_flight(const FlightSet& flights,
+                                                       const std::optional<ModelDefinition>& model,
+                                                       const CheckOptions& options = {});
 
 /// Report of the checks: a table of verdicts, and for each check its numbers, tables and figures.
 Report check_report(const Checks& checks);

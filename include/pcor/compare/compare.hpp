@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/numerics/line_fit.hpp>
 #include <pcor/residuals/residuals.hpp>
@@ -131,7 +132,7 @@ struct Comparison {
   /// system: static defects cancel (memo, figure 1).
   std::optional<LineFit> total_pressure{};
   std::array<std::size_t, mask_count> masks{};  ///< samples with each mask, over all flights
-  std::vector<std::string> notes;               ///< notes for the user, one sentence each
+  Notes notes;                                  ///< notes for the user, one sentence each
   /// Comparisons with further references of the models.
   std::vector<Comparison> further{};
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/reference.hpp>
@@ -415,7 +416,7 @@ struct Diagnosis {
   std::vector<HeldOutPart> held_out{};  ///< later parts of flights, or flights held out by `improve`
   std::array<std::size_t, mask_count> masks{};
   std::vector<FlightDiagnosis> flights{};  ///< residuals of the first reference
-  std::vector<std::string> notes{};
+  Notes notes{};
 
   /// Numbers of the flights whose records are kept.
   std::vector<std::size_t> flights_with_records() const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/fit/loss.hpp>
 #include <pcor/residuals/residuals.hpp>
@@ -209,7 +210,7 @@ struct RefitResult {
   /// held-out part has a significant bias. Otherwise empty.
   std::string worse{};
   std::vector<std::string> warnings{};  ///< reasons to doubt the fit, one sentence each
-  std::vector<std::string> notes{};     ///< notes for the user, one sentence each, by decreasing severity
+  Notes notes{};                        ///< notes for the user, one sentence each, by decreasing severity
 };
 
 /// Keys that `refit` and `improve` share.

@@ -20,17 +20,8 @@ struct ReadableFlights {
   std::vector<UnreadableFlight> unreadable{};
 };
 
-/// Process in which flights are probed.
-enum class OpenedIn {
-  this_process,
-  /// Sequentially in a single-threaded child process: if the HDF5 library crashes on a damaged file, only the
-  /// child ends. Not for an MPI process, which must not be forked.
-  a_copy
-};
-
 /// Opens and closes each flight; the flights are shared between the ranks.
 ReadableFlights readable_flights(const std::vector<std::filesystem::path>& flights,
-                                 Communicator& comm = serial_communicator(),
-                                 OpenedIn location = OpenedIn::this_process);
+                                 Communicator& comm = serial_communicator());
 
 }  // namespace pcor

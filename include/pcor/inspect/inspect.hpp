@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/inspect/gps_design.hpp>
 #include <pcor/model_io/model_definition.hpp>
@@ -128,7 +129,7 @@ struct Inspection {
   std::optional<GpsDesign> by_gps{};   ///< empty without pressures or GPS
   std::vector<std::string> next{};     ///< commands that continue, filled by a program that knows its name
   std::string unreadable{};            ///< reason if the flight cannot be read, filled by the caller
-  std::vector<std::string> notes{};
+  Notes notes{};
   /// Runnable model: the roles, and terms with zero coefficients for a refit; empty without pressures.
   std::optional<ModelDefinition> model{};
   std::shared_ptr<const FlightSamples> samples{};  ///< samples of the figures; nullptr without pressures

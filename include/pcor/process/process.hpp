@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/model/quality.hpp>
 #include <pcor/model_io/model_definition.hpp>
@@ -60,7 +61,7 @@ struct ProcessSummary {
   /// Samples with each quality bit, in flight and on the ground.
   std::array<std::size_t, quality_info.size()> flagged{};
   std::vector<std::string> outputs;  ///< names of the derived variables, in order
-  std::vector<std::string> notes;    ///< notes for the user, one sentence each
+  Notes notes;                       ///< notes for the user, one sentence each
 };
 
 template <class Field>

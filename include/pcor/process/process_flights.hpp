@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include <pcor/flight/readable_flights.hpp>
 #include <pcor/process/process.hpp>
 
 namespace pcor {
@@ -56,9 +55,6 @@ struct ProcessFlightsOptions {
   bool if_stale = false;     ///< true: skip outputs that satisfy `is_up_to_date`
   /// True: continue after a flight that cannot be read or lacks a variable of the model.
   bool skip_unreadable = false;
-  /// With a child process, flights that crash the reader are detected before the first flight is processed;
-  /// with `if_stale`, flights with an existing output are not probed.
-  OpenedIn opened_in = OpenedIn::this_process;
   std::function<void(std::size_t task)> begins{};             ///< callback before each flight
   std::function<void(const ProcessedFlight& flight)> ends{};  ///< callback after each flight
 };

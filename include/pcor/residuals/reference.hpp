@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/residuals/samples.hpp>
 
@@ -59,8 +60,7 @@ class Reference {
 
   /// Reads the variables of the reference. @throws Error if one is absent, has no value, or its unit does not
   /// fit.
-  virtual ModelSamples read(const Flight& flight, const std::vector<double>& time,
-                            std::vector<std::string>& notes) const;
+  virtual ModelSamples read(const Flight& flight, const std::vector<double>& time, Notes& notes) const;
 
   /// True if the residual depends on one sample only, not on a window of samples.
   virtual bool is_of_one_sample() const { return true; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/regimes/regimes.hpp>
@@ -58,8 +59,8 @@ struct FlightSamples {
   std::vector<bool> flaps_by_lift{};  ///< flaps extended, inferred from the lift; empty: recorded, or unknown
   std::vector<Interval> intervals{};  ///< regimes
   ModelSamples model{};
-  ModelSamples reference{};          ///< inputs of the reference
-  std::vector<std::string> notes{};  ///< notes for the user, one sentence each
+  ModelSamples reference{};  ///< inputs of the reference
+  Notes notes{};             ///< notes for the user, one sentence each
 };
 
 /// Reads the inputs of `model` and `reference` from a flight, and detects its regimes.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/model_io/model_definition.hpp>
 
@@ -35,14 +36,13 @@ void describe(const ModelCandidate& self, Field& field) {
 /// The aircraft is identified by a common registration: "C-130 N130AR" and "N130AR". `notes` reports
 /// unreadable files.
 std::vector<ModelCandidate> model_candidates(const Flight& flight,
-                                             const std::vector<std::filesystem::path>& models,
-                                             std::vector<std::string>& notes);
+                                             const std::vector<std::filesystem::path>& models, Notes& notes);
 
 /// Selected model for a flight: the first of `model_candidates`, if it is unique in rank. `notes` reports an
 /// operational model that needs variables absent from the flight.
 /// @throws Error if a model cannot be read, no model is applicable, or several are and it is unknown which
 /// one is operational; the message names them.
 ModelCandidate model_candidate(const Flight& flight, const std::vector<std::filesystem::path>& models,
-                               std::vector<std::string>& notes);
+                               Notes& notes);
 
 }  // namespace pcor

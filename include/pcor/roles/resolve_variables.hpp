@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/model_io/model_definition.hpp>
 
@@ -19,8 +20,7 @@ namespace pcor {
 /// temperature. Adds the choices and caveats of these variables to `notes`, one sentence each.
 /// @throws Error if the flight has no known pair of pressures, or matches several aircraft; the message
 /// states the keys to add to the model.
-ModelDefinition resolve_variables(const ModelDefinition& model, const Flight& flight,
-                                  std::vector<std::string>& notes);
+ModelDefinition resolve_variables(const ModelDefinition& model, const Flight& flight, Notes& notes);
 
 /// True if a model names only its two pressures, so that `resolve_variables` adds all other roles.
 bool names_pressures_alone(const ModelDefinition& model);

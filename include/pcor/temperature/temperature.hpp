@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/base/note.hpp>
 #include <pcor/fit/refit.hpp>
 #include <pcor/report/report.hpp>
 
@@ -238,8 +239,8 @@ struct TemperatureResult {
   /// Reason for which the correction is rejected by its statistics; empty if accepted.
   std::string worse{};
   std::vector<std::string> warnings{};  ///< warnings, one sentence each
-  std::vector<std::string> notes{};     ///< notes for the user, one sentence each, by decreasing severity
-  std::vector<std::string> notes_on_degree{};  ///< the notes on the choice of the degree
+  Notes notes{};                        ///< notes for the user, one sentence each, by decreasing severity
+  Notes notes_on_degree{};              ///< the notes on the choice of the degree
 };
 
 template <class Field>

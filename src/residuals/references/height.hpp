@@ -108,8 +108,7 @@ class HeightReference final : public Reference {
 
   std::string inputs() const override { return name() + inputs_of(model_, false); }
 
-  ModelSamples read(const Flight& flight, const std::vector<double>& time,
-                    std::vector<std::string>& notes) const override {
+  ModelSamples read(const Flight& flight, const std::vector<double>& time, Notes& notes) const override {
     RecordedSeries height = read_role(flight, model_, Quantity::altitude);
     const RecordedSeries latitude = read_role(flight, model_, Quantity::latitude);
     if (height.values.empty() || latitude.values.empty()) {

@@ -56,8 +56,7 @@ class PressureReference final : public Reference {
   std::string name() const override { return "pressure:" + variable_; }
   std::vector<std::string> variables() const override { return {variable_}; }
 
-  ModelSamples read(const Flight& flight, const std::vector<double>&,
-                    std::vector<std::string>&) const override {
+  ModelSamples read(const Flight& flight, const std::vector<double>&, Notes&) const override {
     if (!flight.has(variable_)) {
       const std::string meant = did_you_mean(variable_, flight.variables());
       throw Error(Error::Code::variable,

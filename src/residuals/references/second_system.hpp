@@ -59,8 +59,7 @@ class SecondSystem : public Reference {
 
   std::string inputs() const override { return inputs_of(system_, false); }
 
-  ModelSamples read(const Flight& flight, const std::vector<double>& time,
-                    std::vector<std::string>& notes) const override {
+  ModelSamples read(const Flight& flight, const std::vector<double>& time, Notes& notes) const override {
     return read_model_columns(flight, system_, false, time, notes);
   }
 

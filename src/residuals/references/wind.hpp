@@ -175,8 +175,7 @@ class WindReference final : public Reference {
 
   std::string inputs() const override { return name() + inputs_of(model_, false); }
 
-  ModelSamples read(const Flight& flight, const std::vector<double>& time,
-                    std::vector<std::string>& notes) const override {
+  ModelSamples read(const Flight& flight, const std::vector<double>& time, Notes& notes) const override {
     RecordedSeries heading = read_role(flight, model_, Quantity::heading);
     GroundVelocity ground = read_ground_velocity(flight, model_);
     if (heading.values.empty() || ground.speed.values.empty()) {
