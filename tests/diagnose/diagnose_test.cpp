@@ -232,7 +232,7 @@ TEST(Diagnose, UnexplainedStructureIsTracedToItsVariable) {
   ASSERT_THAT(diagnosis.flights, SizeIs(1));
   EXPECT_EQ(diagnosis.flights[0].traced.size(), diagnosis.flights[0].samples->time.size());
   // The line of the model that lets the effect of the torque be tested.
-  EXPECT_THAT(diagnosis.notes, testing::Contains(test::Says("engine_torque = \"ENGTRQ\"")));
+  EXPECT_THAT(diagnosis.notes, testing::Contains(pcor::test::Says("engine_torque = \"ENGTRQ\"")));
 }
 
 TEST(Diagnose, ExcludedSamplesAreNotUsed) {
@@ -406,7 +406,7 @@ TEST(Diagnose, LineIsComparedWithEffectsByAllReferences) {
   const Diagnosis diagnosis =
       pcor::diagnose({flight("c130-no-manoeuvres", 702, torque)}, model(),
                      {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
-  EXPECT_THAT(diagnosis.notes, testing::Contains(test::Says("line in ENGTRQ")));
+  EXPECT_THAT(diagnosis.notes, testing::Contains(pcor::test::Says("line in ENGTRQ")));
 }
 
 // An error that varies with the engines acts at the static ports, or in the total line; the total pressures
@@ -459,7 +459,7 @@ TEST(Diagnose, FrozenSensorOfFurtherReferenceIsRejected) {
   }
   const Diagnosis diagnosis = pcor::diagnose(
       {path}, model(), {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
-  EXPECT_THAT(diagnosis.notes, testing::Contains(test::Says("PSFRD is frozen")));
+  EXPECT_THAT(diagnosis.notes, testing::Contains(pcor::test::Says("PSFRD is frozen")));
   EXPECT_EQ(diagnosis.verdict, Verdict::silent);
 }
 

@@ -52,7 +52,7 @@ References references_of(bool with_height) {
 std::map<std::string, double> gains(const std::filesystem::path& path, bool with_height) {
   const pcor::FlightSet flights({path});
   CandidateSet set = find_candidates(law(), {}, flights, in_order_of_diagnosis(references_of(with_height)));
-  Notes notes;
+  pcor::Notes notes;
   TeamColumns columns = columns_of_flights(flights, 1, law(), set, {}, notes);
   leave_out_empty(columns);
   drop_untestable(set, columns);

@@ -200,7 +200,7 @@ TEST(Refit, StopsAtABoundAndSaysSo) {
   EXPECT_NEAR(found.at("static-constant.a0").value, 0.002, 1e-9);
   EXPECT_TRUE(found.at("static-constant.a0").at_bound);
   EXPECT_TRUE(std::isnan(found.at("static-constant.a0").standard_error));
-  EXPECT_THAT(result.notes, testing::Contains(test::Says("static-constant.a0 is at its bound")));
+  EXPECT_THAT(result.notes, testing::Contains(pcor::test::Says("static-constant.a0 is at its bound")));
 }
 
 TEST(Refit, StopsAtABoundWithNothingElseFree) {
