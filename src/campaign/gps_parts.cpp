@@ -25,15 +25,27 @@ std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSam
     for (std::size_t part = 0; part < parts.size(); ++part) {
       for (const std::size_t i : parts[part]) amounts(as_index(i), as_index(part)) = 1.0;
     }
+    amounts.col(0).setOnes();  // heights also pass through samples that are not used
     return amounts;
   };
   // The coefficients of the law are free in the noise, with wide priors.
-  const GpsSystem system = gps_system(gps_rows(kind, samples, with_amount, used, all.data(), law, effects),
-                                      std::vector<double>(law.size(), 0.0));
+  const auto system_at = [&](double warmer) {
+    return gps_system(gps_rows(kind, samples, with_amount, used, all.data(), law, effects, warmer),
+                      std::vector<double>(law.size(), 0.0));
+  };
+  GpsSystem system = system_at(0.0);
+  if (system.rows.size() == 0) return {};
+  // With the law as it is.
+  const double warmer = kind == GpsKind::height ? thermometer_of(system, {}) : 0.0;
+  if (warmer != 0.0) system = system_at(warmer);
   const Eigen::MatrixXd rows = system.rows.cast<double>();
   const auto of_parts = rows.middleCols(as_index(law.size()), as_index(parts.size()));
   std::vector<Eigen::MatrixXd> products;
   for (Eigen::Index part = 0; part < of_parts.cols(); ++part) {
+    if (parts[static_cast<std::size_t>(part)].empty()) {
+      products.emplace_back();
+      continue;
+    }
     Eigen::MatrixXd own(rows.rows(), gps_shared_nuisances + 3);
     own << rows.middleCols(rows.cols() - 1 - gps_shared_nuisances, gps_shared_nuisances), of_parts.col(0),
         of_parts.col(part), rows.rightCols(1);

@@ -14,7 +14,7 @@ namespace pcor::internal {
 /// @param parts samples of each part; the first part has all samples
 /// @return for each part the products of whitened columns: the shared nuisances, in units of their priors; 1
 /// hPa added to the static defect in all samples, and in the part; the residual. Products of flights are
-/// additive. Empty if the flight has no row.
+/// additive. A part without samples has an empty matrix; no matrix if the flight has no row.
 std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSamples& samples,
                                                    const ModelDefinition& model,
                                                    const std::vector<double>& parameters,

@@ -88,7 +88,8 @@ struct AddedEffects {
 /// temperature error of a few tenths of a kelvin.
 /// @param used samples of the fit @param parameters all parameters of the model; the rows have derivatives by
 /// `wanted` @param effects have further columns, after those of `wanted` @param warmer estimate of the
-/// thermometer's nuisance, K: the part of it that its low-passed column lacks is taken from the residual
+/// thermometer's nuisance, K: the residual is reduced by the fast part of this error, which the low-passed
+/// column omits
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
                  const std::vector<std::size_t>& wanted, const AddedEffects& effects = {},

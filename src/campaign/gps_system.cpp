@@ -88,8 +88,12 @@ double thermometer_of(const GpsSystem& system, const std::vector<double>& usual)
   // Not of the thermometer: the law, whose change of temperature looks the same, would take most of it.
   products.diagonal().segment(law + 1, gps_shared_nuisances - 1).array() += 1.0;
   const Eigen::Index count = law + gps_shared_nuisances;
-  return gps_nuisances.front().deviation *
-         pseudo_solution(products.topLeftCorner(count, count), products.col(count).head(count))[law];
+  const Eigen::MatrixXd covariance = information_inverse(products.topLeftCorner(count, count));
+  const double estimate = covariance.row(law) * products.col(count).head(count);
+  constexpr double significant = 3.0;  // standard errors
+  return std::abs(estimate) > significant * std::sqrt(covariance(law, law))
+             ? gps_nuisances.front().deviation * estimate
+             : 0.0;
 }
 
 }  // namespace pcor::internal

@@ -444,7 +444,7 @@ void add_variances(std::size_t model, const FlightPartition& share,
   });
   ResidualSums all;
   for (const FlightPart& part : parts) all.add(part.models[model].all);
-  const double mean = all.statistics().bias;
+  const double mean = all.statistics().mean;
   BinnedFit fit;
   fit.columns = [&](std::size_t f) { return Eigen::MatrixXd::Ones(flights.residuals[f].size(), 1); };
   fit.left = [&](std::size_t f) { return (flights.residuals[f].array() - mean).matrix(); };
@@ -481,6 +481,7 @@ void separate_atmosphere(const Pairing& pairing, const FlightSamples& samples,
     parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
   std::vector<Eigen::MatrixXd> products =
       gps_products_of_parts(*kind, samples, model, parameters, parts.front(), parts);
+  if (products.empty()) return;
   auto next = products.begin();
   sums.each_part([&](ResidualSums& part) { part.by_gps = std::move(*next++); });
 }
@@ -509,8 +510,6 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     part.notes = std::move(notes);
     for (std::size_t m = 0; m < pairings.size(); ++m) {
       part.models[m].doubt = doubts[m].columns(samples[m], records[m].parts.front()).colwise().sum();
-      if (options.separates_atmosphere)
-        separate_atmosphere(pairings[m], *samples[m], records[m].parts, part.models[m]);
     }
     return part;
   };
@@ -524,7 +523,10 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
         return read(number);
       },
       [&](std::size_t number, const SamplesOfPairings& samples) {
-        return make(samples, keeps_all, records[number]);
+        FlightPart part = make(samples, keeps_all, records[number]);
+        for (std::size_t m = 0; m < pairings.size() && options.separates_atmosphere; ++m)
+          separate_atmosphere(pairings[m], *samples[m], records[number][m].parts, part.models[m]);
+        return part;
       });
   std::vector<FlightNote> notes;
   PairMoments total_pressures;

@@ -55,10 +55,10 @@ std::string how_large(const Finding& finding, const Law& law) {
   if (const double ratio = size_to_usual(finding.estimates); ratio > 0.0) text += ", " + times_usual(ratio);
   text += ".";
   if (!law.size.empty()) text += fmt::format(" Sizes met in practice: {}.", law.size);
-  text += fmt::format(" Over the samples used it adds {} hPa rms to the residual, without the part that the model absorbs", hpa(finding.rms));
+  text += fmt::format(" The model does not absorb {} hPa rms of it", hpa(finding.rms));
   if (!finding.worst_flight.empty() && std::isfinite(finding.worst)) {
-    text += fmt::format(", and at most {:+.3f} hPa, in {} at {} UTC", finding.worst, finding.worst_flight,
-                        utc_text(finding.worst_time));
+    text += fmt::format("; the effect alone is at most {:+.3f} hPa, in {} at {} UTC", finding.worst,
+                        finding.worst_flight, utc_text(finding.worst_time));
   }
   return text + ".";
 }
@@ -174,10 +174,11 @@ std::string stretch_text(const Evidence& evidence) {
 }
 
 std::string finding_summary(const Finding& finding) {
-  std::string text =
-      fmt::format("Missing: {}, {}. It adds {} hPa rms", name_with_id(finding.title, finding.id()),
-                  estimates_text(finding.estimates), hpa(finding.rms));
-  if (std::isfinite(finding.worst)) text += fmt::format(", at most {:+.3f} hPa", finding.worst);
+  std::string text = fmt::format("Missing: {}, {}. The model does not absorb {} hPa rms of it",
+                                 name_with_id(finding.title, finding.id()), estimates_text(finding.estimates),
+                                 hpa(finding.rms));
+  if (std::isfinite(finding.worst))
+    text += fmt::format("; the effect alone is at most {:+.3f} hPa", finding.worst);
   text += fmt::format("; chance would do as well with a probability of {}.", probability(finding.p_value));
   if (!finding.evidence.empty())
     text += fmt::format(" The strongest evidence is {}.", stretch_text(finding.evidence.front()));

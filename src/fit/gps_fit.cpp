@@ -70,7 +70,7 @@ class GpsSolver {
       prior_deviation_[k] =
           gps_prior_in_typical_sizes * task_.parameters[wanted_[static_cast<std::size_t>(k)]].typical;
     // A fitted coefficient replaces the nuisance for the same error.
-    constexpr double held = 1e-3;
+    constexpr double held = 1e-3;  // of its prior: no result depends on it
     for (std::size_t n = 0; n < gps_nuisances.size(); ++n) {
       if (std::any_of(wanted.begin(), wanted.end(),
                       [&](std::size_t p) { return task_.parameters[p].name == gps_nuisances[n].same_as; }))
@@ -412,7 +412,8 @@ class GpsSolver {
           fmt::format("the flights hardly determine {}: kept near the starting values; to determine it: {}",
                       names_of(weak_), what_tells));
     }
-    if (std::abs(fit.thermometer) > 2.0 * fit.thermometer_error) {
+    const bool is_fitted = nuisance_deviation_[0] < gps_nuisances.front().deviation;
+    if (!is_fitted && std::abs(fit.thermometer) > 2.0 * fit.thermometer_error) {
       fit.notes.push_back(fmt::format("the thermometer reads {} by {:.2f} +- {:.2f} K, by GPS",
                                       fit.thermometer > 0.0 ? "low" : "high", std::abs(fit.thermometer),
                                       fit.thermometer_error));

@@ -17,7 +17,7 @@ constexpr double min_size = 1e-5;
 constexpr double max_size = 0.1;
 constexpr double next_size = 1.7782794100389228;  // a quarter of a decade
 
-/// SurfaceProducts of (derivatives, residual) with each other in bins, weighted as least squares weighs them,
+/// Products of (derivatives, residual) with each other in bins, weighted as least squares weighs them,
 /// and the covariance of the products with the noise.
 struct SurfaceProducts {
   Eigen::MatrixXd squares{};

@@ -606,14 +606,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     RefitOptions refit_with = options.refit;
     refit_with.alike = trial.alike;
     if (!gps_kind(first_of(ordered))) return refit(flights, trial.file, ordered, refit_with);
-    // By GPS alone the prior is about the start. It is the given model's, not the estimate of a diagnosis.
-    ModelDefinition start = trial.file;
-    const std::vector<double> coefficients = coefficients_in(model, start);
-    auto next = coefficients.begin();
-    for (ModelEffect& effect : start.model.effects) {
-      for (double& parameter : effect.parameters) parameter = *next++;
-    }
-    return refit(flights, start, ordered, refit_with);
+    return refit(flights, with_start_of(model, trial.file), ordered, refit_with);
   };
   loop.diagnose = [&](const TrialModel& trial) {
     tell("diagnosing with " + last_of(trial.file));

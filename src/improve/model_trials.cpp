@@ -114,6 +114,22 @@ std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDef
   return coefficients;
 }
 
+ModelDefinition with_start_of(const ModelDefinition& given, ModelDefinition extended) {
+  extended.covariance = given.covariance;
+  extended.fits.resize(extended.model.effects.size());
+  for (std::size_t e = 0; e < extended.model.effects.size(); ++e) {
+    ModelEffect& effect = extended.model.effects[e];
+    if (e < given.model.effects.size()) {
+      effect.parameters = given.model.effects[e].parameters;
+      extended.fits[e] = e < given.fits.size() ? given.fits[e] : EffectFit{};
+      continue;
+    }
+    if (!effect.is_formula()) effect.parameters = neutral_of(effect);
+    for (ParameterFit& parameter : extended.fits[e]) parameter.standard_error.reset();
+  }
+  return extended;
+}
+
 References with_alike(const References& references, const TrialModel& model,
                       const std::vector<std::string>& variables) {
   if (model.alike.empty()) return references;

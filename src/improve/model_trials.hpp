@@ -50,6 +50,11 @@ bool has(const ModelDefinition& model, const std::string& effect);
 /// Model that has the effects of all models, with the coefficients of the first that has them.
 ModelDefinition union_of(const std::vector<ModelDefinition>& models);
 
+/// The model `extended` with coefficients and errors of the given model. Other effects get neutral
+/// coefficients, formulas keep theirs. By GPS alone the prior of a fit is about its start, which is then no
+/// earlier estimate.
+ModelDefinition with_start_of(const ModelDefinition& given, ModelDefinition extended);
+
 /// Coefficients of a model in the order of a union that contains it: absent effects get neutral coefficients,
 /// in their shape in the union.
 std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDefinition& whole);

@@ -20,7 +20,7 @@ struct ForkedProcess {
 };
 
 /// Forks this process. The process must have one thread. Both sides must close the connection, and the parent
-/// must wait for the child (`end_of`). A child that must skip the exit handlers ends with `_exit`.
+/// must wait for the child (`end_of`).
 ///
 /// @param when_alone signal sent to the child if the parent ends first
 /// @return nullopt if the system starts no more processes, with the reason in errno

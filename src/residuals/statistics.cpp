@@ -50,10 +50,16 @@ Statistics ResidualSums::statistics() const {
     Eigen::MatrixXd products = by_gps;
     products.diagonal().head(nuisances).array() += 1.0;  // their priors
     const Eigen::MatrixXd left = products_after(products, nuisances);
+    constexpr double known = 1.0;  // hPa
+    const bool has_rows = left(1, 1) > rank_limit * left(0, 0);
     const Eigen::Vector2d both = pseudo_solution(left.topLeftCorner(2, 2), Eigen::Vector2d::Ones());
-    // A lack in delta-p is an excess of the corrected static pressure.
-    result.bias = -both.dot(left.col(2).head(2));
-    result.bias_error = std::sqrt(both.sum());
+    result.bias_error = has_rows ? std::sqrt(both.sum()) : nan;
+    // A lack in delta-p is an excess of the corrected static pressure. An undetermined level stays as
+    // measured.
+    if (!has_rows)
+      result.bias = nan;
+    else if (result.bias_error < known)
+      result.bias = -both.dot(left.col(2).head(2));
   }
   return result;
 }

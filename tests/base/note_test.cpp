@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
 namespace pcor {
 namespace {
 
-TEST(Note, TextIsAnInformation) {
+TEST(Note, TextHasTheSeverityInformation) {
   const Note note = "PSFD varies";
   EXPECT_EQ(note.severity, Severity::information);
   EXPECT_EQ(format_note(note), note.text);

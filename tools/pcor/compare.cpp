@@ -320,12 +320,13 @@ void run(const CompareArguments& options) {
   const bool has_wind = std::any_of(references.used.begin(), references.used.end(),
                                     [](const auto& reference) { return reference->name() == "wind"; });
   if (has_wind) {
-    comparison.notes.emplace_back(
-        compare_options.separates_atmosphere
-            ? "rms and scatter by wind contain gusts and the drift of the wind; the bias does not"
-            : "residuals by wind contain gusts and the drift of the wind; with --reference wind the bias "
-              "does "
-              "not");
+    comparison.notes.emplace_back(compare_options.separates_atmosphere
+                                      ? "rms, scatter and worst minutes by wind contain gusts and the drift "
+                                        "of the wind; a bias contains "
+                                        "them only if the flights do not determine the level of delta-p"
+                                      : "residuals by wind contain gusts and the drift of the wind; "
+                                        "--reference wind separates them from "
+                                        "the bias");
   }
   if (!is_speaker()) return;
   OutputTransaction together;

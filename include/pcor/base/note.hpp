@@ -17,7 +17,7 @@ enum class Severity {
 /// Text: "warning", "information".
 std::string_view to_string(Severity severity);
 
-/// Note about a result for the user. A text converts to an information.
+/// Note about a result for the user. A text converts to a note with the severity information.
 struct Note {
   Severity severity = Severity::information;
   std::string text{};  ///< sentence without full stop
@@ -43,7 +43,6 @@ struct Note {
 using Notes = std::vector<Note>;
 
 inline bool operator==(const Note& a, const Note& b) { return a.severity == b.severity && a.text == b.text; }
-inline bool operator!=(const Note& a, const Note& b) { return !(a == b); }
 /// Warnings precede information; otherwise alphabetical.
 inline bool operator<(const Note& a, const Note& b) {
   return std::tie(a.severity, a.text) < std::tie(b.severity, b.text);
@@ -51,7 +50,7 @@ inline bool operator<(const Note& a, const Note& b) {
 
 inline Note warning_note(std::string text) { return {Severity::warning, std::move(text)}; }
 
-/// Text for one line of output: "warning: " and the text of a warning, the text of an information.
+/// Text for one line of output; before the text of a warning stands "warning: ".
 std::string format_note(const Note& note);
 
 /// "Warning" or "Note", the label of a note in reports and long output.

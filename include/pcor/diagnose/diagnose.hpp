@@ -215,7 +215,7 @@ void describe(const Finding& self, Field& field) {
   field("units", field.named(self.estimates, &Estimate::unit), "units of the coefficients");
   field("estimates", self.estimates, "estimated coefficients");
   field("rms_hpa", self.rms, "contribution to the residual that the model does not absorb, rms");
-  field("worst_hpa", self.worst, "largest contribution, with sign");
+  field("worst_hpa", self.worst, "largest contribution of the effect alone, with sign");
   field("worst_flight", self.worst_flight, "flight of the largest contribution");
   field.time("worst_time", self.worst_time, "time of the largest contribution");
   field("chi2", self.chi2, "evidence: decrease of chi2");

@@ -26,7 +26,9 @@ struct Statistics {
 template <class Field>
 void describe(const Statistics& self, Field& field) {
   field("samples", self.samples, "number of samples");
-  field("bias_hpa", self.bias, "mean residual; against wind or height without variations of the atmosphere");
+  field("bias_hpa", self.bias,
+        "mean residual; without variations of the atmosphere where they were separated");
+  field("mean_hpa", self.mean, "mean residual as measured");
   field("bias_stderr_hpa", self.bias_error, "standard error of the bias, with the correlation of the noise");
   field("rms_hpa", self.rms, "rms residual");
   field("scatter_hpa", self.scatter(), "standard deviation of the residual");
