@@ -164,8 +164,8 @@ struct CompareOptions {
   /// kept ones are read twice.
   std::size_t max_series = 16;
   /// Against wind and height, separates mean residuals and their errors from the variations of the atmosphere
-  /// and from the usual errors of heading, flow angles and thermometer. Takes seconds per flight. If false, the
-  /// mean residuals contain gusts, drift and shear of the wind.
+  /// and from the usual errors of heading, flow angles and thermometer. Takes seconds per flight. If false,
+  /// the mean residuals contain gusts, drift and shear of the wind.
   bool separates_atmosphere = true;
   /// Callback after every flight of this rank with every reference.
   std::function<void(std::size_t done, std::size_t total)> progress{};
