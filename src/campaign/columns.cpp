@@ -294,8 +294,7 @@ void put_gps(GpsKind kind, const CandidateModels& set, const System& own, const 
   if (found.defect.rows() == 0) return;
   columns.gps = gps_system(found, usual);
   if (columns.gps.rows.size() == 0) return;
-  const double warmer = kind == GpsKind::height ? thermometer_of(columns.gps, usual) : 0.0;
-  if (warmer != 0.0) columns.gps = gps_system(rows_at(warmer), usual);
+  if (kind == GpsKind::height) columns.gps = gps_system(rows_at(thermometer_of(columns.gps, usual)), usual);
   // The coefficients of other systems do not change a comparison with GPS.
   const Eigen::MatrixXf own_columns = std::move(columns.gps.rows);
   const Eigen::Index others = columns.base.cols() - free;

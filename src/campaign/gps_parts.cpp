@@ -35,9 +35,7 @@ std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSam
   };
   GpsSystem system = system_at(0.0);
   if (system.rows.size() == 0) return {};
-  // With the law as it is.
-  const double warmer = kind == GpsKind::height ? thermometer_of(system, {}) : 0.0;
-  if (warmer != 0.0) system = system_at(warmer);
+  if (kind == GpsKind::height) system = system_at(thermometer_of(system, {}));  // with the law as it is
   const Eigen::MatrixXd rows = system.rows.cast<double>();
   const auto of_parts = rows.middleCols(as_index(law.size()), as_index(parts.size()));
   std::vector<Eigen::MatrixXd> products;

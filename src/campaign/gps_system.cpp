@@ -85,15 +85,13 @@ double thermometer_of(const GpsSystem& system, const std::vector<double>& usual)
     const double deviation = gps_prior_in_typical_sizes * usual[static_cast<std::size_t>(k)];
     if (deviation > 0.0) products(k, k) += 1.0 / (deviation * deviation);
   }
-  // Not of the thermometer: the law, whose change of temperature looks the same, would take most of it.
   products.diagonal().segment(law + 1, gps_shared_nuisances - 1).array() += 1.0;
+  // With its own prior the law, whose change of temperature looks the same, would take most of the error.
+  constexpr double wider = 10.0;
+  products(law, law) += 1.0 / (wider * wider);
   const Eigen::Index count = law + gps_shared_nuisances;
-  const Eigen::MatrixXd covariance = information_inverse(products.topLeftCorner(count, count));
-  const double estimate = covariance.row(law) * products.col(count).head(count);
-  constexpr double significant = 3.0;  // standard errors
-  return std::abs(estimate) > significant * std::sqrt(covariance(law, law))
-             ? gps_nuisances.front().deviation * estimate
-             : 0.0;
+  return gps_nuisances.front().deviation *
+         pseudo_solution(products.topLeftCorner(count, count), products.col(count).head(count))[law];
 }
 
 }  // namespace pcor::internal

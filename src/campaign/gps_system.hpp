@@ -39,9 +39,8 @@ struct GpsSystem {
 /// @param usual typical size of each coefficient of the law, the first columns, in its unit; 0: unknown
 GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& usual);
 
-/// Error of the thermometer, K, without its prior, with the law free within its own; 0 below three standard
-/// errors. @param usual as in
-/// `gps_system`
+/// Error of the thermometer, K, with ten times the deviation of its prior, and the law free within its own
+/// prior. @param usual as in `gps_system`
 double thermometer_of(const GpsSystem& system, const std::vector<double>& usual);
 
 }  // namespace pcor::internal
