@@ -93,9 +93,7 @@ constexpr std::array<Form, 6> forms{{
 
 }  // namespace
 
-ModelSamples Reference::read(const Flight&, const std::vector<double>&, Notes&) const {
-  return {};
-}
+ModelSamples Reference::read(const Flight&, const std::vector<double>&, Notes&) const { return {}; }
 
 const Reference& first_of(const References& references) {
   if (references.empty()) throw Error(Error::Code::usage, "no reference is given; give at least one");
