@@ -8,15 +8,15 @@ namespace pcor::internal {
 
 std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSamples& samples,
                                                    const ModelDefinition& model,
-                                                   const std::vector<double>& parameters,
                                                    const std::vector<std::size_t>& used,
                                                    const std::vector<std::vector<std::size_t>>& parts) {
   const std::vector<std::size_t> law = free_parameters(model);
   ModelDefinition with_amount = model;
   with_amount.model.additions = {EffectLocation::static_defect};
-  std::vector<double> all = parameters;
-  all.resize(parameter_count(model.model));
-  all.push_back(0.0);
+  std::vector<double> all;
+  for (const ModelEffect& effect : model.model.effects)
+    all.insert(all.end(), effect.parameters.begin(), effect.parameters.end());
+  all.push_back(0.0);  // the amount
   AddedEffects effects;
   effects.amounts_of_model = {all.size() - 1};
   effects.at.assign(parts.size(), 0);
@@ -35,7 +35,8 @@ std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSam
   };
   GpsSystem system = system_at(0.0);
   if (system.rows.size() == 0) return {};
-  if (kind == GpsKind::height) system = system_at(thermometer_of(system, {}));  // with the law as it is
+  // Without columns of the law: its coefficients stay at the model's.
+  if (kind == GpsKind::height) system = system_at(thermometer_of(system, {}));
   const Eigen::MatrixXd rows = system.rows.cast<double>();
   const auto of_parts = rows.middleCols(as_index(law.size()), as_index(parts.size()));
   std::vector<Eigen::MatrixXd> products;

@@ -475,12 +475,8 @@ void separate_atmosphere(const Pairing& pairing, const FlightSamples& samples,
                          const std::vector<std::vector<std::size_t>>& parts, ModelSums& sums) {
   const std::optional<GpsKind> kind = gps_kind(pairing.reference);
   if (!kind || parts.front().empty()) return;
-  const ModelDefinition& model = pairing.contender.model;
-  std::vector<double> parameters;
-  for (const ModelEffect& effect : model.model.effects)
-    parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
   std::vector<Eigen::MatrixXd> products =
-      gps_products_of_parts(*kind, samples, model, parameters, parts.front(), parts);
+      gps_products_of_parts(*kind, samples, pairing.contender.model, parts.front(), parts);
   if (products.empty()) return;
   auto next = products.begin();
   sums.each_part([&](ResidualSums& part) { part.by_gps = std::move(*next++); });

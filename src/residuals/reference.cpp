@@ -29,10 +29,8 @@ Pointer read_lams(const std::string&, const ModelDefinition& model) {
         Error::Code::model,
         fmt::format(
             "model '{}' has no lams_airspeed, and the default reference is the laser; for a flight without "
-            "laser "
-            "give --reference static:OTHER.toml, total:PS+QC, pressure:PS, height or wind ('pcor inspect' "
-            "lists what the "
-            "flight allows); otherwise name the variable in the table [variables]",
+            "laser give --reference static:OTHER.toml, total:PS+QC, pressure:PS, height or wind ('pcor "
+            "inspect' lists what the flight allows); otherwise name the variable in the table [variables]",
             model.model.name));
   }
   return lams_reference();
