@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/base/error.hpp>
@@ -9,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -72,49 +75,59 @@ std::string file_address(const fs::path& path) {
   return address;
 }
 
-// New folder for the page and the files of the browser.
-fs::path make_work_folder() {
+// File in memory that holds a page, for a program that this one starts.
+class PageInMemory {
+ public:
+  explicit PageInMemory(const std::string& html) : descriptor_(::memfd_create("page.html", 0)) {
+    for (std::size_t done = 0; descriptor_ >= 0 && done < html.size();) {
+      const ::ssize_t count = ::write(descriptor_, html.data() + done, html.size() - done);
+      if (count < 0 && errno != EINTR)
+        throw Error(Error::Code::system, "figures: there is no memory for the page of the browser");
+      done += count < 0 ? 0 : static_cast<std::size_t>(count);
+    }
+  }
+  ~PageInMemory() { ::close(descriptor_); }
+  PageInMemory(const PageInMemory&) = delete;
+  PageInMemory& operator=(const PageInMemory&) = delete;
+  PageInMemory(PageInMemory&&) = delete;
+  PageInMemory& operator=(PageInMemory&&) = delete;
+
+  std::string path() const { return fmt::format("/dev/fd/{}", descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+// Final content of a page. A shell makes the folder of the browser and removes it, also if this program is
+// stopped at any time; a browser that hangs is killed.
+std::string dumped(const std::string& program, const std::string& html, const std::string& wish) {
+  constexpr int no_folder = 3;
   std::error_code code;
   const fs::path temporary = fs::absolute(fs::temp_directory_path(code), code);
-  std::string name = (temporary / "pcor-figures-XXXXXX").string();
-  if (code || ::mkdtemp(name.data()) == nullptr)
+  const PageInMemory page(html);
+  const bool is_root = ::geteuid() == 0;  // Chromium has no sandbox for root
+  const std::string command = fmt::format(
+      "folder=\n"
+      "trap '[ -z \"$folder\" ] || rm -rf -- \"$folder\"' EXIT; trap 'exit 1' INT TERM HUP PIPE\n"
+      "folder=$(mktemp -d {0} 2> /dev/null) && cat {1} 2> /dev/null > \"$folder/page.html\" || exit {2}\n"
+      "timeout --kill-after=5 120 {3} --headless=new {4} --disable-gpu --user-data-dir=\"$folder/profile\" "
+      "--dump-dom {5}\"${{folder##*/}}\"/page.html{6} 2> \"$folder/messages\" && exit\n"
+      "[ $? -eq 124 ] && echo 'it was not done after two minutes' && exit 1\n"
+      "tail -n 1 \"$folder/messages\"; exit 1\n",
+      shell_quote((temporary / "pcor-figures-XXXXXX").string()), page.path(), no_folder, shell_quote(program),
+      is_root ? "--no-sandbox" : "", shell_quote(file_address(temporary) + "/"), shell_quote(wish));
+  std::FILE* const pipe = code ? nullptr : ::popen(command.c_str(), "r");
+  std::string text;
+  std::array<char, 65536> buffer{};
+  for (std::size_t count = 0;
+       pipe != nullptr && (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    text.append(buffer.data(), count);
+  const int status = pipe == nullptr ? -1 : ::pclose(pipe);
+  if (status == -1 || (WIFEXITED(status) && WEXITSTATUS(status) == no_folder))
     throw Error(Error::Code::output, "figures: cannot write to the folder for temporary files " +
                                          temporary.string() +
                                          "; check the space there, or set TMPDIR to another folder");
-  return name;
-}
-
-// Final content of a page. A shell starts the browser and removes the folder, also if this program is
-// stopped; a browser that hangs is killed.
-std::string dumped(const std::string& program, const std::string& html, const std::string& wish) {
-  const fs::path folder = make_work_folder();
-  const fs::path page = folder / "page.html";
-  std::ofstream stream(page, std::ios::binary);
-  stream << html;
-  stream.close();
-  const bool is_root = ::geteuid() == 0;  // Chromium has no sandbox for root
-  const std::string command = fmt::format(
-      "folder={0}\n"
-      "trap 'rm -rf -- \"$folder\"' EXIT; trap 'exit 1' INT TERM HUP PIPE\n"
-      "timeout --kill-after=5 120 {1} --headless=new {2} --disable-gpu --user-data-dir=\"$folder/profile\" "
-      "--dump-dom {3} 2> \"$folder/messages\" && exit\n"
-      "[ $? -eq 124 ] && echo 'it was not done after two minutes' && exit 1\n"
-      "tail -n 1 \"$folder/messages\"; exit 1\n",
-      shell_quote(folder.string()), shell_quote(program), is_root ? "--no-sandbox" : "",
-      shell_quote(file_address(page) + wish));
-  std::FILE* const pipe = stream ? ::popen(command.c_str(), "r") : nullptr;
-  if (pipe == nullptr) {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-    throw Error(Error::Code::output, "figures: cannot write the page for the browser to " +
-                                         folder.parent_path().string() +
-                                         "; check the space there, or set TMPDIR to another folder");
-  }
-  std::string text;
-  std::array<char, 65536> buffer{};
-  for (std::size_t count = 0; (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    text.append(buffer.data(), count);
-  if (::pclose(pipe) != 0) {
+  if (status != 0) {
     while (!text.empty() && text.back() == '\n') text.pop_back();
     throw Error(
         Error::Code::system,
