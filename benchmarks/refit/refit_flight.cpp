@@ -159,7 +159,6 @@ void run(const Arguments& arguments) {
   const pcor::ModelDefinition model = neutral_model();
   const pcor::References references{pcor::pressure_reference("REFERENCE")};
   pcor::RefitOptions options;
-  options.loss = pcor::Loss::soft_l1;
   options.threads = arguments.threads;
   const pcor::FlightSet set(flights, {{}, &pcor::serial_communicator(), arguments.memory});
   std::size_t passes = 0;

@@ -200,15 +200,12 @@ FitRows FitFlights::rows(std::size_t flight, const Eigen::VectorXd& parameters,
   FitRows rows{weighted(flight, columns(flight)), weighted(flight, residual(flight, parameters)),
                weighted(flight, by_offsets_[flight])};
   if (rows.offsets.cols() == 0) return rows;
-  // Huber's solution is the start of a loss with several minima.
   rows.innovations = rows.without_offsets(rows.innovations, Eigen::VectorXd::Ones(rows.innovations.size()));
-  for (const ScaledLoss& each : {loss.convex(), loss}) {
-    constexpr int max_rounds = 200;
-    for (int round = 0; round < max_rounds && !loss.is_least_squares(); ++round) {
-      const Eigen::VectorXd before = rows.innovations;
-      rows.innovations = rows.without_offsets(before, each.weights(before));
-      if (!((rows.innovations - before).norm() > 1e-12 * rows.innovations.norm())) break;
-    }
+  constexpr int max_rounds = 200;
+  for (int round = 0; round < max_rounds && !loss.is_least_squares(); ++round) {
+    const Eigen::VectorXd before = rows.innovations;
+    rows.innovations = rows.without_offsets(before, loss.weights(before));
+    if (!((rows.innovations - before).norm() > 1e-12 * rows.innovations.norm())) break;
   }
   return rows;
 }

@@ -29,11 +29,7 @@ class ScaledLoss {
 
   bool is_least_squares() const { return function_ == nullptr; }
 
-  /// Huber's loss of the same residuals, whose minimum is unique.
-  ScaledLoss convex() const { return is_least_squares() ? *this : ScaledLoss(Loss::huber, deviation_); }
-
  private:
-  double deviation_ = 0.0;
   std::shared_ptr<const ceres::LossFunction> function_;
 };
 

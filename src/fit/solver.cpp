@@ -89,20 +89,18 @@ class Solver {
       spread();
     }
     flights_.prepare(solution_.values);
-    const Loss loss = task_.options.loss;
     // A stage starts at a solution.
     if (!is_stage_) {
       choose_times();
       linear_step({});
       measure();
-      // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
-      settles_with(loss == Loss::none ? loss : Loss::huber);
+      settles();
       // The noise is that of residuals at the solution.
       constexpr int most = 5;
       for (int round = 0; round < most && flights_.has_moving_columns(); ++round) {
         const Eigen::VectorXd before = unknowns_;
         flights_.prepare(solution_.values);
-        settles_with(loss == Loss::none ? loss : Loss::huber);
+        settles();
         if (has_converged(before)) break;
       }
     }
@@ -111,13 +109,13 @@ class Solver {
     // The weight of each reference is that of its residuals at the solution.
     for (int round = 0; round < rounds && flights_.joint().size() > 1; ++round) {
       const Eigen::VectorXd before = unknowns_;
-      settles_with(loss);
+      settles();
       if (has_converged(before)) break;
       measure();
     }
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns_;
-      const bool settled = settles_with(loss);
+      const bool settled = settles();
       if (!flights_.uses_fixed_jacobian()) {
         if (settled) break;
         continue;
@@ -227,9 +225,9 @@ class Solver {
     }
   }
 
-  /// Minimises that loss; true if the deviation that scales it is then unchanged.
-  bool settles_with(Loss loss) {
-    const ScaledLoss scaled(loss, solution_.deviation);
+  /// Minimises the loss; true if the deviation that scales it is then unchanged.
+  bool settles() {
+    const ScaledLoss scaled(task_.options.loss, solution_.deviation);
     if (flights_.rows_are_linear()) {
       reweight(scaled);
     } else {

@@ -9,7 +9,7 @@ using namespace pcor;
 
 namespace {
 
-constexpr std::array<Loss, 5> losses{Loss::tukey, Loss::huber, Loss::soft_l1, Loss::cauchy, Loss::none};
+constexpr std::array<Loss, 2> losses{Loss::huber, Loss::none};
 
 /// The weight of a sample that is that many deviations off, next to one of least squares.
 double weight(Loss loss, double deviations) {
@@ -19,7 +19,7 @@ double weight(Loss loss, double deviations) {
 
 TEST(Loss, IsFoundByItsName) {
   for (const Loss loss : losses) EXPECT_EQ(loss_named(to_string(loss)), loss) << to_string(loss);
-  EXPECT_FALSE(loss_named("tuckey"));
+  EXPECT_FALSE(loss_named("hubert"));
 }
 
 TEST(Loss, LetsOutliersCountLess) {
@@ -32,8 +32,6 @@ TEST(Loss, LetsOutliersCountLess) {
       EXPECT_LT(weight(loss, 10.0), 0.5);
     }
   }
-  EXPECT_EQ(weight(Loss::tukey, 4.7), 0.0);
-  EXPECT_GT(weight(Loss::tukey, 4.6), 0.0);
   EXPECT_EQ(weight(Loss::huber, 3.9), 1.0);
   EXPECT_LT(weight(Loss::huber, 4.1), 1.0);
 }

@@ -586,10 +586,10 @@ class Refit(ComparisonTest):
         self.assertEqual(rows, [(False, fit["samples"]), (True, everything["samples"] - fit["samples"])])
         self.assertEqual(fit["samples"], round(0.6 * everything["samples"]))
 
-    def test_outliers_move_least_squares_and_not_tukey(self):
+    def test_outliers_move_least_squares_more_than_huber(self):
         """Of 5 % of the laser's speeds 6 m/s too large, about 6 hPa: ten times the noise, and short of the
-        8 m/s from which the laser is taken as unlocked. The mean error is 0.3 hPa, a0 3.5e-4. With Tukey's loss
-        less than a third of the movement of least squares is left, with Huber's loss less than all."""
+        8 m/s from which the laser is taken as unlocked. The mean error is 0.3 hPa, a0 3.5e-4. Huber's loss limits
+        each of them to four deviations of ten, so less than half of the movement of least squares is left."""
         spoilt = self.path / "spoilt.nc"
         spoilt.write_bytes(ONE.read_bytes())
         with netCDF4.Dataset(spoilt, "a") as flight:
@@ -601,11 +601,10 @@ class Refit(ComparisonTest):
             clean, bad = (self.refit("--loss", loss, flights=(flight,)) for flight in (ONE, spoilt))
             return abs(values_of(bad)["a0"] - values_of(clean)["a0"])
 
-        self.assertLess(moved("tukey"), 0.3 * moved("none"))
-        self.assertLess(moved("huber"), moved("none"))
+        self.assertLess(moved("huber"), 0.5 * moved("none"))
 
     def test_every_loss_finds_the_true_law(self):
-        for loss in ("tukey", "huber", "soft-l1", "cauchy", "none"):
+        for loss in ("huber", "none"):
             with self.subTest(loss):
                 self.assert_true_law(self.refit("--loss", loss))
 
@@ -854,7 +853,7 @@ class BadInput(ComparisonTest):
                      words=["--reference static:OTHER.toml"])
 
     def test_unknown_loss_is_wrong_usage(self):
-        self.refused("refit", ONE, "-m", self.model(), "--loss", "square", words=["square", "tukey"], status=2)
+        self.refused("refit", ONE, "-m", self.model(), "--loss", "square", words=["square", "huber"], status=2)
 
 
     def test_numbers_that_are_none(self):

@@ -47,7 +47,7 @@ void add_training_options(CLI::App& command, FitOptions& options, const std::str
   command
       .add_option("--loss", options.loss,
                   "loss function, which limits the weight of outliers; none: least squares")
-      ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
+      ->check(CLI::IsMember({"huber", "none"}))
       ->capture_default_str();
   add_list_option(command, "--holdout", options.holdout, "a flight that is not fitted, but tests " + tested)
       ->type_name("T.nc");

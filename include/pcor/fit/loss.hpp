@@ -5,15 +5,12 @@
 
 namespace pcor {
 
-/// Loss functions of residuals in units of the noise. All except `none` reduce the weight of outliers.
+/// Loss function of residuals in units of the noise. Both have one minimum.
 enum class Loss {
-  tukey,  ///< Tukey's bisquare: zero weight beyond 4.685 robust standard deviations
-  /// Default: linear beyond 4 robust standard deviations. The misfit of a model is larger than its noise and
-  /// not an outlier, so a narrower loss would favour some regimes.
+  /// Default: linear beyond 4 robust standard deviations, so that outliers have less weight. The misfit of a
+  /// model is larger than its noise and not an outlier, so a narrower loss would favour some regimes.
   huber,
-  soft_l1,  ///< soft_l1 of scipy: 2 (sqrt(1 + s) - 1), s in squared robust standard deviations
-  cauchy,   ///< log(1 + s), s in squared units of 2.385 robust standard deviations
-  none      ///< least squares
+  none  ///< least squares
 };
 
 std::string_view to_string(Loss loss);
