@@ -10,16 +10,17 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double power_sd = 0.3;   // exponent
+constexpr double factor_sd = 0.3;  // exponent; half the difference of the slopes on either side of zero
 constexpr double delay_sd = 0.15;  // s
 constexpr double min_ratio =
     0.01;  // ratio of an effect to its rms: smaller values use the logarithm of this one
-constexpr Eigen::Index powers = 3;  // powers of dynamic pressure, static pressure and the effect itself
+constexpr Eigen::Index factors = 4;
 
-/// Logarithms of dynamic pressure, static pressure and the effect, one row for each bin.
-Eigen::MatrixXd logarithms_of(const FlightColumns& flight, const Binning& bins, const Eigen::VectorXd& effect,
-                              double rms) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(effect.size(), powers);
+/// Factors on the effect, one row for each bin: logarithms of dynamic pressure, static pressure and the
+/// effect, and the sign of the effect.
+Eigen::MatrixXd factors_of(const FlightColumns& flight, const Binning& bins, const Eigen::VectorXd& effect,
+                           double rms) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(effect.size(), factors);
   Eigen::Index column = 0;
   for (const Quantity pressure : {Quantity::dynamic_pressure, Quantity::static_pressure}) {
     if (const std::vector<double>* const values = flight.samples->model.find(pressure)) {
@@ -30,6 +31,7 @@ Eigen::MatrixXd logarithms_of(const FlightColumns& flight, const Binning& bins, 
   }
   result.col(column) =
       effect.unaryExpr([rms](double value) { return std::log(std::max(std::abs(value) / rms, min_ratio)); });
+  result.col(column + 1) = effect.cwiseSign();
   return result;
 }
 
@@ -85,20 +87,19 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
     const double rms = std::sqrt(sum / squares(Eigen::seq(1, Eigen::last, 2)).sum());
     const auto sums = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
       const Eigen::VectorXd effect = effect_on(f);
-      return logarithms_of(*flights[f], binned.bins[f], effect, rms).transpose() * effect.cwiseAbs2();
+      return factors_of(*flights[f], binned.bins[f], effect, rms).transpose() * effect.cwiseAbs2();
     });
     const Eigen::RowVectorXd mean = sums.transpose() / sum;
     for (std::size_t f = 0; f < flights.size(); ++f) {
       if (!share.owns(f)) continue;
       const Eigen::VectorXd effect = effect_on(f);
-      const Eigen::MatrixXd logarithms =
-          logarithms_of(*flights[f], binned.bins[f], effect, rms).rowwise() - mean;
+      const Eigen::MatrixXd varying = factors_of(*flights[f], binned.bins[f], effect, rms).rowwise() - mean;
       auto columns = result[f].middleCols(shape_columns * e, shape_columns);
-      columns.leftCols(powers) = power_sd * (effect.asDiagonal() * logarithms);
-      columns.col(powers) = delay_sd * rate_of(effect, binned.bins[f]);
+      columns.leftCols(factors) = factor_sd * (effect.asDiagonal() * varying);
+      columns.col(factors) = delay_sd * rate_of(effect, binned.bins[f]);
       const Eigen::Index place = 2 * as_index(flights[f]->reference);
       if (squares[place] > 0.0)
-        columns.col(powers + 1).setConstant(std::sqrt(squares[place] / squares[place + 1]));
+        columns.col(factors + 1).setConstant(std::sqrt(squares[place] / squares[place + 1]));
     }
   }
   return result;

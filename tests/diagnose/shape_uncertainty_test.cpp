@@ -66,10 +66,30 @@ TEST(ShapeUncertainty, IsTheDerivativeByThePowerOfTheDynamicPressure) {
 TEST(ShapeUncertainty, DoesNotChangeTheSize) {
   const Example example;
   const Eigen::MatrixXd found = example.uncertainty(2.0);
-  for (Eigen::Index k = 0; k < 3; ++k) {
+  for (Eigen::Index k = 0; k < 4; ++k) {
     // Rounding of a sum over 200 bins of values about one.
     EXPECT_NEAR(found.col(k).dot(example.column), 0.0, 1e-10) << k;
   }
+}
+
+TEST(ShapeUncertainty, TheSlopesOnEitherSideOfZeroDiffer) {
+  const Example example;
+  const Eigen::VectorXd found = example.uncertainty(2.0).col(3);
+  const Eigen::ArrayXd ratio = found.cwiseQuotient(example.column).array() / 2.0;
+  const Eigen::Array<bool, Eigen::Dynamic, 1> positive = example.column.array() > 0.0;
+  const double above = positive.select(ratio, -1.0).maxCoeff();
+  const double below = positive.select(1.0, ratio).minCoeff();
+  EXPECT_NEAR(above - below, 2.0 * 0.3, 1e-12);
+  // Each side has one ratio.
+  EXPECT_NEAR((ratio - positive.select(Eigen::ArrayXd::Constant(rows, above), below)).abs().maxCoeff(), 0.0,
+              1e-12);
+}
+
+TEST(ShapeUncertainty, AnEffectOfOneSignHasOneSlope) {
+  Example example;
+  example.column.array() += 1.0;
+  example.binned.columns.front() = example.column;
+  EXPECT_NEAR(example.uncertainty(2.0).col(3).cwiseAbs().maxCoeff(), 0.0, 1e-12);
 }
 
 TEST(ShapeUncertainty, AConstantPressureGivesNothing) {
@@ -79,7 +99,7 @@ TEST(ShapeUncertainty, AConstantPressureGivesNothing) {
 
 TEST(ShapeUncertainty, DelaysByTheRateOfChange) {
   const Example example;
-  const Eigen::VectorXd found = example.uncertainty(1.0).col(3);
+  const Eigen::VectorXd found = example.uncertainty(1.0).col(4);
   for (Eigen::Index i = 1; i + 1 < rows; ++i) {
     const double rate = std::cos(static_cast<double>(i) / 40.0) / 40.0 / step;
     EXPECT_NEAR(found[i], 0.15 * rate, 1e-3 * 0.15 / 40.0 / step) << i;  // second order in the step
@@ -95,5 +115,5 @@ TEST(ShapeUncertainty, AnotherZeroOfTheDriverIsAConstantOfTheSizeOfTheEffect) {
   const Example example;
   const Eigen::VectorXd effect = 2.0 * example.column;
   const double rms = std::sqrt(effect.squaredNorm() / static_cast<double>(rows));
-  EXPECT_TRUE(example.uncertainty(2.0).col(4).isApprox(Eigen::VectorXd::Constant(rows, rms), 1e-12));
+  EXPECT_TRUE(example.uncertainty(2.0).col(5).isApprox(Eigen::VectorXd::Constant(rows, rms), 1e-12));
 }
