@@ -109,13 +109,16 @@ std::string dumped(const std::string& program, const std::string& html, const st
   const std::string command = fmt::format(
       "folder=\n"
       "trap '[ -z \"$folder\" ] || rm -rf -- \"$folder\"' EXIT; trap 'exit 1' INT TERM HUP PIPE\n"
-      "folder=$(mktemp -d {0} 2> /dev/null) && cat {1} 2> /dev/null > \"$folder/page.html\" || exit {2}\n"
-      "timeout --kill-after=5 120 {3} --headless=new {4} --disable-gpu --user-data-dir=\"$folder/profile\" "
-      "--dump-dom {5}\"${{folder##*/}}\"/page.html{6} 2> \"$folder/messages\" && exit\n"
+      "folder=$(mktemp -d {0} 2> /dev/null) && cd \"$folder\" && cat {1} 2> /dev/null > page.html || exit "
+      "{2}\n"
+      // Chromium puts a socket into TMPDIR, and the path of a socket has at most 107 characters.
+      "TMPDIR=. timeout --kill-after=5 120 {3} --headless=new {4} --disable-gpu --user-data-dir=profile "
+      "--dump-dom {5}\"${{folder##*/}}\"/page.html{6} 2> messages && exit\n"
       "[ $? -eq 124 ] && echo 'it was not done after two minutes' && exit 1\n"
-      "tail -n 1 \"$folder/messages\"; exit 1\n",
-      shell_quote((temporary / "pcor-figures-XXXXXX").string()), page.path(), no_folder, shell_quote(program),
-      is_root ? "--no-sandbox" : "", shell_quote(file_address(temporary) + "/"), shell_quote(wish));
+      "tail -n 1 messages; exit 1\n",
+      shell_quote((temporary / "pcor-figures-XXXXXX").string()), page.path(), no_folder,
+      shell_quote(fs::absolute(program).string()), is_root ? "--no-sandbox" : "",
+      shell_quote(file_address(temporary) + "/"), shell_quote(wish));
   std::FILE* const pipe = code ? nullptr : ::popen(command.c_str(), "r");
   std::string text;
   std::array<char, 65536> buffer{};

@@ -54,7 +54,8 @@ class Figures(unittest.TestCase):
         self.assertFalse((FOLDER / "new").exists())
 
     def test_the_folder_of_temporary_files_may_be_called_anything(self):
-        temporary = FOLDER / "it's my $HOME"
+        # Chromium makes a socket, whose path may have at most 107 characters, in the folder of temporary files.
+        temporary = FOLDER / ("it's my $HOME" + 120 * "x")
         beside = FOLDER / "it's"
         temporary.mkdir()
         beside.mkdir()
@@ -68,7 +69,8 @@ class Figures(unittest.TestCase):
         temporary = FOLDER / "temporary"
         temporary.mkdir()
         slow = FOLDER / "slow"
-        slow.write_text("#!/bin/sh\nsleep 1\n")
+        stopped = FOLDER / "was stopped"
+        slow.write_text(f"#!/bin/sh\nuntil [ -e '{stopped}' ]; do sleep 0.05; done\n")
         slow.chmod(0o755)
         # The run is stopped as soon as its temporary folder appears, and a little later.
         for delay in (0, 0.005, 0.5):
@@ -79,11 +81,13 @@ class Figures(unittest.TestCase):
             time.sleep(delay)
             child.terminate()
             self.assertEqual(child.wait(), -signal.SIGTERM)
+            stopped.touch()
             end = time.monotonic() + 60  # a loaded machine takes seconds to end the browser
             while os.listdir(temporary) and time.monotonic() < end:
                 time.sleep(0.1)
             self.assertEqual(os.listdir(temporary), [])
             self.assertFalse((FOLDER / "stopped").exists())
+            stopped.unlink()
 
 
 if __name__ == "__main__":
