@@ -37,6 +37,7 @@ std::string either(const Finding& finding, const std::string& rival) {
 }
 
 void summarise(Report& report, const Diagnosis& diagnosis) {
+  for (const Finding& finding : diagnosis.findings) report.summary.push_back(finding_summary(finding));
   report.summary.push_back(
       fmt::format("The residual is {} hPa rms, and {} hPa with the model's own coefficients fitted again; "
                   "the noise is {} "
@@ -44,7 +45,6 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
                   hpa(diagnosis.rms_given), hpa(diagnosis.residual_rms), hpa(diagnosis.noise_rms)));
   if (const std::string text = flaps_out_text(diagnosis.flaps_out, "the diagnosis"); !text.empty())
     report.summary.push_back(sentence(text));
-  for (const Finding& finding : diagnosis.findings) report.summary.push_back(finding_summary(finding));
   if (diagnosis.findings.empty()) {
     report.summary.push_back(
         fmt::format("All {} tested effects are below the threshold.", diagnosis.candidates));
@@ -132,26 +132,45 @@ ReportTable evidence_table(const std::vector<Finding>& findings) {
   return table;
 }
 
-/// Pictures of the findings of a diagnosis, and one page per finding.
-void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
-                  const std::vector<std::string>& residuals) {
-  using F = FlightDiagnosis;
-  const std::vector<Finding>& findings = diagnosis.findings;
+/// Columns of the findings, by name: evidence for each, and its contribution.
+struct FindingColumns {
   std::vector<std::string> evidence;
   std::vector<std::string> added;
-  for (std::size_t i = 0; i < findings.size(); ++i) {
-    const std::string id = findings[i].id();
+};
+
+FindingColumns add_columns(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
+  using F = FlightDiagnosis;
+  FindingColumns columns;
+  for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
+    const std::string id = diagnosis.findings[i].id();
     if (std::string name = numbered("evidence", i);
         panels.add_column(name, "evidence for " + id, "1/min", diagnosis.flights,
                           [i](const F& f) { return one_of(f.evidence, i); }))
-      evidence.push_back(std::move(name));
+      columns.evidence.push_back(std::move(name));
     if (std::string name = numbered("added", i); panels.add_column(
             name, "added by " + id, "hPa", diagnosis.flights, [i](const F& f) { return one_of(f.added, i); }))
-      added.push_back(std::move(name));
+      columns.added.push_back(std::move(name));
   }
+  return columns;
+}
+
+/// Residual before and after against the inputs of a finding.
+void add_against_inputs(DiagnosisPanels& panels, const Diagnosis& diagnosis,
+                        const std::vector<std::string>& residuals, std::size_t number) {
+  const ModelEffect& effect = diagnosis.findings[number].effect;
+  std::vector<std::string> inputs = inputs_of(effect);
+  inputs.push_back(numbered("added", number));
+  panels.add_binned("Residual before and after, against the inputs of " + diagnosis.findings[number].id(),
+                    effect_caption, residuals, inputs);
+}
+
+/// Pictures of the findings of a diagnosis, and one page per finding.
+void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
+                  const std::vector<std::string>& residuals, const FindingColumns& columns) {
+  const std::vector<Finding>& findings = diagnosis.findings;
   panels.add_time("Contributions of the missing effects",
-                  "Contribution to the residual with the estimated coefficients.", added, "added");
-  panels.add_time("Evidence in time", "Fall of chi2 per minute around each sample.", evidence,
+                  "Contribution to the residual with the estimated coefficients.", columns.added, "added");
+  panels.add_time("Evidence in time", "Fall of chi2 per minute around each sample.", columns.evidence,
                   "fall of chi2");
   panels.add(ranking_bars(diagnosis));
   panels.add_plane("Remaining residual over Mach number and pressure",
@@ -163,10 +182,7 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
     panels.add(
         finding_page(findings[i], diagnosis.threshold,
                      findings.size() == 1 ? "The finding: " + id : fmt::format("Finding {}: {}", i + 1, id)));
-    std::vector<std::string> inputs = inputs_of(findings[i].effect);
-    inputs.push_back(numbered("added", i));
-    panels.add_binned("Residual before and after, against the inputs of " + id, effect_caption, residuals,
-                      inputs);
+    if (i > 0) add_against_inputs(panels, diagnosis, residuals, i);  // that of the first is the first picture
     panels.add_plane("Evidence for " + id + ", over Mach number and pressure",
                      "Orange supports the effect, blue contradicts it.", numbered("evidence", i));
   }
@@ -238,6 +254,8 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
     residuals.emplace_back("after");
   panels.measure_memory(diagnosis.flights,
                         [&](const F& f) -> const Series& { return found ? f.after : f.before; });
+  const FindingColumns columns = add_columns(panels, diagnosis);
+  if (found) add_against_inputs(panels, diagnosis, residuals, 0);
   add_residual_in_time(panels, residuals);
   if (what_if != nullptr) {
     const std::vector<std::string> inputs =
@@ -246,7 +264,7 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
   }
   add_residual_by_regime(panels, residuals);
   if (found) {
-    add_findings(panels, diagnosis, residuals);
+    add_findings(panels, diagnosis, residuals, columns);
   } else {
     panels.add_binned("Residual against a variable", structure_caption, residuals, {});
     panels.add_plane("Residual over Mach number and pressure", "One colour over a region is a bias there.",

@@ -144,6 +144,7 @@ std::string probability(double p) {
 
 std::string percent(double share) {
   if (!std::isfinite(share)) return "unknown";
+  if (share > 0.0 && share < 5e-4) return "below 0.1 %";
   return fmt::format("{:.{}f} %", 100.0 * share, std::abs(share) < 0.0995 ? 1 : 0);
 }
 
@@ -174,22 +175,18 @@ std::string stretch_text(const Evidence& evidence) {
 }
 
 std::string finding_summary(const Finding& finding) {
-  std::string text = fmt::format("Missing: {}, {}. The model does not absorb {} hPa rms of it",
-                                 name_with_id(finding.title, finding.id()), estimates_text(finding.estimates),
-                                 hpa(finding.rms));
-  if (std::isfinite(finding.worst))
-    text += fmt::format("; the effect alone is at most {:+.3f} hPa", finding.worst);
-  text += fmt::format("; chance would do as well with a probability of {}.", probability(finding.p_value));
-  if (!finding.evidence.empty())
-    text += fmt::format(" The strongest evidence is {}.", stretch_text(finding.evidence.front()));
+  std::string text = fmt::format("Missing: {}, {} hPa rms that the model does not absorb.",
+                                 name_with_id(finding.title, finding.id()), hpa(finding.rms));
   if (finding.aliases.empty()) return text;
   std::vector<std::string> all;
   for (const Alias& alias : finding.aliases) {
-    if (all.size() < max_in_a_sentence) all.push_back(name_with_id(alias.effect, alias.title));
+    if (all.size() < max_in_a_sentence)
+      all.push_back(fmt::format("{} ({})", alias.effect, percent(alias.probability)));
   }
   if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
     all.push_back(fmt::format("{} more", more));
-  text += fmt::format(" These flights cannot distinguish it from {}.", join_list(all));
+  text += fmt::format(" These flights cannot distinguish it (probability {}) from {}.",
+                      percent(finding.probability), join_list(all));
   return finding.advice.sentence.empty() ? text : text + " " + sentence(finding.advice.sentence);
 }
 

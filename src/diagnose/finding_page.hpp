@@ -38,7 +38,8 @@ std::string name_with_id(const std::string& title, const std::string& id);
 /// "rf01, 2011-11-17 20:10:00 to 20:13:00 UTC (yaw manoeuvre)".
 std::string stretch_text(const Evidence& evidence);
 
-/// A finding in one paragraph for the summary of a report.
+/// A finding in one paragraph for the summary of a report: name, size, rivals with their probabilities,
+/// advice.
 std::string finding_summary(const Finding& finding);
 
 /// Sentences about the unexplained part of a diagnosis.

@@ -141,20 +141,21 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
                              std::size_t winner, const std::vector<std::size_t>& chosen) {
   constexpr double doubt_of_shape = 0.1;
   const Search& search = analysis.search();
-  const double best = search.evidence(chosen, false);
   const auto margin = [](double chi2) {
     return 0.5 * (alias_margin + doubt_of_shape * doubt_of_shape * chi2);
   };
   const double widest = margin(search.score(winner, chosen).chi2);
   std::vector<std::size_t> others = chosen;
   others.erase(std::find(others.begin(), others.end(), winner));
+  // A rival does not explain what another finding explains by its uncertain shape.
+  const double best = search.evidence(chosen, others);
   std::vector<Rival> rivals;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (g == winner || search.is_absorbed(g) || is_one_of(candidates[g].id, others, candidates)) continue;
     if (!search.score(g, others).possible) continue;
     std::vector<std::size_t> instead = others;
     instead.push_back(g);
-    const double less = best - search.evidence(instead, false);
+    const double less = best - search.evidence(instead, others);
     if (less < widest && less < margin(chi2_where_they_differ(analysis, others, winner, g)))
       rivals.push_back({g, less});
   }

@@ -381,7 +381,8 @@ double Search::log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::
   return -0.5 * freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) - determinant;
 }
 
-double Search::evidence(const std::vector<std::size_t>& set, bool with_shapes) const {
+double Search::evidence(const std::vector<std::size_t>& set,
+                        const std::vector<std::size_t>& uncertain) const {
   std::vector<Eigen::Index> columns;
   std::vector<Eigen::Index> begin;
   for (const std::size_t group : set) {
@@ -390,13 +391,11 @@ double Search::evidence(const std::vector<std::size_t>& set, bool with_shapes) c
   }
   if (columns.empty()) return 0.0;
   Eigen::VectorXd precision(as_index(columns.size()));
-  if (with_shapes) {
-    for (const Eigen::Index shape : shapes_of(set)) {
-      columns.push_back(shape);
-      const double scale = scale_[base_ + shape];
-      precision.conservativeResize(as_index(columns.size()));
-      precision[precision.size() - 1] = std::max(scale * scale, 1e-300);
-    }
+  for (const Eigen::Index shape : shapes_of(uncertain)) {
+    columns.push_back(shape);
+    const double scale = scale_[base_ + shape];
+    precision.conservativeResize(as_index(columns.size()));
+    precision[precision.size() - 1] = std::max(scale * scale, 1e-300);
   }
   const auto choose = [&](std::size_t i, const Tail& tail) {
     precision.segment(begin[i], as_index(told_[set[i]].size())) =

@@ -97,8 +97,9 @@ class Search {
   /// effect of ten times its usual size is possible but needs more evidence (the tails are those of a mixture
   /// of normal distributions).
   ///
-  /// @param with_shapes the shapes of effects of the flow are uncertain
-  double evidence(const std::vector<std::size_t>& set, bool with_shapes = true) const;
+  /// @param uncertain effects whose uncertain shapes are part of the set
+  double evidence(const std::vector<std::size_t>& set, const std::vector<std::size_t>& uncertain) const;
+  double evidence(const std::vector<std::size_t>& set) const { return evidence(set, set); }
 
   /// Largest correlation between two groups after base and `others`; signed if both have one column.
   double correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const;

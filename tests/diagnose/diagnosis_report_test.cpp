@@ -102,6 +102,8 @@ Finding sideslip_finding() {
                       1.4,
                       3.2,
                       {{"azimuth", "deg", 0.32, 0.03, 0.1}}}};
+  finding.probability = 0.65;
+  finding.aliases.front().probability = 0.35;
   finding.advice = {
       "fly 2 more yaw manoeuvres of 1.5 min each as on rf01: probability 93 % that they separate "
       "static-beta-odd from lams-azimuth",
@@ -268,14 +270,11 @@ TEST(DiagnosisReport, StatesFindingSizeAndSignificance) {
             "Effects are missing: static-beta-odd and static-lag; the remaining structure is not explained "
             "by any effect");
   EXPECT_EQ(report.subtitle, "Diagnosis of C-130 PSFD 2011 against LAMS");
-  EXPECT_THAT(report.summary,
-              Contains(AllOf(HasSubstr("static-port error with sideslip, ports not perfectly paired "
-                                       "(static-beta-odd), b1 = -0.00171 ± 0.00012"),
-                             HasSubstr("0.083 hPa rms"), HasSubstr("-0.365 hPa"),
-                             HasSubstr("probability of less than one in a million"),
-                             HasSubstr("rf01, 2011-11-17 20:30:00 to 20:35:00 UTC (level, yaw manoeuvre)"),
-                             HasSubstr("lams-azimuth (error of the azimuth of the laser beam)"),
-                             HasSubstr("Fly 2 more yaw manoeuvres of 1.5 min each"))));
+  // Findings come first: size, rivals with their probabilities, advice.
+  EXPECT_THAT(report.summary[0],
+              AllOf(HasSubstr("(static-beta-odd)"), HasSubstr("0.083 hPa"), HasSubstr("65 %"),
+                    HasSubstr("lams-azimuth (35 %)"), HasSubstr("2 more yaw manoeuvres of 1.5 min")));
+  EXPECT_THAT(report.summary[1], AllOf(HasSubstr("(static-lag)"), HasSubstr("0.110 hPa")));
   EXPECT_THAT(report.summary, Contains(HasSubstr("clock-skew |dt| < 0.13 s (0.021 hPa rms)")));
   EXPECT_THAT(report.info, Contains(testing::Pair("Not used", HasSubstr("200 "))));
   split_words(report);
@@ -324,6 +323,7 @@ TEST(DiagnosisReport, DrawsEachFindingAgainstItsOwnInputsFirst) {
   const auto* sideslip =
       item<BinnedPanel>(report, "Residual before and after, against the inputs of static-beta-odd");
   ASSERT_NE(sideslip, nullptr);
+  EXPECT_EQ(std::get_if<BinnedPanel>(&report.items.front()), sideslip);  // the first picture
   EXPECT_THAT(sideslip->y, ElementsAre("before", "after"));
   EXPECT_EQ(sideslip->x_choices.front(), "sideslip");
   EXPECT_THAT(sideslip->x_choices, Not(Contains("attack")));  // it has no value

@@ -500,3 +500,18 @@ TEST(Search, UncertainShapeIsNoSecondEffect) {
   // The first effect keeps its evidence.
   EXPECT_DOUBLE_EQ(search.score(0, {}).chi2, evidence);
 }
+
+// Beside an effect of uncertain shape, an effect that resembles its rest is no rival of another effect.
+TEST(Search, UncertainShapeOfOneFindingIsNoRivalOfAnother) {
+  Problem problem(600, 4, 31);
+  const Eigen::VectorXd rest = problem.candidate(3);
+  problem.candidate(1) = rest + 0.2 * problem.candidate(1);
+  problem.residual += 2.0 * problem.candidate(0) + 0.8 * rest + 0.4 * problem.candidate(2);
+  problem.one_by_one();
+  problem.groups.pop_back();
+  problem.groups[0].shape_first = 3;
+  problem.groups[0].shape_count = 1;
+  const Search search = problem.search();
+  EXPECT_GT(search.evidence({0, 1}, {}), search.evidence({0, 2}, {}));
+  EXPECT_GT(search.evidence({0, 2}, {0}), search.evidence({0, 1}, {0}) + 10.0);
+}
