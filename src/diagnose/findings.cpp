@@ -132,7 +132,8 @@ bool is_one_of(const std::string& effect, const std::vector<std::size_t>& chosen
 /// Loss of likelihood if one effect of the chosen set is replaced by another.
 struct Rival {
   std::size_t group;
-  double less;  ///< decrease of the logarithm of the marginal likelihood
+  double less;  ///< decrease of the logarithm of the marginal likelihood, in the shapes of the catalogue
+  double less_uncertain;  ///< the same with the uncertain shapes of both
 };
 
 /// Groups that may replace a chosen one. The catalogue describes the shape of an effect only to about 10 %,
@@ -149,6 +150,7 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
   others.erase(std::find(others.begin(), others.end(), winner));
   // A rival does not explain what another finding explains by its uncertain shape.
   const double best = search.evidence(chosen, others);
+  const double best_uncertain = search.evidence(chosen);
   std::vector<Rival> rivals;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (g == winner || search.is_absorbed(g) || is_one_of(candidates[g].id, others, candidates)) continue;
@@ -157,7 +159,7 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
     instead.push_back(g);
     const double less = best - search.evidence(instead, others);
     if (less < widest && less < margin(chi2_where_they_differ(analysis, others, winner, g)))
-      rivals.push_back({g, less});
+      rivals.push_back({g, less, best_uncertain - search.evidence(instead)});
   }
   return rivals;
 }
@@ -333,20 +335,30 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   finding.shape = shape_of(own);
   finding.shape_beyond_model = shape_beyond_model(own);
   finding.places = {place_of(own)};
-  std::map<std::string, double> weights{{own.id, 1.0}};
+  // Whether the shapes of the catalogue are exact is unknown: both assumptions count the same.
+  struct Weights {
+    double exact = 1.0;
+    double uncertain = 1.0;
+  };
+  std::map<std::string, Weights> weights{{own.id, {}}};
   for (const Rival& rival : rivals) {
     const Candidate& candidate = candidates[rival.group];
     if (candidate.id == own.id) finding.variants.push_back(shape_of(candidate));
     const std::string place = place_of(candidate);
     if (std::find(finding.places.begin(), finding.places.end(), place) == finding.places.end())
       finding.places.push_back(place);
-    double& weight = weights[candidate.id];
-    weight = std::max(weight, std::exp(-rival.less));
+    Weights& weight = weights.try_emplace(candidate.id, Weights{0.0, 0.0}).first->second;
+    weight.exact = std::max(weight.exact, std::exp(-rival.less));
+    weight.uncertain = std::max(weight.uncertain, std::exp(-rival.less_uncertain));
   }
-  double sum = 0.0;
-  for (const auto& [id, weight] : weights) sum += weight;
-  finding.probability = weights[own.id] / sum;
-  for (Alias& alias : finding.aliases) alias.probability = weights[alias.effect] / sum;
+  Weights sum{0.0, 0.0};
+  for (const auto& [id, weight] : weights) sum = {sum.exact + weight.exact, sum.uncertain + weight.uncertain};
+  const auto probability_of = [&](const std::string& id) {
+    const Weights& weight = weights[id];
+    return 0.5 * (weight.exact / sum.exact + weight.uncertain / sum.uncertain);
+  };
+  finding.probability = probability_of(own.id);
+  for (Alias& alias : finding.aliases) alias.probability = probability_of(alias.effect);
   for (const Estimate& estimate : finding.estimates) {
     if (estimate.typical != 0.0)
       finding.times_usual = std::max(finding.times_usual, std::abs(estimate.value / estimate.typical));

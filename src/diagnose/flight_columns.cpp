@@ -198,10 +198,13 @@ std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Ca
   std::vector<ColumnGroup> groups;
   Eigen::Index first = 0;
   std::map<std::string, std::size_t> effects;
+  std::map<std::string, std::size_t> systems;
   for (const Candidate& candidate : candidates) {
     ColumnGroup& group = groups.emplace_back();
     group.effect =
         effects.emplace(differences_alone ? candidate.effect.id : candidate.id, effects.size()).first->second;
+    if (candidate.is_of_reference())
+      group.system = systems.emplace(candidate.system, systems.size() + 1).first->second;
     group.first = first;
     group.count = as_index(candidate.tested.size());
     group.has_uncertain_shape = has_uncertain_shape(candidate.effect);

@@ -454,7 +454,7 @@ void Search::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
   constexpr double told = 4.5;  // change of the log likelihood, chi2 of 9
   for (std::size_t& group : chosen) {
     const auto usual = std::find_if(groups_.begin(), groups_.end(), [&](const ColumnGroup& each) {
-      return each.effect == groups_[group].effect;
+      return each.effect == groups_[group].effect && each.system == groups_[group].system;
     });
     const auto first = static_cast<std::size_t>(usual - groups_.begin());
     if (first == group || is_absorbed(first)) continue;

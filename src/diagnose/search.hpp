@@ -18,6 +18,7 @@ struct ColumnGroup {
   Eigen::Index first = 0;  ///< index among the candidates' columns
   Eigen::Index count = 0;
   std::size_t effect = 0;        ///< groups of one effect, in several shapes, exclude each other
+  std::size_t system = 0;        ///< system on which the effect is: 0 for the model's own
   std::vector<Bounds> bounds{};  ///< coefficient of each column; an effect beyond them is impossible
   /// Usual size of each coefficient; 0 or empty if unknown.
   std::vector<double> usual{};

@@ -515,3 +515,15 @@ TEST(Search, UncertainShapeOfOneFindingIsNoRivalOfAnother) {
   EXPECT_GT(search.evidence({0, 1}, {}), search.evidence({0, 2}, {}));
   EXPECT_GT(search.evidence({0, 2}, {0}), search.evidence({0, 1}, {0}) + 10.0);
 }
+
+// The usual shape of an effect is preferred on its own system; another system is another finding.
+TEST(Search, UsualShapeIsOneOfTheSameSystem) {
+  Problem problem(600, 2, 31);
+  problem.candidate(1) = problem.candidate(0) + 0.03 * problem.candidate(1);
+  problem.residual += 1.0 * problem.candidate(1);
+  problem.one_by_one();
+  problem.groups[1].effect = problem.groups[0].effect;
+  EXPECT_THAT(run(problem).chosen, ElementsAre(0U));
+  problem.groups[1].system = 1;
+  EXPECT_THAT(run(problem).chosen, ElementsAre(1U));
+}
