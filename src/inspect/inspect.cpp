@@ -14,6 +14,7 @@
 #include <pcor/residuals/reference.hpp>
 #include <pcor/roles/resolve_variables.hpp>
 #include "inspect/plausibility.hpp"
+#include "inspect/role_use.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "roles/pressure_height.hpp"
 #include "roles/recorded_series.hpp"
@@ -26,69 +27,6 @@ namespace pcor {
 using namespace internal;
 
 namespace {
-
-/// Consequence of a missing series, in addition to the effects that need it.
-struct Cost {
-  std::string_view series;
-  std::string_view text;
-};
-
-constexpr std::array<Cost, 14> costs{{
-    {"recovery_temperature",
-     "no airspeed and no delta-p from LAMS, unless the temperature of the air is recorded"},
-    {"dew_point", "the air is assumed dry, unless the vapour pressure is recorded"},
-    {"lams_airspeed", "delta-p cannot be measured; use a second system, heights or winds as the reference"},
-    {"attack", "the angle of the laser's beam to the wind is not known, and pitch manoeuvres need the pitch"},
-    {"altitude",
-     "climbs, layers and the hydrostatic temperature fit are left out, unless another height is recorded"},
-    {"vertical_speed", "it is found from the altitude"},
-    {"pitch", "pitch manoeuvres are found by the angle of attack, if that is recorded"},
-    {"roll", "turns, circles and reverse headings are not looked for"},
-    {"heading",
-     "circles, reverse headings and yaw manoeuvres are found by the ground track, if that is recorded"},
-    {"ground_speed", "winds cannot be compared on reverse headings and circles"},
-    {"ground_track", "winds cannot be compared, unless the ground speed is recorded by components"},
-    {"flaps", "samples with flaps out are found by the lift alone"},
-    {"liquid_water", "clouds are not looked for"},
-    {"latitude", "gravity is that of middle latitudes, and the slope of isobars is not known"},
-}};
-
-std::string cost_of(std::string_view series) {
-  const auto found =
-      std::find_if(costs.begin(), costs.end(), [&](const Cost& cost) { return cost.series == series; });
-  return found == costs.end() ? std::string() : std::string(found->text);
-}
-
-/// Quantities from which a quantity is computed if it is not recorded.
-std::vector<Quantity> sources_of(Quantity quantity) {
-  using Q = Quantity;
-  for (const Rate& each : rates) {
-    if (each.rate == quantity) return {each.quantity};
-  }
-  switch (quantity) {
-    case Q::wetness:
-      return {Q::liquid_water};
-    case Q::attack_ratio:
-      return {Q::attack_differential_pressure, Q::radome_dynamic_pressure};
-    case Q::sideslip_ratio:
-      return {Q::sideslip_differential_pressure, Q::radome_dynamic_pressure};
-    default:
-      return {quantity};
-  }
-}
-
-std::vector<std::string> effects_that_need(Quantity role) {
-  std::vector<std::string> effects;
-  for (const EffectInfo& info : effect_info) {
-    bool needs = false;
-    for (std::size_t i = 0; i < info.need_count(); ++i) {
-      const std::vector<Quantity> sources = sources_of(info.needs[i]);
-      needs = needs || std::find(sources.begin(), sources.end(), role) != sources.end();
-    }
-    if (needs) effects.emplace_back(info.id);
-  }
-  return effects;
-}
 
 /// Whether the words of a file state that a height is geometric.
 bool says_geometric(const VariableInfo& variable) {

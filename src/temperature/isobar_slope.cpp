@@ -1,12 +1,43 @@
 #include "temperature/isobar_slope.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include <pcor/physics/geodesy.hpp>
+
+namespace pcor {
+namespace {
+
+constexpr std::array<std::pair<IsobarSlope, std::string_view>, 6> slope_names{{
+    {IsobarSlope::fitted, "fitted"},
+    {IsobarSlope::none, "none"},
+    {IsobarSlope::level_legs, "level-legs"},
+    {IsobarSlope::climb_descent, "climb-descent"},
+    {IsobarSlope::whole_flight, "whole-flight"},
+    {IsobarSlope::geostrophic, "geostrophic"},
+}};
+
+}  // namespace
+
+std::string_view to_string(IsobarSlope slope) {
+  return std::find_if(slope_names.begin(), slope_names.end(),
+                      [slope](const auto& each) { return each.first == slope; })
+      ->second;
+}
+
+std::optional<IsobarSlope> isobar_slope_named(std::string_view name) {
+  for (const auto& [slope, slope_name] : slope_names) {
+    if (slope_name == name) return slope;
+  }
+  return std::nullopt;
+}
+
+}  // namespace pcor
 
 namespace pcor::internal {
 namespace {

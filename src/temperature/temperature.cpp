@@ -17,23 +17,19 @@
 #include <pcor/effects/static_attack.hpp>
 #include <pcor/effects/static_qp.hpp>
 #include <pcor/effects/temp_calibration.hpp>
-#include "campaign/flight_air.hpp"
-#include "model_io/archived_model.hpp"
 #include "model_io/calibration.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "parallel/flight_partition.hpp"
-#include "roles/recorded_model.hpp"
-#include "temperature/archived_steps.hpp"
 #include "temperature/degrees.hpp"
-#include "temperature/dry_air.hpp"
 #include "temperature/height_least_squares.hpp"
 #include "temperature/height_likelihood.hpp"
 #include "temperature/isobar_slope.hpp"
-#include "temperature/law_doubt.hpp"
 #include "temperature/parts.hpp"
+#include "temperature/read_heights.hpp"
+#include "temperature/temperature_notes.hpp"
 
 namespace pcor {
 
@@ -45,46 +41,14 @@ namespace {
 template <class Effect>
 constexpr double usual_size = Effect::info().parameters[0].typical;
 
-constexpr double much_noise = 3.0;  // m, of the GPS height
-constexpr double much_drift = 1.0;  // m in a minute; a usual slope of isobars, 10 m in 100 km, makes 0.7
-
-constexpr std::array<std::pair<IsobarSlope, std::string_view>, 6> slope_names{{
-    {IsobarSlope::fitted, "fitted"},
-    {IsobarSlope::none, "none"},
-    {IsobarSlope::level_legs, "level-legs"},
-    {IsobarSlope::climb_descent, "climb-descent"},
-    {IsobarSlope::whole_flight, "whole-flight"},
-    {IsobarSlope::geostrophic, "geostrophic"},
-}};
-
 constexpr double law_default = 0.3;  // hPa, the rms of the memo's eq. 18
-constexpr double seen = 3.0;         // standard errors that chance does not make
-/// hPa, the usual zero of a transducer: it lasts, and laws were fitted to pressures that have it too.
-constexpr double usual_zero = usual_size<effects::PsfdBias>;
-constexpr double told = 2.6;  // standard errors, which chance makes once in 100 times
-
-/// Results of a rank for a local flight.
-struct FlightPart {
-  std::string left_out{};                   ///< reason for exclusion; empty if used
-  Error::Code code = Error::Code::samples;  ///< code of the error that left it out
-  std::string dry{};                        ///< reason against dry air; empty if there is no objection
-  std::optional<HeightRecord> record{};
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(left_out, code, dry, record);
-  }
-};
+constexpr double told = 2.6;         // standard errors, which chance makes once in 100 times
 
 class TemperatureCalibration {
  public:
   TemperatureCalibration(const FlightSet& flights, const ModelDefinition& model,
                          const TemperatureOptions& options)
-      : flights_(flights),
-        model_(model),
-        bare_(without_calibration(model)),
-        options_(options),
-        workers_(flights.comm(), options.threads) {
+      : flights_(flights), model_(model), options_(options), workers_(flights.comm(), options.threads) {
     prior_.slope = options.slope == IsobarSlope::none ? 0.0 : options.slope_size;
     has_radome_ = model.variables.count(Quantity::attack_differential_pressure) > 0;
   }
@@ -114,28 +78,14 @@ class TemperatureCalibration {
     flights_.require_each_once();
     flights_.require_one_aircraft();
     std::size_t done = 0;
-    auto parts = flights_.share().of_each_flight<FlightPart>([&](std::size_t number) {
-      FlightPart part;
-      try {
-        part.record = read_record(number);
-        part.dry = trouble_with_dry_air(*part.record, model_, flights_[number]);
-        if (!part.dry.empty() && !options_.dry_air)
-          throw Error(Error::Code::variable, part.dry + "; --force continues with dry air");
-        if (options_.skip_returning && part.record->returns) {
-          part.record.reset();
-          part.left_out = "it ends at its start point (--skip-returning)";
-        }
-      } catch (const Error& error) {
-        part.record.reset();
-        part.left_out = error.what();
-        part.code = error.code();
-      }
+    auto parts = flights_.share().of_each_flight<FlightHeightRecord>([&](std::size_t number) {
+      FlightHeightRecord part = read_heights(flights_, number, model_, options_);
       if (options_.progress) options_.progress(++done, flights_.share().own());
       return part;
     });
     std::string first_trouble;
     for (std::size_t number = 0; number < flights_.size(); ++number) {
-      FlightPart& part = parts[number];
+      FlightHeightRecord& part = parts[number];
       FlightHeights& heights = result_.flights.emplace_back();
       heights.flight = flights_.name(number);
       heights.left_out = part.left_out;
@@ -153,42 +103,6 @@ class TemperatureCalibration {
     if (flights_.size() == 1) throw Error(parts.front().code, first_trouble);
     throw Error(Error::Code::samples, fmt::format("no usable flight among {} flights; the first: {}",
                                                   flights_.size(), first_trouble));
-  }
-
-  HeightRecord read_record(std::size_t number) const {
-    HeightRecordOptions record_options;
-    record_options.min_climb_rate = options_.min_climb_rate;
-    record_options.has_radome = has_radome_;
-    record_options.recovers = model_.variables.count(Quantity::recovery_temperature) > 0;
-    FlightAir air;
-    std::vector<double> steps;
-    if (options_.archived) {
-      const Flight& flight = flights_[number];
-      std::optional<ModelDefinition> recorded = recorded_model(flight);
-      if (!recorded || recorded->variables.count(Quantity::ambient_temperature) == 0) {
-        throw Error(
-            Error::Code::variable,
-            fmt::format("{}: --archived needs PSXC, QCXC and ATX as pcor process writes them; leave it out "
-                        "for raw flights",
-                        flight.path().string()));
-      }
-      for (const Quantity role : flown_quantities) {
-        if (model_.variables.count(role) > 0) recorded->variables[role] = model_.variables.at(role);
-        if (model_.units.count(role) > 0) recorded->units[role] = model_.units.at(role);
-      }
-      air = read_flight_air(flights_, number, *recorded, options_.mask);
-      steps = archived_steps(flight, model_, air);
-    } else {
-      air = read_flight_air(flights_, number, bare_, options_.mask);
-    }
-    HeightRecord record = height_record(air, steps, record_options);
-    ModelDefinition stated = bare_;
-    if (options_.archived) {  // Inputs of the model are not archived: only its remaining error is known.
-      stated.covariance = {};
-      stated.fits.clear();
-    }
-    record.law_variance = stated_law_variance(stated, air);
-    return record;
   }
 
   /// Priors of the other errors: of the humidity its typical error. The error of each term of the model is
@@ -340,14 +254,6 @@ class TemperatureCalibration {
       if (model_.model.effects[e].id == effects::PsfdBias::info().id) return model_.fit(e, 0).standard_error;
     }
     return std::nullopt;
-  }
-
-  static bool is_seen(const LawError& error) {
-    return std::abs(error.change) > seen * error.standard_error && error.range > usual_zero;
-  }
-
-  static bool is_beyond_prior(const LawError& error) {
-    return is_seen(error) && std::abs(error.change) > seen * error.size;
   }
 
   /// Covariance of errors that the likelihood cannot detect. Constant errors of the pressure: in hPa,
@@ -536,10 +442,6 @@ class TemperatureCalibration {
                              });
   }
 
-  static std::string saying(const PartCorrection& part) {
-    return fmt::format("{}: {} K", part.part, with_error(part.correction, part.standard_error));
-  }
-
   /// Rms of heights about their mean in each segment, with a correction and without the other errors, m.
   double rms_without_other_errors(const std::vector<double>& coefficients) const {
     HeightEquations::Vector others = likeliest_.equations.best_unknowns(as_index(terms_));
@@ -594,114 +496,27 @@ class TemperatureCalibration {
         result_.worse = fmt::format(
             "separate fit {}, common correction {:+.2f} K: the correction degrades it by more than three "
             "standard errors",
-            saying(part), part.common);
+            part_text(part), part.common);
         return;
       }
     }
   }
 
-  void write_warnings() {
-    const auto differ = [this](const std::vector<PartCorrection>& parts, double spread, const char* who) {
-      if (!(spread > 0.0)) return;
-      std::vector<std::string> sayings;
-      for (const PartCorrection& part : parts) sayings.push_back(saying(part));
-      const Disagreement apart = disagreement_of(parts);
-      result_.warnings.push_back(fmt::format(
-          "{} differ: {}; chance makes a chi-squared of {:.1f}, of {} degrees of freedom, with a probability "
-          "of {:.1g}, and the limit is 0.01; the standard deviation between them, {:.2g} K, is in the errors",
-          who, fmt::join(sayings, ", "), apart.chi_squared, parts.size() - 1, apart.chance, spread));
-    };
-    differ(result_.parts_by_flight, result_.spread_of_flights, "the thermometers of the flights");
-    differ(result_.parts_by_climb, result_.spread_of_climbs, "climbs and descents");
-    for (const LawError& error : result_.law_errors) {
-      if (!is_seen(error)) continue;
-      result_.warnings.push_back(fmt::format(
-          "heights indicate an error of the static-pressure model: {} of {} is too small by {}, a range of "
-          "{:.2f} hPa over the flights; it was removed before fitting the thermometer, {}refit the model "
-          "first",
-          error.parameter, error.effect, with_error(error.change, error.standard_error), error.range,
-          is_beyond_prior(error) ? "but an undetected error of the same size may remain: "
-                                 : "and is within the stated error of the model; "));
-    }
-    if (std::abs(result_.humidity_change) > seen * result_.humidity_error) {
-      result_.warnings.push_back(
-          fmt::format("heights indicate an error of the humidity: the vapour pressure is too small by {}; "
-                      "compare it with another hygrometer",
-                      with_error(result_.humidity_change, result_.humidity_error)));
-    }
-  }
-
   void write_notes() {
-    Notes& notes = result_.notes;
     compare_with_none();
-    write_warnings();
-    if (!result_.worse.empty()) notes.push_back(result_.worse);
+    result_.warnings = temperature_warnings(result_);
+    if (!result_.worse.empty()) result_.notes.push_back(result_.worse);
     if (!options_.degree && records_.size() < min_for_choice) {
       result_.notes_on_degree.push_back(
           fmt::format("{} flight{} cannot be cross-validated: the degree is chosen by the fit of these "
                       "flights (decrease of -2 ln L above {:.0f} per coefficient); --degree sets it",
                       records_.size(), records_.size() == 1 ? "" : "s", worthwhile_gain));
     }
-    notes.insert(notes.end(), result_.notes_on_degree.begin(), result_.notes_on_degree.end());
-    if (std::max(result_.gps_noise, result_.gps_wander) > much_noise || result_.drift > much_drift) {
-      notes.push_back(
-          fmt::format("the fitted noise is large (GPS height {:.1f} m, drift of the integral {:.1f} m per "
-                      "minute); possible causes are a lag of the static line or the thermometer, or a "
-                      "pressure error in climbs: the layers of pcor check show a lag of the pressure",
-                      std::max(result_.gps_noise, result_.gps_wander), result_.drift));
-    }
-    if (prior_.errors[with_attack] > 0.0 && result_.law_errors.size() < 2) {
-      notes.emplace_back(
-          "the angle of attack is unknown: a pressure error proportional to it, which changes in a climb, is "
-          "not corrected and may resemble a thermometer error");
-    }
-    if (options_.slope == IsobarSlope::none ||
-        (options_.slope == IsobarSlope::fitted && options_.slope_size == 0.0)) {
-      notes.emplace_back(
-          "isobars are assumed level: a slope of 10 m in 100 km in a climb of 5 m/s is equivalent to 1 K "
-          "(--slope fitted)");
-    }
-    if (options_.slope == IsobarSlope::geostrophic) {
-      notes.emplace_back(
-          "the slope of isobars assumes geostrophic balance: friction, curvature and changes of the wind "
-          "violate it, which limits the accuracy of the coefficients");
-    }
-    std::size_t steps = 0;
-    std::size_t spikes = 0;
-    std::size_t missing = 0;
-    std::size_t unknown_ways = 0;
-    for (const HeightRecord& record : records_) {
-      steps += record.height_steps;
-      spikes += record.height_spikes;
-      missing += record.missing_heights;
-      unknown_ways += record.unknown_ways;
-    }
-    if (missing > 0) notes.push_back(fmt::format("{} samples have no GPS height", missing));
-    if (unknown_ways > 0 && options_.slope != IsobarSlope::none) {
-      notes.push_back(fmt::format(
-          "{} samples have no ground velocity: airspeed and heading, or the last velocity, are used instead",
-          unknown_ways));
-    }
-    if (steps + spikes > 0) {
-      notes.push_back(
-          fmt::format("the GPS height has {} step(s), at which the integral restarts, and {} sample(s) in "
-                      "spikes, which are excluded",
-                      steps, spikes));
-    }
-    if (std::abs(result_.innovation_correlation) > 0.1) {
-      notes.push_back(
-          fmt::format("the noise model is not exact: innovations have a correlation of {:+.2f}, so errors "
-                      "may be wrong by 10 to 30 %",
-                      result_.innovation_correlation));
-    }
-    std::map<Note, std::size_t> said;
-    for (const HeightRecord& record : records_) {
-      for (const Note& note : record.notes) ++said[note];
-    }
-    for (const auto& [note, count] : said) {
-      notes.push_back(note);
-      if (count > 1 && records_.size() > 1) notes.back().text += fmt::format(" ({} flights)", count);
-    }
+    const bool attack_is_unknown = prior_.errors[with_attack] > 0.0 && result_.law_errors.size() < 2;
+    for (const Notes& more :
+         {result_.notes_on_degree, noise_notes(result_), method_notes(options_, attack_is_unknown),
+          record_notes(records_, options_.slope)})
+      result_.notes.insert(result_.notes.end(), more.begin(), more.end());
   }
 
   void write_provenance() {
@@ -727,7 +542,6 @@ class TemperatureCalibration {
 
   const FlightSet& flights_;
   const ModelDefinition& model_;
-  ModelDefinition bare_;  // model without temperature correction
   const TemperatureOptions& options_;
   Workers workers_;
   bool has_radome_ = false;
@@ -742,19 +556,6 @@ class TemperatureCalibration {
 };
 
 }  // namespace
-
-std::string_view to_string(IsobarSlope slope) {
-  return std::find_if(slope_names.begin(), slope_names.end(),
-                      [slope](const auto& each) { return each.first == slope; })
-      ->second;
-}
-
-std::optional<IsobarSlope> isobar_slope_named(std::string_view name) {
-  for (const auto& [slope, slope_name] : slope_names) {
-    if (slope_name == name) return slope;
-  }
-  return std::nullopt;
-}
 
 TemperatureResult fit_temperature(const FlightSet& flights, const ModelDefinition& model,
                                   const TemperatureOptions& options) {

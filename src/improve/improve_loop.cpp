@@ -1,0 +1,528 @@
+#include "improve/improve_loop.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <pcor/base/error.hpp>
+#include <pcor/effects/static_surface.hpp>
+#include "diagnose/rms.hpp"
+#include "diagnose/traced_effect.hpp"
+#include "improve/model_trials.hpp"
+#include "improve/rival_choice.hpp"
+#include "residuals/flight_statistics.hpp"
+
+namespace pcor::internal {
+namespace {
+
+// Minimum decrease of the held-out rms by an effect that is not known to be the cause.
+constexpr double unnamed_limit = 0.99;
+// Tolerated growth of the fit's rms, because the fit weighs samples by their noise and ignores outliers.
+constexpr double fit_limit = 1.005;
+// Minimum probability of rivals considered in the correction.
+constexpr double min_probability = 0.01;
+// Tolerance relative to the noise: smaller differences of the static pressure do not matter.
+constexpr double negligible = 0.05;
+
+/// Effect that may cause the remaining residual.
+struct Choice {
+  AddedEffect added;
+  double probability = 1.0;
+};
+
+/// Effect that the loop may add, and the required result.
+struct OfferedEffect {
+  std::vector<Choice> choices{};  ///< the effect, and rivals that the flights cannot separate from it
+  std::string title;
+  std::vector<std::string> aliases;
+  bool is_named = true;  ///< the effect or one of its rivals counts as the cause
+  bool is_sure = false;  ///< significant on blocks of the fitted flights that were excluded from its estimate
+  std::string caution;   ///< end of the sentence in the summary
+
+  const ModelEffect& effect() const { return choices.front().added.effect; }
+};
+
+/// OfferedEffects after a diagnosis: all of them, or the first that helps.
+struct OfferedEffects {
+  std::vector<OfferedEffect> effects;
+  bool all = false;
+};
+
+OfferedEffect candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
+  OfferedEffect candidate;
+  candidate.choices.push_back({{finding.effect, finding.held, finding.is_alike}, finding.probability});
+  candidate.title = finding.title;
+  candidate.is_sure = finding.gain > sure_gain * finding.gain_error;
+  for (const Alias& alias : finding.aliases) {
+    candidate.aliases.push_back(alias.effect);
+    if (alias.probability >= min_probability)
+      candidate.choices.push_back({{alias.correction, alias.held, alias.is_alike}, alias.probability});
+  }
+  if (diagnosis.verdict == Verdict::partial) {
+    candidate.is_named = false;
+    candidate.caution = "; significant structure remains, so this effect may not be the cause";
+  } else if (!candidate.aliases.empty()) {
+    candidate.caution =
+        fmt::format("; these flights cannot distinguish it from {}{}{}", fmt::join(candidate.aliases, ", "),
+                    finding.advice.sentence.empty() ? "" : ": ", finding.advice.sentence);
+  }
+  if (!diagnosis.rival.empty())
+    candidate.caution +=
+        fmt::format("; a straight line in {} may be the cause in its place", diagnosis.rival);
+  return candidate;
+}
+
+OfferedEffect candidate_of(const EmpiricalPredictor& variable, const std::string& flights) {
+  OfferedEffect candidate;
+  candidate.choices = {{{effect_of(variable, flights)}, 1.0}};
+  candidate.title = fmt::format("structure that varies with {}{}", variable.name,
+                                variable.description.empty() ? "" : ", " + variable.description);
+  candidate.is_named = false;
+  candidate.is_sure = true;  // only significant variables are traced
+  candidate.caution = "; no effect of the catalogue explains it, so the cause is still to be found";
+  return candidate;
+}
+
+/// rms of the held-out samples, hPa; NaN if there are no such samples
+double held_out_rms(const RefitResult& fit) {
+  SquareSum sum;
+  for (const FlightFit& flight : fit.flights) {
+    if (!flight.holdout || flight.after.samples == 0) continue;
+    const auto count = static_cast<double>(flight.after.samples);
+    sum += {flight.after.rms * flight.after.rms * count, count};
+  }
+  return sum.rms();
+}
+
+std::string shown(double rms) { return fmt::format("{:.4f} hPa", rms); }
+
+/// Fitted coefficients of an effect: "tau = 0.21 +- 0.02 s".
+std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
+  std::vector<std::string> words;
+  for (const FittedParameter& parameter : fit.parameters) {
+    const std::string prefix = effect + ".";
+    if (!parameter.fitted || parameter.name.rfind(prefix, 0) != 0) continue;
+    const std::string error = std::isnan(parameter.standard_error)
+                                  ? std::string(" (error unknown)")
+                                  : fmt::format(" +- {:.2g}", parameter.standard_error);
+    words.push_back(fmt::format("{} = {:.4g}{}{}", parameter.name.substr(prefix.size()), parameter.value,
+                                error,
+                                parameter.unit.empty() || parameter.unit == "1" ? "" : " " + parameter.unit));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+bool names_other_system(const Alias& alias) { return alias.effect.rfind("reference:", 0) == 0; }
+
+/// Whether only effects of the other system can cause the finding.
+bool is_of_reference(const Finding& finding) {
+  return finding.of_reference &&
+         std::none_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
+           return alias.probability >= min_probability && !names_other_system(alias);
+         });
+}
+
+/// Whether an effect of the other system may cause the finding; the model is then left unchanged.
+bool may_be_of_reference(const Finding& finding) {
+  return finding.of_reference ||
+         std::any_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
+           return alias.probability >= min_probability && names_other_system(alias);
+         });
+}
+
+/// Search state: the ladder so far, and its continuation.
+class Climb {
+ public:
+  Climb(const ImproveLoop& loop, const ModelDefinition& model) : loop_(loop), given_{model} {
+    result_.holdout_is_flights = loop.has_holdout;
+    ImproveStep first;
+    RefitResult fit = loop.refit(given_);
+    measure(first, fit, {});
+    if (std::isnan(first.rms_holdout)) {
+      throw Error(
+          Error::Code::samples,
+          "no held-out sample is usable, so no step can be tested; give another flight with --holdout");
+    }
+    first.learnt = fmt::format("the coefficients fitted again: rms {} before, {} after",
+                               shown(fit.rms_before), shown(fit.rms));
+    take(std::move(first), std::move(fit), {}, {});
+  }
+
+  Improvement run() {
+    while (result_.why_stopped.empty()) climb_on();
+    result_.model = result_.fit.model;
+    result_.refitted = refitted_;
+    choose_among_rivals();
+    add_surface();
+    compare_with_the_given();
+    return std::move(result_);
+  }
+
+ private:
+  const Diagnosis& diagnosis() const { return result_.steps.back().diagnosis; }
+  TrialModel top() const { return {result_.fit.model, alike_}; }
+
+  using RungChoice =
+      std::optional<std::size_t>;  // index among the rivals of a rung; empty if no rival is applied
+
+  /// The model with one choice of each rung, fitted.
+  TrialModel model_with(const std::vector<RungChoice>& choices) const {
+    TrialModel model = given_;
+    for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
+      if (choices[rung]) model = loop_.add(model, rungs_[rung][*choices[rung]].added);
+    }
+    model.file = loop_.refit(model).model;
+    return model;
+  }
+
+  /// If the rivals of a rung differ in static pressure, the model gets the one from `choose_rival`, or no
+  /// effect; the uncertainty is part of its stated error.
+  void choose_among_rivals() {
+    std::vector<RungChoice> choices(rungs_.size(), 0);
+    for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
+      if (rungs_[rung].size() < 2) continue;
+      ImproveStep& step = result_.steps[rung + 1];
+      choices[rung] = choice_of(rung, step);
+      rival_squares_ += step.rival_error * step.rival_error;
+      for (const RungRival& rival : step.rivals)
+        rivals_.emplace_back(fmt::format("{} for {}: probability {:.3f}{}", rival.effect, step.added,
+                                         rival.probability,
+                                         rival.effect == step.delivered ? ", applied" : ""));
+    }
+    const bool is_top =
+        std::all_of(choices.begin(), choices.end(), [](const RungChoice& choice) { return choice == 0U; });
+    delivered_ = top();
+    if (!is_top) {
+      try {
+        delivered_ = model_with(choices);
+      } catch (const Error& error) {  // single choices may not be fittable together
+        for (ImproveStep& step : result_.steps) step.delivered = step.added;
+        result_.fit.notes.push_back(fmt::format(
+            "the rivals that were chosen cannot be fitted together, so the model has the effects that "
+            "were added: {}",
+            error.what()));
+      }
+    }
+    result_.model = delivered_.file;
+    add_rival_error(result_.model);
+  }
+
+  /// States the expected error of the choice among rivals, and the rivals, in a model.
+  void add_rival_error(ModelDefinition& model) const {
+    if (rival_squares_ > 0.0) {
+      double& stated = model.uncertainty.static_defect.emplace(model.uncertainty.static_defect.value_or(0.0));
+      stated = std::sqrt(stated * stated + rival_squares_);
+    }
+    if (!rivals_.empty()) model.provenance.emplace_back("rivals", ProvenanceValue{rivals_});
+  }
+
+  /// Measures the change of static pressure by the rivals of a rung, with the rest as at the top of the
+  /// ladder. The first rival stays if all are alike.
+  RungChoice choice_of(std::size_t rung, ImproveStep& step) const {
+    std::vector<RungChoice> choices(rungs_.size(), 0);
+    std::vector<TrialModel> models;
+    std::vector<std::size_t> tested;
+    try {
+      choices[rung].reset();
+      models.push_back(model_with(choices));
+    } catch (const Error&) {
+      return 0;
+    }
+    for (std::size_t k = 0; k < rungs_[rung].size(); ++k) {
+      choices[rung] = k;
+      try {
+        models.push_back(k == 0 ? top() : model_with(choices));
+      } catch (const Error&) {
+        continue;  // an effect that cannot be fitted here is not a rival
+      }
+      tested.push_back(k);
+    }
+    double sum = 0.0;
+    for (const std::size_t k : tested) sum += rungs_[rung][k].probability;
+    const std::vector<TrialFlight> tried = loop_.try_models(models);
+    const std::vector<double> without = static_pressures_of(tried, 0);
+    std::vector<std::vector<double>> changes;
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < tested.size(); ++i) {
+      weights.push_back(rungs_[rung][tested[i]].probability / sum);
+      std::vector<double>& change = changes.emplace_back(static_pressures_of(tried, i + 1));
+      for (std::size_t sample = 0; sample < change.size(); ++sample) change[sample] -= without[sample];
+    }
+    const double matters = negligible * step.noise_rms;
+    const RivalChoice choice = choose_rival(changes, weights, matters);
+    if (choice.rival == 0U && choice.error <= matters) return 0;
+    step.rival_error = choice.error;
+    step.delivered.clear();
+    for (std::size_t i = 0; i < tested.size(); ++i)
+      step.rivals.push_back(
+          {rungs_[rung][tested[i]].added.effect.id, weights[i], square_sum_of(changes[i]).rms()});
+    if (!choice.rival) return std::nullopt;
+    step.delivered = step.rivals[*choice.rival].effect;
+    return tested[*choice.rival];
+  }
+
+  /// If structure remains, or an effect of attack with an undetermined shape: adds a smooth surface if it
+  /// reduces the residual of samples outside its fit by more than chance.
+  void add_surface() {
+    const Diagnosis& now = diagnosis();
+    const bool has_attack = std::any_of(now.findings.begin(), now.findings.end(),
+                                        [](const Finding& finding) { return finding.family == "attack"; });
+    const bool is_open = now.verdict == Verdict::partial || now.verdict == Verdict::unexplained || has_attack;
+    if (!loop_.offer_surface || !is_open) return;
+    const TrialModel before{result_.model, delivered_.alike};
+    std::optional<SurfaceOffer> offer;
+    try {
+      offer = loop_.offer_surface(before);
+    } catch (const Error& error) {  // keeps the model without a surface
+      if (error.code() == Error::Code::file) throw;
+      result_.why_stopped += fmt::format("; a surface was not tested: {}", error.what());
+    }
+    if (!offer) return;
+    const std::string& id = offer->effect;
+    const TrialComparison& out = offer->out_of_fit;
+    const std::string figures =
+        fmt::format("rms {} with it and {} without it (chi2 changes by {:+.0f} +- {:.0f}) on {}",
+                    shown(out.rms_after), shown(out.rms_before), -out.gain, out.gain_error, offer->held_out);
+    if (!out.is_better() || !(out.rms_after <= unnamed_limit * out.rms_before)) {
+      result_.why_stopped += fmt::format("; {} was tried and dropped: {}", id, figures);
+      return;
+    }
+    ImproveStep step;
+    step.added = step.delivered = id;
+    step.title = std::string(surface_named(id)->title);
+    measure(step, offer->fit, before.alike);
+    // Other parts than those of the steps before: their ratio continues the ladder.
+    if (!loop_.has_holdout)
+      step.rms_holdout = result_.steps.back().rms_holdout * out.rms_after / out.rms_before;
+    step.learnt =
+        fmt::format("{}: {:.1f} degrees of freedom; {}; it describes the residual and identifies no cause",
+                    id, offer->degrees_of_freedom, figures);
+    // The uncertainty of the choice among rivals stays part of the stated error.
+    add_rival_error(offer->fit.model);
+    delivered_ = {offer->fit.model, before.alike};
+    result_.model = offer->fit.model;
+    take(std::move(step), std::move(offer->fit), {}, before.alike);
+  }
+
+  /// Compares the delivered model with the given one.
+  void compare_with_the_given() {
+    std::vector<TrialFlight> tried =
+        loop_.try_models({given_, {refitted_}, {result_.model, delivered_.alike}, top()});
+    const TrialComparison train = comparison_of(tried, 0, 2, false);
+    const TrialComparison holdout = comparison_of(tried, 0, 2, true);
+    if (result_.model.law.rms_hpa) result_.model.law.rms_hpa = train.rms_after;
+    result_.given_rms_train = train.rms_before;
+    result_.rms_train = train.rms_after;
+    result_.given_rms_holdout = holdout.rms_before;
+    result_.rms_holdout = holdout.rms_after;
+    // Without an applied rival the model explains less than with the best one, which shows whether the loop
+    // did harm.
+    result_.worse = why_worse(comparison_of(tried, 0, 3, loop_.has_holdout));
+    for (TrialFlight& flight : tried) {
+      if (!flight.first_reference) continue;
+      std::vector<std::size_t> used = flight.fitted;
+      used.insert(used.end(), flight.held_out.begin(), flight.held_out.end());
+      const auto shown = [&](std::size_t model) { return only_at(flight.residuals[model], used); };
+      result_.flights.push_back(
+          {flight.samples, flight.fitted.size(), flight.held_out.size(), shown(0), shown(1), shown(2)});
+    }
+  }
+
+  /// Whether the whole ladder increased the residual, by a large or significant amount.
+  std::string why_worse(const TrialComparison& whole) const {
+    constexpr double much = 1.02;
+    const double growth = whole.rms_after / whole.rms_before;
+    if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";
+    return fmt::format(
+        "{}: the rms of the best model is {:.4f} times the rms of the given model (chi2 changes by {:+.0f} "
+        "+- "
+        "{:.0f})",
+        loop_.has_holdout ? "held-out samples" : "these flights", growth, -whole.gain, whole.gain_error);
+  }
+
+  void climb_on() {
+    OfferedEffects candidates = candidates_now();
+    if (candidates.effects.empty()) {
+      result_.why_stopped = why_nothing_is_added();
+      return;
+    }
+    const std::size_t added = result_.steps.size() - 1;
+    if (added >= loop_.max_steps) {
+      result_.why_stopped = fmt::format("{} effects were added, as many as were allowed", added);
+      return;
+    }
+    candidates.effects.resize(std::min(candidates.effects.size(), loop_.max_steps - added));
+    std::vector<std::string> refusals;
+    for (const OfferedEffect& candidate : candidates.effects) {
+      const std::string refusal = refusal_of(candidate);
+      if (refusal.empty()) {
+        refusals.clear();
+      } else {
+        refusals.push_back(refusal);
+      }
+      if (refusal.empty() != candidates.all) break;
+    }
+    result_.why_stopped = fmt::format("{}", fmt::join(refusals, "; "));
+  }
+
+  OfferedEffects candidates_now() const {
+    const Diagnosis& now = diagnosis();
+    OfferedEffects candidates;
+    if (now.verdict == Verdict::silent) return candidates;
+    candidates.all = now.verdict == Verdict::identified || now.verdict == Verdict::ambiguous;
+    for (const Finding& finding : now.findings) {
+      if (!may_be_of_reference(finding) && !has(result_.fit.model, finding.effect.id))
+        candidates.effects.push_back(candidate_of(finding, now));
+    }
+    if (candidates.all || !loop_.trace_variables) return candidates;
+    for (const EmpiricalPredictor& variable : now.unexplained.variables) {
+      if (variable.formula.empty() || has(result_.fit.model, id_of_trace(variable.name))) continue;
+      candidates.effects.push_back(candidate_of(variable, loop_.flights));
+      break;
+    }
+    return candidates;
+  }
+
+  std::string why_nothing_is_added() const {
+    const Diagnosis& now = diagnosis();
+    if (now.findings.empty() && !now.unexplained.significant) {
+      std::vector<std::string> off;
+      for (const HeldOutPart& part : now.held_out) {
+        if (part.is_off()) off.push_back(part.text());
+      }
+      return fmt::format(
+          "no missing effect is detectable on {} flights: {} effects were tested; the rms residual is {} "
+          "with a noise of {}{}{}",
+          off.empty() ? "these" : "the fitted", now.candidates, shown(now.rms_given), shown(now.noise_rms),
+          off.empty() ? "" : "; but ", fmt::join(off, "; "));
+    }
+    for (const Finding& finding : now.findings) {
+      if (may_be_of_reference(finding)) {
+        return fmt::format(
+            "{} {} of the reference system, so the model was left unchanged (with "
+            "--trust-reference that system counts as right){}{}",
+            finding.id(), is_of_reference(finding) ? "is" : "may be an error",
+            finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence);
+      }
+    }
+    if (!now.findings.empty()) return "the effects named by the diagnosis are already in the model";
+    const Unexplained& left = now.unexplained;
+    const std::string what =
+        fmt::format("structure of {} is not explained by any effect of the catalogue{}{}", shown(left.rms),
+                    left.regime.empty() ? "" : ", most of it in ", left.regime);
+    if (left.variables.empty()) return what + "; it is not correlated with any variable of the files";
+    return fmt::format("{}; it is correlated with {}, {}", what, left.variables.front().name,
+                       loop_.trace_variables
+                           ? "but no further formula of it can be added"
+                           : "and --trace-variables would add a formula of it, regardless of the cause");
+  }
+
+  /// Adds the candidate and keeps it if it helps; otherwise records the reason.
+  std::string refusal_of(const OfferedEffect& candidate) {
+    const std::string& id = candidate.effect().id;
+    ImproveStep step;
+    step.added = id;
+    step.delivered = id;
+    step.title = candidate.title;
+    step.aliases = candidate.aliases;
+    TrialModel model;
+    RefitResult fit;
+    try {
+      model = loop_.add(top(), candidate.choices.front().added);
+      fit = loop_.refit(model);
+    } catch (const Error& error) {
+      return fmt::format("{} was tried, but cannot be fitted: {}", id, error.what());
+    }
+    const std::vector<TrialFlight> tried = loop_.try_models({top(), {fit.model, model.alike}});
+    const TrialComparison fitted = comparison_of(tried, 0, 1, false);
+    const TrialComparison held_out = comparison_of(tried, 0, 1, true);
+    if (fitted.rms_after > fit_limit * fitted.rms_before && !fitted.is_better()) {
+      return fmt::format("{} was tried and dropped: rms of the fit {} with it, {} without it", id,
+                         shown(fitted.rms_after), shown(fitted.rms_before));
+    }
+    measure(step, fit, model.alike);
+    // Without held-out flights, the cross-validation parts of the diagnosis are used. If the model describes
+    // more samples than before (flaps out), both models are compared on these samples.
+    const bool same_samples = fit.samples == result_.fit.samples;
+    const bool in_turn = !loop_.has_holdout && same_samples;
+    const TrialComparison& judged = loop_.has_holdout ? held_out : fitted;
+    const double before = in_turn ? result_.steps.back().rms_holdout : judged.rms_before;
+    const double after = in_turn ? step.rms_holdout : judged.rms_after;
+    const bool better = in_turn ? after <= before && candidate.is_sure : judged.is_better();
+    const bool worse = after > before || (!in_turn && judged.is_worse());
+    const std::string figures =
+        fmt::format("held-out rms {} with it, {} without it", shown(after), shown(before));
+    const std::string gain =
+        in_turn ? ""
+                : fmt::format(" (its squared residuals fall by {:.0f} +- {:.0f} in units of the noise)",
+                              judged.gain, judged.gain_error);
+    if (worse || !(better || (candidate.is_named && candidate.is_sure && fitted.is_better()))) {
+      return fmt::format("{} was tried and dropped: {}{}{}", id, figures, gain,
+                         worse ? "" : ", not more than expected by chance");
+    }
+    if (!candidate.is_named && !(after <= unnamed_limit * before)) {
+      return fmt::format(
+          "{} was tried and dropped: {}; a term with an unknown cause must reduce it by {:.0f} %", id,
+          figures, 100.0 * (1.0 - unnamed_limit));
+    }
+    step.learnt =
+        fmt::format("{}: {}; held-out rms {} before, {} after{}{}", id, coefficients_of(fit, id),
+                    shown(before), shown(after),
+                    better ? "" : ", not significant: kept because of the fitted flights", candidate.caution);
+    take(std::move(step), std::move(fit), candidate.choices, std::move(model.alike));
+    return "";
+  }
+
+  /// Figures of a rung. The diagnosis replaces missing held-out samples.
+  void measure(ImproveStep& step, const RefitResult& fit, const std::vector<std::string>& alike) const {
+    step.rms_train = fit.rms;
+    step.noise_rms = fit.noise_rms;
+    step.terms = static_cast<std::size_t>(
+        std::count_if(fit.parameters.begin(), fit.parameters.end(),
+                      [](const FittedParameter& parameter) { return parameter.fitted; }));
+    if (loop_.has_holdout) {
+      step.rms_holdout = held_out_rms(fit);
+    } else {
+      step.diagnosis = loop_.diagnose({fit.model, alike});
+      step.rms_holdout = step.diagnosis.residual_rms_held_out;
+    }
+  }
+
+  /// Adds a measured rung to the ladder, with a diagnosis of the remaining residual.
+  void take(ImproveStep step, RefitResult fit, std::vector<Choice> choices, std::vector<std::string> alike) {
+    if (result_.steps.empty())
+      refitted_ = fit.model;
+    else
+      rungs_.push_back(std::move(choices));
+    alike_ = std::move(alike);
+    if (loop_.has_holdout) step.diagnosis = loop_.diagnose({fit.model, alike_});
+    std::vector<HeldOutPart>& held_out = step.diagnosis.held_out;
+    held_out.clear();
+    for (const FlightFit& flight : fit.flights) {
+      if (flight.holdout) held_out.push_back({flight.flight, flight.after, flight.expected_bias});
+    }
+    judge_held_out(step.diagnosis);
+    result_.steps.push_back(std::move(step));
+    result_.fit = std::move(fit);
+  }
+
+  const ImproveLoop& loop_;
+  Improvement result_;
+  TrialModel given_;
+  ModelDefinition refitted_;
+  std::vector<std::string> alike_{};  // effects of the model at the top of the ladder
+  TrialModel delivered_{};
+  double rival_squares_ = 0.0;  // sum of the squared expected errors of the choices among rivals, hPa^2
+  ProvenanceList rivals_{};
+  std::vector<std::vector<Choice>> rungs_{};  // alternatives for each added effect, the effect itself first
+};
+
+}  // namespace
+
+Improvement ImproveLoop::run(const ModelDefinition& model) const { return Climb(*this, model).run(); }
+
+}  // namespace pcor::internal

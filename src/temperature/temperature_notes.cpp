@@ -1,0 +1,139 @@
+#include "temperature/temperature_notes.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+
+#include "temperature/parts.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double much_noise = 3.0;  // m, of the GPS height
+constexpr double much_drift = 1.0;  // m in a minute; a usual slope of isobars, 10 m in 100 km, makes 0.7
+
+}  // namespace
+
+bool is_seen(const LawError& error) {
+  return std::abs(error.change) > seen * error.standard_error && error.range > usual_zero;
+}
+
+bool is_beyond_prior(const LawError& error) {
+  return is_seen(error) && std::abs(error.change) > seen * error.size;
+}
+
+std::string part_text(const PartCorrection& part) {
+  return fmt::format("{}: {} K", part.part, with_error(part.correction, part.standard_error));
+}
+
+std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
+  std::vector<std::string> warnings;
+  const auto differ = [&warnings](const std::vector<PartCorrection>& parts, double spread, const char* who) {
+    if (!(spread > 0.0)) return;
+    std::vector<std::string> texts;
+    for (const PartCorrection& part : parts) texts.push_back(part_text(part));
+    const Disagreement apart = disagreement_of(parts);
+    warnings.push_back(fmt::format(
+        "{} differ: {}; chance makes a chi-squared of {:.1f}, of {} degrees of freedom, with a probability "
+        "of {:.1g}, and the limit is 0.01; the standard deviation between them, {:.2g} K, is in the errors",
+        who, fmt::join(texts, ", "), apart.chi_squared, parts.size() - 1, apart.chance, spread));
+  };
+  differ(result.parts_by_flight, result.spread_of_flights, "the thermometers of the flights");
+  differ(result.parts_by_climb, result.spread_of_climbs, "climbs and descents");
+  for (const LawError& error : result.law_errors) {
+    if (!is_seen(error)) continue;
+    warnings.push_back(fmt::format(
+        "heights indicate an error of the static-pressure model: {} of {} is too small by {}, a range of "
+        "{:.2f} hPa over the flights; it was removed before fitting the thermometer, {}refit the model "
+        "first",
+        error.parameter, error.effect, with_error(error.change, error.standard_error), error.range,
+        is_beyond_prior(error) ? "but an undetected error of the same size may remain: "
+                               : "and is within the stated error of the model; "));
+  }
+  if (std::abs(result.humidity_change) > seen * result.humidity_error) {
+    warnings.push_back(
+        fmt::format("heights indicate an error of the humidity: the vapour pressure is too small by {}; "
+                    "compare it with another hygrometer",
+                    with_error(result.humidity_change, result.humidity_error)));
+  }
+  return warnings;
+}
+
+Notes noise_notes(const TemperatureResult& result) {
+  Notes notes;
+  const double size = std::max(result.gps_noise, result.gps_wander);
+  if (size > much_noise || result.drift > much_drift) {
+    notes.push_back(
+        fmt::format("the fitted noise is large (GPS height {:.1f} m, drift of the integral {:.1f} m per "
+                    "minute); possible causes are a lag of the static line or the thermometer, or a "
+                    "pressure error in climbs: the layers of pcor check show a lag of the pressure",
+                    size, result.drift));
+  }
+  if (std::abs(result.innovation_correlation) > 0.1) {
+    notes.push_back(
+        fmt::format("the noise model is not exact: innovations have a correlation of {:+.2f}, so errors "
+                    "may be wrong by 10 to 30 %",
+                    result.innovation_correlation));
+  }
+  return notes;
+}
+
+Notes method_notes(const TemperatureOptions& options, bool attack_is_unknown) {
+  Notes notes;
+  if (attack_is_unknown) {
+    notes.emplace_back(
+        "the angle of attack is unknown: a pressure error proportional to it, which changes in a climb, is "
+        "not corrected and may resemble a thermometer error");
+  }
+  if (options.slope == IsobarSlope::none ||
+      (options.slope == IsobarSlope::fitted && options.slope_size == 0.0)) {
+    notes.emplace_back(
+        "isobars are assumed level: a slope of 10 m in 100 km in a climb of 5 m/s is equivalent to 1 K "
+        "(--slope fitted)");
+  }
+  if (options.slope == IsobarSlope::geostrophic) {
+    notes.emplace_back(
+        "the slope of isobars assumes geostrophic balance: friction, curvature and changes of the wind "
+        "violate it, which limits the accuracy of the coefficients");
+  }
+  return notes;
+}
+
+Notes record_notes(const std::vector<HeightRecord>& records, IsobarSlope slope) {
+  Notes notes;
+  std::size_t steps = 0;
+  std::size_t spikes = 0;
+  std::size_t missing = 0;
+  std::size_t unknown_ways = 0;
+  std::map<Note, std::size_t> of_flights;
+  for (const HeightRecord& record : records) {
+    steps += record.height_steps;
+    spikes += record.height_spikes;
+    missing += record.missing_heights;
+    unknown_ways += record.unknown_ways;
+    for (const Note& note : record.notes) ++of_flights[note];
+  }
+  if (missing > 0) notes.push_back(fmt::format("{} samples have no GPS height", missing));
+  if (unknown_ways > 0 && slope != IsobarSlope::none) {
+    notes.push_back(fmt::format(
+        "{} samples have no ground velocity: airspeed and heading, or the last velocity, are used instead",
+        unknown_ways));
+  }
+  if (steps + spikes > 0) {
+    notes.push_back(
+        fmt::format("the GPS height has {} step(s), at which the integral restarts, and {} sample(s) in "
+                    "spikes, which are excluded",
+                    steps, spikes));
+  }
+  for (const auto& [note, count] : of_flights) {
+    notes.push_back(note);
+    if (count > 1 && records.size() > 1) notes.back().text += fmt::format(" ({} flights)", count);
+  }
+  return notes;
+}
+
+}  // namespace pcor::internal
