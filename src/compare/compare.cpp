@@ -29,12 +29,6 @@
 
 namespace pcor {
 
-template <class Archive>
-void serialize(Archive& archive, FlightResiduals& r) {
-  archive(r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects, r.static_pressure,
-          r.corrected_pressures, r.total_pressure, r.reference_total_pressure, r.mach, r.dynamic_ratio);
-}
-
 using namespace internal;
 
 namespace {

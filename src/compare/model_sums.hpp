@@ -13,19 +13,26 @@
 #include "residuals/flight_statistics.hpp"
 #include "residuals/packed_residuals.hpp"
 
-namespace pcor {
+/// Serialization of statistics for other ranks.
+namespace cereal {
 
 template <class Archive>
-void serialize(Archive& archive, WorstInterval& worst) {
+void serialize(Archive& archive, pcor::FlightResiduals& r) {
+  archive(r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects, r.static_pressure,
+          r.corrected_pressures, r.total_pressure, r.reference_total_pressure, r.mach, r.dynamic_ratio);
+}
+
+template <class Archive>
+void serialize(Archive& archive, pcor::WorstInterval& worst) {
   archive(worst.flight, worst.begin, worst.end, worst.statistics, worst.regimes);
 }
 
 template <class Archive>
-void serialize(Archive& archive, PairMoments& pairs) {
+void serialize(Archive& archive, pcor::PairMoments& pairs) {
   archive(pairs.samples, pairs.mean_x, pairs.mean_y, pairs.xx, pairs.xy, pairs.yy);
 }
 
-}  // namespace pcor
+}  // namespace cereal
 
 namespace pcor::internal {
 
