@@ -10,6 +10,9 @@
 
 namespace pcor::internal {
 
+/// Standard deviation of the size of an effect in nature, in units of its typical size.
+inline constexpr double spread_of_sizes = 3.0;
+
 /// Tested parameter of a candidate.
 struct CandidateParameter {
   std::size_t place = 0;  ///< index among the parameters of its effect

@@ -6,12 +6,10 @@
 #include <vector>
 
 #include <pcor/model_io/model_definition.hpp>
+#include "campaign/candidate.hpp"
 #include "campaign/whitened.hpp"
 
 namespace pcor::internal {
-
-/// Standard deviation of an effect in nature: three times its usual size.
-inline constexpr double spread_of_sizes = 3.0;
 
 /// Columns that belong together: the tested parameters of one effect.
 struct ColumnGroup {

@@ -1,7 +1,9 @@
 #include "fit/prior.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "campaign/candidate.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
@@ -54,10 +56,29 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
   return rows;
 }
 
+/// Adds the prior of the effects that a diagnosis added.
+void add_rows_of_added(const FitTask& task, const std::vector<std::size_t>& wanted, PriorRows& prior) {
+  if (task.uses_prior()) return;
+  const std::vector<std::string>& added = task.options.added;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const FitParameter& parameter = task.parameters[wanted[k]];
+    if (!(parameter.typical > 0.0) || task.surface_of(wanted[k]) != nullptr ||
+        std::find(added.begin(), added.end(), parameter.effect) == added.end())
+      continue;
+    const Eigen::Index row = prior.rows.rows();
+    prior.rows.conservativeResizeLike(Eigen::MatrixXd::Zero(row + 1, prior.rows.cols()));
+    const double deviation =
+        std::max(spread_of_sizes * parameter.typical, std::abs(parameter.start - parameter.neutral));
+    prior.rows(row, as_index(k)) = 1.0 / deviation;
+    prior.centre[as_index(k)] = parameter.neutral;
+  }
+}
+
 }  // namespace
 
 PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& wanted) {
   PriorRows prior{stated_rows(task, wanted), task.start(wanted), {}};
+  add_rows_of_added(task, wanted, prior);
   prior.inflation = Eigen::VectorXd::Ones(prior.rows.rows());
   for (const SurfaceRoughness& surface : task.surfaces) {
     std::vector<Eigen::Index> columns;

@@ -21,7 +21,8 @@ struct PriorRows {
 
 /// If the fit uses a prior, it is centred on the values in the files, with the covariance stated in the
 /// files, otherwise with the typical size of the effect as the standard error. A parameter without either has
-/// no prior. Coefficients of a surface always have the prior of its roughness.
+/// no prior. Otherwise coefficients of the effects `RefitOptions::added` have the prior of a diagnosis about
+/// their neutral value. Coefficients of a surface always have the prior of its roughness.
 PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& wanted);
 
 }  // namespace pcor::internal

@@ -74,6 +74,12 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     return file.model.effects.size() == model.model.effects.size() ? std::string("the given model")
                                                                    : file.model.effects.back().id;
   };
+  const auto added_to = [&model](const ModelDefinition& file) {
+    std::vector<std::string> added;
+    for (std::size_t e = model.model.effects.size(); e < file.model.effects.size(); ++e)
+      added.push_back(file.model.effects[e].id);
+    return added;
+  };
   // References of single samples come first, as in the diagnosis: figures refer to the first.
   References ordered = references;
   std::stable_partition(ordered.begin(), ordered.end(),
@@ -90,14 +96,13 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     tell("fitting with " + last_of(trial.file));
     RefitOptions refit_with = options.refit;
     refit_with.alike = trial.alike;
+    refit_with.added = added_to(trial.file);
     if (!gps_kind(first_of(ordered))) return refit(flights, trial.file, ordered, refit_with);
     return refit(flights, with_start_of(model, trial.file), ordered, refit_with);
   };
   loop.diagnose = [&](const TrialModel& trial) {
     tell("diagnosing with " + last_of(trial.file));
-    diagnose_with.added.clear();
-    for (std::size_t e = model.model.effects.size(); e < trial.file.model.effects.size(); ++e)
-      diagnose_with.added.push_back(trial.file.model.effects[e].id);
+    diagnose_with.added = added_to(trial.file);
     Diagnosis diagnosis = diagnose(flights, trial.file, with_alike(ordered, trial, variables), diagnose_with);
     if (!diagnose_with.series_of)  // pictures of all rungs show the same flights
       diagnose_with.series_of = diagnosis.flights_with_records();
@@ -114,7 +119,9 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   loop.offer_surface = [&](const TrialModel& trial) {
     tell("testing a surface with " + last_of(trial.file));
-    return offer_surface(flights, trial, ordered, options.refit);
+    RefitOptions refit_with = options.refit;
+    refit_with.added = added_to(trial.file);
+    return offer_surface(flights, trial, ordered, refit_with);
   };
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
   loop.trace_variables = options.trace_variables;

@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <pcor/base/error.hpp>
+#include <pcor/effects/catalogue.hpp>
 #include <pcor/fit/refit.hpp>
 
 #include <Eigen/Dense>
@@ -314,6 +316,28 @@ TEST(Refit, DrawsToItsStartWhatTheFlightsLeaveOpen) {
   for (const auto& [name, parameter] : by_name(fit({samples}, powers, with_prior))) {
     if (open.at(name).at_bound) continue;  // it has no error to compare with
     EXPECT_LT(parameter.standard_error, 1.05 * open.at(name).standard_error) << name;
+  }
+}
+
+TEST(Refit, AddedEffectsStayNearTheirTypicalSizeUnlessTheFlightsDetermineThem) {
+  const auto samples = made::shared(plan_18(18));
+  RefitOptions options;
+  options.added = {"static-alpha", "static-mach", "static-mach2", "static-mach3"};
+  // An hour of samples determines the angle of attack: the prior moves it by far less than its error.
+  const auto free = by_name(fit({samples}, made::model(equation_18))).at("static-alpha.a1");
+  const auto with_prior = by_name(fit({samples}, made::model(equation_18), options)).at("static-alpha.a1");
+  EXPECT_NEAR(with_prior.value, free.value, 0.1 * free.standard_error);
+  // Powers of the Mach number are nearly collinear: the prior, three typical sizes, determines their errors.
+  const auto found = by_name(fit({samples},
+                                 made::model({"static-constant", "static-alpha", "static-qp", "static-mach",
+                                              "static-mach2", "static-mach3"}),
+                                 options));
+  for (const char* const id : {"static-mach", "static-mach2", "static-mach3"}) {
+    const pcor::EffectInfo& info = pcor::effect_info[pcor::effect_named(id)];
+    const double prior = 3.0 * std::abs(info.parameters[0].typical);
+    const pcor::FittedParameter& parameter = found.at(fmt::format("{}.{}", id, info.parameters[0].name));
+    EXPECT_LT(std::abs(parameter.value), 2.0 * prior) << id;
+    EXPECT_LT(parameter.standard_error, 1.1 * prior) << id;
   }
 }
 

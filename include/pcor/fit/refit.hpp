@@ -41,6 +41,12 @@ struct RefitOptions {
   /// typical size of the effect. Always used if the reference is fitted too: two static systems determine
   /// only their difference, and common effects keep the value and error of the prior.
   bool use_prior = false;
+  /// Effects that a diagnosis added to the model, with its estimates as starting values. Each coefficient has
+  /// a Gaussian prior about its neutral value; the standard deviation is three times the typical size of the
+  /// effect, or the estimate if that is larger. A coefficient that the flights do not determine stays small,
+  /// and one that they determine does not change. Without influence if `use_prior` is true, and on a fit to
+  /// GPS alone, which has a prior.
+  std::vector<std::string> added{};
   /// The calibration of the references and of the thermometer is exact. Otherwise its error is part of the
   /// standard errors: `ParameterInfo::doubt`, or `[uncertainty]` of the model.
   bool trust_reference = false;
