@@ -29,7 +29,7 @@ namespace {
 
 Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>& wanted) {
   const Eigen::Index size = as_index(wanted.size());
-  if (!task.uses_prior()) return Eigen::MatrixXd(0, size);
+  if (!task.uses_prior()) return Eigen::MatrixXd::Zero(0, size);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, size);
   std::vector<Eigen::Index> stated;
   for (Eigen::Index k = 0; k < size; ++k) {

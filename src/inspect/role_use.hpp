@@ -8,7 +8,8 @@
 
 namespace pcor::internal {
 
-/// Consequence if a series is not recorded, in addition to the effects that need it; empty if no consequence is known.
+/// Consequence if a series is not recorded, in addition to the effects that need it; empty if no consequence
+/// is known.
 std::string cost_of(std::string_view series);
 
 /// Effects that need a role, also as a source of a derived quantity.
