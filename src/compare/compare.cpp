@@ -1,10 +1,8 @@
 #include <pcor/compare/compare.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cereal/types/map.hpp>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -25,7 +23,6 @@
 #include "parallel/workers.hpp"
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "residuals/packed_residuals.hpp"
 
 namespace pcor {
 

@@ -182,7 +182,7 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
     panels.add(
         finding_page(findings[i], diagnosis.threshold,
                      findings.size() == 1 ? "The finding: " + id : fmt::format("Finding {}: {}", i + 1, id)));
-    if (i > 0) add_against_inputs(panels, diagnosis, residuals, i);  // that of the first is the first picture
+    if (i > 0) add_against_inputs(panels, diagnosis, residuals, i);  // finding 0 has the first picture
     panels.add_plane("Evidence for " + id + ", over Mach number and pressure",
                      "Orange supports the effect, blue contradicts it.", numbered("evidence", i));
   }

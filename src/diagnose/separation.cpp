@@ -74,8 +74,8 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
   const std::string names = join_list(rivals);
   if (plan.regime == nullptr) {
     const std::string general = general_advice(id, effect);
-    return fmt::format("no regime of these flights would separate them if repeated up to {} times{}{}",
-                       max_repeats, general.empty() ? "" : "; ", general);
+    return fmt::format("no regime of these flights would separate {} from {} if repeated up to {} times{}{}",
+                       id, names, max_repeats, general.empty() ? "" : "; ", general);
   }
   const bool is_one = plan.repeats == 1;
   return fmt::format("fly {} of {:.1f} min{} as on {}: probability {:.0f} % that {} {} from {}",

@@ -80,6 +80,12 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
       added.push_back(file.model.effects[e].id);
     return added;
   };
+  const auto refit_options_for = [&](const TrialModel& trial) {
+    RefitOptions refit_with = options.refit;
+    refit_with.alike = trial.alike;
+    refit_with.added = added_to(trial.file);
+    return refit_with;
+  };
   // References of single samples come first, as in the diagnosis: figures refer to the first.
   References ordered = references;
   std::stable_partition(ordered.begin(), ordered.end(),
@@ -94,9 +100,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   ImproveLoop loop;
   loop.refit = [&](const TrialModel& trial) {
     tell("fitting with " + last_of(trial.file));
-    RefitOptions refit_with = options.refit;
-    refit_with.alike = trial.alike;
-    refit_with.added = added_to(trial.file);
+    const RefitOptions refit_with = refit_options_for(trial);
     if (!gps_kind(first_of(ordered))) return refit(flights, trial.file, ordered, refit_with);
     return refit(flights, with_start_of(model, trial.file), ordered, refit_with);
   };
@@ -119,9 +123,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   loop.offer_surface = [&](const TrialModel& trial) {
     tell("testing a surface with " + last_of(trial.file));
-    RefitOptions refit_with = options.refit;
-    refit_with.added = added_to(trial.file);
-    return offer_surface(flights, trial, ordered, refit_with);
+    return offer_surface(flights, trial, ordered, refit_options_for(trial));
   };
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
   loop.trace_variables = options.trace_variables;

@@ -10,7 +10,6 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/base/utc.hpp>
-#include <pcor/effects/catalogue.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/roles/resolve_variables.hpp>
 #include "inspect/plausibility.hpp"

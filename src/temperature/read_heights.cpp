@@ -18,7 +18,7 @@ namespace {
 
 HeightRecord record_of(const FlightSet& flights, std::size_t number, const ModelDefinition& model,
                        const TemperatureOptions& options) {
-  const ModelDefinition bare = without_calibration(model);
+  ModelDefinition stated = without_calibration(model);
   HeightRecordOptions record_options;
   record_options.min_climb_rate = options.min_climb_rate;
   record_options.has_radome = model.variables.count(Quantity::attack_differential_pressure) > 0;
@@ -42,10 +42,9 @@ HeightRecord record_of(const FlightSet& flights, std::size_t number, const Model
     air = read_flight_air(flights, number, *recorded, options.mask);
     steps = archived_steps(flight, model, air);
   } else {
-    air = read_flight_air(flights, number, bare, options.mask);
+    air = read_flight_air(flights, number, stated, options.mask);
   }
   HeightRecord record = height_record(air, steps, record_options);
-  ModelDefinition stated = bare;
   if (options.archived) {  // Inputs of the model are not archived: only its remaining error is known.
     stated.covariance = {};
     stated.fits.clear();

@@ -1,13 +1,10 @@
 #include <pcor/temperature/temperature.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numeric>
 #include <utility>
 
 #include <pcor/base/error.hpp>
@@ -18,7 +15,6 @@
 #include <pcor/effects/static_qp.hpp>
 #include <pcor/effects/temp_calibration.hpp>
 #include "model_io/calibration.hpp"
-#include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -483,11 +479,11 @@ class TemperatureCalibration {
           after, before);
       return;
     }
-    if (std::abs(result_.least_squares_add) > seen * result_.least_squares_add_error) {
+    if (std::abs(result_.least_squares_add) > significant_ratio * result_.least_squares_add_error) {
       result_.worse = fmt::format(
           "least squares on height contradicts the likelihood: it would add {} K to the correction, more "
           "than {:g} standard errors",
-          with_error(result_.least_squares_add, result_.least_squares_add_error), seen);
+          with_error(result_.least_squares_add, result_.least_squares_add_error), significant_ratio);
       return;
     }
     for (const std::vector<PartCorrection>* parts : {&result_.parts_by_flight, &result_.parts_by_climb}) {

@@ -19,11 +19,11 @@ constexpr double much_drift = 1.0;  // m in a minute; a usual slope of isobars, 
 }  // namespace
 
 bool is_seen(const LawError& error) {
-  return std::abs(error.change) > seen * error.standard_error && error.range > usual_zero;
+  return std::abs(error.change) > significant_ratio * error.standard_error && error.range > usual_zero;
 }
 
 bool is_beyond_prior(const LawError& error) {
-  return is_seen(error) && std::abs(error.change) > seen * error.size;
+  return is_seen(error) && std::abs(error.change) > significant_ratio * error.size;
 }
 
 std::string part_text(const PartCorrection& part) {
@@ -54,7 +54,7 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
         is_beyond_prior(error) ? "but an undetected error of the same size may remain: "
                                : "and is within the stated error of the model; "));
   }
-  if (std::abs(result.humidity_change) > seen * result.humidity_error) {
+  if (std::abs(result.humidity_change) > significant_ratio * result.humidity_error) {
     warnings.push_back(
         fmt::format("heights indicate an error of the humidity: the vapour pressure is too small by {}; "
                     "compare it with another hygrometer",

@@ -10,8 +10,8 @@
 
 namespace pcor::internal {
 
-/// Number of standard errors that chance does not reach.
-inline constexpr double seen = 3.0;
+/// Ratio of an estimate to its standard error that chance does not reach.
+inline constexpr double significant_ratio = 3.0;
 
 /// Usual zero of a static transducer, hPa. It is constant, and models were fitted to pressures that have it.
 inline constexpr double usual_zero = effects::PsfdBias::info().parameters[0].typical;

@@ -532,13 +532,13 @@ void expect_advice(const Diagnosis& diagnosis) {
     EXPECT_EQ(advice.power > 0.0, !advice.manoeuvre.empty());
     EXPECT_EQ(advice.duration > 0.0, !advice.manoeuvre.empty());
     if (advice.sentence.empty()) continue;
+    EXPECT_THAT(advice.sentence, HasSubstr(finding.effect.id));
+    for (const Alias& alias : finding.aliases) EXPECT_THAT(advice.sentence, HasSubstr(alias.effect));
     if (advice.manoeuvre.empty()) {
       const std::size_t place = pcor::effect_named(finding.effect.id);
       EXPECT_THAT(advice.sentence, HasSubstr(std::string(pcor::effect_info[place].manoeuvre)));
       continue;
     }
-    EXPECT_THAT(advice.sentence, HasSubstr(finding.effect.id));
-    for (const Alias& alias : finding.aliases) EXPECT_THAT(advice.sentence, HasSubstr(alias.effect));
     EXPECT_THAT(advice.sentence, HasSubstr(advice.manoeuvre));
     EXPECT_TRUE(std::any_of(
         diagnosis.flights.begin(), diagnosis.flights.end(), [&advice](const pcor::FlightDiagnosis& along) {

@@ -501,7 +501,7 @@ TEST(Search, UncertainShapeIsNoSecondEffect) {
   EXPECT_DOUBLE_EQ(search.score(0, {}).chi2, evidence);
 }
 
-// Beside an effect of uncertain shape, an effect that resembles its rest is no rival of another effect.
+// An effect that resembles the uncertain shape of one finding is not a rival of another finding.
 TEST(Search, UncertainShapeOfOneFindingIsNoRivalOfAnother) {
   Problem problem(600, 4, 31);
   const Eigen::VectorXd rest = problem.candidate(3);
