@@ -85,7 +85,7 @@ def _coefficients(result: Any, ax: Any) -> None:
     ax.legend(fontsize="small")
 
 
-def _ladder(result: Any, ax: Any) -> None:
+def _steps(result: Any, ax: Any) -> None:
     steps = [step for step in result.steps if not step.get("refused")]
     places = np.arange(len(steps) + 1)
     for key, label in (("rms_train_hpa", "fitted flights"), ("rms_holdout_hpa", "held-out flights")):
@@ -124,7 +124,7 @@ _pictures: dict[str, dict[str, Callable[..., None]]] = {
     "compare": {"regimes": _regimes, "time": _time, "variable": _variable},
     "refit": {"coefficients": _coefficients, "flights": _flights},
     "diagnose": {"parts": _parts},
-    "improve": {"ladder": _ladder},
+    "improve": {"steps": _steps},
 }
 
 

@@ -164,7 +164,7 @@ class Result:
         compare: "regimes", residual by regime; "time", residual over time; "variable", residual against `variable`, a
         name in the flights. refit: "coefficients", before and after the fit, in standard errors; "flights", rms of each
         flight before and after. diagnose: "parts", rms of residual, noise, findings and unexplained structure.
-        improve: "ladder", rms after every step.
+        improve: "steps", rms after every step.
         """
         from . import _plots
 

@@ -182,7 +182,7 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
   }
   panel.title = "What if";
   panel.caption =
-      "Switch an effect on, or move its coefficient: residual, table, ladder and figures follow, and the "
+      "Switch an effect on, or move its coefficient: residual, table, steps and figures follow, and the "
       "coefficients that were not moved by hand are fitted again. The fit is linear about the current model "
       "and weighted by the noise after the findings that are switched on. It equals the result of pcor refit "
       "if the residual is linear in the coefficients, and nearly equals it otherwise, for example for a lag. "

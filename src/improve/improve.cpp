@@ -48,7 +48,7 @@ void hold(ModelDefinition& file, const std::vector<std::string>& parameters) {
 std::string rivals_text(const ImproveStep& step) {
   if (step.rivals.empty()) return "";
   std::vector<std::string> each;
-  for (const RungRival& rival : step.rivals) {
+  for (const StepRival& rival : step.rivals) {
     each.push_back(fmt::format("{} (probability {:.2f}, changes it by {:.3f} hPa)", rival.effect,
                                rival.probability, rival.static_change));
   }
@@ -108,7 +108,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     tell("diagnosing with " + last_of(trial.file));
     diagnose_with.added = added_to(trial.file);
     Diagnosis diagnosis = diagnose(flights, trial.file, with_alike(ordered, trial, variables), diagnose_with);
-    if (!diagnose_with.series_of)  // pictures of all rungs show the same flights
+    if (!diagnose_with.series_of)  // pictures of all steps show the same flights
       diagnose_with.series_of = diagnosis.flights_with_records();
     return diagnosis;
   };

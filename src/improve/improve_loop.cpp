@@ -134,10 +134,10 @@ bool may_be_of_reference(const Finding& finding) {
          });
 }
 
-/// Search state: the ladder so far, and its continuation.
-class Climb {
+/// Forward selection of effects: the steps so far, and the next ones.
+class ForwardSelection {
  public:
-  Climb(const ImproveLoop& loop, const ModelDefinition& model) : loop_(loop), given_{model} {
+  ForwardSelection(const ImproveLoop& loop, const ModelDefinition& model) : loop_(loop), given_{model} {
     result_.holdout_is_flights = loop.has_holdout;
     ImproveStep first;
     RefitResult fit = loop.refit(given_);
@@ -153,7 +153,7 @@ class Climb {
   }
 
   Improvement run() {
-    while (result_.why_stopped.empty()) climb_on();
+    while (!is_finished_) next_step();
     result_.model = result_.fit.model;
     result_.refitted = refitted_;
     choose_among_rivals();
@@ -166,35 +166,35 @@ class Climb {
   const Diagnosis& diagnosis() const { return result_.steps.back().diagnosis; }
   TrialModel top() const { return {result_.fit.model, alike_}; }
 
-  using RungChoice =
-      std::optional<std::size_t>;  // index among the rivals of a rung; empty if no rival is applied
+  /// Index among the rivals of a step; empty if no rival is applied.
+  using AppliedRival = std::optional<std::size_t>;
 
-  /// The model with one choice of each rung, fitted.
-  TrialModel model_with(const std::vector<RungChoice>& choices) const {
+  /// The model with one rival of each step, fitted.
+  TrialModel model_with(const std::vector<AppliedRival>& choices) const {
     TrialModel model = given_;
-    for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
-      if (choices[rung]) model = loop_.add(model, rungs_[rung][*choices[rung]].added);
+    for (std::size_t index = 0; index < alternatives_.size(); ++index) {
+      if (choices[index]) model = loop_.add(model, alternatives_[index][*choices[index]].added);
     }
     model.file = loop_.refit(model).model;
     return model;
   }
 
-  /// If the rivals of a rung differ in static pressure, the model gets the one from `choose_rival`, or no
+  /// If the rivals of a step differ in static pressure, the model gets the one from `choose_rival`, or no
   /// effect; the uncertainty is part of its stated error.
   void choose_among_rivals() {
-    std::vector<RungChoice> choices(rungs_.size(), 0);
-    for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
-      if (rungs_[rung].size() < 2) continue;
-      ImproveStep& step = result_.steps[rung + 1];
-      choices[rung] = choice_of(rung, step);
+    std::vector<AppliedRival> choices(alternatives_.size(), 0);
+    for (std::size_t index = 0; index < alternatives_.size(); ++index) {
+      if (alternatives_[index].size() < 2) continue;
+      ImproveStep& step = result_.steps[index + 1];
+      choices[index] = choice_of(index, step);
       rival_squares_ += step.rival_error * step.rival_error;
-      for (const RungRival& rival : step.rivals)
+      for (const StepRival& rival : step.rivals)
         rivals_.emplace_back(fmt::format("{} for {}: probability {:.3f}{}", rival.effect, step.added,
                                          rival.probability,
                                          rival.effect == step.delivered ? ", applied" : ""));
     }
     const bool is_top =
-        std::all_of(choices.begin(), choices.end(), [](const RungChoice& choice) { return choice == 0U; });
+        std::all_of(choices.begin(), choices.end(), [](const AppliedRival& choice) { return choice == 0U; });
     delivered_ = top();
     if (!is_top) {
       try {
@@ -220,20 +220,20 @@ class Climb {
     if (!rivals_.empty()) model.provenance.emplace_back("rivals", ProvenanceValue{rivals_});
   }
 
-  /// Measures the change of static pressure by the rivals of a rung, with the rest as at the top of the
-  /// ladder. The first rival stays if all are alike.
-  RungChoice choice_of(std::size_t rung, ImproveStep& step) const {
-    std::vector<RungChoice> choices(rungs_.size(), 0);
+  /// Measures the change of static pressure by the rivals of a step, with the other effects as after the
+  /// last step. The first rival stays if all are alike.
+  AppliedRival choice_of(std::size_t index, ImproveStep& step) const {
+    std::vector<AppliedRival> choices(alternatives_.size(), 0);
     std::vector<TrialModel> models;
     std::vector<std::size_t> tested;
     try {
-      choices[rung].reset();
+      choices[index].reset();
       models.push_back(model_with(choices));
     } catch (const Error&) {
       return 0;
     }
-    for (std::size_t k = 0; k < rungs_[rung].size(); ++k) {
-      choices[rung] = k;
+    for (std::size_t k = 0; k < alternatives_[index].size(); ++k) {
+      choices[index] = k;
       try {
         models.push_back(k == 0 ? top() : model_with(choices));
       } catch (const Error&) {
@@ -242,13 +242,13 @@ class Climb {
       tested.push_back(k);
     }
     double sum = 0.0;
-    for (const std::size_t k : tested) sum += rungs_[rung][k].probability;
+    for (const std::size_t k : tested) sum += alternatives_[index][k].probability;
     const std::vector<TrialFlight> tried = loop_.try_models(models);
     const std::vector<double> without = static_pressures_of(tried, 0);
     std::vector<std::vector<double>> changes;
     std::vector<double> weights;
     for (std::size_t i = 0; i < tested.size(); ++i) {
-      weights.push_back(rungs_[rung][tested[i]].probability / sum);
+      weights.push_back(alternatives_[index][tested[i]].probability / sum);
       std::vector<double>& change = changes.emplace_back(static_pressures_of(tried, i + 1));
       for (std::size_t sample = 0; sample < change.size(); ++sample) change[sample] -= without[sample];
     }
@@ -259,7 +259,7 @@ class Climb {
     step.delivered.clear();
     for (std::size_t i = 0; i < tested.size(); ++i)
       step.rivals.push_back(
-          {rungs_[rung][tested[i]].added.effect.id, weights[i], square_sum_of(changes[i]).rms()});
+          {alternatives_[index][tested[i]].added.effect.id, weights[i], square_sum_of(changes[i]).rms()});
     if (!choice.rival) return std::nullopt;
     step.delivered = step.rivals[*choice.rival].effect;
     return tested[*choice.rival];
@@ -295,7 +295,7 @@ class Climb {
     step.added = step.delivered = id;
     step.title = std::string(surface_named(id)->title);
     measure(step, offer->fit, before.alike);
-    // Other parts than those of the steps before: their ratio continues the ladder.
+    // Other parts than those of the steps before: the step before times their ratio is comparable.
     if (!loop_.has_holdout)
       step.rms_holdout = result_.steps.back().rms_holdout * out.rms_after / out.rms_before;
     step.learnt =
@@ -332,7 +332,7 @@ class Climb {
     }
   }
 
-  /// Whether the whole ladder increased the residual, by a large or significant amount.
+  /// Whether all steps together increased the residual, by a large or significant amount.
   std::string why_worse(const TrialComparison& whole) const {
     constexpr double much = 1.02;
     const double growth = whole.rms_after / whole.rms_before;
@@ -344,16 +344,14 @@ class Climb {
         loop_.has_holdout ? "held-out samples" : "these flights", growth, -whole.gain, whole.gain_error);
   }
 
-  void climb_on() {
+  void next_step() {
     OfferedEffects candidates = candidates_now();
     if (candidates.effects.empty()) {
-      result_.why_stopped = why_nothing_is_added();
-      return;
+      return stop_without_candidates();
     }
     const std::size_t added = result_.steps.size() - 1;
     if (added >= loop_.max_steps) {
-      result_.why_stopped = fmt::format("{} effects were added, as many as were allowed", added);
-      return;
+      return stop(StopReason::max_steps, fmt::format("{} effects were added, the maximum", added));
     }
     candidates.effects.resize(std::min(candidates.effects.size(), loop_.max_steps - added));
     std::vector<std::string> refusals;
@@ -366,7 +364,13 @@ class Climb {
       }
       if (refusal.empty() != candidates.all) break;
     }
-    result_.why_stopped = fmt::format("{}", fmt::join(refusals, "; "));
+    if (!refusals.empty()) stop(StopReason::no_gain, fmt::format("{}", fmt::join(refusals, "; ")));
+  }
+
+  void stop(StopReason reason, std::string why) {
+    is_finished_ = true;
+    result_.stop_reason = reason;
+    result_.why_stopped = std::move(why);
   }
 
   OfferedEffects candidates_now() const {
@@ -387,38 +391,44 @@ class Climb {
     return candidates;
   }
 
-  std::string why_nothing_is_added() const {
+  void stop_without_candidates() {
     const Diagnosis& now = diagnosis();
     if (now.findings.empty() && !now.unexplained.significant) {
       std::vector<std::string> off;
       for (const HeldOutPart& part : now.held_out) {
         if (part.is_off()) off.push_back(part.text());
       }
-      return fmt::format(
-          "no missing effect is detectable on {} flights: {} effects were tested; the rms residual is {} "
-          "with a noise of {}{}{}",
-          off.empty() ? "these" : "the fitted", now.candidates, shown(now.rms_given), shown(now.noise_rms),
-          off.empty() ? "" : "; but ", fmt::join(off, "; "));
+      return stop(
+          StopReason::nothing_missing,
+          fmt::format(
+              "no missing effect is detectable on {} flights: {} effects were tested; the rms residual is {} "
+              "with a noise of {}{}{}",
+              off.empty() ? "these" : "the fitted", now.candidates, shown(now.rms_given),
+              shown(now.noise_rms), off.empty() ? "" : "; but ", fmt::join(off, "; ")));
     }
     for (const Finding& finding : now.findings) {
       if (may_be_of_reference(finding)) {
-        return fmt::format(
-            "{} {} of the reference system, so the model was left unchanged (with "
-            "--trust-reference that system counts as right){}{}",
-            finding.id(), is_of_reference(finding) ? "is" : "may be an error",
-            finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence);
+        return stop(StopReason::reference_system,
+                    fmt::format("{} {} of the reference system, so the model was left unchanged (with "
+                                "--trust-reference that system counts as right){}{}",
+                                finding.id(), is_of_reference(finding) ? "is" : "may be an error",
+                                finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence));
       }
     }
-    if (!now.findings.empty()) return "the effects named by the diagnosis are already in the model";
+    if (!now.findings.empty())
+      return stop(StopReason::in_model, "the effects named by the diagnosis are already in the model");
     const Unexplained& left = now.unexplained;
-    const std::string what =
+    std::string what =
         fmt::format("structure of {} is not explained by any effect of the catalogue{}{}", shown(left.rms),
                     left.regime.empty() ? "" : ", most of it in ", left.regime);
-    if (left.variables.empty()) return what + "; it is not correlated with any variable of the files";
-    return fmt::format("{}; it is correlated with {}, {}", what, left.variables.front().name,
-                       loop_.trace_variables
-                           ? "but no further formula of it can be added"
-                           : "and --trace-variables would add a formula of it, regardless of the cause");
+    what +=
+        left.variables.empty()
+            ? "; it is not correlated with any variable of the files"
+            : fmt::format("; it is correlated with {}, {}", left.variables.front().name,
+                          loop_.trace_variables
+                              ? "but no further formula of it can be added"
+                              : "and --trace-variables would add a formula of it, regardless of the cause");
+    stop(StopReason::unexplained, std::move(what));
   }
 
   /// Adds the candidate and keeps it if it helps; otherwise records the reason.
@@ -477,7 +487,7 @@ class Climb {
     return "";
   }
 
-  /// Figures of a rung. The diagnosis replaces missing held-out samples.
+  /// Figures of a step. The diagnosis replaces missing held-out samples.
   void measure(ImproveStep& step, const RefitResult& fit, const std::vector<std::string>& alike) const {
     step.rms_train = fit.rms;
     step.noise_rms = fit.noise_rms;
@@ -492,12 +502,12 @@ class Climb {
     }
   }
 
-  /// Adds a measured rung to the ladder, with a diagnosis of the remaining residual.
+  /// Appends a measured step, with a diagnosis of the remaining residual.
   void take(ImproveStep step, RefitResult fit, std::vector<Choice> choices, std::vector<std::string> alike) {
     if (result_.steps.empty())
       refitted_ = fit.model;
     else
-      rungs_.push_back(std::move(choices));
+      alternatives_.push_back(std::move(choices));
     alike_ = std::move(alike);
     if (loop_.has_holdout) step.diagnosis = loop_.diagnose({fit.model, alike_});
     std::vector<HeldOutPart>& held_out = step.diagnosis.held_out;
@@ -513,16 +523,42 @@ class Climb {
   const ImproveLoop& loop_;
   Improvement result_;
   TrialModel given_;
+  bool is_finished_ = false;
   ModelDefinition refitted_;
-  std::vector<std::string> alike_{};  // effects of the model at the top of the ladder
+  std::vector<std::string> alike_{};  // `TrialModel::alike` of the model after the last step
   TrialModel delivered_{};
   double rival_squares_ = 0.0;  // sum of the squared expected errors of the choices among rivals, hPa^2
   ProvenanceList rivals_{};
-  std::vector<std::vector<Choice>> rungs_{};  // alternatives for each added effect, the effect itself first
+  std::vector<std::vector<Choice>>
+      alternatives_{};  // alternatives for each added effect, the effect itself first
 };
 
 }  // namespace
 
-Improvement ImproveLoop::run(const ModelDefinition& model) const { return Climb(*this, model).run(); }
+Improvement ImproveLoop::run(const ModelDefinition& model) const {
+  return ForwardSelection(*this, model).run();
+}
 
 }  // namespace pcor::internal
+
+namespace pcor {
+
+std::string_view to_string(StopReason reason) {
+  switch (reason) {
+    case StopReason::nothing_missing:
+      return "nothing missing";
+    case StopReason::reference_system:
+      return "reference system";
+    case StopReason::in_model:
+      return "in model";
+    case StopReason::unexplained:
+      return "unexplained";
+    case StopReason::no_gain:
+      return "no gain";
+    case StopReason::max_steps:
+      return "max steps";
+  }
+  return "";
+}
+
+}  // namespace pcor

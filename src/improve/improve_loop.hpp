@@ -28,7 +28,7 @@ struct ImproveLoop {
   std::size_t max_steps = 8;    ///< maximum number of added effects
   std::string flights{};        ///< description for the source of a traced formula
 
-  /// Climbs the ladder of errors from `model`. @throws Error as `refit` and `diagnose` do for the initial
+  /// Selects effects step by step, from `model`. @throws Error as `refit` and `diagnose` do for the initial
   /// model.
   Improvement run(const ModelDefinition& model) const;
 };

@@ -57,7 +57,7 @@ std::vector<std::string> held_out_names(const Improvement& improvement) {
   return names;
 }
 
-std::string rung_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
+std::string step_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
 
 bool delivers_rivals(const Improvement& improvement) {
   return std::any_of(improvement.steps.begin(), improvement.steps.end(), [](const ImproveStep& step) {
@@ -65,9 +65,9 @@ bool delivers_rivals(const Improvement& improvement) {
   });
 }
 
-DotPanel ladder_picture(const Improvement& improvement) {
+DotPanel steps_picture(const Improvement& improvement) {
   DotPanel panel;
-  panel.title = "The ladder";
+  panel.title = "Rms residual after each step";
   panel.caption =
       "Rms residual after each effect that was added. Bars are standard errors for the effective sample "
       "size; the dashed line is the noise, a lower limit. All values use the same samples, so a step may be "
@@ -91,7 +91,7 @@ DotPanel ladder_picture(const Improvement& improvement) {
                           fmt::format("{} and {}", text(in_fit), text(held_out))});
   };
   add("given model", improvement.given_rms_train, improvement.given_rms_holdout);
-  for (const ImproveStep& step : improvement.steps) add(rung_name(step), step.rms_train, step.rms_holdout);
+  for (const ImproveStep& step : improvement.steps) add(step_name(step), step.rms_train, step.rms_holdout);
   if (delivers_rivals(improvement)) add("written model", improvement.rms_train, improvement.rms_holdout);
   return panel;
 }

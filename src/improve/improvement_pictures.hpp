@@ -12,14 +12,14 @@ namespace pcor::internal::report {
 /// Description of the held-out samples: "rf03.nc", "the last part of rf01.nc".
 std::vector<std::string> held_out_names(const Improvement& improvement);
 
-/// Label of a rung: "refitted", "+ static-lag".
-std::string rung_name(const ImproveStep& step);
+/// Label of a step: "refitted", "+ static-lag".
+std::string step_name(const ImproveStep& step);
 
-/// Whether the written model replaces or lacks an effect that a step of the ladder added.
+/// Whether the written model replaces or lacks an effect that a step added.
 bool delivers_rivals(const Improvement& improvement);
 
-/// Rms residual of every rung, fitted and held out, with the noise as a line.
-DotPanel ladder_picture(const Improvement& improvement);
+/// Rms residual of every step, fitted and held out, with the noise as a line.
+DotPanel steps_picture(const Improvement& improvement);
 
 /// Coefficients of the best and the initial model; empty if nothing was fitted.
 std::optional<DotPanel> coefficients_picture(const Improvement& improvement, const ModelDefinition& start);

@@ -46,34 +46,34 @@ Flights shown_flights(const Improvement& improvement) {
 }
 
 /// Residuals of the initial, refitted and final model; the names of those that are known.
-std::vector<std::string> add_ladder_columns(DiagnosisPanels& panels, const Improvement& improvement) {
+std::vector<std::string> add_model_columns(DiagnosisPanels& panels, const Improvement& improvement) {
   const auto before = [](const FlightDiagnosis& flight) { return flight.before; };
   std::vector<std::string> columns;
   const auto add = [&](const char* name, const std::string& title, auto residual) {
     if (panels.add_column(name, title, "hPa", with_residual(improvement, residual), before))
       columns.emplace_back(name);
   };
-  add("ladder-given", "residual, given model", &ImprovedFlight::given);
-  add("ladder-refitted", "residual, refitted", &ImprovedFlight::refitted);
-  add("ladder-best", "residual, best model", &ImprovedFlight::best);
+  add("model-given", "residual, given model", &ImprovedFlight::given);
+  add("model-refitted", "residual, refitted", &ImprovedFlight::refitted);
+  add("model-best", "residual, best model", &ImprovedFlight::best);
   return columns;
 }
 
 /// Residuals of the models over time, averaged so that noise does not hide the slow changes.
-void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement,
+void add_models_in_time(DiagnosisPanels& panels, const Improvement& improvement,
                         std::vector<std::string> columns) {
   if (columns.empty()) return;
   constexpr double averaging_time = 60.0;  // s
   std::string caption = fmt::format("Means over {:g} s.", averaging_time);
   const std::vector<std::string> names = held_out_names(improvement);
   if (!names.empty()) caption += fmt::format(" Held out: {}.", join_list(names));
-  panels.add(TimePanel{"The ladder in time", std::move(caption), std::move(columns), "residual", "",
-                       averaging_time});
+  panels.add(TimePanel{"Residuals of the models in time", std::move(caption), std::move(columns), "residual",
+                       "", averaging_time});
 }
 
-ReportTable ladder_table(const Improvement& improvement) {
+ReportTable steps_table(const Improvement& improvement) {
   ReportTable table;
-  table.title = "Rung by rung";
+  table.title = "Steps of the selection";
   table.headers = {"model",
                    "free coefficients",
                    "rms in the fit, hPa",
@@ -82,7 +82,7 @@ ReportTable ladder_table(const Improvement& improvement) {
                    "not separable from",
                    "conclusion"};
   for (const ImproveStep& step : improvement.steps) {
-    table.rows.push_back({rung_name(step), std::to_string(step.terms), cell(step.rms_train, 3),
+    table.rows.push_back({step_name(step), std::to_string(step.terms), cell(step.rms_train, 3),
                           cell(step.rms_holdout, 3), cell(step.noise_rms, 3), join_list(step.aliases),
                           sentence(step.learnt)});
   }
@@ -118,7 +118,7 @@ void summarise(Report& report, const Improvement& improvement) {
   if (!improvement.why_stopped.empty()) report.summary.push_back(sentence(improvement.why_stopped));
   std::string verdict = verdict_text(last.diagnosis);
   verdict.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(verdict.front())));
-  report.summary.push_back("At the top of the ladder: " + verdict + ".");
+  report.summary.push_back("After the last step: " + verdict + ".");
   for (const Finding& finding : last.diagnosis.findings) report.summary.push_back(finding_summary(finding));
   for (std::string& text : unexplained_text(last.diagnosis.unexplained))
     report.summary.push_back(std::move(text));
@@ -134,14 +134,14 @@ std::vector<Estimate> fitted_of(const RefitResult& fit, const std::string& effec
   return estimates;
 }
 
-/// Page of the effect that a rung added, and its pictures.
-void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size_t rung) {
+/// Page of the effect that a step added, and its pictures.
+void add_step(DiagnosisPanels& panels, const Improvement& improvement, std::size_t index) {
   using F = FlightDiagnosis;
-  const ImproveStep& step = improvement.steps[rung];
-  const Diagnosis& before = improvement.steps[rung - 1].diagnosis;
-  const std::string heading = fmt::format("Rung {}: {}", rung, step.added);
-  const std::string evidence = numbered("evidence", rung);
-  const std::string added = numbered("added", rung);
+  const ImproveStep& step = improvement.steps[index];
+  const Diagnosis& before = improvement.steps[index - 1].diagnosis;
+  const std::string heading = fmt::format("Step {}: {}", index, step.added);
+  const std::string evidence = numbered("evidence", index);
+  const std::string added = numbered("added", index);
   std::vector<std::string> inputs;
   for (const ModelEffect& effect : improvement.model.model.effects) {
     if (effect.id == step.added) inputs = inputs_of(effect);
@@ -166,7 +166,7 @@ void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size
                     estimates_text(fitted)));
   panels.add(std::move(page));
   panels.add_binned("Residual without and with " + step.added + ", against its inputs", effect_caption,
-                    {numbered("rung", rung - 1), numbered("rung", rung)}, inputs);
+                    {numbered("step", index - 1), numbered("step", index)}, inputs);
   panels.add_plane("Evidence for " + step.added + ", over Mach number and pressure",
                    "Orange supports the effect, blue contradicts it.", evidence);
 }
@@ -176,7 +176,7 @@ void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size
 Report improvement_report(const Improvement& improvement, const ModelDefinition& start,
                           const WhatIf* what_if) {
   if (improvement.steps.empty())
-    throw Error(Error::Code::usage, "report: the ladder has no rung; improve a model first");
+    throw Error(Error::Code::usage, "report: the improvement has no step; call improve first");
   const std::vector<ImproveStep>& steps = improvement.steps;
   const Diagnosis& top = steps.back().diagnosis;
   DiagnosisPanels panels(shown_flights(improvement));
@@ -189,38 +189,39 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
   summarise(report, improvement);
   add_info(panels, top, start, {});
 
-  std::vector<std::string> rungs;
+  std::vector<std::string> residuals;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     add_traced(panels, steps[i].diagnosis);
-    std::string name = numbered("rung", i);
-    if (panels.add_column(name, "residual, " + rung_name(steps[i]), "hPa", steps[i].diagnosis.flights,
+    std::string name = numbered("step", i);
+    if (panels.add_column(name, "residual, " + step_name(steps[i]), "hPa", steps[i].diagnosis.flights,
                           [](const FlightDiagnosis& f) { return f.before; }))
-      rungs.push_back(std::move(name));
+      residuals.push_back(std::move(name));
   }
   panels.measure_memory(top.flights, [](const FlightDiagnosis& f) -> const Series& { return f.before; });
   name_held_out(report, improvement);
-  const std::vector<std::string> ladder = add_ladder_columns(panels, improvement);
-  panels.add(ladder_picture(improvement));
+  const std::vector<std::string> models = add_model_columns(panels, improvement);
+  panels.add(steps_picture(improvement));
   if (what_if != nullptr) {
     const ModelEffect& last = improvement.fit.model.model.effects.back();
-    panels.add_what_if(*what_if, "ladder-refitted", added > 0 ? inputs_of(last) : std::vector<std::string>{},
+    panels.add_what_if(*what_if, "model-refitted", added > 0 ? inputs_of(last) : std::vector<std::string>{},
                        steps.back().noise_rms);
   }
   add_held_out(report, improvement.fit.flights);
   if (auto coefficients = coefficients_picture(improvement, start)) panels.add(std::move(*coefficients));
-  if (!rungs.empty())
+  if (!residuals.empty())
     panels.add_plane("Remaining residual over Mach number and pressure",
-                     "Residual at the top of the ladder: one colour over a region is a bias there.",
-                     rungs.back());
-  panels.add_table(ladder_table(improvement));
-  add_ladder_in_time(panels, improvement, ladder);
-  const std::vector<std::string> ends = rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()};
+                     "Residual after the last step: one colour over a region is a bias there.",
+                     residuals.back());
+  panels.add_table(steps_table(improvement));
+  add_models_in_time(panels, improvement, models);
+  const std::vector<std::string> ends =
+      residuals.size() < 2 ? residuals : std::vector{residuals.front(), residuals.back()};
   add_residual_in_time(panels, ends);
   add_residual_by_regime(panels, ends);
-  for (std::size_t i = 1; i < steps.size(); ++i) add_rung(panels, improvement, i);
+  for (std::size_t i = 1; i < steps.size(); ++i) add_step(panels, improvement, i);
   add_distribution_panels(panels, ends);
   panels.add_responses(ends, reads_laser(top));
-  if (!rungs.empty()) add_unexplained(panels, top, rungs.back());
+  if (!residuals.empty()) add_unexplained(panels, top, residuals.back());
   add_tables(panels, top);
   return std::move(report);
 }

@@ -173,8 +173,8 @@ class WhatIf {
     };
     this.panels = [add({kind: 'time', title: 'What if: residual in time', columns, axis: 'residual'},
       'The scale is fixed by the residual without the effects.')];
-    this.ladder = {kind: 'bars', title: 'What if: ladder', bars: this.rungs(), axis: this.heldOutWords, unit: 'hPa'};
-    this.panels.push(add(this.ladder, this.fit.heldOut
+    this.steps = {kind: 'bars', title: 'What if: steps', bars: this.stepBars(), axis: this.heldOutWords, unit: 'hPa'};
+    this.panels.push(add(this.steps, this.fit.heldOut
       ? 'On the hold-out, for each effect in the order in which they were switched on.'
       : 'On parts of the flights that were excluded from the fit one at a time, without outliers, for each effect in the order in which they were switched on.'));
     const regimes = {title: 'Bias and rms by regime, what if', columns};
@@ -211,13 +211,13 @@ class WhatIf {
 
   // Steps: with the initial coefficients, with the model's coefficients fitted, and with one effect after
   // another.
-  rungs() {
+  stepBars() {
     const {fit, item} = this;
     const bars = [{label: item.start, value: fit.heldOutRms(fit.fit([], new Map(), false))}];
     const on = [...this.on];
-    for (let rung = this.own ? 0 : 1; rung <= on.length; ++rung)
-      bars.push({label: rung ? `+ ${item.effects[on[rung - 1]].id}` : 'fitted again',
-                 value: fit.heldOutRms(fit.fit(on.slice(0, rung), this.byHand, this.own))});
+    for (let count = this.own ? 0 : 1; count <= on.length; ++count)
+      bars.push({label: count ? `+ ${item.effects[on[count - 1]].id}` : 'fitted again',
+                 value: fit.heldOutRms(fit.fit(on.slice(0, count), this.byHand, this.own))});
     return [...bars, {label: 'noise', value: item.noise}];
   }
 
@@ -254,7 +254,7 @@ class WhatIf {
   update() {
     this.fitNow();
     this.fillLive();
-    this.ladder.bars = this.rungs();
+    this.steps.bars = this.stepBars();
     this.showFigures();
     this.ownSwitch.checked = this.own;
     this.reset.disabled = !this.isChanged;

@@ -429,20 +429,20 @@ TEST(DiagnosisReport, EscapesNames) {
   EXPECT_THAT(words, HasSubstr("&lt;i&gt;rf&amp;01&lt;/i&gt;"));
 }
 
-TEST(ImprovementReport, ShowsTheLadder) {
+TEST(ImprovementReport, ShowsTheSteps) {
   const Report report = improvement_report(improvement(), model());
   EXPECT_EQ(report.title, "2 effects make the model better");
   EXPECT_EQ(report.subtitle, "Improvement of C-130 PSFD 2011 against LAMS");
   EXPECT_THAT(report.summary, Contains(AllOf(HasSubstr("0.203 to 0.120 hPa"), HasSubstr("0.081 hPa"))));
   EXPECT_THAT(report.summary, Contains("No further effect exceeds the threshold."));
-  const auto* ladder = item<DotPanel>(report, "The ladder");
-  ASSERT_NE(ladder, nullptr);
-  ASSERT_EQ(ladder->rows.size(), 3U);
-  EXPECT_EQ(ladder->rows[1].label, "+ static-beta-odd");
-  EXPECT_EQ(ladder->rows[1].dots[0].value, 0.196);
-  EXPECT_EQ(ladder->rows[1].dots[1].value, 0.161);
-  EXPECT_THAT(ladder->lines, ElementsAre(testing::Pair("noise, 0.081 hPa", 0.081)));
-  const auto* table = item<ReportTable>(report, "Rung by rung");
+  const auto* steps = item<DotPanel>(report, "Rms residual after each step");
+  ASSERT_NE(steps, nullptr);
+  ASSERT_EQ(steps->rows.size(), 3U);
+  EXPECT_EQ(steps->rows[1].label, "+ static-beta-odd");
+  EXPECT_EQ(steps->rows[1].dots[0].value, 0.196);
+  EXPECT_EQ(steps->rows[1].dots[1].value, 0.161);
+  EXPECT_THAT(steps->lines, ElementsAre(testing::Pair("noise, 0.081 hPa", 0.081)));
+  const auto* table = item<ReportTable>(report, "Steps of the selection");
   ASSERT_NE(table, nullptr);
   EXPECT_THAT(table->rows[1], ElementsAre("+ static-beta-odd", "4", "0.196", "0.161", "0.081", "lams-azimuth",
                                           "Sideslip counts, be it at the ports or at the laser."));
@@ -453,10 +453,10 @@ TEST(ImprovementReport, StartsWithInputModelAndShowsHeldOutFlights) {
   Improvement made = improvement();
   made.given_rms_holdout = 0.5;
   made.rms_holdout = 0.13;
-  ImproveStep& rung = made.steps[1];
-  rung.rivals = {{"static-beta-odd", 0.8, 0.3}, {"lams-azimuth", 0.2, 0.0}};
-  rung.delivered = "";
-  rung.rival_error = 0.12;
+  ImproveStep& step = made.steps[1];
+  step.rivals = {{"static-beta-odd", 0.8, 0.3}, {"lams-azimuth", 0.2, 0.0}};
+  step.delivered = "";
+  step.rival_error = 0.12;
   for (const FlightDiagnosis& one : made.steps[0].diagnosis.flights) {
     if (one.samples)
       made.flights.push_back({one.samples, one.before.size(), 0, one.before, one.before, one.before});
@@ -466,20 +466,20 @@ TEST(ImprovementReport, StartsWithInputModelAndShowsHeldOutFlights) {
   const std::vector<double> residual = made.flights.front().given;
   made.flights.push_back({later, 0, residual.size(), residual, residual, residual});
   const Report report = improvement_report(made, model());
-  const auto* ladder = item<DotPanel>(report, "The ladder");
-  ASSERT_NE(ladder, nullptr);
-  EXPECT_EQ(ladder->series.back(), "held out: later.nc");
-  EXPECT_EQ(ladder->rows.front().label, "given model");
-  EXPECT_EQ(ladder->rows.front().dots[1].value, 0.5);
-  EXPECT_GT(ladder->rows.front().dots[1].error, 0.0);
-  EXPECT_EQ(ladder->rows[4].label, "written model");
+  const auto* steps = item<DotPanel>(report, "Rms residual after each step");
+  ASSERT_NE(steps, nullptr);
+  EXPECT_EQ(steps->series.back(), "held out: later.nc");
+  EXPECT_EQ(steps->rows.front().label, "given model");
+  EXPECT_EQ(steps->rows.front().dots[1].value, 0.5);
+  EXPECT_GT(steps->rows.front().dots[1].error, 0.0);
+  EXPECT_EQ(steps->rows[4].label, "written model");
   EXPECT_THAT(report.summary, Contains(HasSubstr("probability 0.80, changes it by 0.300 hPa")));
   EXPECT_THAT(report.flight_names, Contains("later.nc, held out"));
-  const auto* time = item<TimePanel>(report, "The ladder in time");
+  const auto* time = item<TimePanel>(report, "Residuals of the models in time");
   ASSERT_NE(time, nullptr);
   EXPECT_THAT(time->caption, HasSubstr("later.nc"));
   EXPECT_EQ(time->averaging_time, 60.0);
-  EXPECT_THAT(time->columns, ElementsAre("ladder-given", "ladder-refitted", "ladder-best"));
+  EXPECT_THAT(time->columns, ElementsAre("model-given", "model-refitted", "model-best"));
   split_words(report);
 }
 
@@ -495,22 +495,22 @@ TEST(ImprovementReport, HeldOutPartDiffersFromHeldOutFlight) {
   const std::string name = made.flights.front().samples->name;
   const Report report = improvement_report(made, model());
   EXPECT_THAT(report.flight_names, Not(Contains(HasSubstr("held out"))));
-  const auto* ladder = item<DotPanel>(report, "The ladder");
-  ASSERT_NE(ladder, nullptr);
-  EXPECT_THAT(ladder->series.back(), HasSubstr("the last part of " + name));
-  EXPECT_GT(ladder->rows[0].dots[0].error, 0.0);
+  const auto* steps = item<DotPanel>(report, "Rms residual after each step");
+  ASSERT_NE(steps, nullptr);
+  EXPECT_THAT(steps->series.back(), HasSubstr("the last part of " + name));
+  EXPECT_GT(steps->rows[0].dots[0].error, 0.0);
 }
 
 TEST(ImprovementReport, HasAPageAndPicturesForEveryRung) {
   const Report report = improvement_report(improvement(), model());
-  const auto* page = item<ReportText>(report, "Rung 1: static-beta-odd");
+  const auto* page = item<ReportText>(report, "Step 1: static-beta-odd");
   ASSERT_NE(page, nullptr);
   EXPECT_THAT(all_of(page->paragraphs), HasSubstr("The flights give b1 = -0.00171 ± 0.00012"));
   EXPECT_EQ(page->paragraphs.back(), "In the best model b1 = -0.00169 ± 0.00011.");
   const auto* binned =
       item<BinnedPanel>(report, "Residual without and with static-beta-odd, against its inputs");
   ASSERT_NE(binned, nullptr);
-  EXPECT_THAT(binned->y, ElementsAre("rung1", "rung2"));
+  EXPECT_THAT(binned->y, ElementsAre("step1", "step2"));
   EXPECT_EQ(binned->x_choices.front(), "sideslip");
   EXPECT_NE(item<PlanePanel>(report, "Evidence for static-beta-odd, over Mach number and pressure"), nullptr);
   const auto* formula =

@@ -20,6 +20,7 @@ using pcor::Improvement;
 using pcor::ImproveStep;
 using pcor::ModelDefinition;
 using pcor::RefitResult;
+using pcor::StopReason;
 using pcor::Verdict;
 using pcor::internal::ImproveLoop;
 using pcor::internal::TrialModel;
@@ -28,7 +29,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/// A loop whose rungs are made up: fit number i leaves the held-out rms number i, and after it comes
+/// A loop with invented fits: fit number i leaves the held-out rms number i, and after it comes
 /// diagnosis number i.
 class Improve : public testing::Test {
  protected:
@@ -166,18 +167,18 @@ std::vector<std::string> effects(const ModelDefinition& model) {
 
 }  // namespace
 
-TEST_F(Improve, StopsWhereNothingIsMissing) {
+TEST_F(Improve, StopsIfNoEffectIsMissing) {
   diagnoses_ = {diagnosis(Verdict::silent)};
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre(""));
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("no missing effect"));
+  EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
   EXPECT_EQ(improvement.steps[0].terms, 2U);
   EXPECT_DOUBLE_EQ(improvement.steps[0].rms_train, 0.99);
   EXPECT_DOUBLE_EQ(improvement.steps[0].rms_holdout, 1.0);
   EXPECT_TRUE(improvement.holdout_is_flights);
 }
 
-TEST_F(Improve, AddsWhatIsIdentified) {
+TEST_F(Improve, AddsAnIdentifiedEffect) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.5};
   const Improvement improvement = run();
@@ -187,17 +188,17 @@ TEST_F(Improve, AddsWhatIsIdentified) {
   EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("tau = 0.25 +- 0.02 s"));
   EXPECT_EQ(improvement.steps[1].terms, 3U);
   EXPECT_EQ(improvement.steps[1].diagnosis.verdict, Verdict::silent);
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("no missing effect"));
+  EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
 }
 
-TEST_F(Improve, AddsEveryFindingOnARungOfItsOwn) {
+TEST_F(Improve, AddsEachFindingInItsOwnStep) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag", "static-mach"}),
                 diagnosis(Verdict::identified, {"static-mach2"}), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.7, 0.5};
   EXPECT_THAT(added(run()), ElementsAre("", "static-lag", "static-mach"));
 }
 
-TEST_F(Improve, NamesWhatTheFlightsCannotTellApart) {
+TEST_F(Improve, ListsEffectsThatAreNotSeparable) {
   Diagnosis ambiguous = diagnosis(Verdict::ambiguous, {"static-lag"});
   ambiguous.findings[0].aliases = {{}, {}};
   ambiguous.findings[0].aliases[0].effect = "temp-lag";
@@ -210,12 +211,13 @@ TEST_F(Improve, NamesWhatTheFlightsCannotTellApart) {
   EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("temp-lag, total-lag: fly two climbs"));
 }
 
-TEST_F(Improve, DropsWhatHeldOutFlightsContradict) {
+TEST_F(Improve, DropsAnEffectThatRaisesTheHeldOutResidual) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag", "static-mach"})};
   rms_ = {1.0, 1.0051};
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp"));
+  EXPECT_EQ(improvement.stop_reason, StopReason::no_gain);
   EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag"));
   EXPECT_DOUBLE_EQ(improvement.fit.flights[1].after.rms, 1.0);
 }
@@ -260,7 +262,7 @@ TEST_F(Improve, IrrelevantChoiceTakesTheNamedCandidate) {
   EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp", "static-lag"));
 }
 
-TEST_F(Improve, CorrectsNothingThatARivalCallsAHarm) {
+TEST_F(Improve, AppliesNoRivalIfAnotherMakesItHarmful) {
   diagnoses_ = {two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.5};
   changes_ = {{"static-lag", 0.8}, {"total-lag", -0.6}};
@@ -270,12 +272,13 @@ TEST_F(Improve, CorrectsNothingThatARivalCallsAHarm) {
   EXPECT_NEAR(improvement.steps[1].rival_error, std::sqrt(0.75 * 0.64 + 0.25 * 0.36), 1e-9);
 }
 
-TEST_F(Improve, LeavesAloneWhatMayBeOfTheOtherSystem) {
+TEST_F(Improve, KeepsTheModelIfTheReferenceMayBeWrong) {
   diagnoses_ = {two_rivals("psfd-bias", "reference:psfd-bias", 0.6)};
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_THAT(improvement.why_stopped,
               testing::AllOf(HasSubstr("psfd-bias"), HasSubstr("--trust-reference")));
+  EXPECT_EQ(improvement.stop_reason, StopReason::reference_system);
   EXPECT_THAT(improvement.why_stopped, HasSubstr("fly a yaw manoeuvre"));
 }
 
@@ -290,7 +293,7 @@ TEST_F(Improve, UninformativeHoldOutUsesFittedFlights) {
   EXPECT_THAT(added(run()), ElementsAre("")) << "less than two deviations";
 }
 
-TEST_F(Improve, DropsWhatCannotBeFitted) {
+TEST_F(Improve, DropsAnEffectThatCannotBeFitted) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"})};
   loop_.refit = [this](const TrialModel& trial) {
     const ModelDefinition& model = trial.file;
@@ -315,10 +318,9 @@ TEST_F(Improve, PartialFindingIsNotNamedAsCause) {
   rms_ = {1.0, 0.9};
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag"));
-  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("not be the cause"));
 }
 
-TEST_F(Improve, TracesWhereAPartialFindingDoesNotPay) {
+TEST_F(Improve, TracesIfAPartialFindingDoesNotReduceTheResidual) {
   diagnoses_ = {with_trace(diagnosis(Verdict::partial, {"static-lag"}), "ENGTRQ"),
                 diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.995, 0.6};
@@ -336,10 +338,9 @@ TEST_F(Improve, AddsAFormulaOfATracedVariable) {
   EXPECT_THAT(effect.source, HasSubstr("one.nc"));
   EXPECT_EQ(write_model(pcor::parse_model(write_model(improvement.model), "it")),
             write_model(improvement.model));
-  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("still to be found"));
 }
 
-TEST_F(Improve, ATracedVariableMustPay) {
+TEST_F(Improve, ATracedVariableMustReduceTheResidual) {
   diagnoses_ = {with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")};
   rms_ = {1.0, 0.991};
   const Improvement improvement = run();
@@ -354,34 +355,37 @@ TEST_F(Improve, NeverAddsAnEffectTwice) {
   EXPECT_THAT(added(improvement), ElementsAre("", "traced-engtrq"));
   EXPECT_THAT(improvement.why_stopped, HasSubstr("ENGTRQ"));
   diagnoses_ = {diagnosis(Verdict::identified, {"static-qp"})};
-  EXPECT_THAT(run().why_stopped, HasSubstr("already in the model"));
+  EXPECT_EQ(run().stop_reason, StopReason::in_model);
 }
 
-TEST_F(Improve, DoesNotTraceWhereThatIsNotWanted) {
+TEST_F(Improve, TracesOnlyOnRequest) {
   diagnoses_ = {with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")};
   loop_.trace_variables = false;
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre(""));
-  EXPECT_THAT(improvement.why_stopped, testing::AllOf(HasSubstr("climb"), HasSubstr("ENGTRQ")));
+  EXPECT_EQ(improvement.stop_reason, StopReason::unexplained);
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("ENGTRQ"));
 }
 
-TEST_F(Improve, SaysThatNothingGoesWithWhatIsLeft) {
+TEST_F(Improve, ReportsAResidualThatNoVariableExplains) {
   Diagnosis unexplained = with_trace(diagnosis(Verdict::unexplained), "ENGTRQ");
   unexplained.unexplained.variables.clear();
   diagnoses_ = {unexplained};
-  EXPECT_THAT(run().why_stopped, HasSubstr("not correlated with any variable"));
+  const Improvement improvement = run();
+  EXPECT_EQ(improvement.stop_reason, StopReason::unexplained);
+  EXPECT_THAT(improvement.why_stopped, testing::Not(HasSubstr("ENGTRQ")));
 }
 
-TEST_F(Improve, StopsAfterAsManyStepsAsAreAllowed) {
+TEST_F(Improve, StopsAfterTheMaximumNumberOfSteps) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag", "static-mach", "static-mach2"})};
   rms_ = {1.0, 0.9, 0.8, 0.7};
   loop_.max_steps = 2;
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag", "static-mach"));
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("many as were allowed"));
+  EXPECT_EQ(improvement.stop_reason, StopReason::max_steps);
 }
 
-TEST_F(Improve, TellsTheNoiseOfEveryFitAsTheFitDoes) {
+TEST_F(Improve, NoiseOfEachStepIsThatOfItsFit) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.5};
   const Improvement improvement = run();

@@ -222,7 +222,7 @@ def test_pictures_are_drawn(in_folder):
     assert len(fit.plot("coefficients").get_yticks()) == 3
     assert "held out" in fit.plot("flights").get_yticklabels()[-1].get_text()
     better = result_of([words[0] for _, words in commands()].index("improve"))
-    assert len(better.plot("ladder").get_xticks()) == len(better.steps) + 1
+    assert len(better.plot("steps").get_xticks()) == len(better.steps) + 1
     diagnosis = pcor.diagnose(FLIGHTS, model=better)
     bars = diagnosis.plot().patches
     assert bars[0].get_width() == diagnosis.rms_given_hpa and bars[1].get_width() == diagnosis.noise_rms_hpa

@@ -243,7 +243,7 @@ class Diagnose(DiagnosisTest):
 
 
 class Improve(DiagnosisTest):
-    def test_climbs_the_ladder(self):
+    def test_climbs_the_steps(self):
         result = self.improve("--holdout", LAGGING_TOO, flights=(LAGGING,))
         self.assertIsNone(result["steps"][0]["added"])
         for step in result["steps"]:

@@ -136,7 +136,7 @@ class OneEffect(WhatIfTest):
         self.assert_same(page, self.as_copied(), {"static-lag"})
         shown = self.value(f"{self.row('static-lag')}.sliders[0].number.valueAsNumber")
         self.assertAlmostEqual(shown, page["coefficients"]["static-lag.tau"][0], delta=1e-4)
-        self.assertIn("static-lag", self.value("pcorReport.whatIf.ladder.bars.map(({label}) => label).join()"))
+        self.assertIn("static-lag", self.value("pcorReport.whatIf.steps.bars.map(({label}) => label).join()"))
 
     def test_the_page_says_what_its_numbers_say(self):
         self.diagnosed(FIRST, SECOND)
@@ -254,8 +254,8 @@ class TwoEffects(WhatIfTest):
         self.assert_same(self.told(), self.as_copied(), set(found))
 
 
-class Ladder(WhatIfTest):
-    def test_the_ladder_under_the_hand_is_that_of_improve(self):
+class Steps(WhatIfTest):
+    def test_steps_in_the_browser_equal_those_of_improve(self):
         self.report = self.path / "report.html"
         steps = self.json_of("improve", FIRST, "-m", self.model(), "-o", self.path / "best.toml", "--holdout", SECOND,
                              "--report", self.report)["steps"]

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pcor {
@@ -25,15 +26,28 @@ struct ImproveOptions {
   std::function<void(const std::string& what)> progress{};
 };
 
+/// Reason for the end of the selection.
+enum class StopReason {
+  nothing_missing,   ///< no missing effect is detectable
+  reference_system,  ///< the finding may be an error of the reference system
+  in_model,          ///< the findings are already in the model
+  unexplained,       ///< no effect of the catalogue explains the remaining structure
+  no_gain,           ///< the tried effects cannot be fitted or do not reduce the residual of held-out samples
+  max_steps          ///< `ImproveOptions::max_steps` effects were added
+};
+
+/// Text: "nothing missing", "reference system", "in model", "unexplained", "no gain", "max steps".
+std::string_view to_string(StopReason reason);
+
 /// Alternative to the added effect of a selection step.
-struct RungRival {
+struct StepRival {
   std::string effect{};
   double probability = 0.0;    ///< posterior probability among the alternatives of the step
   double static_change = 0.0;  ///< change of the corrected static pressure by this effect alone, rms hPa
 };
 
 template <class Field>
-void describe(const RungRival& self, Field& field) {
+void describe(const StepRival& self, Field& field) {
   field("effect", self.effect, "id of the effect");
   field("probability", self.probability, "posterior probability among the alternatives");
   field("static_change_hpa", self.static_change, "change of the corrected static pressure, rms");
@@ -55,7 +69,7 @@ struct ImproveStep {
   Diagnosis diagnosis{};   ///< diagnosis of the model in this step
   /// Alternatives with different corrected static pressures; the added effect is the first. Empty if the
   /// choice does not matter.
-  std::vector<RungRival> rivals{};
+  std::vector<StepRival> rivals{};
   /// Id of the effect in the written model: the added one, an alternative, or empty.
   std::string delivered{};
   double rival_error = 0.0;  ///< expected error of that choice, rms hPa; included in the stated error
@@ -98,7 +112,8 @@ struct Improvement {
   double rms_train = std::numeric_limits<double>::quiet_NaN();
   double rms_holdout = std::numeric_limits<double>::quiet_NaN();
   std::vector<ImproveStep> steps{};
-  std::string why_stopped{};  ///< one sentence
+  StopReason stop_reason = StopReason::nothing_missing;
+  std::string why_stopped{};  ///< the reason with its numbers, one sentence
   RefitResult fit;            ///< fit of the best model, before averaging over alternatives
   std::vector<ImprovedFlight> flights{};
   /// True: rms_holdout is from held-out flights or parts; false: from cross-validation.
@@ -121,7 +136,10 @@ void describe(const Improvement& self, Field& field) {
   rms("delivered", self.rms_train, self.rms_holdout, "written model");
   field("unexplained", self.steps.empty() ? Unexplained() : self.steps.back().diagnosis.unexplained,
         "unexplained structure at the end");
-  field("why_stopped", self.why_stopped, "reason for the end of the selection");
+  field(
+      "stop_reason", self.stop_reason,
+      "end of the selection: nothing missing, reference system, in model, unexplained, no gain or max steps");
+  field("why_stopped", self.why_stopped, "reason for the end of the selection, with its numbers");
   field("holdout_is_flights", self.holdout_is_flights, "false: rms_holdout_hpa is cross-validated");
   field("worse", self.worse, "reason for which the result is worse than the input model; otherwise empty");
   field("flaps_out", self.fit.flaps_out, "residual of samples excluded because of flaps");

@@ -9,7 +9,7 @@
 namespace pcor {
 namespace {
 
-/// Effect of the best model that a rung added; empty if that model lacks it.
+/// Effect of the best model that a step added; empty if that model lacks it.
 std::optional<ModelEffect> effect_of(const Improvement& improvement, const ImproveStep& step) {
   for (const ModelEffect& effect : improvement.fit.model.model.effects) {
     if (effect.id == step.added) return effect;
@@ -17,11 +17,11 @@ std::optional<ModelEffect> effect_of(const Improvement& improvement, const Impro
   return std::nullopt;
 }
 
-/// Finding before a rung; null if there is no finding.
-const Finding* finding_of(const Improvement& improvement, std::size_t rung) {
-  const std::vector<Finding>& findings = improvement.steps[rung - 1].diagnosis.findings;
+/// Finding before a step; null if there is no finding.
+const Finding* finding_of(const Improvement& improvement, std::size_t index) {
+  const std::vector<Finding>& findings = improvement.steps[index - 1].diagnosis.findings;
   const auto found = std::find_if(findings.begin(), findings.end(), [&](const Finding& finding) {
-    return finding.id() == improvement.steps[rung].added;
+    return finding.id() == improvement.steps[index].added;
   });
   return found == findings.end() ? nullptr : &*found;
 }
@@ -39,19 +39,19 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
   with.is_robust = options.refit.loss != Loss::none;
   std::vector<WhatIfCandidate> candidates;
   std::vector<WhatIfCandidate> rivals;
-  for (std::size_t rung = 1; rung < improvement.steps.size(); ++rung) {
-    const ImproveStep& step = improvement.steps[rung];
+  for (std::size_t index = 1; index < improvement.steps.size(); ++index) {
+    const ImproveStep& step = improvement.steps[index];
     const std::optional<ModelEffect> effect = effect_of(improvement, step);
     if (effect && effect->is_surface()) continue;  // a surface has no single coefficient to move
-    const Finding* const finding = finding_of(improvement, rung);
-    candidates.push_back({step.added, fmt::format("rung {}", rung), effect,
+    const Finding* const finding = finding_of(improvement, index);
+    candidates.push_back({step.added, fmt::format("step {}", index), effect,
                           finding != nullptr && finding->is_alike, step.added});
     if (finding == nullptr) continue;
     for (const Alias& alias : finding->aliases)
       rivals.push_back(
           {alias.effect, "instead of " + step.added, alias.correction, alias.is_alike, step.added});
   }
-  // Missing effects at the top of the ladder are not part of it.
+  // Effects that are missing after the last step are not part of it.
   for (WhatIfCandidate& left : what_if_candidates(improvement.steps.back().diagnosis, options.formulas)) {
     left.stands_for.clear();
     rivals.push_back(std::move(left));
