@@ -47,7 +47,7 @@ def command_of_the_page(begin):
     return command
 
 
-class Campaign(unittest.TestCase):
+class CampaignTest(unittest.TestCase):
     """A folder of the campaign, with its files edited as described on the page; one flight is cut in half."""
 
     def setUp(self):
@@ -98,7 +98,7 @@ class Campaign(unittest.TestCase):
 
 
 @unittest.skipUnless(shutil.which("parallel"), "GNU parallel is not installed")
-class OneMachine(Campaign):
+class OneMachine(CampaignTest):
     def test_a_bad_flight_is_named_and_done_when_it_is_mended(self):
         result = self.run_script("./one_machine")
         self.assertEqual(result.returncode, 1, result.stderr)
@@ -123,7 +123,7 @@ class OneMachine(Campaign):
         self.assertEqual(result.stdout.count(": not begun\n"), len(NAMES))
 
 
-class JobArrays(Campaign):
+class JobArrays(CampaignTest):
     def test_they_are_scripts(self):
         for file in ARRAYS:
             self.assertEqual(self.run_script(f"bash -n {file}").returncode, 0, file)
@@ -163,7 +163,7 @@ class JobArrays(Campaign):
         self.assertEqual(self.run_script("./unfinished").returncode, 1)
 
 
-class OneFlight(Campaign):
+class OneFlight(CampaignTest):
     def test_the_checks_of_all_flights_are_one_table(self):
         for name in NAMES[:2]:
             self.assertEqual(self.run_script(f"./one_flight '{name}'").returncode, 0)
@@ -202,7 +202,7 @@ class OneFlight(Campaign):
 
 
 @unittest.skipUnless(shutil.which("make"), "make is not installed")
-class Make(Campaign):
+class Make(CampaignTest):
     def test_a_bad_flight_is_named_and_done_when_it_is_mended(self):
         plain = self.path / "flights"  # make knows no names with blanks
         for name in NAMES:
@@ -230,4 +230,4 @@ class Page(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]], verbosity=2)  # which gives the reason of a test that is skipped
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)  # which gives the reason of a test that is skipped

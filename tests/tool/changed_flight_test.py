@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import unittest
 
 pcor = pathlib.Path(sys.argv[1]).resolve()
 source = pathlib.Path(sys.argv[2]).resolve()
@@ -54,42 +55,43 @@ def result_of(arguments, folder):
     return out, err, time.monotonic() - begin
 
 
-def main():
-    random.seed(1)
-    counts = {}
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = pathlib.Path(scratch)
-        for name, seed in (("a", 1), ("b", 2), ("second", 3)):
-            subprocess.run([pcor, "simulate", scenarios / "c130-short.toml", "--seed", str(seed), "-o", folder / f"{name}.nc",
-                            "--quiet"], check=True)
-        for command, arguments in COMMANDS.items():
-            allowed, longest = {}, 0.0
-            for version in "ab":
-                replace(folder / "first.nc", folder / f"{version}.nc")
-                out, err, seconds = result_of(arguments, folder)
-                allowed[version] = (out, err)
-                longest = max(longest, seconds)
-            tally = {"named": 0, "a": 0, "b": 0}
-            for run in range(runs):
-                replace(folder / "first.nc", folder / "a.nc")
-                change = (replace, append, touch)[run % 3]
-                running = start(arguments, folder)
-                time.sleep(random.uniform(0.0, longest))
-                change(folder / "first.nc", folder / "b.nc")
-                out, err = running.communicate()
-                same = [version for version, result in allowed.items() if result == (out, err)]
-                lines = err.splitlines()
-                if same:
-                    tally[same[0]] += 1
-                elif running.returncode == 1 and len(lines) == 1 and "first.nc" in lines[0] and not out:
-                    tally["named"] += 1
-                else:
-                    sys.exit(f"{command}, run {run}, {change.__name__}: status {running.returncode}, {err!r}, "
-                             f"{len(out)} characters of output")
-            counts[command] = tally
-            print(command, tally, flush=True)
-    if not any(tally["named"] for tally in counts.values()):
-        sys.exit("no run met a change: the test has tested nothing")
+class ChangedFlight(unittest.TestCase):
+    def test_no_command_mixes_two_versions(self):
+        random.seed(1)
+        counts = {}
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = pathlib.Path(scratch)
+            for name, seed in (("a", 1), ("b", 2), ("second", 3)):
+                subprocess.run([pcor, "simulate", scenarios / "c130-short.toml", "--seed", str(seed), "-o", folder / f"{name}.nc",
+                                "--quiet"], check=True)
+            for command, arguments in COMMANDS.items():
+                allowed, longest = {}, 0.0
+                for version in "ab":
+                    replace(folder / "first.nc", folder / f"{version}.nc")
+                    out, err, seconds = result_of(arguments, folder)
+                    allowed[version] = (out, err)
+                    longest = max(longest, seconds)
+                tally = {"named": 0, "a": 0, "b": 0}
+                for run in range(runs):
+                    replace(folder / "first.nc", folder / "a.nc")
+                    change = (replace, append, touch)[run % 3]
+                    running = start(arguments, folder)
+                    time.sleep(random.uniform(0.0, longest))
+                    change(folder / "first.nc", folder / "b.nc")
+                    out, err = running.communicate()
+                    same = [version for version, result in allowed.items() if result == (out, err)]
+                    lines = err.splitlines()
+                    if same:
+                        tally[same[0]] += 1
+                    elif running.returncode == 1 and len(lines) == 1 and "first.nc" in lines[0] and not out:
+                        tally["named"] += 1
+                    else:
+                        self.fail(f"{command}, run {run}, {change.__name__}: status {running.returncode}, {err!r}, "
+                                 f"{len(out)} characters of output")
+                counts[command] = tally
+                print(command, tally, flush=True)
+        self.assertTrue(any(tally["named"] for tally in counts.values()), "no run met a change")
 
 
-main()
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

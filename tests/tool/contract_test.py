@@ -56,7 +56,7 @@ def process(flight, output):
         return results, np.ma.filled(file["PCORFLAG"][:], 0)
 
 
-class ContractTest(unittest.TestCase):
+class Contract(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -132,4 +132,4 @@ class ContractTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

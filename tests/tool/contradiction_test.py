@@ -30,7 +30,7 @@ HOSTILE = ("x;touch pwned.nc", "$(touch pwned).nc", "`touch pwned`.nc", "-rf.nc"
 FAKE = '#!/bin/sh\nfor word; do printf "%s\\n" "$word"; done > "$FAKE_LOG"\n'
 
 
-class Changed(ComparisonTest):
+class ChangedTest(ComparisonTest):
     def changed(self, change, name="changed.nc"):
         """A copy of a flight after `change`."""
         path = self.path / name
@@ -46,7 +46,7 @@ class Changed(ComparisonTest):
         return self.changed(change)
 
 
-class Pasting(Changed):
+class Pasting(ChangedTest):
     """Every advised command has exactly the stated effect when it is pasted into a shell."""
 
     def setUp(self):
@@ -165,7 +165,7 @@ class Pasting(Changed):
                     self.assertEqual(len(words), 3, words)
 
 
-class Frozen(Changed):
+class Frozen(ChangedTest):
     """GOTEX rf06, in which a minute of one variable is held at one value."""
 
     HELD = {"PSFD": slice(1500, 1560), "ATTACK": slice(2000, 2060)}
@@ -204,7 +204,7 @@ class Frozen(Changed):
             return numpy.ma.filled(file["PSXC_NEW"][:], numpy.nan), file["PCORFLAG_NEW"][:].astype(int)
 
 
-class Times(Changed):
+class Times(ChangedTest):
     def test_impossible_ones_are_refused(self):
         with netCDF4.Dataset(ONE) as flight:
             day = flight["Time"].units.split("since ")[1][:10]
@@ -252,7 +252,7 @@ class Times(Changed):
         self.assertEqual((ours["begin"], ours["end"]), (theirs["begin"], theirs["end"]))
 
 
-class Attributes(Changed):
+class Attributes(ChangedTest):
     def packed(self, unsigned):
         def change(flight):
             values = flight["PSFD"][:]
@@ -321,7 +321,7 @@ class Attributes(Changed):
         self.assertRegex(result.stderr, r"190000000 samples in a file of \d+ bytes")
 
 
-class Reports(Changed):
+class Reports(ChangedTest):
     def test_no_control_and_no_direction(self):
         signs = "\x1b[31m\x07\u202e\u2066\u2028\ufeff"
         model = self.model(lambda text: re.sub(r'^name = ".*"$', lambda _: f'name = "law \\u001b\\u0007{signs[6:]}"', text,
@@ -341,7 +341,7 @@ class Reports(Changed):
                                                 "\\u001b", "\\u0007", "\\u202e") if sign in text], [])
 
 
-class Inspect(Changed):
+class Inspect(ChangedTest):
     def seconds(self, variables):
         """Processor time, which the load of the machine hardly changes."""
         path = self.path / f"{variables}.nc"

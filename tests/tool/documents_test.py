@@ -49,7 +49,7 @@ def label(line):
     return re.split(r"\s{2,}[-+]?\d", line)[0].strip()
 
 
-class Commands(unittest.TestCase):
+class PageTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -110,16 +110,20 @@ class Commands(unittest.TestCase):
                 self.run_command("pcor add static-qp -m part.toml -o extended.toml")
 
 
+class Pages(PageTest):
+    """A test for each page with commands."""
+
+
 def page_test(path):
     return lambda self: self.check_page(path)
 
 
 for page in PAGES:
     if any(language == "sh" and commands_of(content) for language, content in blocks(page.read_text())):
-        setattr(Commands, f"test_{page.stem.lower().replace('-', '_')}", page_test(page))
+        setattr(Pages, f"test_{page.stem.lower().replace('-', '_')}", page_test(page))
 
 
-class Help(Commands):
+class Help(PageTest):
     def test_examples_run_on_the_flights_of_the_pages(self):
         names = "first.nc second.nc third.nc"
         self.prepare(names)
@@ -129,11 +133,6 @@ class Help(Commands):
         for command in re.findall(r"^  (\w+) ", self.run_command("pcor --help").split("Subcommands:")[1], flags=re.MULTILINE):
             for example in self.run_command(f"pcor {command} --help").split("\nExamples:\n")[1].strip().splitlines():
                 self.run_command(example)
-
-
-# The tests of the pages are not inherited.
-for name in [name for name in dir(Commands) if name.startswith("test_")]:
-    setattr(Help, name, None)
 
 
 class Text(unittest.TestCase):
@@ -184,4 +183,4 @@ class Text(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]], verbosity=2)  # which gives the reason of a test that is skipped
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)  # which gives the reason of a test that is skipped

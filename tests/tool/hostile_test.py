@@ -185,4 +185,4 @@ class Texts(HostileTest):
 
 if __name__ == "__main__":
     subprocess.run([TOOL, "simulate", SCENARIO, "-o", FLIGHT, "--quiet"], check=True)
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

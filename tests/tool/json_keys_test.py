@@ -49,7 +49,7 @@ def written(value, known, path=""):
         yield path
 
 
-class JsonKeysTest(unittest.TestCase):
+class JsonKeys(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory()
@@ -127,4 +127,4 @@ class JsonKeysTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

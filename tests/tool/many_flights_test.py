@@ -33,7 +33,7 @@ MODEL = SOURCE / "data/models" / (NAME + ".toml")
 CDL = subprocess.run([SOURCE / "tools/make_example_flight"], check=True, capture_output=True, text=True).stdout
 
 
-class ManyFlights(unittest.TestCase):
+class ManyFlightsTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -70,7 +70,7 @@ class ManyFlights(unittest.TestCase):
         return sorted(path.name for path in self.out.iterdir())
 
 
-class Folder(ManyFlights):
+class Folder(ManyFlightsTest):
     def test_each_flight_goes_into_the_folder_under_its_name(self):
         flights = self.flights("a.nc", "b.nc", "c.nc")
         result = self.process(flights)
@@ -153,7 +153,7 @@ class Folder(ManyFlights):
         self.assertLess(memory(61), memory(3) + 8192)  # KiB
 
 
-class Unreadable(ManyFlights):
+class Unreadable(ManyFlightsTest):
     def test_the_first_bad_file_stops_the_run_and_what_was_done_stays(self):
         a, b = self.flights("a.nc", "b.nc")
         result = self.process([a, self.bad_flight(), b])
@@ -212,7 +212,7 @@ class Unreadable(ManyFlights):
         self.assertIn("is a directory", result.stderr)
 
 
-class Stale(ManyFlights):
+class Stale(ManyFlightsTest):
     def test_only_what_is_stale_is_done(self):
         flights = self.flights("a.nc", "b.nc", "c.nc")
         everything = {"a.nc": "processed", "b.nc": "processed", "c.nc": "processed"}
@@ -287,7 +287,7 @@ class Stale(ManyFlights):
             self.assertEqual(output.pcor_model_sha256, hashlib.sha256(output.pcor_model_toml.encode()).hexdigest())
 
 
-class OpenFiles(ManyFlights):
+class OpenFiles(ManyFlightsTest):
     def test_flights_are_not_held_open_together(self):
         """A program may have few files open; each flight also holds several MB of the HDF5 library then."""
         flight = self.path / "0.nc"
@@ -319,7 +319,7 @@ class OpenFiles(ManyFlights):
                 self.assertEqual(self.run_tool(*command, bad, *model, "--skip-unreadable").returncode, 1)
 
 
-class ModelNames(ManyFlights):
+class ModelNames(ManyFlightsTest):
     def test_a_shipped_model_is_found_by_its_name(self):
         (flight,) = self.flights("a.nc")
         by_name = self.process([flight], "--json", "-", model=NAME, output=self.path / "one.nc")
@@ -368,7 +368,7 @@ class ModelNames(ManyFlights):
         self.assertEqual(result.stderr.count("c130-psfd-eq18"), 1, "a name is reported once")
 
 
-class ModelsByDate(ManyFlights):
+class ModelsByDate(ManyFlightsTest):
     """A folder of models, of which each flight gets the one of its aircraft and date."""
 
     def setUp(self):
@@ -475,4 +475,4 @@ class ModelsByDate(ManyFlights):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -79,7 +79,7 @@ def without_run(value):
     return value
 
 
-class OrderTest(ComparisonTest):
+class Order(ComparisonTest):
     def result(self, arguments):
         result = self.run_tool(*arguments, "--json", "-", "--quiet")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -151,4 +151,4 @@ class OrderTest(ComparisonTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -26,7 +26,7 @@ FLIGHTS = Path(os.environ.get("PCOR_FLIGHTS", "/nowhere"))
 BARE = 'format = "pcor-model/1"\nname = "bare"\n{}[[effect]]\nid = "static-constant"\n[[effect]]\nid = "static-qp"\n'
 
 
-class Case(unittest.TestCase):
+class CaseTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -60,7 +60,7 @@ class Case(unittest.TestCase):
             self.assertEqual(set(file.variables) - told - {"Time", "time", "time_offset"}, set())
 
 
-class Simulated(Case):
+class Simulated(CaseTest):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -264,7 +264,7 @@ class Simulated(Case):
 
 
 @unittest.skipUnless(FLIGHTS.is_dir(), "PCOR_FLIGHTS names no folder of real flights")
-class Real(Case):
+class Real(CaseTest):
     def corrects(self, name):
         flight = FLIGHTS / name
         if not flight.exists():
@@ -315,4 +315,4 @@ class Real(Case):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -48,7 +48,7 @@ def copy(path, kind="NETCDF4", records=slice(None), names=None, packed=(), **sto
             made[:] = values
 
 
-class RepackedTest(unittest.TestCase):
+class Repacked(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -117,4 +117,4 @@ class RepackedTest(unittest.TestCase):
 
 if __name__ == "__main__":
     subprocess.run([TOOL, "simulate", SOURCE / "data/scenarios/c130-short.toml", "-o", FLIGHT, "--quiet"], check=True)
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -275,4 +275,4 @@ if __name__ == "__main__":
     if CHROMIUM is None:
         print("chromium is not installed; the what-if was not tried", file=sys.stderr)
         sys.exit(1 if os.environ.get("PCOR_REQUIRE_CHROMIUM") else 77)
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
