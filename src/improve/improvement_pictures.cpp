@@ -67,7 +67,7 @@ bool delivers_rivals(const Improvement& improvement) {
 
 DotPanel steps_picture(const Improvement& improvement) {
   DotPanel panel;
-  panel.title = "Rms residual after each step";
+  panel.title = "Rms of each step";
   panel.caption =
       "Rms residual after each effect that was added. Bars are standard errors for the effective sample "
       "size; the dashed line is the noise, a lower limit. All values use the same samples, so a step may be "

@@ -435,7 +435,7 @@ TEST(ImprovementReport, ShowsTheSteps) {
   EXPECT_EQ(report.subtitle, "Improvement of C-130 PSFD 2011 against LAMS");
   EXPECT_THAT(report.summary, Contains(AllOf(HasSubstr("0.203 to 0.120 hPa"), HasSubstr("0.081 hPa"))));
   EXPECT_THAT(report.summary, Contains("No further effect exceeds the threshold."));
-  const auto* steps = item<DotPanel>(report, "Rms residual after each step");
+  const auto* steps = item<DotPanel>(report, "Rms of each step");
   ASSERT_NE(steps, nullptr);
   ASSERT_EQ(steps->rows.size(), 3U);
   EXPECT_EQ(steps->rows[1].label, "+ static-beta-odd");
@@ -466,7 +466,7 @@ TEST(ImprovementReport, StartsWithInputModelAndShowsHeldOutFlights) {
   const std::vector<double> residual = made.flights.front().given;
   made.flights.push_back({later, 0, residual.size(), residual, residual, residual});
   const Report report = improvement_report(made, model());
-  const auto* steps = item<DotPanel>(report, "Rms residual after each step");
+  const auto* steps = item<DotPanel>(report, "Rms of each step");
   ASSERT_NE(steps, nullptr);
   EXPECT_EQ(steps->series.back(), "held out: later.nc");
   EXPECT_EQ(steps->rows.front().label, "given model");
@@ -495,7 +495,7 @@ TEST(ImprovementReport, HeldOutPartDiffersFromHeldOutFlight) {
   const std::string name = made.flights.front().samples->name;
   const Report report = improvement_report(made, model());
   EXPECT_THAT(report.flight_names, Not(Contains(HasSubstr("held out"))));
-  const auto* steps = item<DotPanel>(report, "Rms residual after each step");
+  const auto* steps = item<DotPanel>(report, "Rms of each step");
   ASSERT_NE(steps, nullptr);
   EXPECT_THAT(steps->series.back(), HasSubstr("the last part of " + name));
   EXPECT_GT(steps->rows[0].dots[0].error, 0.0);

@@ -163,7 +163,7 @@ std::vector<pcor::ReportItem> items() {
                "",
                {},
                "negligible"},
-      DotPanel{"Rms residual after each step",
+      DotPanel{"Rms of each step",
                "With the noise as a line.",
                {"fitted", "held out: rf03"},
                {{"given model", {{0.91, 0.02}, {0.94, 0.03}}, "0.910 and 0.940"},
