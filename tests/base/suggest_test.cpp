@@ -26,7 +26,7 @@ TEST(Suggest, PrefersTheSameBeginningAmongEquals) {
               ElementsAre("static-mach3", "xtatic-mach4"));
 }
 
-TEST(Suggest, OffersNothingThatIsFarAway) {
+TEST(Suggest, OffersOnlyCloseNames) {
   EXPECT_THAT(suggest("TASX", {"GGALT", "QCF"}), IsEmpty());
   EXPECT_THAT(suggest("", {"A", "B"}), IsEmpty());
   EXPECT_THAT(suggest("A", {}), IsEmpty());

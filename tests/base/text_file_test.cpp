@@ -24,7 +24,7 @@ TEST(TextFile, IsReadToTheByte) {
   EXPECT_EQ(text_of_file(directory / "text", "a text"), text);
 }
 
-TEST(TextFile, IsRefusedByNameWhereThereIsNone) {
+TEST(TextFile, ErrorNamesAnAbsentFile) {
   const test::TemporaryDirectory directory;
   EXPECT_THAT(test::error_of([&] { text_of_file(directory / "no\nfile", "a model file"); }),
               test::IsError(Error::Code::file, "no\\x0afile", "a model file"));

@@ -275,7 +275,7 @@ TEST(Columns, OfFixedCoefficientsAreNotThere) {
 }
 
 // Otherwise laser noise would be explained by columns that contain it.
-TEST(Columns, HoldNothingOfTheNoiseOfTheLaser) {
+TEST(Columns, ExcludeLaserNoise) {
   const Made quiet(0.0);
   const Made noisy(0.5);
   double change = 0.0;

@@ -111,7 +111,7 @@ TEST_F(FlightSets, RefuseAFileThatWasReplacedWhileItWasClosed) {
   EXPECT_THAT(error_of([&] { flights[0]; }), IsError(Error::Code::file, "flight0.nc"));
 }
 
-TEST_F(FlightSets, RefuseAFlightThatIsGivenTwice) {
+TEST_F(FlightSets, RefuseADuplicateFlight) {
   make(directory / "a.nc");
   fs::create_symlink(directory / "a.nc", directory / "b.nc");
   const FlightSet flights{directory / "a.nc", directory / "b.nc"};

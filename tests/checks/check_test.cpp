@@ -131,7 +131,7 @@ TEST_F(CheckTest, HasTheNamesOfTheInterface) {
                                  "speed-run", "pitch", "yaw", "layers", "lams-temperature", "spectrum"));
 }
 
-TEST_F(CheckTest, FindsNothingWrongWhereNothingIs) {
+TEST_F(CheckTest, AgreesWithoutErrors) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     SCOPED_TRACE(seed);
     const Checks checks = with_both({fly(head + aloft + manoeuvres, seed)});
@@ -183,7 +183,7 @@ const std::string gain_effect = "[[effect]]\nid = \"qcf-gain\"\non = \"QCF\"\nga
 /// The avionics lag by 1.5 s, 0.75 hPa in a climb of 5 m/s; the remainder in level flight is below the 0.15
 /// hPa of the greatest rate that is used. The climb, ten minutes of the hour, would show most of the 0.75
 /// hPa.
-TEST_F(CheckTest, LeavesClimbsOutForTheAvionics) {
+TEST_F(CheckTest, ExcludesClimbsForTheAvionics) {
   const std::string one_system = head.substr(0, head.rfind("[[system]]"));
   const std::string slow = "[avionics]\nresponse = 1.0\ndelay = 0.5\n";
   const Checks checks = check({fly(one_system + slow + aloft, 12)}, first_model());

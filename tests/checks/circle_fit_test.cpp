@@ -54,7 +54,7 @@ TEST(CircleFit, FindsWindAndErrors) {
   }
 }
 
-TEST(CircleFit, KnowsItsErrors) {
+TEST(CircleFit, StatedErrorsCoverTheTruth) {
   constexpr unsigned count = 300;
   unsigned within = 0;
   for (unsigned seed = 1; seed <= count; ++seed) {

@@ -65,7 +65,7 @@ const std::string cloud =
     "[[atmosphere.cloud]]\nbase = 2500\ntop = 3500\ncover = 0.4\n"
     "[[effect]]\nid = \"temp-wetting\"\nerror = -2.0\n";
 
-TEST(LamsTemperatureCheck, AgreesWhereNothingIsWrong) {
+TEST(LamsTemperatureCheck, AgreesWithoutErrors) {
   const CheckResult result = check_lams_temperature(fly(""));
   ASSERT_TRUE(result.ran) << result.reason;
   const auto numbers = numbers_of(result);

@@ -20,14 +20,14 @@ TEST(Verdict, WeighsSizeAndError) {
   EXPECT_EQ(judge({std::nan(""), 0.1}, 0.3), CheckVerdict::inconclusive);
 }
 
-TEST(Verdict, OneThatIsInconsistentIsEnough) {
+TEST(Verdict, OneInconsistentNumberDecides) {
   EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
   EXPECT_EQ(together(CheckVerdict::inconclusive, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
   EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::inconclusive), CheckVerdict::inconclusive);
   EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::consistent), CheckVerdict::consistent);
 }
 
-TEST(Verdict, SaysWhichNumberDecided) {
+TEST(Verdict, NamesTheDecidingNumber) {
   CheckResult result;
   decide({judged({-0.9, 0.5}, 0.3, "K", "thermometer"), judged({2.8, 0.9}, 0.3, "K", "slope")}, result);
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);

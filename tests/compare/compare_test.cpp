@@ -62,7 +62,7 @@ const pcor::PartStatistics* part_named(const std::vector<pcor::PartStatistics>& 
 
 }  // namespace
 
-TEST(Compare, OfTheTrueLawLeavesTheNoise) {
+TEST(Compare, ResidualOfTheTrueLawIsNoise) {
   const Comparison result = pcor::compare({flight_file()}, {laser_contender()});
   const pcor::ModelComparison& model = result.models.front();
   // The floor is robust, the rms is not, and turbulence has bursts: 10 % or so between them.
@@ -151,7 +151,7 @@ TEST(Compare, FindsWhatTheScenarioFlew) {
   EXPECT_EQ(sum, result.masks[0]);
 }
 
-TEST(Compare, FindsBothSpeedRunsWhateverTheSeed) {
+TEST(Compare, FindsBothSpeedRunsForEachSeed) {
   const pcor::test::TemporaryDirectory directory;
   pcor::Scenario scenario = pcor::read_scenario(data / "scenarios" / "c130-eq18.toml");
   for (std::uint64_t seed = 301; seed < 305; ++seed) {

@@ -230,7 +230,7 @@ TEST(DiagnosisOfATeam, FindsTheSameOnSamplesWithFlapsOut) {
   EXPECT_EQ(diagnosis.findings[0].effect.id, "flaps-gear");
 }
 
-TEST(WhatIfOfATeam, IsThatOfOne) {
+TEST(WhatIfOfATeam, EqualsThatOfOneProcess) {
   const Paths paths = flights(beta_odd, 10);
   const Diagnosis diagnosis = diagnose(paths, model(), {lams_reference()});
   const auto candidates = what_if_candidates(diagnosis, {});
@@ -301,7 +301,7 @@ TEST(DiagnosisOfATeam, HoldsTheRecordsThatAreAskedFor) {
   }
 }
 
-TEST(DiagnosisOfATeam, FailsOnAllMembersAsOneAlone) {
+TEST(DiagnosisOfATeam, FailsOnAllMembersAsInOneProcess) {
   Paths paths = flights("", 30);
   const test::TemporaryDirectory directory;
   paths[2] = directory / "broken.nc";

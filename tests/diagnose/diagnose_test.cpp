@@ -284,7 +284,7 @@ TEST(Diagnose, AFormulaThatActsNowhereIsNotTested) {
   EXPECT_TRUE(told);
 }
 
-TEST(Diagnose, LooksAtTheFirstPartAlone) {
+TEST(Diagnose, UsesTheFirstPartOnly) {
   const Paths flights{flight("c130-eq18", 321, static_lag)};
   DiagnoseOptions options;
   options.training_share = 0.6;

@@ -387,7 +387,7 @@ TEST(DiagnosisReport, SilenceComesWithItsLimits) {
   split_words(report);
 }
 
-TEST(DiagnosisReport, VerdictAloneIsSufficient) {
+TEST(DiagnosisReport, AcceptsEmptyFields) {
   Diagnosis diagnosis;
   split_words(diagnosis_report(diagnosis, {}));
   diagnosis.findings.resize(1);

@@ -115,7 +115,7 @@ struct Dense {
 
 }  // namespace
 
-TEST(Search, FindsTheOneColumnThatIsThere) {
+TEST(Search, FindsTheOnlyColumn) {
   for (const double size : {0.3, -0.3}) {
     Problem problem(600, 20, 1, 0.7);
     problem.residual += size * problem.candidate(7);
@@ -238,7 +238,7 @@ TEST(Search, TypicalSizesAreMoreLikely) {
 
 // The marginal likelihood of one column in normal noise of known size: chi2, size and error by the formula
 // of conjugate normal distributions. That the size of the noise is not known adds chi2^2/n.
-TEST(Search, EvidenceOfOneColumnIsTheKnownOne) {
+TEST(Search, EvidenceOfOneColumnEqualsTheFormula) {
   Problem problem(4000, 1, 23);
   problem.residual += 0.05 * problem.candidate(0);
   problem.one_by_one();

@@ -160,7 +160,7 @@ TEST(Catalogue, HoldsZeroGainAndDriftAtEveryPlaceThatHasThem) {
   }
 }
 
-TEST(Catalogue, KnowsEveryEffectOfPressureCalibrationOnce) {
+TEST(Catalogue, ListsEachPressureCalibrationOnce) {
   // Known effects of airborne pressure calibration with a laser: each can be described by a term of a model,
   // or a reason is given.
   for (const char* id : {"static-alpha",
@@ -229,7 +229,7 @@ TEST(Catalogue, KnowsEveryEffectOfPressureCalibrationOnce) {
     EXPECT_NE(effect_named(id), pcor::catalogue_size) << id;
 }
 
-TEST(Catalogue, SaysWhyAnEffectLeavesNoTrace) {
+TEST(Catalogue, ExplainsUndetectableEffects) {
   std::set<std::string> ids;
   for (const auto& effect : pcor::effects_without_trace) {
     EXPECT_TRUE(ids.emplace(effect.id).second) << effect.id;

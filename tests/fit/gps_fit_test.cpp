@@ -106,7 +106,7 @@ TEST(GpsFit, ThermometerOfTheModelReplacesItsNuisance) {
   EXPECT_LT(offset.standard_error, 0.1);
 }
 
-TEST(GpsFit, HoldsWhatOneHeadingLeavesOpen) {
+TEST(GpsFit, HoldsCoefficientsUndeterminedByOneHeading) {
   const RefitResult result = fit(flight("c130-one-heading"), law(), {"wind"});
   EXPECT_LT(std::abs(error_of(result)), 0.3) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);
@@ -120,7 +120,7 @@ TEST(GpsFit, HeightDoesNotConstrainTheLevel) {
   EXPECT_TRUE(result.worse.empty());
 }
 
-TEST(GpsFit, GoesWithALaser) {
+TEST(GpsFit, CombinesWithALaser) {
   const RefitResult laser = fit(flight("c130-circles"), no_law(), {"lams"});
   const RefitResult all = fit(flight("c130-circles"), no_law(), {"wind", "lams"});
   EXPECT_LT(std::abs(error_of(all)), 3.0 * stated_by(all));

@@ -22,7 +22,7 @@ TEST(Loss, IsFoundByItsName) {
   EXPECT_FALSE(loss_named("hubert"));
 }
 
-TEST(Loss, LetsOutliersCountLess) {
+TEST(Loss, ReducesTheWeightOfOutliers) {
   for (const Loss loss : losses) {
     SCOPED_TRACE(to_string(loss));
     EXPECT_NEAR(weight(loss, 0.0), 1.0, 1e-12);

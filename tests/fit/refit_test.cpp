@@ -192,7 +192,7 @@ TEST(Refit, HoldsWhatIsFixed) {
   EXPECT_TRUE(found.at("static-qp.a2").fitted);
 }
 
-TEST(Refit, StopsAtABoundAndSaysSo) {
+TEST(Refit, StopsAtABoundWithANote) {
   ModelDefinition model = made::model(equation_18);
   model.fits.resize(1);
   model.fits[0].resize(1);
@@ -205,7 +205,7 @@ TEST(Refit, StopsAtABoundAndSaysSo) {
   EXPECT_THAT(result.notes, testing::Contains(pcor::test::Says("static-constant.a0 is at its bound")));
 }
 
-TEST(Refit, StopsAtABoundWithNothingElseFree) {
+TEST(Refit, StopsAtABoundAsTheOnlyFreeCoefficient) {
   ModelDefinition model = made::model({"static-constant"});
   model.fits.resize(1);
   model.fits[0].resize(1);
@@ -215,7 +215,7 @@ TEST(Refit, StopsAtABoundWithNothingElseFree) {
   EXPECT_TRUE(std::isnan(by_name(result).at("static-constant.a0").standard_error));
 }
 
-TEST(Refit, NamesWhatCannotBeToldApart) {
+TEST(Refit, NamesInseparableCoefficients) {
   ModelDefinition model = made::model(equation_18);
   pcor::ModelEffect twin;
   twin.id = "twin";
@@ -228,7 +228,7 @@ TEST(Refit, NamesWhatCannotBeToldApart) {
   EXPECT_THAT(error, testing::Not(IsError(Error::Code::fit, "static-alpha.a1")));
 }
 
-TEST(Refit, SaysWhatEachEffectIsWorth) {
+TEST(Refit, ReportsTheValueOfEachEffect) {
   const auto samples = made::shared(plan_18(11));
   const RefitResult all = fit({samples}, made::model(equation_18));
   ASSERT_EQ(all.omissions.size(), 3U);
@@ -373,7 +373,7 @@ TEST(Refit, GlobalSearchFindsOptimumThatTheStartMisses) {
   EXPECT_NEAR(by_name(with).at("wave.w").value, 0.031, 1e-4);
 }
 
-TEST(Refit, TestsItselfOnWhatItHeldOut) {
+TEST(Refit, ComparesWithHeldOutSamples) {
   RefitOptions options;
   options.training_share = 0.5;
   const RefitResult result = fit({made::shared(plan_18(14))}, made::model(equation_18), options);

@@ -134,7 +134,7 @@ TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
   EXPECT_GT(most->second, 3U);
 }
 
-TEST(TeamFit, FailsOnAllMembersAlike) {
+TEST(TeamFit, FailsEquallyOnAllMembers) {
   std::vector<std::optional<Error>> errors(2);
   test::run_with_communicator(2, [&](Communicator& comm) {
     const std::vector<std::filesystem::path> paths{"nowhere/a.nc", "nowhere/b.nc"};

@@ -7,7 +7,7 @@
 namespace pcor::internal {
 namespace {
 
-TEST(FileInHand, IsTheOneThatIsReadLast) {
+TEST(FileInHand, IsTheLastFileRead) {
   const std::filesystem::path outer = "outer.nc", inner = "inner.nc";
   EXPECT_EQ(current_input_path(), nullptr);
   EXPECT_EQ(current_input_seconds(), 0.0);
@@ -26,7 +26,7 @@ TEST(FileInHand, IsTheOneThatIsReadLast) {
   EXPECT_EQ(current_input_path(), nullptr);
 }
 
-TEST(FileInHand, CountsTheTimeThatIsWorkedOnIt) {
+TEST(FileInHand, MeasuresItsProcessingTime) {
   const std::filesystem::path path = "flight.nc";
   const FileInHand in_hand(path);
   const double before = current_input_seconds();

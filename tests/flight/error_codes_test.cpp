@@ -13,7 +13,7 @@ using pcor::Error;
 using pcor::test::error_of;
 using pcor::test::IsError;
 
-TEST(Error, SaysWhatKindOfThingFailed) {
+TEST(Error, HasACode) {
   EXPECT_THAT(error_of([] { pcor::UnitConversion::between("m", "s", {}); }), IsError(Error::Code::unit));
   EXPECT_THAT(error_of([] { pcor::UnitConversion::between("", "s", {}); }), IsError(Error::Code::unit));
   EXPECT_THAT(error_of([] { const pcor::Flight flight("no-such-file.nc"); }), IsError(Error::Code::file));

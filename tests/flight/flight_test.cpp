@@ -100,7 +100,7 @@ TEST_F(FlightTest, AFileOfAnotherKindIsRefused) {
   EXPECT_THAT(refusal(), IsError(Error::Code::file));
 }
 
-TEST_F(FlightTest, ATruncatedFileIsRefusedWhateverItsKind) {
+TEST_F(FlightTest, RefusesTruncatedFilesOfEachFormat) {
   for (const int mode : {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4}) {
     for (const bool one_record_variable : {true, false}) {
       {
@@ -182,7 +182,7 @@ TEST_F(FlightTest, ACountThatTheFileHasNoRoomForIsDamage) {
 }
 
 /// The netCDF library copies a name to where there is room for 256 bytes, however long it is.
-TEST_F(FlightTest, ANameThatIsLongerThanNetcdfAllowsIsRefused) {
+TEST_F(FlightTest, RefusesNamesLongerThanNetcdfAllows) {
   const std::filesystem::path seeds = std::filesystem::path(PCOR_SOURCE_DIR) / "tests/fuzz/seeds/flight";
   std::filesystem::copy_file(seeds / "long_attribute_name.nc", path());
   EXPECT_THAT(refusal(), IsError(Error::Code::file));
@@ -335,7 +335,7 @@ TEST_F(FlightTest, AZoneIsAnOffsetOrThatOfUtc) {
   }
 }
 
-TEST_F(FlightTest, ADateThatDoesNotExistTellsNoTime) {
+TEST_F(FlightTest, AnInvalidDateGivesNoTime) {
   for (const char* date : {"2011-13-45", "2011-02-30", "2011-00-10", "2004-049", "0000-01-01"}) {
     { NetcdfMaker(path()).time({51720, 51721}, std::string("seconds since ") + date); }
     EXPECT_THAT(refusal(), IsError(Error::Code::time, "Time", date));
@@ -366,7 +366,7 @@ TEST_F(FlightTest, ATimeInTooFewBitsForADayIsRefused) {
   }
 }
 
-TEST_F(FlightTest, TwoVariablesOfOneNameAreRefused) {
+TEST_F(FlightTest, RefusesDuplicateNames) {
   {
     NetcdfMaker maker(path(), 0);
     maker.time({100, 101});
@@ -644,7 +644,7 @@ TEST_F(FlightTest, UnsignedAttributeAppliesToSignedIntegers) {
   EXPECT_THAT(read("INT"), ElementsAre(501, DoubleEq(500 + 0.01 * 4294967292.), IsNan(), IsNan()));
 }
 
-TEST_F(FlightTest, WhatIsNotValidIsMissing) {
+TEST_F(FlightTest, InvalidValuesAreMissing) {
   {
     NetcdfMaker maker(path(), 0);
     maker.time({100, 101, 102});
@@ -733,7 +733,7 @@ TEST_F(FlightTest, TimeIsFoundByDimensionOrStandardName) {
   }
 }
 
-TEST_F(FlightTest, AdviceOnTheTimeNamesTheDayOfTheFlightOrNone) {
+TEST_F(FlightTest, AdviceOnTheTimeNamesTheDayIfKnown) {
   const auto refusal_with = [this](const char* date) {
     {
       NetcdfMaker maker(path());
@@ -747,7 +747,7 @@ TEST_F(FlightTest, AdviceOnTheTimeNamesTheDayOfTheFlightOrNone) {
   EXPECT_THAT(refusal_with(""), IsError(Error::Code::time, "seconds since DAY 00:00:00"));
 }
 
-TEST_F(FlightTest, WhatIsTooMuchToBeMeasuredIsMissing) {
+TEST_F(FlightTest, ImplausibleValuesAreMissing) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101, 102, 103});
@@ -950,7 +950,7 @@ TEST_F(FlightTest, OtherVariablesAreListedAndRefused) {
 
 // netCDF cache settings apply to the variables being read, not to all files of the program that links the
 // library.
-TEST_F(FlightTest, LeavesTheChunkCacheOfTheProgramAlone) {
+TEST_F(FlightTest, KeepsTheChunkCacheOfTheProgram) {
   make_with_times({0, 1, 2});
   const auto cache = [] {
     std::size_t bytes = 0, slots = 0;

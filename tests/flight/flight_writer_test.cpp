@@ -249,7 +249,7 @@ TEST_F(FlightWriterTest, TimeAndVariablesFollowTheConventions) {
   EXPECT_THAT(file.values("PCORFLAG"), ElementsAre(0, 5));
 }
 
-TEST_F(FlightWriterTest, TheFileSaysWhatItIs) {
+TEST_F(FlightWriterTest, WritesGlobalAttributes) {
   make_input_of(NC_NETCDF4);
   const Flight flight(input);
   FileDescription description;
@@ -382,7 +382,7 @@ TEST_F(FlightWriterTest, BlocksMakeTheWhole) {
 
 // Mistakes of the caller
 
-TEST_F(FlightWriterTest, ANameThatIsTakenIsRefused) {
+TEST_F(FlightWriterTest, RefusesAnExistingName) {
   make_input_of(NC_NETCDF4);
   const Flight flight(input);
   FlightWriter writer(output, flight, {});
@@ -504,7 +504,7 @@ TEST_F(FlightWriterTest, TimesMustIncrease) {
 
 // Atomic output
 
-TEST_F(FlightWriterTest, NothingIsThereBeforeTheEnd) {
+TEST_F(FlightWriterTest, OutputAppearsAtTheEnd) {
   {
     FlightWriter writer(output, NewFlight{midnight}, {});
     writer.write_time_stamps({0, 1}, &midnight);
@@ -615,7 +615,7 @@ TEST_F(FlightWriterTest, NonFileOutputIsRefused) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
-TEST_F(FlightWriterTest, ADirectoryThatIsAbsentIsNamed) {
+TEST_F(FlightWriterTest, ErrorNamesAnAbsentDirectory) {
   EXPECT_THAT(refusal(directory / "absent" / "out.nc"),
               IsError(Error::Code::output, (directory / "absent" / "out.nc").string(),
                       "directory " + (directory / "absent").string()));
@@ -660,7 +660,7 @@ TEST_F(FlightWriterTest, ChangedInputIsRefusedAndOldOutputKept) {
   }
 }
 
-TEST_F(FlightWriterTest, FileSizeLimitLeavesNoOutput) {
+TEST_F(FlightWriterTest, FileSizeLimitWritesNoOutput) {
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);

@@ -70,7 +70,7 @@ TEST_F(Icartt, IsCopiedToNetcdf) {
   EXPECT_EQ(Flight(output).time().first, flight.time().first);
 }
 
-TEST_F(Icartt, WhatIsWrongIsToldWithItsLine) {
+TEST_F(Icartt, ErrorNamesTheLine) {
   const auto refusal = [this](const std::string& text) {
     write(text);
     return test::error_of([this] { Flight flight(path_); });

@@ -78,7 +78,7 @@ TEST(Union, KeepsTheShapeOfAnAbsentEffect) {
   EXPECT_EQ(coefficients_in(law(), union_of({law(), shaped})).back(), 4.0);
 }
 
-TEST(Trials, AModelIsNeitherBetterNorWorseThanItself) {
+TEST(Trials, AModelComparedWithItselfIsEqual) {
   const std::vector<TrialFlight> flights = tried({{law()}, {law()}}, {pcor::lams_reference()});
   const TrialComparison same = comparison_of(flights, 0, 1, false);
   EXPECT_EQ(same.gain, 0.0);

@@ -27,7 +27,7 @@ TEST(RivalChoice, OneInTheMiddleBeatsALikelierOneAtTheEdge) {
   EXPECT_EQ(*choice.rival, 1U);
 }
 
-TEST(RivalChoice, NothingIsAppliedThatARivalCallsAHarm) {
+TEST(RivalChoice, AppliesNoRivalIfAnotherMakesItHarmful) {
   const RivalChoice choice = choose_rival({Series(10, 0.8), Series(10, -0.6)}, {0.9, 0.1}, 0.01);
   EXPECT_FALSE(choice.rival.has_value());
   EXPECT_NEAR(choice.error, std::sqrt(0.9 * 0.64 + 0.1 * 0.36), 1e-12);  // rounding

@@ -100,7 +100,7 @@ TEST(GpsDesign, ModelWithoutAttackTermHasNoErrorOfIt) {
   EXPECT_TRUE(std::isnan(pcor::gps_design(pcor::Flight(flown.path()), without).value().attack));
 }
 
-TEST(GpsDesign, FlightWithoutHeightAndGroundSpeedHasNone) {
+TEST(GpsDesign, IsAbsentWithoutHeightAndGroundSpeed) {
   const Flown flown("c130-circles");
   EXPECT_FALSE(flown.design_without({Quantity::altitude, Quantity::ground_speed}).has_value());
 }

@@ -94,7 +94,7 @@ TEST(Inspect, UnreadableModelFileIsNamedInANoteAndOthersAreUsed) {
   EXPECT_EQ(inspection.laws.front().path.filename(), "c130-psfd-eq18.toml");
 }
 
-TEST(Inspect, FileThatIsNoFlightIsAFileError) {
+TEST(Inspect, RefusesAFileThatIsNotAFlight) {
   const pcor::test::TemporaryDirectory folder;
   std::ofstream(folder / "text.nc") << "text";
   try {

@@ -47,7 +47,7 @@ TEST(EffectLocation, UnitsAreThoseOfWhatTheyAddTo) {
   EXPECT_EQ(info_of(EffectLocation::attack_ratio).unit, info_of(Quantity::attack_ratio).unit);
 }
 
-TEST(EffectInfo, ClockIsAPlaceOfItsOwn) {
+TEST(EffectInfo, ClockIsASeparatePlace) {
   EffectInfo info;
   info.family = "lag";
   info.location = EffectLocation::beam_speed;

@@ -97,7 +97,7 @@ TEST(Formula, ReadsNumbersAndTheConstant) {
 }
 
 // Python's math module, to the last digits that two libraries may print differently.
-TEST(Formula, KnowsItsFunctions) {
+TEST(Formula, AcceptsEachFunction) {
   const Example examples[] = {
       {"sqrt(a^2+b^2)", 5.0},
       {"abs(-a)", 3.0},
@@ -189,7 +189,7 @@ TEST(Formula, NeverChoosesANanAway) {
   EXPECT_THAT(evaluate("if(1 < 2, x, 0)", {{"x", nan}}), IsNan());
 }
 
-TEST(Formula, TellsVariablesFromParameters) {
+TEST(Formula, SeparatesVariablesAndParameters) {
   const auto formula = Formula::parse("k * ENGTRQ / 100 + c1*(_b + ENGTRQ) + a", {"c0", "c1", "k", "unused"});
   ASSERT_TRUE(formula);
   EXPECT_EQ(formula->text(), "k * ENGTRQ / 100 + c1*(_b + ENGTRQ) + a");
@@ -221,7 +221,7 @@ TEST(Formula, OutlivesTheTextAndCopies) {
   EXPECT_EQ(copy.value(&x, &k), 18.0);
 }
 
-TEST(FormulaError, SaysWhatIsWrongAndWhere) {
+TEST(FormulaError, NamesCauseAndPosition) {
   EXPECT_EQ(error_of(""), "1: the formula is empty");
   EXPECT_EQ(error_of(" \n\t "), "1: the formula is empty");
   EXPECT_EQ(
@@ -248,7 +248,7 @@ TEST(FormulaError, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(error_of("1e999 * x"), "1: the number at column 1 is out of range");
 }
 
-TEST(FormulaError, SaysWhatIsWrongWithACall) {
+TEST(FormulaError, NamesCauseInACall) {
   EXPECT_EQ(error_of("1 + sqrt"), "5: the function 'sqrt' at column 5 has no arguments in parentheses");
   EXPECT_EQ(error_of("1 + sqrt()"), "5: the function 'sqrt' at column 5 takes 1 argument, not 0");
   EXPECT_EQ(error_of("sqrt(x, y)"), "1: the function 'sqrt' at column 1 takes 1 argument, not 2");
@@ -266,7 +266,7 @@ TEST(FormulaError, SaysWhatIsWrongWithACall) {
   EXPECT_EQ(error_of("x > 1"), "3: the comparison at column 3 is not the first argument of an if");
 }
 
-TEST(FormulaError, SaysWhatIsWrongWithAParameter) {
+TEST(FormulaError, NamesCauseInAParameter) {
   EXPECT_EQ(error_of("x", {"a b"}),
             "0: the parameter 'a b' is not a name: letters, digits and _, beginning with no digit");
   EXPECT_EQ(error_of("x", {""}),

@@ -79,7 +79,7 @@ TEST(Quantity, RatesHaveTheUnitOfTheirQuantityPerSecond) {
   }
 }
 
-TEST(State, KnowsNothingUntilItIsTold) {
+TEST(State, ValuesAreMissingInitially) {
   pcor::State<double> state;
   for (std::size_t i = 0; i < pcor::state_capacity; ++i)
     EXPECT_TRUE(std::isnan(state[static_cast<Quantity>(i)])) << i;
@@ -99,7 +99,7 @@ TEST(State, HoldsFurtherVariablesBehindTheQuantities) {
   }
 }
 
-TEST(Quality, EachBitIsOneBitOfItsOwnAndIsExplained) {
+TEST(Quality, BitsAreDistinctAndExplained) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < quality_info.size(); ++i) {
     EXPECT_EQ(static_cast<std::uint32_t>(quality_info[i].bit), 1U << i);

@@ -7,13 +7,13 @@
 using pcor::factor;
 using pcor::Scaling;
 
-TEST(Scaling, LeavesEffectsAsTheyAreAtItsPressures) {
+TEST(Scaling, IsOneAtReferencePressures) {
   // To rounding: 700 times the quotient 1/700 is not quite 1.
   for (const Scaling& scaling : {Scaling{}, Scaling{1, 0}, Scaling{0, -2}, Scaling{-3, 3}})
     EXPECT_NEAR(factor(scaling, 700.0, 70.0), 1.0, 1e-15);
 }
 
-TEST(Scaling, OfNothingIsOneWhateverThePressures) {
+TEST(Scaling, WithoutExponentIsOne) {
   EXPECT_TRUE(Scaling{}.is_none());
   EXPECT_EQ(factor(Scaling{}, 250.0, 121.0), 1.0);
 }
@@ -26,7 +26,7 @@ TEST(Scaling, PutsThePressuresInPowers) {
   EXPECT_NEAR(factor(Scaling{-1, 1}, 350.0, 140.0), 4.0, 1e-14);
 }
 
-TEST(Scaling, NeedsThePressureThatItAsksFor) {
+TEST(Scaling, RequiresItsPressure) {
   const double missing = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isnan(factor(Scaling{1, 0}, missing, 70.0)));
   EXPECT_TRUE(std::isnan(factor(Scaling{0, -1}, 700.0, missing)));

@@ -76,7 +76,7 @@ double applied(const ModelDefinition& file, double celsius) {
 
 // `write_model` restores a model to the last bit, so models with the same text are the same.
 
-TEST(Calibration, TakenOffLeavesTheModelAsItWas) {
+TEST(Calibration, RemovalRestoresTheModel) {
   for (const ModelDefinition& file : {read_model(published), fitted_model()}) {
     EXPECT_EQ(write_model(without_calibration(file)), write_model(file));
     EXPECT_EQ(write_model(without_calibration(with_curve(file))), write_model(file));
@@ -90,7 +90,7 @@ TEST(Calibration, TakesThePlaceOfTheOneBefore) {
   EXPECT_EQ(write_model(with_curve(once)), write_model(with_curve(fitted_model())));
 }
 
-TEST(Calibration, TakesThePlaceOfOneAmongOtherEffects) {
+TEST(Calibration, ReplacesACalibrationAmongOtherEffects) {
   ModelDefinition file = fitted_model();
   ModelEffect before = neutral_effect(calibration_id);
   before.parameters = {1.0, 0.0, 0.0};
@@ -102,7 +102,7 @@ TEST(Calibration, TakesThePlaceOfOneAmongOtherEffects) {
   EXPECT_EQ(write_model(with_curve(file)), write_model(with_curve(fitted_model())));
 }
 
-TEST(Calibration, LeavesAFormulaOfTheUsersOwnAlone) {
+TEST(Calibration, KeepsAFormulaOfTheUser) {
   ModelDefinition file = fitted_model();
   ModelEffect own;
   own.id = "own-thermometer";

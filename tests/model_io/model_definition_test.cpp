@@ -693,7 +693,7 @@ TEST(ModelDefinition, LinesMayEndAsOnWindows) {
             Description::of(parse_model(published_example + published_formula, "m.toml")));
 }
 
-TEST(ModelDefinition, WhatIsWrittenRestoresEveryBit) {
+TEST(ModelDefinition, WriteAndReadRestoreEveryBit) {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     const ModelDefinition file = ModelGenerator(seed).model();
     const std::string text = write_model(file);
@@ -1031,7 +1031,7 @@ TEST_F(ModelFileOnDisk, ThatWasReadIsNeverWrittenOver) {
   EXPECT_EQ(content(input), published_example);
 }
 
-TEST_F(ModelFileOnDisk, UnwritableModelLeavesFileUnchanged) {
+TEST_F(ModelFileOnDisk, UnwritableModelKeepsTheFile) {
   ModelDefinition file = parse_model(published_example, "m.toml");
   file.model.effects[0].parameters[0] = std::numeric_limits<double>::infinity();
   const fs::path output = write("out.toml", "old");

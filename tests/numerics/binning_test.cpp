@@ -106,14 +106,14 @@ TEST(Binning, AGapInTimeEndsAStretch) {
 }
 
 // The differences over a minute that begin in one telescope into a difference of means of minutes.
-TEST(Binning, AreAsLongAsIsAsked) {
+TEST(Binning, HaveTheRequestedLength) {
   const Binning bins(std::vector<double>(300, 0.0), seconds(300), 1.0, 60.0);
   EXPECT_EQ(bins.size(), 5U);
   EXPECT_EQ(bins.time()[1] - bins.time()[0], 60.0);
   EXPECT_EQ(bins.segments().size(), 1U);
 }
 
-TEST(Binning, OfNothingIsNothing) {
+TEST(Binning, IsEmptyForNoSamples) {
   EXPECT_EQ(Binning({}, {}, 1.0).size(), 0U);
   EXPECT_EQ(Binning(std::vector<double>(30, missing), seconds(30), 1.0).size(), 0U);
 }
@@ -126,7 +126,7 @@ TEST(Binning, OfSlowRecordsIsTheRecords) {
   EXPECT_EQ(bins.means(values)[1], 5.0);
 }
 
-TEST(Outliers, SpikesAreReplacedAndNothingElseIs) {
+TEST(Outliers, OnlySpikesAreReplaced) {
   const std::vector<double> clean = noise(3600, 0.2, 1);
   std::vector<double> residual = clean;
   std::size_t spikes = 0;
@@ -161,7 +161,7 @@ TEST(Outliers, ALargeSmoothEffectIsNotCut) {
 
 // A step is a sudden departure at its first sample, and a large value that its neighbours share from then
 // on: the laser in cloud, flaps.
-TEST(Outliers, AStepIsCutAtItsEdgesAlone) {
+TEST(Outliers, OnlyTheEdgesOfAStepAreOutliers) {
   std::vector<double> residual = noise(3600, 0.1, 3);
   for (std::size_t i = 1000; i < 1060; ++i) residual[i] += 2.0;
   std::size_t count = 0;
@@ -181,7 +181,7 @@ TEST(Outliers, AStretchMayBeginAnywhere) {
   for (std::size_t i = 1010; i < 1100; ++i) EXPECT_EQ(result[i], residual[i]) << i;
 }
 
-TEST(Outliers, WhatIsPredictedIsNotAnOutlier) {
+TEST(Outliers, PredictedValuesAreNoOutliers) {
   std::vector<double> residual = noise(1200, 0.1, 5);
   std::vector<double> predicted(residual.size(), 0.0);
   for (std::size_t i = 500; i < 520; ++i) predicted[i] = 3.0;

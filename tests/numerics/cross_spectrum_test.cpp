@@ -94,7 +94,7 @@ TEST(CrossSpectrum, UnrelatedSeriesHaveNoCoherence) {
   EXPECT_LE(delays, found.period.size() / 4) << "one in twenty by chance";
 }
 
-TEST(CrossSpectrum, HasNothingOfTooLittle) {
+TEST(CrossSpectrum, IsEmptyForTooFewSamples) {
   EXPECT_TRUE(cross_spectrum(white(200, 6), white(200, 7), times(200, 1.0), 1.0).period.empty());
   EXPECT_TRUE(cross_spectrum({}, {}, {}, 1.0).period.empty());
   std::vector<double> pierced = white(2000, 8);

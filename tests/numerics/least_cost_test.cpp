@@ -26,7 +26,7 @@ TEST(LeastCost, IsFound) {
   EXPECT_NEAR(x[1], -1.0, 1e-4);
 }
 
-TEST(LeastCost, LetsThroughWhatTheCostThrows) {
+TEST(LeastCost, PassesOnExceptionsOfTheCost) {
   std::vector<double> x{2.0, 2.0};
   int calls = 0;
   nlopt::opt bobyqa = search();

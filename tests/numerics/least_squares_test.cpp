@@ -55,7 +55,7 @@ TEST(LeastSquares, ErrorsKnowTheMemoryOfTheNoise) {
   EXPECT_LT(independent, 210U);  // three times too small: it would hold for half of them
 }
 
-TEST(LeastSquares, LeavesOutWhatIsMissing) {
+TEST(LeastSquares, IgnoresMissingValues) {
   Series s = made(5);
   const LeastSquares all = mean_of(s.y, s.time, 1.0);
   s.y[7] = s.y[100] = nan_value;

@@ -74,7 +74,7 @@ TEST(LineFit, StatesItsErrors) {
   EXPECT_NEAR(std::sqrt(variance) / stated, 1.0, 0.15);
 }
 
-TEST(LineFit, LeavesOutWhatIsMissing) {
+TEST(LineFit, IgnoresMissingValues) {
   Pairs pairs = noisy(100, 0.0, 0.0, 4);
   pairs.x[3] = std::numeric_limits<double>::quiet_NaN();
   pairs.y[7] = std::numeric_limits<double>::quiet_NaN();

@@ -37,7 +37,7 @@ TEST(Median, OfManyValuesIsThatOfTheirOrder) {
   }
 }
 
-TEST(Median, LeavesOutWhatIsMissing) {
+TEST(Median, IgnoresMissingValues) {
   const double missing = std::nan("");
   EXPECT_TRUE(std::isnan(median({missing, missing})));
   EXPECT_EQ(median({missing, 2.0, missing, 1.0, 3.0}), 2.0);

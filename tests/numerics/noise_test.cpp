@@ -82,7 +82,7 @@ TEST(NoiseFloor, IsThatOfWhiteNoise) {
   EXPECT_NEAR(floor.autocorrelation_time, 1.0, 0.15);
 }
 
-TEST(NoiseFloor, KnowsTheMemoryOfTheNoise) {
+TEST(NoiseFloor, EstimatesTheAutocorrelationTime) {
   for (const double memory : {0.5, 0.8}) {
     const std::vector<double> values = first_order(50000, memory, 3);
     const NoiseFloor floor = pcor::noise_floor(values, whole(values), 1.0);
@@ -153,7 +153,7 @@ TEST(Autoregression, IsTheSameOverStretches) {
   EXPECT_NEAR(found.coefficients[0], 0.7, 0.03);
 }
 
-TEST(Autoregression, OfNothingIsNothing) {
+TEST(Autoregression, IsEmptyForNoSamples) {
   EXPECT_TRUE(pcor::autoregression({}, {}).coefficients.empty());
   const std::vector<double> zeros(100, 0.0);
   EXPECT_TRUE(pcor::autoregression(zeros, whole(zeros)).coefficients.empty());

@@ -53,7 +53,7 @@ TEST(OctaveSpectrum, FindsAWaveWhereItIs) {
   EXPECT_NEAR(spectrum.period[static_cast<std::size_t>(most)], 24.0, 3.0);
 }
 
-TEST(OctaveSpectrum, HoldsInPartsAndIsNothingOfTooFewSamples) {
+TEST(OctaveSpectrum, UsesSegmentsBetweenGaps) {
   std::vector<double> values = white(6000);
   for (std::size_t i = 0; i < values.size(); i += 150) values[i] = std::numeric_limits<double>::quiet_NaN();
   const OctaveSpectrum spectrum = octave_spectrum(values, times(values.size()), 1.0);

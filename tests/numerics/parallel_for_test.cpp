@@ -9,7 +9,7 @@
 namespace pcor::internal {
 namespace {
 
-TEST(InParallel, EachIsCalledOnceWhateverTheNumberOfThreads) {
+TEST(InParallel, EachIsCalledOnceForAnyNumberOfThreads) {
   for (const std::size_t threads : {std::size_t{0}, std::size_t{1}, std::size_t{3}, std::size_t{200}}) {
     std::vector<int> calls(100, 0);
     parallel_for(calls.size(), threads, [&](std::size_t i) { ++calls[i]; });

@@ -162,7 +162,7 @@ TEST(SlowNoise, HasTheSizeOfTheDrift) {
 
 // Twice the gain by four parts that are at their bound is below a chi2 of four degrees, of which 13 is one
 // percent.
-TEST(SlowNoise, GainsLittleWhereThereIsNone) {
+TEST(SlowNoise, HasLittleGainWithoutSlowNoise) {
   constexpr std::size_t count = 900;
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
   const std::vector<Eigen::MatrixXd> columns{Eigen::MatrixXd::Ones(count, 1)};

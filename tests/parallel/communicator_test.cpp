@@ -109,7 +109,7 @@ TEST(Communicator, DifferentResultsOrPlacesAreAnError) {
   EXPECT_THAT(each_of(2, stops_early), Each(StartsWith("system")));
 }
 
-TEST(Communicator, OfOneIsSilent) {
+TEST(Communicator, WithOneMemberSendsNoMessage) {
   EXPECT_TRUE(run_with_communicator(1,
                                     [](Communicator& comm) {
                                       comm.gather("part");
@@ -123,7 +123,7 @@ TEST(Communicator, OfOneIsSilent) {
 
 /// Members that start, end and fail at random never wait for each other forever: otherwise
 /// `run_with_communicator` fails.
-TEST(Communicator, EndsForAllWhateverAnyMemberDoes) {
+TEST(Communicator, EndsForAllMembersTogether) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const std::vector<std::string> ends = each_of(4, [seed](Communicator& comm) {
       std::mt19937 chance(seed * 4 + static_cast<unsigned>(comm.rank()));

@@ -28,7 +28,7 @@ double of_team(std::size_t members, const std::vector<double>& values) {
   return found.front();
 }
 
-TEST(MedianOfAll, IsThatOfOneList) {
+TEST(MedianOfAll, EqualsThatOfOneList) {
   std::mt19937 chance(3);
   std::normal_distribution<double> normal;
   std::vector<double> values{0.0,    -0.0,    nan,  -std::numeric_limits<double>::infinity(),
@@ -47,7 +47,7 @@ TEST(MedianOfAll, IsTheUpperOfTheMiddleTwo) {
   EXPECT_EQ(of_team(4, {-0.25}), 0.25);
 }
 
-TEST(MedianOfAll, IsNoneOfNothing) {
+TEST(MedianOfAll, IsMissingForEmptyLists) {
   EXPECT_TRUE(std::isnan(of_team(3, {})));
   EXPECT_TRUE(std::isnan(of_team(3, {nan, nan})));
 }

@@ -16,7 +16,7 @@ using test::run_with_communicator;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-TEST(OrderOfAll, IsThatOfOneListWhoeverHasWhich) {
+TEST(OrderOfAll, EqualsThatOfOneListForEachPartition) {
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
   std::vector<double> values(1001);
@@ -42,7 +42,7 @@ TEST(OrderOfAll, IsThatOfOneListWhoeverHasWhich) {
   }
 }
 
-TEST(OrderOfAll, KnowsInfinitiesAndNoValue) {
+TEST(OrderOfAll, AcceptsInfinitiesAndEmptyLists) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   run_with_communicator(2, [&](Communicator& comm) {
     const std::vector<double> own =

@@ -53,7 +53,7 @@ TEST(SumOfEachFlight, FailsOnAllMembers) {
   EXPECT_THAT(failed, Each(1));
 }
 
-TEST(SumOfEachFlight, OfSymmetricMatricesIsThatOfOneMember) {
+TEST(SumOfEachFlight, OfSymmetricMatricesEqualsThatOfOneMember) {
   constexpr Eigen::Index width = 31;
   const auto part = [](std::size_t flight) {
     const Eigen::MatrixXd rows =

@@ -26,7 +26,7 @@ TEST(RadomeCalibration, OfTheGvGrowsWithTheMachNumber) {
   EXPECT_NEAR(radome(-18.0 / 123.7, 0.78), 2.5, 0.06);
 }
 
-TEST(RadomeCalibration, WithoutSlopeIsNone) {
+TEST(RadomeCalibration, RequiresASlope) {
   EXPECT_FALSE(RadomeCalibration{}.is_calibrated());
   EXPECT_FALSE((RadomeCalibration{2.0, 0.0, 0.0}.is_calibrated()));
   EXPECT_TRUE((RadomeCalibration{0.0, 0.0, 2.0}.is_calibrated()));

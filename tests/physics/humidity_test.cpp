@@ -49,14 +49,14 @@ TEST(VaporPressure, OfWarmWaterIsThatOfTheSteamTables) {
   EXPECT_NEAR(vapor_pressure_over_water(323.15), 123.52, 0.0005 * 123.5);
 }
 
-TEST(VaporPressure, RisesAsTheLatentHeatOfVaporisationAsks) {
+TEST(VaporPressure, SlopeFollowsTheLatentHeatOfVaporisation) {
   // IAPWS-95 at 0.01, 20 and 40 deg C. The ideal gas in Clausius-Clapeyron makes 0.1 to 0.3 %.
   EXPECT_NEAR(latent_heat(vapor_pressure_over_water<double>, 273.16), 2.5009e6, 0.003 * 2.5e6);
   EXPECT_NEAR(latent_heat(vapor_pressure_over_water<double>, 293.15), 2.4535e6, 0.003 * 2.5e6);
   EXPECT_NEAR(latent_heat(vapor_pressure_over_water<double>, 313.15), 2.4060e6, 0.004 * 2.5e6);
 }
 
-TEST(VaporPressure, RisesAsTheLatentHeatOfSublimationAsks) {
+TEST(VaporPressure, SlopeFollowsTheLatentHeatOfSublimation) {
   // Murphy and Koop (2005) eq. 5, J/mol, from calorimetry; they state that their fit loses 0.025 %.
   for (double T = 150; T <= 273; T += 3) {
     const double calorimetric =

@@ -37,7 +37,7 @@ TEST(HydrostaticStep, ClosesInTheStandardAtmosphere) {
   EXPECT_NEAR(climbed(11000.0, standard_gas_constant), 11000.0, 1e-3);
 }
 
-TEST(HydrostaticStep, KnowsWhichGasConstantItIsGiven) {
+TEST(HydrostaticStep, UsesTheGivenGasConstant) {
   // With the gas constant of today's air the standard's pressures give what the constants differ by.
   const double longer = pcor::constants::gas_constant_dry_air / standard_gas_constant;
   EXPECT_NEAR(climbed(20000.0, pcor::constants::gas_constant_dry_air), 20000.0 * longer, 1e-3);

@@ -133,7 +133,7 @@ TEST(StaticDefect, HasTheFormOfTheMemo) {
   EXPECT_NEAR(static_defect_from_pressure_ratio(p, q, chi), (q - p * chi) / (1 + chi), 1e-12);
 }
 
-TEST(StaticDefect, LeavesTheTotalPressure) {
+TEST(StaticDefect, KeepsTheTotalPressure) {
   over_the_envelopes([](const Flight& f, const RecoveryFactor& recovery) {
     const double d = simultaneous(f, recovery).static_defect;
     const double total = f.static_pressure + f.dynamic_pressure;
@@ -228,7 +228,7 @@ TEST(Approach3, FindsTheDefectFromTheTrueTemperature) {
   });
 }
 
-TEST(Approach4, ReturnsWhateverWasAssumed) {
+TEST(Approach4, ReturnsTheAssumedValue) {
   // That is why it does not exist: a temperature from eq. 12, of any assumed delta-p, makes eq. 11 return
   // this delta-p. Checked with 122 values. Each takes the difference of pressures near 700 hPa.
   double largest = 0.0;

@@ -15,6 +15,6 @@ TEST(LoadFactor, IsOneInLevelFlightAndTwoInATurnOfSixtyDegrees) {
   EXPECT_NEAR(load_factor(0.0, -60.0), 2.0, rounding) << "either side";
 }
 
-TEST(LoadFactor, IsNothingInFreeFall) { EXPECT_NEAR(load_factor(-9.80665, 20.0), 0.0, rounding); }
+TEST(LoadFactor, IsZeroInFreeFall) { EXPECT_NEAR(load_factor(-9.80665, 20.0), 0.0, rounding); }
 
 }  // namespace

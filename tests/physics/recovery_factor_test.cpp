@@ -21,7 +21,7 @@ const pcor::PublishedRecoveryFactor& published(std::string_view name) {
 
 }  // namespace
 
-TEST(RecoveryFactor, AConstantLawKnowsNoMachNumber) {
+TEST(RecoveryFactor, AConstantLawIgnoresMachNumber) {
   const RecoveryFactor law{{0.975, 0.0, 0.0, 0.0}};
   EXPECT_TRUE(law.is_constant());
   for (const double mach : {0.0, 0.3, 0.8, std::nan("")}) EXPECT_EQ(law(mach), 0.975);

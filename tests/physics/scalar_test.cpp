@@ -52,7 +52,7 @@ std::array<S, 24> everything(double p, double q, double v, double T, double e, d
 
 }  // namespace
 
-TEST(Scalar, ArchetypeConvertsToNothing) {
+TEST(Scalar, ArchetypeHasNoConversion) {
   static_assert(!std::is_convertible_v<double, Physics> && !std::is_convertible_v<Physics, double>);
   static_assert(!std::is_convertible_v<archetype::Truth, bool>);
 }
@@ -87,7 +87,7 @@ TEST(Scalar, PromotesToTheMoreGeneral) {
   static_assert(std::is_same_v<pcor::Promoted<Physics, Physics>, Physics>);
 }
 
-TEST(Scalar, KnowsWhatIsMissing) {
+TEST(Scalar, DetectsMissingValues) {
   EXPECT_TRUE(pcor::is_missing(pcor::missing<double>()));
   EXPECT_FALSE(pcor::is_missing(0.0));
   EXPECT_FALSE(pcor::is_missing(std::numeric_limits<double>::infinity()));

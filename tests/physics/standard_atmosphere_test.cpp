@@ -87,7 +87,7 @@ TEST(StandardAtmosphere, ItsHydrostaticConstantIsNearlyThatOfPcor) {
             1e-5);
 }
 
-TEST(StandardAtmosphere, OutsideItsDomainNothingIsKnown) {
+TEST(StandardAtmosphere, IsMissingOutsideItsDomain) {
   for (const double height : {-5000.1, 84852.1, unknown}) {
     EXPECT_TRUE(std::isnan(standard_temperature(height))) << height;
     EXPECT_TRUE(std::isnan(standard_pressure(height))) << height;

@@ -102,7 +102,7 @@ TEST_F(RealFlight, FindsAirspeedOfMoistAirAsNimbus) {
   EXPECT_LT(worst(ours, "TASX", nimbus, "TASX", "m/s"), 0.01);
 }
 
-TEST_F(RealFlight, SaysWhatItDid) {
+TEST_F(RealFlight, ReportsItsSteps) {
   process(read_model(model_path("c130-psfd-qcr-2003.toml")));
   EXPECT_EQ(summary_.records, 3061U);
   EXPECT_EQ(summary_.rate, 1);

@@ -235,7 +235,7 @@ TEST_F(Process, DoesNotDependOnBlocks) {
   EXPECT_THAT(read("PCOR_LAMS", "hPa"), testing::Each(testing::DoubleNear(2.0, 3e-4)));
 }
 
-TEST_F(Process, TellsItsProgress) {
+TEST_F(Process, ReportsProgress) {
   write_flight(input_, records_per_block + 1, 1);
   std::vector<std::size_t> done;
   ProcessOptions options;
@@ -255,7 +255,7 @@ TEST_F(Process, RenamesItsResults) {
   EXPECT_THAT(summary.outputs, Contains("PSXC_NEW"));
 }
 
-TEST_F(Process, GoesOnWithoutALaser) {
+TEST_F(Process, WorksWithoutALaser) {
   write_flight(input_, 10, 1);
   ModelDefinition model = lams_model();
   model.variables[Quantity::lams_airspeed] = "BEAM1";
@@ -366,7 +366,7 @@ class FilteredTemperature : public Process {
 
 // The swing is 2.7 K; the filter leaves 0.5 % more or less of a minute, and would show a shift of one sample
 // by 0.28 K at 1 Hz and 0.011 K at 25 Hz. At the ends it has part of its window.
-TEST_F(FilteredTemperature, IsNotShiftedWhateverTheBlocks) {
+TEST_F(FilteredTemperature, HasNoShiftForAnyBlockSize) {
   for (const int rate : {1, 25}) {
     const std::size_t records = records_per_block + 1000;
     write_swinging(test::sequence(50000.0, records), rate, 60.0);
@@ -407,7 +407,7 @@ TEST_F(FilteredTemperature, LosesPeriodsUnderThreeSeconds) {
 }
 
 // Each stretch between gaps is as if it were alone.
-TEST_F(FilteredTemperature, TakesNothingAcrossGaps) {
+TEST_F(FilteredTemperature, IsNotFilteredAcrossGaps) {
   for (const int rate : {1, 25}) {
     std::vector<double> time = test::sequence(50000.0, 40);
     // A short gap, shorter than the tail of the filter; and a stretch shorter than the filter.
@@ -470,7 +470,7 @@ TEST_F(FilteredTemperature, IsMissingWithItsSample) {
 }
 
 // One sensor of a noisy flight is frozen for two minutes.
-TEST_F(Process, LeavesOutAFrozenSensorAndSaysSo) {
+TEST_F(Process, FrozenSensorGivesMissingValuesAndANote) {
   constexpr std::size_t first = 2000, count = 120, records = 4000;
   const auto bit = static_cast<std::uint32_t>(Quality::sensor_frozen);
   for (const std::string frozen : {"PSFD", "QCF", "TTRR"}) {
@@ -514,7 +514,7 @@ TEST_F(Process, LeavesOutAFrozenSensorAndSaysSo) {
 }
 
 // A lag is undone at even samples; at others a bit marks a doubtful value.
-TEST_F(Process, SaysWhereSamplesAreUneven) {
+TEST_F(Process, ReportsUnevenSamples) {
   std::vector<double> time = test::sequence(50000.0, 100), p, q;
   for (double& each : time) each = 50000.0 + 4.0 * (each - 50000.0);
   for (int i = 0; i < 90; ++i) time.push_back(time.back() + 1.0);
@@ -553,7 +553,7 @@ parameters = { tau = 5.0 }
 }
 
 // A minute on the ramp, where the pressures of moving air are noise, and a minute of flight.
-TEST_F(Process, TellsTheRampFromFlight) {
+TEST_F(Process, SeparatesRampAndFlight) {
   constexpr std::size_t ramp = 1500;
   constexpr std::size_t samples = 3000;
   std::mt19937_64 engine(1);
@@ -625,7 +625,7 @@ TEST_F(Process, WritesUncertaintiesBesideTheirResults) {
   EXPECT_NEAR(read("ATX_uncertainty_NEW", "K")[5], 0.3, 0.01);
 }
 
-TEST_F(Process, WritesThePartOfUncertaintiesThatIsAskedFor) {
+TEST_F(Process, WritesTheRequestedUncertainties) {
   write_flight(input_, 20, 1);
   ProcessOptions options;
   options.uncertainty = UncertaintyPart::systematic;
@@ -648,7 +648,7 @@ TEST_F(Process, HasNoUncertaintyOfWhatTheLaserCorrects) {
   EXPECT_TRUE(std::isnan(read("PSXC_uncertainty", "hPa")[5]));
 }
 
-TEST_F(Process, SaysWhatToDoWhereAModelStatesNoUncertainty) {
+TEST_F(Process, AdvisesIfTheModelStatesNoUncertainty) {
   write_flight(input_, 20, 1);
   EXPECT_THAT(process_flight(input_, lams_model(), output_).outputs,
               testing::Not(Contains("PSXC_uncertainty")));

@@ -161,7 +161,7 @@ TEST(Chain, FindsTheAirThatWasMeasured) {
   EXPECT_NEAR(sample[Quantity::lams_dynamic_pressure], truth.total() - truth.p, 1e-9);
 }
 
-TEST(Chain, LeavesTheTotalPressure) {
+TEST(Chain, KeepsTheTotalPressure) {
   for (const double a0 : {-0.01, 0.0, 0.005, 0.02}) {
     Model model = truth.model();
     model.effects = {catalogued("static-constant", {a0})};
@@ -197,7 +197,7 @@ TEST(Chain, DerivesTheMachNumberOfTheMeasuredPairInDryAir) {
   EXPECT_NEAR(fly(model, with(recorded, Quantity::mach, 0.4))[Quantity::static_defect], 2.8, 1e-12);
 }
 
-TEST(Chain, AddsEffectsWhateverTheirOrderInTheModel) {
+TEST(Chain, SumIsIndependentOfTheOrderOfEffects) {
   Model model = truth.model();
   model.effects = {catalogued("static-constant", {0.005}), catalogued("lams-elevation", {0.3}),
                    catalogued("static-qp", {0.02}), catalogued("recovery-factor", {0.01})};
@@ -233,7 +233,7 @@ TEST(Chain, EffectsScaleWithMeasuredPressures) {
               written(EffectLocation::dynamic_transducer, "-0.4 * (70 / dynamic_pressure)^2"));
 }
 
-TEST(Chain, WithoutEffectsCorrectsNothing) {
+TEST(Chain, WithoutEffectsKeepsThePressures) {
   Model model;
   const Sample s = fly(model, {{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67}});
   EXPECT_EQ(s[Quantity::static_defect], 0.0);
@@ -273,7 +273,7 @@ TEST(Policy, MinimumRaisesDeltaP) {
   EXPECT_EQ(fly(model, truth.recorded())[Quantity::static_defect], 1.113);
 }
 
-TEST(Policy, DomainFlagsEachEndAndChangesNothing) {
+TEST(Policy, DomainFlagsEachEndAndKeepsValues) {
   Model model = truth.model();
   const double q = truth.recorded()[Quantity::dynamic_pressure];
   for (const auto& [lower, upper, outside] :
@@ -519,13 +519,13 @@ TEST(FlowAngles, OfTheGvNeedTheMachNumber) {
   EXPECT_NEAR(s[Quantity::mach], truth.mach(), 0.01);
 }
 
-TEST(FlowAngles, ARecordedAngleGoesBeforeTheRadome) {
+TEST(FlowAngles, ARecordedAnglePrecedesTheRadome) {
   Model model = truth.model();
   model.attack_radome = {5.776, 15.031, 0.0};
   EXPECT_EQ(fly(model, truth.recorded())[Quantity::attack], truth.alpha);
 }
 
-TEST(Lams, IsUsedWithoutSideslipWhereNoneIsKnown) {
+TEST(Lams, WorksWithoutSideslip) {
   Truth straight;
   straight.beta = 0;
   const Sample s = fly(straight.model(), without(straight.recorded(), Quantity::sideslip));
@@ -680,7 +680,7 @@ TEST(Upstream, NeglectedVapourAddedBackGivesMoistAir) {
   }
 }
 
-TEST(Upstream, DryConstantsAskForADeltaPThatIsTooLow) {
+TEST(Upstream, DryConstantsGiveALowDeltaP) {
   // -0.378 k1 q e/p with k1 = 0.912, q = 67.6 hPa: -0.033 hPa for 1 hPa of vapour, within 8 %: at one
   // recovery temperature the ambient one moves, too.
   Model model = truth.model();
@@ -721,7 +721,7 @@ TEST(Upstream, ALateLaserIsBroughtForward) {
   EXPECT_THAT(error_of(model, unknown), HasSubstr("'recovery_temperature'"));
 }
 
-TEST(Upstream, WhatActsOnTheBeamNeedsNothingWithoutALaser) {
+TEST(Upstream, EffectsOnTheBeamNeedNoInputWithoutALaser) {
   Model model;
   model.effects = {catalogued("lams-scale", {0.001}), catalogued("lams-pod-flex", {0.3}),
                    catalogued("static-constant", {0.005})};
@@ -736,7 +736,7 @@ TEST(Upstream, WhatActsOnTheBeamNeedsNothingWithoutALaser) {
   }
 }
 
-TEST(Upstream, WhatActsOnTheRadomeNeedsItsPressures) {
+TEST(Upstream, EffectsOnTheRadomeNeedItsPressures) {
   for (const EffectLocation location : {EffectLocation::radome, EffectLocation::attack_ratio}) {
     EXPECT_THAT(error_of(with(truth.model(), written(location, "k", {"k"}, {0.1})), truth.recorded()),
                 AllOf(HasSubstr("of-the-user"), HasSubstr("_pressure'")));
@@ -826,9 +826,9 @@ Recorded full_record() {
 
 }  // namespace
 
-TEST(QualityBits, NoneOfAGoodSample) { EXPECT_EQ(fly(full_model(), full_record()).flags.bits(), 0U); }
+TEST(QualityBits, NoBitForAGoodSample) { EXPECT_EQ(fly(full_model(), full_record()).flags.bits(), 0U); }
 
-TEST(QualityBits, EachIsSetByItsCauseAndTakesAwayWhatItSays) {
+TEST(QualityBits, EachBitHasItsCauseAndRemovesItsResults) {
   struct Case {
     Quality bit;
     Quantity changed;
@@ -898,7 +898,7 @@ TEST(QualityBits, NotSetByOtherCauses) {
       << "the pressure is at fault, not an input";
 }
 
-TEST(QualityBits, ADefectLargerThanTheDynamicPressureIsNone) {
+TEST(QualityBits, ADefectLargerThanTheDynamicPressureSetsABit) {
   Model model = truth.model();
   model.effects = {catalogued("static-constant", {0.02})};
   const Sample s = fly(model, with(truth.recorded(), Quantity::dynamic_pressure, 10.0));
@@ -910,7 +910,7 @@ TEST(QualityBits, ADefectLargerThanTheDynamicPressureIsNone) {
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
 }
 
-TEST(QualityBits, ADefectBelowTheNegativeDynamicPressureIsNone) {
+TEST(QualityBits, ADefectBelowTheNegativeDynamicPressureSetsABit) {
   Model model = truth.model();
   const Recorded slow = with(truth.recorded(), Quantity::dynamic_pressure, 10.0);
   const double p = slow.at(Quantity::static_pressure);
@@ -1069,7 +1069,7 @@ TEST(Build, WantsWhatLamsNeeds) {
               HasSubstr("LAMS needs the role 'sideslip_differential_pressure'"));
 }
 
-TEST(Build, TellsProgramsWhatIsMissing) {
+TEST(Build, ErrorListsMissingRoles) {
   const auto error_of = [](const Model& model) {
     BindingError error;
     EXPECT_FALSE(Chain::build(model, roles(Truth().recorded()), &error).has_value());
@@ -1087,7 +1087,7 @@ TEST(Build, TellsProgramsWhatIsMissing) {
   EXPECT_EQ(error.quantity, Quantity::corrected_mach);
 }
 
-TEST(Build, ToleratesThatNobodyAsksWhy) { EXPECT_FALSE(Chain::build({}, {}, nullptr).has_value()); }
+TEST(Build, WorksWithoutAnErrorString) { EXPECT_FALSE(Chain::build({}, {}, nullptr).has_value()); }
 
 TEST(Chain, IsSharedByThreads) {
   // It stores no state of a sample, so that loops of several rates and threads of a batch share one.
@@ -1196,7 +1196,7 @@ TEST(EffectValue, IsWhatTheEffectGivesAtItsPlace) {
                    0.03 * recorded.at(Quantity::dynamic_pressure));
 }
 
-TEST(EffectValue, IsZeroOnABeamThatIsNotThere) {
+TEST(EffectValue, IsZeroWithoutABeam) {
   const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);
   const Chain chain = build(with({}, catalogued("lams-scale", {0.01})), recorded);
   EXPECT_EQ(chain.effect_value(0, fly(chain, recorded).state, chain.parameters().data()), 0.0);

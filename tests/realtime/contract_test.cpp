@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Roles, Contract, testing::ValuesIn(all_roles()),
 
 // The result equals the result of a good sample if it does not depend on the role; otherwise it is missing,
 // or another, and a bit is set: dry air is assumed if the humidity is missing, the model if the laser is.
-TEST_P(Contract, WithoutAValueAResultIsUnhurtOrABitSaysSo) {
+TEST_P(Contract, AMissingInputChangesNoResultOrSetsABit) {
   for (const double none : {missing, infinity, -infinity}) {
     judge_each(none, [](double value, double expected, std::uint32_t bits) {
       const bool is_unhurt = value == expected || (std::isnan(value) && std::isnan(expected));

@@ -196,7 +196,7 @@ TEST(LoopOrder, CompletesInPlaceBeforeAnyoneElseReads) {
   }
 }
 
-TEST(LoopOrder, RefusesTwoWritersOfOneQuantity) {
+TEST(LoopOrder, RefusesTwoWritersOfAQuantity) {
   Loop loop(1.0);
   const Quantity x = *loop.add_variable("THRUST");
   loop.add(sum({}, x));
@@ -409,7 +409,7 @@ TEST(Loop, UndoesLagsAtEveryRate) {
   }
 }
 
-TEST(LoopGap, StartsAnewAtGapsAndWhereTimeDoesNotAdvance) {
+TEST(LoopGap, RestartsAtGapsAndRepeatedTimes) {
   struct Case {
     double rate;
     double time;  // after samples at 100 and 100 + 1/rate
@@ -505,7 +505,7 @@ TEST(LoopInterval, ChangedIntervalGivesCorrectResultOrBit) {
   expect_right_or_told(run_lagged(1.0, jitter));
 }
 
-TEST(LoopInterval, ThatIsTheRatesSetsNoBit) {
+TEST(LoopInterval, IntervalOfTheRateSetsNoBit) {
   for (const double off : {1.0, 1.01, 0.99}) {
     const Lagged lagged = run_lagged(25.0, steps({{3000, off / 25.0}}));
     EXPECT_EQ(expect_right_or_told(lagged), 3001U - 75U);
@@ -514,7 +514,7 @@ TEST(LoopInterval, ThatIsTheRatesSetsNoBit) {
   }
 }
 
-TEST(LoopInterval, SaysThatLaterSamplesAreAwaited) {
+TEST(LoopInterval, FlagsTheDelayOfTheFilter) {
   const Lagged lagged = run_lagged(1.0, steps({{20, 1.0}, {1, 100.0}, {20, 1.0}}));
   for (std::size_t i = 0; i < lagged.defects.size(); ++i) {
     const bool waits = i < 6 || (i > 20 && i < 27);
@@ -556,7 +556,7 @@ std::vector<bool> told_frozen(Quantity role, double noise, double resolution, st
   return told;
 }
 
-TEST(LoopFrozen, ASensorThatStandsStillSetsABit) {
+TEST(LoopFrozen, AConstantSensorSetsABit) {
   for (const Quantity role :
        {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature,
         Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed}) {
@@ -576,7 +576,7 @@ TEST(LoopFrozen, ACoarseSensorIsLeftFiveMinutes) {
   EXPECT_TRUE(told[14000]);
 }
 
-TEST(LoopFrozen, OnTheGroundNothingIs) {
+TEST(LoopFrozen, NoBitOnTheGround) {
   const Sample parked{{Quantity::static_pressure, 1000.0}, {Quantity::dynamic_pressure, 0.0}};
   Model model;
   model.effects = {{"static-constant", {0.004}}};
@@ -589,7 +589,7 @@ TEST(LoopFrozen, OnTheGroundNothingIs) {
 
 TEST(Loop, CompilesWithArithmeticThatKeepsNan) { EXPECT_TRUE(pcor::arithmetic_keeps_nan()); }
 
-TEST(LoopGap, MayBeAskedFor) {
+TEST(LoopGap, ResetRestartsTheState) {
   Model model;
   model.effects = {{"static-lag", {0.15}}};
   const Sample recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 67.6}};
@@ -603,7 +603,7 @@ TEST(LoopGap, MayBeAskedFor) {
 
 // One sample between two gaps has no neighbour, and so no rate of change. Runs without values flush the
 // samples in the loop.
-TEST(LoopGap, SaysWhereASampleIsAlone) {
+TEST(LoopGap, FlagsAnIsolatedSample) {
   Model model;
   model.effects = {{"static-lag", {0.15}}};
   const Sample recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 67.6}};
@@ -616,7 +616,7 @@ TEST(LoopGap, SaysWhereASampleIsAlone) {
   EXPECT_THAT(loop.state()[Quantity::corrected_static_pressure], IsNan());
 }
 
-TEST(LoopGap, SaysNothingWhereNothingIsKept) {
+TEST(LoopGap, NoFlagWithoutMemory) {
   Loop loop = build(c130(), level, 1.0);
   run(loop, level, 0.0);
   run(loop, level, 50.0);
@@ -691,7 +691,7 @@ TEST(LoopFunctors, MayStandBetweenTheStagesOfTheModel) {
   }
 }
 
-TEST(LoopLams, CorrectsWhereItIsValidAndSaysSo) {
+TEST(LoopLams, CorrectsAndFlagsValidSamples) {
   Loop with_model = build(c130(), level, 1.0);
   Loop with_lams = build(c130(), level, 1.0, CorrectWith::lams);
   run(with_model, level, 0.0);
@@ -714,7 +714,7 @@ TEST(LoopLams, CorrectsWhereItIsValidAndSaysSo) {
   EXPECT_EQ(own_bits(with_lams), bits({Quality::lams_missing}));
 }
 
-TEST(Loop, LeavesTheFilterOfTheLaserOut) {
+TEST(Loop, ExcludesTheFilterOfTheLaser) {
   std::vector<Quantity> recorded;
   for (const auto& each : level) recorded.push_back(each.first);
   std::string error;
@@ -770,7 +770,7 @@ TEST(LoopLams, RecordedAmbientIsUsedWithRecovery) {
 }
 
 // At an absurd airspeed all of the total pressure would be dynamic, and the static pressure zero.
-TEST(LoopLams, LeavesSomeStaticPressure) {
+TEST(LoopLams, RefusesADefectBelowVacuum) {
   Model model = c130();
   model.lams.approach = pcor::LamsApproach::with_temperature;
   const Sample radiometer = with(level, {{Quantity::ambient_temperature, 274.0}});
@@ -790,7 +790,7 @@ struct QualityCase {
 const std::vector<Quantity> everything = results;
 
 // Each way in which a sample can be bad, one at a time, in a loop where every stage is at work.
-TEST(LoopQuality, TellsWhatWasWrongAndLosesOnlyWhatDependsOnIt) {
+TEST(LoopQuality, FlagsTheCauseAndLosesOnlyDependentResults) {
   using Q = Quality;
   const std::vector<Quantity> with_temperature{Quantity::ambient_temperature, Quantity::corrected_airspeed,
                                                Quantity::lams_dynamic_pressure};
@@ -900,7 +900,7 @@ TEST(LoopQuality, HasNoAirspeedOnTheGround) {
   EXPECT_EQ(tapered.state()[Quantity::corrected_static_pressure], 700.0);
 }
 
-TEST(LoopQuality, TellsOfAnEffectThatDividesByZero) {
+TEST(LoopQuality, FlagsAnEffectThatDividesByZero) {
   const EffectLocation places[] = {EffectLocation::static_transducer, EffectLocation::static_line,
                                    EffectLocation::total_line,        EffectLocation::pitot,
                                    EffectLocation::static_defect,     EffectLocation::attack,
@@ -1099,7 +1099,7 @@ std::string text(const Sample& sample) {
 }
 
 // No effect of a bad sample remains: after any number of them a good sample gives the result of a new loop.
-TEST(LoopGarbage, LeavesNothingForTheNextSample) {
+TEST(LoopGarbage, DoesNotAffectTheNextSample) {
   std::mt19937 random(20111102);
   std::vector<Model> models(4, c130());
   models[1].lams.approach = pcor::LamsApproach::iterated;

@@ -146,7 +146,7 @@ TEST(LowPass, PassesAConstantToTheLastBit) {
 }
 
 // For any missing samples, a line passes or there is no value.
-TEST(LowPass, PassesALineWhateverIsMissing) {
+TEST(LowPass, PassesALineWithMissingSamples) {
   std::mt19937 random(20120106);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (const double rate : rates) {
@@ -168,7 +168,7 @@ TEST(LowPass, PassesALineWhateverIsMissing) {
   }
 }
 
-TEST(LowPass, LeavesPeriodsOfSixSecondsAndMoreAndShiftsNone) {
+TEST(LowPass, PassesPeriodsOfSixSecondsWithoutShift) {
   for (const double rate : rates) {
     for (const double period : {6.0, 7.3, 8.0, 10.1, 12.0, 31.0, 60.0, 300.0}) {
       const Response left = response(rate, period);
@@ -180,7 +180,7 @@ TEST(LowPass, LeavesPeriodsOfSixSecondsAndMoreAndShiftsNone) {
   }
 }
 
-TEST(LowPass, TakesAwayPeriodsUnderThreeSeconds) {
+TEST(LowPass, RemovesPeriodsUnderThreeSeconds) {
   for (const double period : {2.0, 1.7, 1.5, 1.3, 1.0, 0.7, 0.3, 0.1}) {
     EXPECT_LT(std::abs(response(25.0, period).in_phase), 0.003) << period;
     EXPECT_NEAR(response(25.0, period).in_quadrature, 0.0, 1e-9) << period;
@@ -195,7 +195,7 @@ TEST(LowPass, TakesAwayPeriodsUnderThreeSeconds) {
   EXPECT_LT(std::abs(filtered(1.0, fastest)[50].value), 0.001);
 }
 
-TEST(LowPass, SaysWhereTooLittleOfTheWindowIsThere) {
+TEST(LowPass, FlagsAnIncompleteWindow) {
   for (const double rate : rates) {
     Filter filter(rate);
     const std::size_t delay = filter.delay();
@@ -238,7 +238,7 @@ TEST(LowPass, ForgetsWhatWasBeforeAReset) {
   }
 }
 
-TEST(LowPass, SaysThatNoSampleHasLeftItYet) {
+TEST(LowPass, FlagsTheInitialDelay) {
   for (const double rate : rates) {
     Filter filter(rate);
     for (int begin = 0; begin < 2; ++begin) {
@@ -252,7 +252,7 @@ TEST(LowPass, SaysThatNoSampleHasLeftItYet) {
   }
 }
 
-TEST(LowPass, ChangesNothingWhereSamplesAreTooFarApart) {
+TEST(LowPass, DoesNotFilterLowRates) {
   for (const double rate : {0.1, 0.5, 2.0 / 3.0}) {
     EXPECT_EQ(LowPass::delay(rate), 0U);
     Filter filter(rate);

@@ -323,7 +323,7 @@ TEST(NimbusSystem, RecoversAfterMissingSamplesAsPlainLoopsDo) {
   });
 }
 
-TEST(NimbusSystem, StartsTheStateOfEachRateAnewAfterAGap) {
+TEST(NimbusSystem, RestartsTheStateOfEachRateAfterAGap) {
   std::vector<double> with_gap = seconds(100.0, 110.0);
   for (const double second : seconds(113.0, 122.0)) with_gap.push_back(second);
   expect_plain_loops(with_gap, raw_value);
@@ -392,7 +392,7 @@ TEST(NimbusSystem, GivesUncertaintiesAsDifferences) {
   EXPECT_NEAR(static_cast<double>(table.low("ATX_U")), 0.1, 0.005);
 }
 
-TEST(NimbusSystem, PutsNothingBeforeItHasRun) {
+TEST(NimbusSystem, WritesNoValueBeforeTheFirstRun) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());
   Second = 0.0;
@@ -414,7 +414,7 @@ TEST(NimbusSystem, NeverPassesOffAnEarlierSampleAsThisOne) {
   }
 }
 
-TEST(NimbusSystem, PutsNothingInAnEntryThatComesBeforeTheLeader) {
+TEST(NimbusSystem, WritesNoValueBeforeTheLeader) {
   // Its values would be those of the sample before, at every sample but the first.
   ASSERT_TRUE(install_both());
   Table table(raw_names, {{"PSXC", {}, Fuselage::fetch<Quantity::corrected_static_pressure>},
@@ -489,7 +489,7 @@ TEST(NimbusSystem, CountsTheSamplesOfAHostWithoutTime) {
   EXPECT_THAT(table.low("PSXC"), IsNan());
 }
 
-TEST(NimbusSystem, AsksForTheTimeOnceInASample) {
+TEST(NimbusSystem, ReadsTheTimeOncePerSample) {
   struct Clock {
     using Entry = DERTBL;
     static double get(Entry* entry, std::size_t input) { return Host::get(entry, input); }
@@ -523,7 +523,7 @@ TEST(NimbusSystem, ResetRestartsTheState) {
   EXPECT_THAT(table.high("PSXC_R", 0), IsNan());
 }
 
-TEST(NimbusSystem, GivesNanWhereNothingIsInstalled) {
+TEST(NimbusSystem, GivesNanWithoutAnInstalledModel) {
   struct Tag;
   using Empty = NimbusSystem<Host, Tag>;
   Table table({"PSFD", "QCF"}, {{"PCOR", {"PSFD", "QCF"}, Empty::compute},
@@ -646,7 +646,7 @@ TEST(NimbusDefaults, UnusedOverridesAreReported) {
   EXPECT_THAT(pcor::unread_defaults(radome_model(), "PCOR_R", defaults.names()), IsEmpty());
 }
 
-TEST(NimbusDefaults, AreRefusedWhereNothingReadsThem) {
+TEST(NimbusDefaults, AreRefusedIfUnused) {
   const auto error_of = [](const std::vector<std::string>& keys, pcor::Overrides expected) {
     std::string error;
     const bool good = pcor::check_defaults(fuselage_model(), "PCOR", keys, expected, &error);

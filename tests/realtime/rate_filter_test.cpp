@@ -143,7 +143,7 @@ TEST(RateFilter, IsTheSameBackwards) {
   }
 }
 
-TEST(RateFilter, LeavesLittleNoise) {
+TEST(RateFilter, ReducesNoise) {
   // The integral of (2 pi f)^2 over the remaining part of the band, cut off sharply at 1 Hz: 0.72 of 12.5
   // Hz; the slope of the cut-off adds to it.
   EXPECT_NEAR(RateFilter(25.0).gain(), std::pow(2.0 * pi, 2) / 3.0 / 12.5, 0.2);
@@ -184,7 +184,7 @@ TEST(RateFilter, LosesLittleByAMissingSample) {
   }
 }
 
-TEST(RateFilter, TakesNothingFromBeyondALongGap) {
+TEST(RateFilter, IgnoresSamplesBeyondALongGap) {
   RateFilter filter(1.0);
   std::vector<double> samples = around(filter, 1.0, [](double t) { return 5.0 - t; });
   samples[filter.before() + 2] = samples[filter.before() + 3] = missing;
@@ -202,7 +202,7 @@ TEST(RateFilter, IsAsGoodForDelaysOfHalfASample) {
         << period;
 }
 
-TEST(RateFilter, MakesUpNothingBeyondAGapThatADelayReachesOver) {
+TEST(RateFilter, GivesNanInAGapWithinTheDelay) {
   // Values 5 s ago are unknown: 3 s ago is the start.
   RateFilter filter(1.0, 5.0);
   const std::vector<double> line = around(filter, 1.0, [](double t) { return 2.0 * t; });

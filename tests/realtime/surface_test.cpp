@@ -151,7 +151,7 @@ TEST(Surface, StatedErrorGrowsOutside) {
   EXPECT_NEAR(error(0.5), std::hypot(error(0.3), 60.0 * slope), 1e-9);
 }
 
-TEST(Surface, ErrorFollowsASampleThatLeavesTheEnvelope) {
+TEST(Surface, ErrorGrowsOutsideTheEnvelope) {
   const Model model = model_with(uneven());
   std::string error;
   auto loop = Loop::build(model, roles, 1.0, &error, CorrectWith::model, independent(model, 0.0005));

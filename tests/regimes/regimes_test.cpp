@@ -424,7 +424,7 @@ TEST(Regimes, OfAFlightWithLongGapsCoverIt) {
   expect_phases_cover(all, find_regimes(all));
 }
 
-TEST(Regimes, CanDoWithTheHeightAlone) {
+TEST(Regimes, NeedOnlyTheHeight) {
   Story story = tell();
   story.motion.vertical_speed.clear();
   expect_told(story, find_regimes(story.motion));

@@ -98,7 +98,7 @@ std::optional<Error> refusal(const Report& report) {
 
 TEST(Report, IsSmall) { EXPECT_LT(report_html(report_of(18000, 12)).size(), 1'500'000U); }
 
-TEST(Report, AsksNothingOfTheNetwork) {
+TEST(Report, NeedsNoNetwork) {
   std::string html = report_html(report_of(100, 2));
   const std::string svg = "http://www.w3.org/2000/svg";
   html.erase(html.find(svg), svg.size());
@@ -121,7 +121,7 @@ TEST(Report, KeepsTheValuesToHalfAStep) {
       EXPECT_LE(std::abs(kept[i] - report.columns[0].values[i]), 0.5000001 * column["step"].get<double>());
 }
 
-TEST(Report, KeepsWhatIsAlongAnAxisAloneToTwelveBits) {
+TEST(Report, KeepsAxisValuesToTwelveBits) {
   Report report = report_of(1000, 2);
   report.items = {BinnedPanel{"Bins", "", {"c0"}, {"c1"}}};
   const auto columns = data_of(report_html(report))["columns"];
@@ -206,7 +206,7 @@ TEST(Report, RefusesAColumnOfAnotherLength) {
   EXPECT_THAT(refusal(report), test::IsError(Error::Code::usage, "'c0'", "2", "3"));
 }
 
-TEST(Report, RefusesTwoColumnsOfOneName) {
+TEST(Report, RefusesDuplicateColumns) {
   Report report = report_of(3, 2);
   report.columns[1].name = "c0";
   EXPECT_THAT(refusal(report), test::IsError(Error::Code::usage, "'c0'"));

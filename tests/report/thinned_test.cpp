@@ -23,7 +23,7 @@ TEST(Thinned, KeepsTheEndsOfAStraightLine) {
   EXPECT_THAT(thinned(time, {0}, {{&time, 1.0}}, 100, 1e-9), ElementsAre(0U, 49U));
 }
 
-TEST(Thinned, KeepsTheCornersAndNothingElse) {
+TEST(Thinned, KeepsTheCornersOnly) {
   const std::vector<double> time = seconds(40);
   std::vector<double> corner(40, 0.0);
   for (std::size_t i = 10; i < 40; ++i) corner[i] = static_cast<double>(std::min<std::size_t>(i, 30) - 10);
@@ -36,7 +36,7 @@ TEST(Thinned, DoesNotReachFromOneFlightIntoTheNext) {
   EXPECT_THAT(thinned(time, {0, 3}, {{&series, 1.0}}, 100, 1e-9), ElementsAre(0U, 2U, 3U, 5U));
 }
 
-TEST(Thinned, LeavesOutWhereASeriesHasNoValue) {
+TEST(Thinned, OmitsMissingValues) {
   const std::vector<double> time = seconds(5);
   const std::vector<double> series{std::nan(""), 1.0, std::nan(""), 7.0, 2.0};
   EXPECT_THAT(thinned(time, {0}, {{&series, 1.0}}, 100, 1e-9), ElementsAre(1U, 3U, 4U));
@@ -51,7 +51,7 @@ TEST(Thinned, KeepsWhatCountsMostWhereItMayNotKeepAll) {
   EXPECT_THAT(thinned(time, {0}, {{&small, 1.0}, {&large, 100.0}}, 1, 1e-9), ElementsAre(0U, 20U, 29U));
 }
 
-TEST(Thinned, StandsForAWaveAsWellAsIsAskedFor) {
+TEST(Thinned, RepresentsAWaveWithinTheTolerance) {
   const std::size_t count = 2000;
   const std::vector<double> time = seconds(count);
   std::vector<double> wave;

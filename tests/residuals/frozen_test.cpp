@@ -46,7 +46,7 @@ std::vector<std::pair<std::size_t, std::size_t>> found(const Series& values) {
 
 using Spans = std::vector<std::pair<std::size_t, std::size_t>>;
 
-TEST(Frozen, IsASensorThatStandsStillForAMinute) {
+TEST(Frozen, IsASensorConstantForAMinute) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Series values = recorded({}, seed);
     EXPECT_THAT(found(values), IsEmpty());
@@ -97,7 +97,7 @@ TEST(Frozen, IsNotWhatIsCoarseOrSlowOrAtRest) {
   }
 }
 
-TEST(Frozen, IsNotLookedForWhereNothingIsLookedAt) {
+TEST(Frozen, IsNotSearchedInExcludedSamples) {
   Series values = recorded({}, 1);
   freeze(values, 0, 900);
   std::vector<bool> flying(values.size(), true);
@@ -109,7 +109,7 @@ TEST(Frozen, IsNotLookedForWhereNothingIsLookedAt) {
 
 }  // namespace
 
-TEST(Frozen, FromBeginningToEndIsASensorThatOughtToVary) {
+TEST(Frozen, OverAWholeFlightCountsForVaryingSensorsOnly) {
   const Series still(10800, 131.0);
   const std::vector<bool> all(still.size(), true);
   EXPECT_EQ(find_frozen(still, all, true).size(), 1U);

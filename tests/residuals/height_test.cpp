@@ -33,7 +33,7 @@ double pressure_of_height(double pressure) {
 
 }  // namespace
 
-TEST(Height, OfTheHydrostaticEquationLeavesNothing) {
+TEST(Height, ResidualOfTheHydrostaticEquationIsZero) {
   const std::vector<double> left = residuals(climb(), made::air_model());
   for (std::size_t i = 30; i + 30 < left.size(); ++i) ASSERT_NEAR(left[i], 0.0, 1e-9) << i;
   EXPECT_TRUE(std::isnan(left[29])) << "half a minute is needed on either side";
@@ -97,7 +97,7 @@ TEST(Height, DoesNotReachOverGapsAndMissingValues) {
   for (const std::size_t i : {869U, 931U, 1169U, 1230U}) EXPECT_FALSE(std::isnan(left[i])) << i;
 }
 
-TEST(Height, AsksForATemperature) {
+TEST(Height, RequiresATemperature) {
   pcor::FlightSamples flight = climb();
   flight.model.columns.pop_back();
   flight.model.roles.pop_back();

@@ -61,7 +61,7 @@ std::filesystem::path late_flight(const pcor::test::TemporaryDirectory& director
       noise);
 }
 
-TEST(MovingColumns, ChangeAsTheirSlopeSays) {
+TEST(MovingColumns, ChangeByTheirSlope) {
   const ModelDefinition model = with_clock(0.5);
   const auto samples = samples_of(pcor::test::short_flight(), model);
   ASSERT_EQ(samples->model.moving.size(), 1U);
@@ -128,7 +128,7 @@ std::filesystem::path wet_flight(const pcor::test::TemporaryDirectory& directory
                            false);
 }
 
-TEST(MovingColumns, KnowHowTheWetnessHangsOnTheDrying) {
+TEST(MovingColumns, DependOnTheDryingTime) {
   const pcor::test::TemporaryDirectory directory;
   const ModelDefinition model = with_wetting(8.0);
   const auto samples = samples_of(wet_flight(directory, 8.0), model);

@@ -50,7 +50,7 @@ TEST(RadomePrediction, ReproducesAPressureThatTheRadomeDetermines) {
     EXPECT_NEAR(predicted[i], flight.dynamic_pressure[i], 1e-6);  // hPa: normal equations in double precision
 }
 
-TEST(RadomePrediction, LeavesOutTheNoiseOfThePressureUnderTest) {
+TEST(RadomePrediction, ExcludesTheNoiseOfTheTestedPressure) {
   const Radome flight(3000);
   std::mt19937 engine(7);
   std::normal_distribution<double> noise(0.0, 0.2);
@@ -67,7 +67,7 @@ TEST(RadomePrediction, LeavesOutTheNoiseOfThePressureUnderTest) {
   EXPECT_LT(std::abs(product / squares), 0.01);  // five coefficients of 3000 samples: 0.0017 on average
 }
 
-TEST(RadomePrediction, KeepsTheValuesWhereTheRadomeHasNone) {
+TEST(RadomePrediction, KeepsValuesWithoutRadomeData) {
   Radome flight(1000);
   flight.samples.columns[0].second[500] = std::numeric_limits<double>::quiet_NaN();
   flight.dynamic_pressure[500] = 77.0;
@@ -113,7 +113,7 @@ TEST(HeightPrediction, KeepsASlowDifferenceFromTheHeight) {
     EXPECT_NEAR(predicted[i], flight.pressure[i], 0.25);
 }
 
-TEST(HeightPrediction, LeavesOutNoiseOfAMinute) {
+TEST(HeightPrediction, ExcludesNoiseOfOneMinute) {
   const Climbs flight(8000);
   std::mt19937 engine(7);
   std::normal_distribution<double> normal;

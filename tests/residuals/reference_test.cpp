@@ -47,7 +47,7 @@ TEST(Reference, OfALaserThatTheModelDoesNotNameIsRefused) {
               test::IsError(Error::Code::model, "lams_airspeed", "static:OTHER.toml"));
 }
 
-TEST(Reference, SaysWhatItReadsForItself) {
+TEST(Reference, ListsItsRoles) {
   EXPECT_TRUE(lams_reference()->reads_laser());
   EXPECT_TRUE(lams_reference()->variables().empty());
   EXPECT_EQ(lams_reference()->model(), nullptr);

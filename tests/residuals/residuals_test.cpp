@@ -185,7 +185,7 @@ TEST(Masks, SayWhyEverySampleIsNotUsed) {
   }
 }
 
-TEST(Masks, KnowALaserThatIsOffOrAstray) {
+TEST(Masks, ExcludeALaserThatIsOffOrWrong) {
   const ModelDefinition model = laser_model();
   pcor::FlightSamples samples =
       pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());

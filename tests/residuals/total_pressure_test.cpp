@@ -41,7 +41,7 @@ std::vector<double> residuals(const Effects& own, const Effects& of_other) {
 
 }  // namespace
 
-TEST(TotalPressure, KnowsNoStaticDefects) {
+TEST(TotalPressure, IsIndependentOfStaticDefects) {
   for (const auto& left :
        {residuals({}, {}), residuals({{"static-constant", 0.01}}, {{"static-qp", 0.05}})}) {
     for (const double value : left) ASSERT_NEAR(value, 0.0, 1e-9);

@@ -53,7 +53,7 @@ std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::Mod
 
 }  // namespace
 
-TEST(Wind, ThatIsSteadyLeavesNothing) {
+TEST(Wind, ResidualOfASteadyWindIsZero) {
   // On one heading the constant absorbs 1/900 of the wind.
   for (const auto& heading : {circles, legs, straight}) {
     for (const double value : residuals(flight(heading), made::air_model())) ASSERT_NEAR(value, 0.0, 0.03);
@@ -80,7 +80,7 @@ TEST(Wind, HasTheDerivativesOfItsResiduals) {
   EXPECT_LT(made::derivative_error(flight(circles), model, *pcor::wind_reference(model), 1e-6), 1e-4);
 }
 
-TEST(Wind, LooksAtTheAirAlone) {
+TEST(Wind, UsesSamplesInTheAirOnly) {
   pcor::FlightSamples parked = flight(legs);
   std::fill_n(parked.motion.airspeed.begin(), 300, 5.0);
   const std::vector<double> left = residuals(parked, made::air_model());

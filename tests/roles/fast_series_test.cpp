@@ -57,7 +57,7 @@ double rms_of_difference(const std::vector<double>& found, double shift, double 
 }
 
 // A ramp of 2 a second; with samples of another interval its rate would be another.
-TEST(RateOf, UnevenRecordsGiveTheRightRateOrNone) {
+TEST(RateOf, UnevenRecordsGiveTheRightRateOrNoRate) {
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> early(-0.4, 0.4);
   std::vector<std::vector<double>> all{seconds(100), seconds(100), {}};

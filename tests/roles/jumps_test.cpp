@@ -43,7 +43,7 @@ TEST(Jumps, VelocityHasItsOwnLeastRate) {
   EXPECT_EQ(jumps[0].count, 1U);
 }
 
-TEST(Jumps, AFlightWithoutHasNone) {
+TEST(Jumps, AFlightWithoutJumpsGivesAnEmptyList) {
   EXPECT_TRUE(find_jumps(climb(), test::sequence(1.4e9, 600)).empty());
   EXPECT_TRUE(find_jumps({}, {}).empty());
 }

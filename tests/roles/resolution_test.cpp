@@ -23,7 +23,7 @@ TEST(Resolution, IsTheStepOfAllValues) {
   EXPECT_NEAR(resolution_of(rounded_to(0.1)), 0.1, 2e-3);
 }
 
-TEST(Resolution, OfFloatsIsNone) {
+TEST(Resolution, OfFloatsOrTooFewValuesIsZero) {
   EXPECT_LT(resolution_of(rounded_to(0.0)), 0.01);
   EXPECT_EQ(resolution_of({}), 0.0);
   EXPECT_EQ(resolution_of({1, 1, 1, 2}), 0.0) << "too few values";

@@ -38,7 +38,7 @@ TEST(UsualVariables, KnowsSeriesThatNoModelReads) {
   EXPECT_EQ(series_named("corrected_mach"), nullptr) << "it is a result";
 }
 
-TEST(NamesOfSeries, EachThatIsMeasuredHasLimits) {
+TEST(NamesOfSeries, MeasuredSeriesHaveLimits) {
   for (const std::string& series : pcor::internal::names_of_series()) {
     const pcor::QuantityInfo& info = *pcor::internal::series_named(series);
     if (info.quantity == pcor::Quantity::date) continue;

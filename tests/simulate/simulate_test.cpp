@@ -165,7 +165,7 @@ TEST(Simulate, MarksTheTruthThatADiagnosisMustNotSee) {
   }
 }
 
-TEST(Simulate, ChangesNoOtherSensorWithTheNoiseOfOne) {
+TEST(Simulate, NoiseOfASensorChangesNoOtherSensor) {
   const std::string text = head + systems + aloft + leg("level", "duration = 60");
   EXPECT_THAT(differences(Simulated(text), Simulated(text + "[noise]\nQCFR = 0.5\n")),
               testing::ElementsAre("QCFR"));
@@ -661,7 +661,7 @@ TEST(Simulate, NoiseHasTheSizeStated) {
   }
 }
 
-TEST(Simulate, LeavesGapsAndSpikes) {
+TEST(Simulate, AddsGapsAndSpikes) {
   const std::string text = head + noiseless + systems + aloft + leg("level", "duration = 600");
   const Simulated whole(text);
   const Simulated flight(text + R"(
@@ -777,7 +777,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::to_string(refusal.index) + "_" + test::test_name(text.substr(before + 1));
     });
 
-TEST(Scenario, RefusesAFileThatIsNotThere) {
+TEST(Scenario, RefusesAnAbsentFile) {
   EXPECT_THAT(test::error_of([] { read_scenario("/nowhere/flight.toml"); }),
               test::IsError(Error::Code::file, "/nowhere/flight.toml"));
 }

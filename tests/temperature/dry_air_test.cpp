@@ -56,14 +56,14 @@ TEST_F(DryAir, IsNoTroubleAbove5Km) {
   EXPECT_THAT(trouble(climb_from(4999.0, 0.0), dry_), HasSubstr("4999 m"));
 }
 
-TEST_F(DryAir, IsAirWithoutVapourWhateverTheModelNames) {
+TEST_F(DryAir, IgnoresTheHumidityOfTheModel) {
   // The driest air below 5 km, 0.05 hPa at 540 hPa, makes 0.07 m in 2 km; steps of an archived flight are
   // rounded to 1 mm.
   EXPECT_THAT(trouble(climb_from(1000.0, 0.07), moist_), IsEmpty());
   EXPECT_THAT(trouble(climb_from(1000.0, 0.001), moist_), HasSubstr("EDPC has no vapour in it"));
 }
 
-TEST_F(DryAir, SaysWhichHumidityTheModelCouldName) {
+TEST_F(DryAir, ListsHumidityVariables) {
   EXPECT_THAT(trouble(climb_from(1000.0, 0.0), dry_),
               AllOf(HasSubstr("vapor_pressure = \"EDPC\""), HasSubstr("moist = true"), Not(HasSubstr("\n"))));
   pcor::ModelDefinition named = moist_;

@@ -142,7 +142,7 @@ TEST(HeightLikelihood, BestCoefficientsMakeTheDevianceLeast) {
   EXPECT_LE(equations.deviance(1), equations.deviance(0));
 }
 
-TEST(HeightLikelihood, FlightsAddUpWhateverTheThreads) {
+TEST(HeightLikelihood, SumIsIndependentOfTheThreads) {
   std::vector<HeightRecord> records;
   for (unsigned seed = 1; seed <= 5; ++seed) {
     made::AirPlan plan;
@@ -320,7 +320,7 @@ TEST(HeightLeastSquares, IsTheLineThroughHeights) {
   EXPECT_LT(fit.sigma, 1e-3);
 }
 
-TEST(HeightLeastSquares, ErrorsAreTooSmallWhereNoiseRemembersItself) {
+TEST(HeightLeastSquares, ErrorsAreTooSmallForCorrelatedNoise) {
   double squares_likely = 0.0;
   double squares_least = 0.0;
   constexpr unsigned seeds = 40;

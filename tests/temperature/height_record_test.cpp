@@ -45,7 +45,7 @@ std::optional<Error> refusal(const pcor::internal::FlightAir& air) {
   return pcor::test::error_of([&] { record_of(air); });
 }
 
-TEST(HeightRecord, IntegralClosesInAirThatIsKnownInClosedForm) {
+TEST(HeightRecord, IntegralEqualsTheClosedForm) {
   const HeightRecord record = record_of(made::air({}));
   EXPECT_EQ(record.segments, 1U);
   EXPECT_EQ(record.samples, 5400U);
@@ -70,7 +70,7 @@ TEST(HeightRecord, ErrorOfTheThermometerIsWhatTheColumnsSay) {
   }
 }
 
-TEST(HeightRecord, ErrorOfTheStaticPressureIsWhatItSays) {
+TEST(HeightRecord, StatedErrorOfTheStaticPressureIsTrue) {
   pcor::internal::FlightAir air = made::air({});
   const HeightRecord truth = record_of(air);
   for (double& p : air.pressure) p += 0.1;
@@ -82,7 +82,7 @@ TEST(HeightRecord, ErrorOfTheStaticPressureIsWhatItSays) {
   }
 }
 
-TEST(HeightRecord, ErrorOfTheHumidityIsWhatItSays) {
+TEST(HeightRecord, StatedErrorOfTheHumidityIsTrue) {
   pcor::internal::FlightAir air = made::air({});
   const double dry = pcor::dry_air<double>().gas_constant;
   // Vapour that falls with the pressure, 0.5 % of R_a at the ground, and 20 % more of it.
@@ -137,7 +137,7 @@ TEST(HeightRecord, ErrorsOfTheLawAreWhatTheySay) {
   }
 }
 
-TEST(HeightRecord, BeginsAnewAfterAGapAndCrossesAShortOne) {
+TEST(HeightRecord, RestartsAfterALongGapOnly) {
   pcor::internal::FlightAir air = made::air({});
   for (std::size_t i = 1000; i < 1005; ++i) air.pressure[i] = nan;
   EXPECT_EQ(record_of(air).segments, 1U);
@@ -159,7 +159,7 @@ TEST(HeightRecord, MissingHeightIsNotAGap) {
   EXPECT_LT(range_of_excess(record), 1e-3);
 }
 
-TEST(HeightRecord, SpikesAreLeftOutAndStepsBeginAnew) {
+TEST(HeightRecord, ExcludesSpikesAndRestartsAtSteps) {
   pcor::internal::FlightAir air = made::air({});
   for (std::size_t i = 500; i < 520; ++i) air.geopotential_height[i] += 40.0;
   for (std::size_t i = 3000; i < air.size(); ++i) air.geopotential_height[i] -= 15.0;
@@ -211,7 +211,7 @@ void expect_same_way(const HeightRecord& one, const HeightRecord& other) {
   }
 }
 
-TEST(HeightRecord, WayThroughTheAirStandsInForThatOverTheGround) {
+TEST(HeightRecord, UsesAirspeedWithoutGroundSpeed) {
   pcor::internal::FlightAir air = made::air({});  // flight in calm air
   const HeightRecord over_ground = record_of(air);
   EXPECT_EQ(over_ground.way, WayKnown::over_ground);
@@ -252,7 +252,7 @@ TEST(HeightRecord, WithoutHeadingTheWayIsOneDirection) {
   }
 }
 
-TEST(HeightRecord, KnowsWhetherTheFlightComesBack) {
+TEST(HeightRecord, DetectsWhetherTheFlightReturns) {
   made::AirPlan plan;
   plan.seconds = 4500;  // three times round
   EXPECT_TRUE(record_of(made::air(plan)).returns);
@@ -264,7 +264,7 @@ TEST(HeightRecord, KnowsWhetherTheFlightComesBack) {
   EXPECT_FALSE(record_of(made::air(plan)).returns);
 }
 
-TEST(HeightRecord, SaysWhatIsWrongWithTheHeight) {
+TEST(HeightRecord, ReportsErrorsOfTheHeight) {
   pcor::internal::FlightAir feet = made::air({});
   for (double& height : feet.geopotential_height) height /= 0.3048;
   EXPECT_THAT(refusal(feet), IsError(Error::Code::variable, "[units] altitude = \"ft\""));

@@ -249,7 +249,7 @@ Scenario::Effect effect(const std::string& id, const std::map<std::string, doubl
 
 /// The default errors include the usual errors of pressures and humidity: flights on which each has an error
 /// drawn from its prior, the law by 0.3 hPa in each of its terms.
-TEST_F(TemperatureRecovery, WithAllThatIsUsuallyWrong) {
+TEST_F(TemperatureRecovery, WithUsualErrorsOfAllSensors) {
   WhitenedSystem scores;
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
@@ -302,7 +302,7 @@ TEST_F(Temperature, HumidityErrorIsNotAssignedToThermometer) {
   }
 }
 
-TEST_F(Temperature, DryAirIsRefusedUnlessItIsWanted) {
+TEST_F(Temperature, RefusesDryAirUnlessRequested) {
   const fs::path flight = fly(one_climb(), 1);
   ModelDefinition dry = model();
   dry.model.moist = false;

@@ -66,7 +66,7 @@ TEST(Units, StandardSpellingChangesOnlyWhatNeedsIt) {
   EXPECT_EQ(pcor::standard_unit("c"), "c") << "the table is case-sensitive";
 }
 
-TEST(Units, TheSameUnitChangesNothingToTheLastBit) {
+TEST(Units, TheSameUnitKeepsEveryBit) {
   for (const auto& [from, to] :
        {std::pair{"hPa", "hPa"}, {"mbar", "hPa"}, {"C", "degC"}, {"deg", "degree"}}) {
     const UnitConversion conversion = UnitConversion::between(from, to, owner);
@@ -94,12 +94,12 @@ TEST(Units, MissingValuesStayMissing) {
   EXPECT_TRUE(std::isnan(convert(std::numeric_limits<double>::quiet_NaN(), "C", "K")));
 }
 
-TEST(Units, AnUnknownUnitSaysHowToStateIt) {
+TEST(Units, ErrorOfAnUnknownUnitAdvises) {
   EXPECT_THAT(refusal("furlong-ish", "hPa"), IsError(Error::Code::unit, "flight.nc", "PSFD", "furlong-ish",
                                                      "unit.static_pressure = \"hPa\"", "[units]"));
 }
 
-TEST(Units, AnAbsentUnitSaysHowToStateIt) {
+TEST(Units, ErrorOfAnAbsentUnitAdvises) {
   EXPECT_THAT(refusal("", "hPa"), IsError(Error::Code::unit, "PSFD", "unit.static_pressure = \"hPa\""));
 }
 
