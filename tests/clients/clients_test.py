@@ -104,7 +104,7 @@ class Clients(unittest.TestCase):
             truth = 1000 - 300 * numpy.arange(600) / 599
             self.assertLess(abs(flight["PSXC"][:] - truth).max(), 2e-3)
 
-    def test_cf_checker_has_nothing_to_say(self):
+    def test_cf_checker_reports_no_error(self):
         if not CHECKER:
             self.skipTest("compliance-checker is not installed: tools/check installs it")
         for name, output in self.outputs.items():

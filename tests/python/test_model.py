@@ -144,7 +144,7 @@ def test_units_and_roles_of_a_flight_count(in_folder):
     assert raised.value.code == "unit"
 
 
-def test_loop_gives_what_arrays_give():
+def test_loop_equals_arrays():
     model, arrays = pcor.Model("c130-psfd-eq18"), recorded(50)
     whole = model.correct(**arrays)
     loop = pcor.Loop(model, rate=1.0)

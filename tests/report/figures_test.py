@@ -27,7 +27,7 @@ class Figures(unittest.TestCase):
         text = (FOLDER / "figures" / "captions.txt").read_text()
         self.assertIn("Command: pcor compare one.nc two.nc -m model.toml", text)
 
-    def test_what_cannot_be_drawn_is_said_before_the_work(self):
+    def test_impossible_figures_are_an_error_before_the_run(self):
         words = [str(TOOL), "refit", *FITTED, "-m", "model.toml", "-o", "none.toml", "--figures"]
         for folder, browser, said in (("figures2", "/nowhere", "CHROMIUM names"), ("model.toml", CHROMIUM, "model.toml is also an input"),
                                       ("one.nc/figures", CHROMIUM, "cannot be a folder")):
@@ -37,7 +37,7 @@ class Figures(unittest.TestCase):
             self.assertEqual(found.stderr.count("\n"), 1)
             self.assertFalse((FOLDER / "none.toml").exists() or (FOLDER / "figures2").exists())
 
-    def test_a_run_that_fails_later_leaves_what_was_there(self):
+    def test_a_failed_run_keeps_earlier_figures(self):
         run(TOOL, "inspect", "one.nc", "--figures", "kept")
         before = {each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}
         # The folder of the table goes while figures are drawn, so that it cannot be written.
@@ -65,7 +65,7 @@ class Figures(unittest.TestCase):
         self.assertEqual(list(temporary.iterdir()), [])
         self.assertTrue(beside.exists())
 
-    def test_a_stopped_run_leaves_nothing(self):
+    def test_a_stopped_run_writes_no_file(self):
         temporary = FOLDER / "temporary"
         temporary.mkdir()
         slow = FOLDER / "slow"

@@ -143,7 +143,7 @@ class ReportInBrowser(unittest.TestCase):
             for vector in vectors:
                 self.assertEqual(float(xml.etree.ElementTree.parse(vector).getroot().get("width")), width, vector.name)
 
-    def test_pictures_of_before_go_and_other_files_stay(self):
+    def test_old_pictures_are_removed_and_other_files_remain(self):
         folder = self.folder / "again"
         folder.mkdir()
         (folder / "captions.txt").write_text("07-of-another-run: A title. A caption.\n../08-outside: A title.\n")
@@ -156,7 +156,7 @@ class ReportInBrowser(unittest.TestCase):
         self.assertTrue((folder / "09-mine.png").exists() and (folder / "notes.txt").exists())
         self.assertEqual(len(list(folder.iterdir())), 2 * PANELS + 3)
 
-    def test_without_a_browser_nothing_is_there(self):
+    def test_without_a_browser_no_picture_is_written(self):
         folder = self.folder / "none"
         for browser, words in (("/nowhere/chromium", "/nowhere/chromium"), (shutil.which("false"), "failed"), (shutil.which("true"), "no pictures")):
             found = subprocess.run([SAMPLE_REPORT, "--figures", folder], env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
@@ -253,7 +253,7 @@ class ReportUnderTheHand(unittest.TestCase):
         self.assertLess(max(abs(found[axis] - dot[axis]) for axis in "xy"), 2)  # pixels; others may lie on it
         self.assertFalse(self.value(f"pcorReport.panels[{self.panels('time')[0]}].cross.hidden"))
 
-    def test_dragging_selects_keys_move_and_undo_goes_back(self):
+    def test_dragging_selects_keys_move_and_undo_restores(self):
         panel = self.panels("time")[0]
         lasts = "(pcorReport.samples.view[1] - pcorReport.samples.view[0]) / pcorReport.samples.length"
         self.browser.drag(*self.place(panel, 0.25), *self.place(panel, 0.75))
@@ -275,7 +275,7 @@ class ReportUnderTheHand(unittest.TestCase):
         self.browser.key("Escape")
         self.assertEqual(self.selection["count"], self.count)
 
-    def test_a_drag_upwards_enlarges_one_picture_alone(self):
+    def test_a_drag_upwards_enlarges_one_picture_only(self):
         panel, other = self.panels("time")
         axis = "pcorReport.panels[{}].drawn.up(pcorReport.panels[{}].drawn.plot.y)"
         rest = self.value(axis.format(other, other))
@@ -303,7 +303,7 @@ class ReportUnderTheHand(unittest.TestCase):
         self.browser.key("ArrowDown", shift=True)
         self.assertAlmostEqual(self.value(height), whole)
 
-    def test_the_wheel_moves_the_page_and_with_control_zooms_where_it_points(self):
+    def test_the_wheel_scrolls_and_with_control_zooms_at_the_pointer(self):
         panel = self.panels("time")[0]
         x, y = self.place(panel, 0.3)
         at = "pcorReport.samples.view[0] + 0.3 * (pcorReport.samples.view[1] - pcorReport.samples.view[0])"
@@ -316,7 +316,7 @@ class ReportUnderTheHand(unittest.TestCase):
         self.browser.wait(f"scrollY !== {before}")
         self.assertAlmostEqual(self.value("(pcorReport.samples.view[1] - pcorReport.samples.view[0]) / pcorReport.samples.length"), 0.8, delta=0.01)
 
-    def test_curves_are_switched_and_the_last_one_stays(self):
+    def test_curves_are_switched_but_the_last_one_remains(self):
         panel = self.panels("time")[0]
         names = self.value(f"pcorReport.panels[{panel}].item.columns")
         points = self.value("pcorReport.points")[panel]
@@ -334,7 +334,7 @@ class ReportUnderTheHand(unittest.TestCase):
         press(switches[0])
         self.assertEqual(self.value(f"{switches[0]}.getAttribute('aria-pressed')"), "true")
 
-    def test_an_empty_selection_says_so_and_scales_stay(self):
+    def test_an_empty_selection_is_reported_and_scales_are_kept(self):
         panel, plane = self.panels("time")[0], self.panels("plane")[0]
         regime, begin, end = self.value("""(() => {
           const {samples} = pcorReport;

@@ -165,7 +165,7 @@ class OtherAircraft(unittest.TestCase):
             # Rounding of 32-bit floats in other units, and means over the second.
             self.assertAlmostEqual(value, rms["ncar"], delta=0.02, msg=family)
 
-    def test_says_what_it_chose(self):
+    def test_reports_its_choices(self):
         result = self.run_tool("compare", "faam-core.nc", "-m", "bare.toml", "--reference", "pressure:PS_RVSM")
         self.assertIn("roles by faam-core: static_pressure = P10_STAT, dynamic_pressure = P0_S10", result.stderr)
         self.assertIn("VELD_GIN: the vertical speed is positive downward", result.stderr)
@@ -179,7 +179,7 @@ class OtherAircraft(unittest.TestCase):
         for name in ("climb", "descent"):
             self.assertEqual(here[name]["begin"][:16], there[name]["begin"][:16])
 
-    def test_series_that_disagree_in_sign_are_told(self):
+    def test_series_of_opposite_sign_are_reported(self):
         """Each against a correlated variable, on a flight with turns and climbs; all agree if no sign is reversed."""
         flight, turned = self.path / "turns.nc", self.path / "turned.nc"
         self.run_tool("simulate", SOURCE / "data/scenarios/c130-eq18.toml", "-o", flight, "--quiet")
@@ -246,7 +246,7 @@ class OtherAircraft(unittest.TestCase):
         self.assertNotIn("static_pressure", flight["roles"])
         self.assertIn("faam-core", self.run_tool("inspect", "ncar.nc", "--roles", "faam", status=1).stderr)
 
-    def test_a_flight_that_cannot_be_read_ends_nothing(self):
+    def test_an_unreadable_flight_does_not_stop_the_others(self):
         (self.path / "bad.nc").write_text("no flight")
         result = self.json("inspect", "ncar.nc", "bad.nc", "faam-core.nc")["flights"]
         self.assertEqual([flight["path"] for flight in result], ["ncar.nc", "bad.nc", "faam-core.nc"])
@@ -254,7 +254,7 @@ class OtherAircraft(unittest.TestCase):
         self.run_tool("inspect", "bad.nc", status=1)
         self.run_tool("inspect", "bad.nc", "bad.nc", status=1)
 
-    def test_what_was_chosen_stands_in_every_result(self):
+    def test_each_result_lists_the_choices(self):
         result = self.json("compare", "faam-core.nc", "-m", "bare.toml", "--reference", "pressure:PS_RVSM", "--report",
                            "choices.html")
         self.assertTrue(any("VELD_GIN" in choice for choice in result["choices"]), result["choices"])
@@ -274,7 +274,7 @@ class OtherAircraft(unittest.TestCase):
         self.assertIn("mine.toml:5:", result.stderr)
         self.assertIn("heigth", result.stderr)
 
-    def test_a_file_like_two_is_told(self):
+    def test_an_ambiguous_file_is_reported(self):
         write(self.path / "both.nc", "halo-bahamas", self.simulated, {"PSM.1": Copy("PSFD", "mb"), "PQM.1": Copy("QCF", "mb")})
         with netCDF4.Dataset(self.path / "both.nc", "a") as file:
             file.institution = "DLR and NOAA"

@@ -115,7 +115,7 @@ class OneMachine(CampaignTest):
                 self.assertLessEqual(before[1].items(), self.made("checks").items())
                 (self.path / "corrected" / BAD).unlink()
 
-    def test_without_gnu_parallel_nothing_is_called_done(self):
+    def test_a_missing_gnu_parallel_marks_no_flight_as_done(self):
         (self.path / "parallel").write_text("#!/bin/sh\nexit 127\n")
         (self.path / "parallel").chmod(0o755)
         result = self.run_script("./one_machine", PATH=f"{self.path}:{os.environ['PATH']}")
@@ -147,7 +147,7 @@ class JobArrays(CampaignTest):
                 for kind in ("corrected", "checks", "failed"):
                     shutil.rmtree(self.path / kind)
 
-    def test_a_second_run_does_what_is_new(self):
+    def test_a_second_run_processes_new_flights_only(self):
         self.array("array.slurm", 5)
         before = self.made()
         self.mend()
@@ -182,7 +182,7 @@ class OneFlight(CampaignTest):
         (self.path / "pcor").chmod(0o755)
         return {"PATH": f"{self.path}:{os.environ['PATH']}"}
 
-    def test_one_that_is_stopped_is_not_done(self):
+    def test_a_stopped_task_is_not_done(self):
         environment = {**os.environ, **self.tool_that("touch begun; exec sleep 60")}
         run = subprocess.Popen(["./one_flight", NAMES[0]], cwd=self.path, start_new_session=True, env=environment)
         while not (self.path / "begun").exists():

@@ -60,7 +60,7 @@ class Lists(ComparisonTest):
                            self.path / "out.toml")
         self.assertEqual([flight["name"] for flight in fit["flights"] if flight["holdout"]], ["two.nc", "three.nc"])
 
-    def test_a_glob_of_held_out_flights_fits_none_of_them(self):
+    def test_held_out_flights_of_a_glob_are_not_fitted(self):
         """`refit one.nc --holdout t*.nc`: the shell makes two names of it, and the second would be fitted."""
         for command in ("refit", "improve"):
             self.refused(command, ONE, "--holdout", THREE, TWO, "-m", self.model(), "-o", self.path / "out.toml",
@@ -155,7 +155,7 @@ class Outputs(ComparisonTest):
                 details = self.run_tool(*command, "--verbose", cwd=self.path).stdout.splitlines()
                 self.assertGreaterEqual(len(details), len(lines))
 
-    def test_what_a_refused_fit_wrote_is_announced(self):
+    def test_files_of_a_refused_fit_are_announced(self):
         result = self.run_tool("temperature", ONE, "-m", self.model(), "-o", "o.toml", "--report", "r.html", cwd=self.path)
         self.assertEqual(result.returncode, 1)
         self.assertIn("no model was written", result.stderr)
@@ -183,7 +183,7 @@ class Hints(ComparisonTest):
             result = subprocess.run(["my tools/pcor", *arguments], cwd=self.path, capture_output=True, text=True)
             self.assertRegex(result.stderr, r": 'my tools/pcor' .*--help\n$")
 
-    def test_every_command_tells_its_version(self):
+    def test_each_command_prints_its_version(self):
         version = self.run_tool("--version").stdout
         self.assertRegex(version, r"^pcor \d")
         for command in ("compare", "refit", "diagnose", "effects", "add", "improve", "check", "process", "temperature",
@@ -205,7 +205,7 @@ class Help(ComparisonTest):
             for example in examples:
                 self.assertTrue(example.startswith(f"  {TOOL} {command}"), example)
 
-    def test_old_names_work_and_tell_the_new_ones(self):
+    def test_old_names_work_and_print_the_new_names(self):
         second = comparison_test.OTHER_SYSTEM
         now = self.done("check", ONE, "-m", self.model(), "--reference", f"static:{second}")
         old = self.done("check", ONE, "-m", self.model(), "--second", second)
@@ -282,7 +282,7 @@ class Terminal(ComparisonTest):
         for refused in ({"TERM": "xterm", "NO_COLOR": "1"}, {"TERM": "dumb"}, {}):
             self.assertEqual(self.shown(9000, "check", ONE, "--verbose", **refused), plain)
 
-    def test_a_command_to_copy_stays_whole(self):
+    def test_a_printed_command_is_not_wrapped(self):
         model = self.model()
         text = self.shown(60, "compare", ONE, "-m", model)
         command = text.strip().splitlines()[-1]
@@ -352,7 +352,7 @@ class Shell(ComparisonTest):
                     result = subprocess.run([*checker, self.path / page], capture_output=True, text=True)
                     self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""), page)
 
-    def test_no_page_of_what_is_no_sub_command(self):
+    def test_no_manual_page_of_an_unknown_sub_command(self):
         self.refused("man", "refitt", words=["refitt"])
 
 

@@ -272,7 +272,7 @@ class Compare(ComparisonTest):
         regimes = self.compare("--intervals", intervals)["models"][0]["regimes"]
         self.assertIn(("cloud", 120), [(regime["name"], regime["samples"]) for regime in regimes])
 
-    def test_flights_are_told_apart(self):
+    def test_flights_are_distinguished(self):
         result = self.compare(flights=(ONE, TWO))
         flights = result["models"][0]["flights"]
         self.assertEqual([flight["name"] for flight in flights], ["one.nc", "two.nc"])
@@ -281,7 +281,7 @@ class Compare(ComparisonTest):
     def test_standard_error_is_empty(self):
         self.assertEqual(self.done("compare", ONE, TWO, "-m", self.model()).stderr, "")
 
-    def test_report_is_one_file_that_fetches_nothing(self):
+    def test_report_is_one_file_without_network_access(self):
         report = self.path / "out.html"
         model = self.model()
         before = set(contents(self.path))
@@ -326,7 +326,7 @@ class ResidualFile(ComparisonTest):
                 self.assertEqual(used.size, model["samples"])
                 self.assertAlmostEqual(math.sqrt((used**2).mean()) / model["rms_hpa"], 1.0, delta=1e-6)
 
-    def test_mask_says_where_there_is_no_residual(self):
+    def test_mask_marks_missing_residuals(self):
         path, result = self.residuals()
         with xarray.open_dataset(path) as file:
             mask, residual = file["MASK"], file["RESIDUAL_1"].values
@@ -376,7 +376,7 @@ class References(ComparisonTest):
                          ["lams", "total:PSFRD+QCFR", "height", "wind"])
         self.assertEqual(silent["models"][:1], stated["models"])
 
-    def test_help_says_which_references_are_taken_without_a_name(self):
+    def test_help_lists_default_references(self):
         for command in ("compare", "refit"):
             self.assertIn("default: lams", self.done(command, "--help").stdout)
 
@@ -387,7 +387,7 @@ class References(ComparisonTest):
         self.assertIn("residual = hydrostatic height against GPS height", text)
         self.assertIn("residual = total pressure of 'PSFRD+QCFR'", text)
 
-    def test_a_reference_of_one_model_is_shown_for_that_alone(self):
+    def test_a_reference_of_one_model_is_shown_for_that_model_only(self):
         """Each of the two pairs is the second pair of the other."""
         laser = replace(r"^attack_differential_pressure.*$", r"\g<0>\n" + LASER)
         other = self.write("other.toml", laser(OTHER_SYSTEM.read_text()))
@@ -437,7 +437,7 @@ class References(ComparisonTest):
         text = self.done("compare", "one.nc", "-m", "model.toml", "--reference", "pressure:PS_A", cwd=self.path).stdout
         self.assertIn("--reference pressure:PS_A", self.run_as_printed(text))
 
-    def test_a_reference_that_asks_for_nothing_has_no_r2(self):
+    def test_a_reference_without_variance_has_no_r2(self):
         """Delta-p of the static pressure itself is 0 everywhere: there is no variance to be explained."""
         model = self.compare("--reference", "pressure:PSFD")["models"][0]
         self.assertIsNone(model["r2"])
@@ -462,7 +462,7 @@ class Refit(ComparisonTest):
         for effect in result["effects"]:
             self.assertLessEqual({"id", "parameters", "stderr"}, set(effect))
 
-    def test_the_table_has_what_each_flight_finds_alone(self):
+    def test_the_table_equals_single_fits(self):
         table = self.path / "flights.csv"
         self.refit("--table", table, "--holdout", STEADY, "--reference", "lams", flights=(ONE, TWO))
         with open(table, newline="") as file:
@@ -499,7 +499,7 @@ class Refit(ComparisonTest):
         self.assertEqual(model["samples"], fit["samples"])
         self.assertAlmostEqual(model["rms_hpa"] / fit["rms_hpa"], 1.0, delta=1e-9)
 
-    def test_the_written_file_says_what_was_found_and_from_what(self):
+    def test_the_written_file_has_results_and_sources(self):
         fit = self.refit()
         file = tomllib.loads((self.path / "out.toml").read_text())
         for effect, of_json in zip(file["effect"], fit["effects"], strict=True):
@@ -531,7 +531,7 @@ class Refit(ComparisonTest):
         text = self.done("refit", *flights, "-m", "model.toml", "-o", "out.toml", cwd=self.path).stdout
         self.run_as_printed(text)
 
-    def test_a_fixed_coefficient_stays(self):
+    def test_a_fixed_coefficient_is_unchanged(self):
         for name in ("static-qp", "static-qp.a2"):
             fit = self.refit("--fix", name, model=self.model(replace(r"a2 = .* \}", "a2 = 0.05 }")))
             held = fit["effects"][2]
@@ -629,7 +629,7 @@ class Refit(ComparisonTest):
         self.refused("refit", ONE, "--holdout", ONE, "-m", self.model(), "-o", self.path / "out.toml",
                      words=["given twice"])
 
-    def test_a_copied_flight_says_the_same(self):
+    def test_a_copied_flight_gives_the_same_result(self):
         """Twice the squares have their minimum where once had it, but for the weights: the noise is found from
         twice as many samples beside as many coefficients, and how slow it is a flight of twenty minutes hardly
         tells: that moves the estimate by less than its error. The part of the errors by noise gets smaller by the
@@ -643,7 +643,7 @@ class Refit(ComparisonTest):
             self.assertGreater(errors_of(twice)[name] * math.sqrt(2.0) / error, 0.8)
             self.assertLess(errors_of(twice)[name] / error, 1.35)
 
-    def test_memory_changes_nothing(self):
+    def test_the_memory_limit_does_not_change_results(self):
         """The same sums in the same order; 1e-9 is for the steps of the minimiser."""
         for more in ((), ("--stage", "pitch manoeuvre: static-alpha")):
             with self.subTest(more):
@@ -685,14 +685,14 @@ class Refit(ComparisonTest):
         self.refit()
         self.assertIn("[provenance]", (self.path / "out.toml").read_text())
 
-    def test_a_bound_that_excludes_the_data_is_told(self):
+    def test_a_bound_that_excludes_the_data_is_reported(self):
         model = self.model(with_a0(0.015, "\nbounds = { a0 = [0.01, 0.02] }"))
         fit = self.refit(model=model)
         self.assertEqual(fit["effects"][0]["at_bound"], ["a0"])
         self.assertEqual(fit["effects"][0]["parameters"]["a0"], 0.01)
         self.assertIn("static-constant.a0 is at its bound 0.01", "\n".join(note_texts(fit)))
 
-    def test_an_effect_that_the_flight_does_not_show_is_told(self):
+    def test_an_undetermined_effect_is_reported(self):
         """Without a yaw manoeuvre nothing is known of the square of the sideslip; the rest is still found."""
         model = self.model(with_effect('id = "static-beta-even"\n'))
         fit = self.refit(flights=(STEADY,), model=model)
@@ -702,7 +702,7 @@ class Refit(ComparisonTest):
         self.assertEqual(fit["effects"].pop()["id"], "static-beta-even")
         self.assert_true_law(fit)
 
-    def test_correlated_coefficients_are_told(self):
+    def test_correlated_coefficients_are_reported(self):
         """Steady legs hardly separate q/p and the Mach number. Their correlation exceeds 0.99 for any noise."""
         model = self.model(with_effect('id = "static-mach"\n'))
         text = self.done("refit", STEADY, "-m", model, "-o", self.path / "out.toml", "--trust-reference").stdout
@@ -757,22 +757,22 @@ class BadInput(ComparisonTest):
     def test_no_such_flight_among_others(self):
         self.both(flights=(ONE, self.path / "none.nc"), words=["none.nc", "no such file"])
 
-    def test_flight_that_is_none(self):
+    def test_file_that_is_not_a_flight(self):
         self.both(flights=(self.write("flight.nc", "no netCDF\n"),), words=["flight.nc", "netCDF"])
 
     def test_no_such_model(self):
         self.both(model=self.path / "none.toml", words=["none.toml"])
 
-    def test_reference_variable_that_is_absent(self):
+    def test_absent_reference_variable(self):
         self.both("--reference", "pressure:PS_B", words=["one.nc", "PS_B", "PS_A", "--reference"])
 
-    def test_reference_variable_that_is_no_pressure(self):
+    def test_reference_variable_without_a_pressure_unit(self):
         self.both("--reference", "pressure:VLAMS", words=["one.nc", "VLAMS", "m/s"])
 
-    def test_reference_that_is_none(self):
+    def test_unknown_reference(self):
         self.both("--reference", "radar", words=["radar", "lams", "static:OTHER.toml", "pressure:VARIABLE"])
 
-    def test_reference_model_that_is_absent(self):
+    def test_absent_reference_model(self):
         self.both("--reference", "static:none.toml", words=["none.toml", "no such file"])
 
     def test_no_laser_in_the_model(self):
@@ -800,7 +800,7 @@ class BadInput(ComparisonTest):
         self.refused("refit", ONE, "-m", self.model(), "--intervals", intervals,
                      words=["2 samples are too few for 3 coefficients", "fix"])
 
-    def test_effects_that_cannot_be_told_apart(self):
+    def test_inseparable_effects(self):
         model = self.model(with_effect('id = "mine"\nwhere = "static"\nformula = "k * static_pressure"\n'
                                        'parameters = { k = 0.0 }\nunit = "hPa"\n'))
         self.refused("refit", ONE, "-m", model, words=["static-constant.a0", "mine.k", "--fix "])
@@ -811,7 +811,7 @@ class BadInput(ComparisonTest):
                                        'parameters = { k = 0.0 }\nunit = "hPa"\n'))
         self.refused("refit", ONE, "-m", model, words=["mine.k", "--fix mine.k"])
 
-    def test_nothing_is_free(self):
+    def test_no_free_coefficient(self):
         fixed = [word for name in LAW for word in ("--fix", name)]
         self.refused("refit", ONE, "-m", self.model(), *fixed, words=["no coefficient is free", "--free"])
 
@@ -829,13 +829,13 @@ class BadInput(ComparisonTest):
         model = self.model(with_a0(0.004, "\nbounds = { a0 = [0.01, 0.02] }"))
         self.refused("refit", ONE, "-m", model, words=["model.toml:", "a0", "0.004", "bounds"])
 
-    def test_unknown_regime(self):
+    def test_misspelt_regime(self):
         self.both("--exclude", "turns", words=["turns", "did you mean turn"])
 
-    def test_regime_that_is_like_no_other(self):
+    def test_unknown_regime(self):
         self.both("--exclude", "banana", words=["banana", "turn", "cloud"])
 
-    def test_stage_that_is_none(self):
+    def test_unknown_stage(self):
         for stage, words in (("pitch manoeuvre", ["pitch manoeuvre: static-alpha"]),
                              ("pitch: static-alpha", ["did you mean pitch manoeuvre"]),
                              ("pitch manoeuvre: static-alpa", ["static-alpa", "did you mean static-alpha"]),
@@ -843,7 +843,7 @@ class BadInput(ComparisonTest):
             with self.subTest(stage):
                 self.refused("refit", ONE, "-m", self.model(), "--stage", stage, words=["--stage", *words])
 
-    def test_intervals_that_are_none(self):
+    def test_invalid_intervals(self):
         self.both("--intervals", self.path / "none.toml", words=["none.toml"])
         self.both("--intervals", self.write("bad.toml", 'format = "pcor-intervals/1"\n[[add]]\nregime = "pitchy"\n'
                                             'begin = "20:00:00"\nend = "20:10:00"\n'), words=["bad.toml:3:", "pitchy"])
@@ -856,7 +856,7 @@ class BadInput(ComparisonTest):
         self.refused("refit", ONE, "-m", self.model(), "--loss", "square", words=["square", "huber"], status=2)
 
 
-    def test_numbers_that_are_none(self):
+    def test_invalid_numbers(self):
         model = self.model()
         for option, value in (("--min-airspeed", "nan"), ("--max-flaps", "many"), ("--memory", "-1"),
                               ("--training-share", "0"), ("--training-share", "1.5")):
@@ -901,7 +901,7 @@ class BadOutput(ComparisonTest):
                 output = self.path / "out.toml"
                 self.refused("refit", ONE, "-m", self.model(), option, output, words=["out.toml", "twice"])
 
-    def test_a_stopped_run_leaves_nothing_unfinished(self):
+    def test_a_stopped_run_leaves_no_partial_file(self):
         """Stopped at several moments of its tenth of a second."""
         scenario, model = self.write("scenario.toml", SCENARIO), self.model()
         before = set(contents(self.path))
@@ -953,7 +953,7 @@ class Simulate(ComparisonTest):
         output = output or self.path / "out.nc"
         self.refused("simulate", scenario, "-o", output, output=output, words=words)
 
-    def test_json_says_what_was_flown(self):
+    def test_json_lists_the_flown_legs(self):
         result = self.simulate(lambda text: text, "--json", "-")
         summary = json.loads(result.stdout)
         self.assertEqual((summary["name"], summary["aircraft"], summary["seed"]), ("c130-short", "C-130 N130AR", 3))
@@ -963,7 +963,7 @@ class Simulate(ComparisonTest):
         with netCDF4.Dataset(self.path / "out.nc") as flight:
             self.assertEqual(len(flight.dimensions["Time"]), summary["records"])
 
-    def test_text_ends_with_what_to_do(self):
+    def test_text_ends_with_the_next_command(self):
         text = self.simulate().stdout
         self.assertRegex(text, r": \S*pcor compare \S+ -m MODEL\.toml\n$")
 
@@ -1013,7 +1013,7 @@ class Simulate(ComparisonTest):
         missing = self.path / "none"
         self.refuse_file(scenario, missing, "make it", output=missing / "out.nc")
 
-    def test_seed_that_is_none(self):
+    def test_invalid_seed(self):
         for seed in ("x", "-3", "1.5"):
             with self.subTest(seed):
                 result = self.simulate(lambda text: text, "--seed", seed)

@@ -97,7 +97,7 @@ class Contract(unittest.TestCase):
             self.assertTrue(np.all(possible | np.isnan(values)), f"{name}: {self.at(~possible & ~np.isnan(values))}")
             self.assertFalse(np.any(silent), f"{name} is missing without a bit: {self.at(silent)}")
 
-    def test_what_is_found_from_a_value_that_is_none_is_missing(self):
+    def test_results_of_a_missing_input_are_missing(self):
         for record, (name, kind) in self.cases.items():
             if kind not in NONE:
                 continue
@@ -106,7 +106,7 @@ class Contract(unittest.TestCase):
                                 f"{result} is {self.spoilt[result][record]} where {name} is {kind}")
             self.assertNotEqual(self.bits[record] & ~self.good_bits[record], 0, f"no bit marks {name} as {kind}")
 
-    def test_what_is_not_found_from_it_stays(self):
+    def test_results_without_the_missing_input_are_unchanged(self):
         for record, (name, kind) in self.cases.items():
             if name == "EDPC" or kind not in NONE:
                 continue  # the air counts as dry

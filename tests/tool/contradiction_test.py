@@ -205,7 +205,7 @@ class Frozen(ChangedTest):
 
 
 class Times(ChangedTest):
-    def test_impossible_ones_are_refused(self):
+    def test_impossible_times_are_refused(self):
         with netCDF4.Dataset(ONE) as flight:
             day = flight["Time"].units.split("since ")[1][:10]
         for of_day in (" 00:00:00 +25:00", " 00:00:00 -99", " 00:00:00 +9999", " 00:60:00", " 25:00:00", " 00:00:00 +05:75",
@@ -215,14 +215,14 @@ class Times(ChangedTest):
                 self.refused("process", flight, "-m", PUBLISHED, "-o", self.path / "out.nc", words=[of_day, "ncatted"])
                 flight.unlink()
 
-    def test_an_impossible_begin_is_not_taken(self):
+    def test_an_impossible_begin_is_refused(self):
         def change(flight):
             flight["Time"].units = "seconds"
             flight["Time"][:] = flight["Time"][:] - flight["Time"][0]
             flight.TimeInterval = "99:99:99-99:99:99"
         self.refused("process", self.changed(change), "-m", PUBLISHED, "-o", self.path / "out.nc", words=["ncatted"])
 
-    def test_possible_ones_are_what_they_say(self):
+    def test_possible_times_are_read_correctly(self):
         with netCDF4.Dataset(ONE) as flight:
             units = flight["Time"].units
         day = units.split("since ")[1][:10]
@@ -237,7 +237,7 @@ class Times(ChangedTest):
                 from datetime import datetime, timedelta
                 self.assertEqual(begins[:19], (datetime.fromisoformat(day) + timedelta(seconds=int(expected))).isoformat()[:19])
 
-    def test_milliseconds_lose_nothing(self):
+    def test_milliseconds_are_kept(self):
         def change(flight):
             values = flight["Time"][:].astype("f8")
             units = flight["Time"].units
@@ -271,7 +271,7 @@ class Attributes(ChangedTest):
                 (self.path / "changed.nc").unlink()
         self.done("process", self.packed("True"), "-m", PUBLISHED, "-o", self.path / "out.nc")
 
-    def test_a_rate_is_what_its_dimension_says(self):
+    def test_the_rate_follows_from_the_dimension(self):
         def change(flight):
             values = flight["PSFD"][:]
             flight.renameVariable("PSFD", "PSFD_AS_IT_WAS")
@@ -300,7 +300,7 @@ class Attributes(ChangedTest):
         self.assertRegex(result.stderr, r"3000000 records in \d+ bytes")
 
 
-    def test_few_bytes_are_not_many_samples(self):
+    def test_a_small_file_cannot_declare_many_samples(self):
         path = self.path / "large.nc"
         with netCDF4.Dataset(path, "w") as flight:
             flight.createDimension("Time", 190000)

@@ -28,7 +28,7 @@ class Demo(unittest.TestCase):
         self.assertLess(result.stdout.count("\n"), 65)
         return result.stdout
 
-    def test_without_a_flight_it_first_says_that_it_simulates_one(self):
+    def test_without_a_flight_the_first_line_announces_a_simulation(self):
         self.assertIn("simulated", self.run_demo("").splitlines()[0])
 
     @unittest.skipUnless(FLIGHTS, "PCOR_FLIGHTS is not set")

@@ -122,13 +122,13 @@ class Add(DiagnosisTest):
         self.assertEqual(model["variables"]["date"], "Time")
         self.assertEqual(model["effect"][-1]["parameters"], {"step": 0.0, "since": 4338.5})
 
-    def test_what_is_added_does_nothing_yet(self):
+    def test_an_added_effect_is_neutral(self):
         """Neutral coefficients change no residual: not even its last bit."""
         self.add("static-lag", "static-attack", "static-mach2")
         first, second = self.compare("-m", self.path / "out.toml")["models"][:2]
         self.assertEqual(first["rms_hpa"], second["rms_hpa"])
 
-    def test_what_is_added_can_be_fitted(self):
+    def test_an_added_effect_can_be_fitted(self):
         """Within four standard errors of the truth, by chance missed one time in 16000."""
         self.add("static-lag", name="lag.toml")
         fit = self.refit(flights=(LAGGING,), model=self.path / "lag.toml")["effects"][-1]
@@ -165,13 +165,13 @@ class Diagnose(DiagnosisTest):
             self.assertEqual(advice["power"] > 0, advice["manoeuvre"] != "")
             self.assertLessEqual(advice["power"], 1)
 
-    def test_nothing_is_missing(self):
+    def test_no_effect_is_missing(self):
         result = self.diagnose()
         self.assert_has_the_keys(result)
         self.assertEqual((result["verdict"], result["findings"]), ("silent", []))
         self.assertGreater(len(result["limits"]), 5)
 
-    def test_text_and_command_where_nothing_is_missing(self):
+    def test_text_and_command_without_a_missing_effect(self):
         self.model(name="my model.toml")
         self.link(ONE, "flight 1.nc")
         text = self.done("diagnose", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
@@ -188,7 +188,7 @@ class Diagnose(DiagnosisTest):
         self.assertLess(finding["rms_after_hpa"], finding["rms_before_hpa"])
         self.assertIn("lag", finding["evidence"][0]["flight"])
 
-    def test_text_and_command_where_an_effect_is_missing(self):
+    def test_text_and_command_with_a_missing_effect(self):
         self.model(name="my model.toml")
         self.link(LAGGING, "flight 1.nc")
         text = self.done("diagnose", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
@@ -197,7 +197,7 @@ class Diagnose(DiagnosisTest):
         self.assertRegex(command, r"pcor add .* && \S*pcor refit")
         self.assertTrue((self.path / "fitted.toml").exists())
 
-    def test_a_shape_that_no_model_file_holds_is_told_with_the_command(self):
+    def test_a_shape_outside_the_model_format_is_reported(self):
         """Both total lines lag behind."""
         scenario = self.write("scenario.toml", with_effect('id = "total-lag"\ntau = 3.0\n')(SCENARIO))
         self.done("simulate", scenario, "-o", self.path / "flight.nc", "--quiet")
@@ -217,7 +217,7 @@ class Diagnose(DiagnosisTest):
         named = [name for each in result["findings"] for name in (each["effect"], *each["aliases"])]
         self.assertIn("my-thrust", named)
 
-    def test_candidates_that_cannot_be_tested_stop_nothing(self):
+    def test_untestable_candidates_do_not_stop_the_run(self):
         flight = self.path / "flight.nc"
         shutil.copy(ONE, flight)
         with netCDF4.Dataset(flight, "a") as file:
@@ -236,7 +236,7 @@ class Diagnose(DiagnosisTest):
         result = self.done("diagnose", ONE, "-m", self.model(), "--no-file-variables", "--quiet")
         self.assertEqual((result.stdout, result.stderr), ("", ""))
 
-    def test_report_is_one_file_that_fetches_nothing(self):
+    def test_report_is_one_file_without_network_access(self):
         report = self.path / "out.html"
         self.done("diagnose", LAGGING, "-m", self.model(), "--no-file-variables", "--report", report, "--quiet")
         self.assertEqual(comparison_test.addresses_in(report.read_text()), set())
@@ -266,7 +266,7 @@ class Improve(DiagnosisTest):
         self.assertIn("\nnot used as a reference: wind: compare shows it", text)
         self.assertIn("pcor process", self.run_as_printed(text))
 
-    def test_report_is_one_file_that_fetches_nothing(self):
+    def test_report_is_one_file_without_network_access(self):
         report = self.path / "out.html"
         self.improve("--report", report)
         self.assertEqual(comparison_test.addresses_in(report.read_text()), set())
@@ -360,7 +360,7 @@ class BadInput(DiagnosisTest):
     def test_place_without_formula(self):
         self.refuse_add("static-lag", "--where", "static", words=["--where", "--formula"], status=2)
 
-    def test_shape_that_is_none(self):
+    def test_unknown_shape(self):
         self.refuse_add("static-transonic:0.8", words=["'0.8'", "static-transonic:NAME=NUMBER"])
         self.refuse_add("static-transonic:onset=x", words=["'x'", "NUMBER"])
         self.refuse_add("static-transonic:strength=1", words=["'strength'", "onset, static_pressure"])
@@ -376,7 +376,7 @@ class BadInput(DiagnosisTest):
         self.refuse_add("my-thrust", "--formula", "k * roll", model=self.model(with_effect(OWN)),
                         words=["'my-thrust'", "already"])
 
-    def test_role_that_nobody_can_guess(self):
+    def test_role_without_a_usual_variable(self):
         self.refuse_add("mine", "--formula", "k * mach * cabin_pressure * dew_point",
                         words=["'mine'", "'dew_point'", 'dew_point = "..."'])
 
@@ -388,10 +388,10 @@ class BadInput(DiagnosisTest):
         self.refuse_add("mine", "--formula", "k * cabin_pressure", "--flight", flight,
                         words=["'mine'", "'cabin_pressure'", "PCAB"])
 
-    def test_nothing_to_add(self):
+    def test_no_effect_to_add(self):
         self.refuse_add(words=["effects"], status=2)
 
-    def test_numbers_that_are_none(self):
+    def test_invalid_numbers(self):
         for option, value in (("--min-airspeed", "nan"), ("--training-share", "0"), ("--training-share", "1.5")):
             with self.subTest(f"{option} {value}"):
                 self.both(option, value, words=[option], status=2)
@@ -439,7 +439,7 @@ class BadOutput(DiagnosisTest):
 class WhatTakesPart(DiagnosisTest):
     """The same samples with the same numbers in every command, and the number of excluded samples with them."""
 
-    def test_every_command_tells_the_same_rms_and_noise(self):
+    def test_all_commands_report_the_same_rms_and_noise(self):
         fitted = self.path / "fitted.toml"
         refit = self.refit("--quiet", output=fitted)
         compared = self.compare(model=fitted)["models"][0]
@@ -485,7 +485,7 @@ class WhatTakesPart(DiagnosisTest):
                              output=self.path / "limited.toml")
         self.assertGreater(limited["masks"]["flaps"], 0)
 
-    def test_a_sensor_that_freezes_is_left_out_and_told(self):
+    def test_a_frozen_sensor_is_excluded_and_reported(self):
         flight = self.path / "frozen.nc"
         shutil.copy(ONE, flight)
         with netCDF4.Dataset(flight, "a") as file:
@@ -514,7 +514,7 @@ class WhatTakesPart(DiagnosisTest):
 
 
 class DoesNoHarm(DiagnosisTest):
-    def test_improve_refuses_a_model_that_is_worse_where_it_was_not_fitted(self):
+    def test_improve_refuses_a_model_that_is_worse_on_held_out_flights(self):
         """Fitted to a flight with an error of the port, it is wrong on the flight without."""
         arguments = ("improve", BIASED, "-m", self.model(), "--holdout", ONE, "-o", self.path / "out.toml")
         self.refused(*arguments, words=(" times the rms ", "--force"))
@@ -523,12 +523,12 @@ class DoesNoHarm(DiagnosisTest):
         self.assertIn(" times the rms ", model["provenance"]["forced"])
         self.assertIn("covariance", model)
 
-    def test_force_without_need_changes_nothing(self):
+    def test_unnecessary_force_changes_no_output(self):
         improved = self.improve("--force")
         self.assertEqual(improved["worse"], "")
         self.assertNotIn("forced", tomllib.loads((self.path / "out.toml").read_text())["provenance"])
 
-    def test_what_is_held_out_and_off_is_not_silence(self):
+    def test_a_biased_held_out_flight_is_reported(self):
         improved = self.improve("--holdout", BIASED, "--force")
         last = improved["steps"][-1]["diagnosis"]
         self.assertNotEqual(last["verdict"], "silent")

@@ -46,7 +46,7 @@ class HostileTest(unittest.TestCase):
 
 
 class Disks(HostileTest):
-    def test_a_full_disk_is_told_and_nothing_crashes(self):
+    def test_a_full_disk_is_an_error_without_a_crash(self):
         script = 'mount -t tmpfs -o size=300k none "$1" && "$0" simulate "$2" -o "$1/out.nc" --quiet; ' \
                  'echo "status $?, left: $(ls -A "$1")"'
         result = subprocess.run(["unshare", "-rm", "sh", "-c", script, TOOL, self.path, SCENARIO],
@@ -67,7 +67,7 @@ class Disks(HostileTest):
         self.assertEqual(result.stdout, "status 1, left: filled\n")
         self.assertRegex(result.stderr, r"\Apcor: .*it has a variable TASX already.*\n\Z")
 
-    def test_a_limit_of_the_length_of_files_is_told(self):
+    def test_a_limit_of_the_file_size_is_an_error(self):
         for command in (("simulate", SCENARIO), ("process", FLIGHT, "-m", LAW)):
             for most in (0, 4096, 100000):
                 with self.subTest(command=command[0], most=most):
@@ -87,7 +87,7 @@ class Signals(HostileTest):
             time.sleep(0.001)
         return run, parts[0]
 
-    def test_they_leave_nothing_behind(self):
+    def test_no_temporary_file_remains(self):
         for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGPIPE, signal.SIGALRM,
                      signal.SIGXCPU, signal.SIGUSR1):
             with self.subTest(signal=stop.name):
@@ -100,7 +100,7 @@ class Signals(HostileTest):
         result = subprocess.run(["sh", "-c", 'trap "" HUP; "$0" effects > /dev/null & kill -HUP $!; wait $!', TOOL])
         self.assertEqual(result.returncode, 0)
 
-    def test_the_next_run_removes_what_a_killed_one_left(self):
+    def test_the_next_run_removes_files_of_a_killed_run(self):
         run, part = self.begin()
         run.kill()
         run.wait()
@@ -127,7 +127,7 @@ class Streams(HostileTest):
         self.assertEqual(done.returncode, 0)
         tomllib.loads(output.read_text())  # no message went into the file
 
-    def test_what_is_no_file_is_called_by_its_name(self):
+    def test_the_error_names_the_kind_of_file(self):
         locked = self.path / "a\x1b[31m\nb"
         result = self.run_tool("process", FLIGHT, "-m", locked, "-o", self.path / "out.nc")
         self.assert_refused(result, r"a\x1b[31m\x0ab")

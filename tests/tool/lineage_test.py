@@ -46,11 +46,11 @@ class Lineage(unittest.TestCase):
         self.assertEqual(self.model("second.toml")["name"], f"{NAME}, fitted to {FLIGHT} and 1 more")
         self.assertEqual(self.model("best.toml")["name"], f"{NAME}, improved on {FLIGHT}")
 
-    def test_the_source_is_the_last_fit_alone(self):
+    def test_the_source_is_the_last_fit_only(self):
         for name in ("first.toml", "second.toml", "best.toml"):
             self.assertRegex(self.model(name)["law"]["source"], "^refit by pcor to [^;]*$")
 
-    def test_what_was_before_is_a_list(self):
+    def test_earlier_sources_are_a_list(self):
         first, second, best = (self.model(name) for name in ("first.toml", "second.toml", "best.toml"))
         published = {"name": NAME, "source": self.model(MODEL)["law"]["source"]}
         of_first = {"name": first["name"], "date": first["provenance"]["date"], "source": first["law"]["source"]}
@@ -65,14 +65,14 @@ class Lineage(unittest.TestCase):
         self.run_tool("refit", "one.nc", "-m", "own.toml", "-o", "from_own.toml", "--force")
         self.assertEqual(self.model("from_own.toml")["name"], f"mine, fitted to my data, fitted to {FLIGHT}")
 
-    def test_models_that_share_a_name_are_told_apart_by_their_files(self):
+    def test_models_with_equal_names_are_distinguished_by_files(self):
         (self.path / "twin.toml").write_text((self.path / "first.toml").read_text())
         text = self.run_tool("compare", "one.nc", "-m", "first.toml", "-m", "twin.toml", "-m", MODEL)
         self.assertRegex(text, r"(?m)^first\.toml  +923 ")
         self.assertRegex(text, r"(?m)^twin\.toml  +923 ")
         self.assertRegex(text, f"(?m)^{re.escape(NAME)}  +923 ")
 
-    def test_a_report_says_how_it_came_to_be(self):
+    def test_a_report_states_its_origin(self):
         html = (self.path / "refit.html").read_text()
         foot = html[html.index("<footer>"):html.index("</footer>")]
         for words in ("pcor refit one.nc two.nc -m first.toml", "by pcor 0.", "first.toml, second.toml",

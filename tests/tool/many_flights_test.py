@@ -71,7 +71,7 @@ class ManyFlightsTest(unittest.TestCase):
 
 
 class Folder(ManyFlightsTest):
-    def test_each_flight_goes_into_the_folder_under_its_name(self):
+    def test_outputs_keep_the_names_of_flights(self):
         flights = self.flights("a.nc", "b.nc", "c.nc")
         result = self.process(flights)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
@@ -79,7 +79,7 @@ class Folder(ManyFlightsTest):
         for name in ("a.nc", "b.nc", "c.nc", "600"):
             self.assertIn(name, result.stdout)
 
-    def test_the_outputs_are_those_of_one_flight_alone(self):
+    def test_outputs_equal_those_of_single_runs(self):
         flights = self.flights("a.nc", "b.nc")
         self.process(flights)
         self.process(flights[1:], output=self.path / "alone.nc")
@@ -88,7 +88,7 @@ class Folder(ManyFlightsTest):
             self.assertEqual(set(one.variables), set(alone.variables))
             self.assertIn(f"-o {self.out / 'b.nc'}", one.history)
 
-    def test_one_flight_may_go_into_a_folder_that_is_there(self):
+    def test_one_flight_may_be_written_into_an_existing_folder(self):
         self.out.mkdir()
         self.assertEqual(self.process(self.flights("a.nc")).returncode, 0)
         self.assertEqual(self.made(), ["a.nc"])
@@ -103,7 +103,7 @@ class Folder(ManyFlightsTest):
             self.assertEqual(set(flight), set(one))
             self.assertEqual(flight["records"], 600)
 
-    def test_a_clash_of_names_is_told_before_the_work(self):
+    def test_duplicate_output_names_are_an_error_before_the_run(self):
         result = self.process(self.flights("one/a.nc", "b.nc", "two/a.nc"))
         self.assertEqual(result.returncode, 1)
         self.assertIn("one/a.nc", result.stderr)
@@ -119,7 +119,7 @@ class Folder(ManyFlightsTest):
             self.assertIn("directory", result.stderr)
         self.assertFalse((self.path / "out.nc").exists())
 
-    def test_a_folder_into_which_nothing_came_is_taken_away(self):
+    def test_an_empty_output_folder_is_removed(self):
         result = self.process([self.bad_flight("a.nc"), self.bad_flight("b.nc")])
         self.assertEqual(result.returncode, 1)
         self.assertFalse(self.out.exists())
@@ -154,7 +154,7 @@ class Folder(ManyFlightsTest):
 
 
 class Unreadable(ManyFlightsTest):
-    def test_the_first_bad_file_stops_the_run_and_what_was_done_stays(self):
+    def test_the_first_bad_file_stops_the_run_and_outputs_remain(self):
         a, b = self.flights("a.nc", "b.nc")
         result = self.process([a, self.bad_flight(), b])
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
@@ -179,7 +179,7 @@ class Unreadable(ManyFlightsTest):
         self.assertEqual(self.states([b, a], "--skip-unreadable"), {"b.nc": "unreadable", "a.nc": "processed"})
 
     @unittest.skipIf(os.environ.get("PCOR_SANITIZED"), "a sanitizer reports invalid reads in HDF5")
-    def test_one_on_which_hdf5_crashes_is_named(self):
+    def test_a_file_that_crashes_hdf5_is_named(self):
         model = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
         a, b, whole = (self.path / name for name in ("a.nc", "b.nc", "whole.nc"))
         for seed, flight in (("1", a), ("2", b)):
@@ -199,7 +199,7 @@ class Unreadable(ManyFlightsTest):
         if not crashes:
             self.skipTest("this HDF5 library does not crash on such files")
 
-    def test_nothing_done_is_status_1(self):
+    def test_a_run_without_output_has_status_1(self):
         result = self.process([self.bad_flight(), self.bad_flight("worse.nc")], "--skip-unreadable")
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
         self.assertIn("worse.nc", result.stdout)
@@ -213,7 +213,7 @@ class Unreadable(ManyFlightsTest):
 
 
 class Stale(ManyFlightsTest):
-    def test_only_what_is_stale_is_done(self):
+    def test_only_stale_outputs_are_made_again(self):
         flights = self.flights("a.nc", "b.nc", "c.nc")
         everything = {"a.nc": "processed", "b.nc": "processed", "c.nc": "processed"}
         nothing = dict.fromkeys(everything, "up to date")
@@ -246,7 +246,7 @@ class Stale(ManyFlightsTest):
         self.assertEqual(set(self.states(flights, "--if-stale", "--suffix", "_X", model=model).values()), {"up to date"})
         self.assertEqual(set(self.states(flights, "--if-stale", model=model).values()), {"processed"})
 
-    def test_a_file_that_is_no_output_of_pcor_is_stale(self):
+    def test_a_file_of_another_program_is_stale(self):
         flights = self.flights("a.nc", "b.nc")
         self.out.mkdir()
         (self.out / "a.nc").write_text("something else")
@@ -262,7 +262,7 @@ class Stale(ManyFlightsTest):
         self.assertIn("up to date", result.stdout)
         self.assertEqual(output.read_bytes(), before)
 
-    def test_a_run_that_is_killed_goes_on_where_it_was(self):
+    def test_a_killed_run_continues(self):
         flight = self.flight("0.nc")
         flights = [flight] + [shutil.copy(flight, self.path / f"{number}.nc") for number in range(1, 40)]
         for how in (signal.SIGTERM, signal.SIGKILL):
@@ -303,7 +303,7 @@ class OpenFiles(ManyFlightsTest):
             self.assertEqual(result.returncode, 0, result.stderr)
 
 
-    def test_one_that_cannot_be_read_is_left_out_where_that_is_asked_for(self):
+    def test_skip_unreadable_excludes_unreadable_flights(self):
         flight = self.path / "0.nc"
         self.run_tool("simulate", SOURCE / "data/scenarios/c130-short.toml", "-o", flight)
         bad = self.bad_flight()
@@ -338,7 +338,7 @@ class ModelNames(ManyFlightsTest):
                 result = self.run_tool(*command, "-m", "c130-psfd-eq18")
                 self.assertEqual(result.returncode, 0, result.stderr)
 
-    def test_a_folder_of_ones_own_comes_first(self):
+    def test_the_folder_of_the_user_precedes_the_package(self):
         own = self.path / "own"
         own.mkdir()
         (own / "my-law.toml").write_text(MODEL.read_text().replace('name = "', 'name = "my own '))
@@ -349,14 +349,14 @@ class ModelNames(ManyFlightsTest):
         with netCDF4.Dataset(self.path / "one.nc") as output:
             self.assertTrue(output.pcor_model.startswith("my own"))
 
-    def test_a_file_goes_before_a_name(self):
+    def test_a_file_precedes_a_name(self):
         (flight,) = self.flights("a.nc")
         (self.path / NAME).write_text(MODEL.read_text().replace('name = "', 'name = "here '))
         self.run_tool("process", flight, "-m", NAME, "-o", self.path / "one.nc", cwd=self.path)
         with netCDF4.Dataset(self.path / "one.nc") as output:
             self.assertTrue(output.pcor_model.startswith("here"))
 
-    def test_an_unknown_name_tells_what_may_be_meant(self):
+    def test_an_unknown_name_gets_suggestions(self):
         (flight,) = self.flights("a.nc")
         own = self.path / "own"
         own.mkdir()
@@ -434,7 +434,7 @@ class ModelsByDate(ManyFlightsTest):
         self.assertEqual((done["state"], left["state"]), ("processed", "unreadable"))
         self.assertRegex(left["reason"], "early is of another time")
 
-    def test_a_law_that_the_flight_does_not_allow_is_not_taken(self):
+    def test_a_law_for_other_flights_is_refused(self):
         self.model("late", 'valid_from = "2004-01-01"\nin_processing = true')
         late = (self.models / "late.toml").read_text()
         self.model("plain", 'valid_from = "2004-01-01"')

@@ -55,14 +55,14 @@ class Outputs(unittest.TestCase):
         self.addCleanup(output.close)
         return output
 
-    def test_conventions_are_those_that_are_kept(self):
+    def test_declared_conventions_are_fulfilled(self):
         for claimed, expected in (("CF-1.0", ""), ("NCAR-RAF/nimbus", "NCAR-RAF/nimbus "),
                                   ("CF-1.6, NCAR-RAF/nimbus-1.3, ACDD-1.0", "NCAR-RAF/nimbus-1.3 ")):
             with self.subTest(input=claimed):
                 self.edit(lambda flight: flight.setncattr("Conventions", claimed))
                 self.assertEqual(self.output().Conventions, expected + "CF-1.8 ACDD-1.3")
 
-    def test_a_unit_that_is_not_known_is_not_cf(self):
+    def test_an_unknown_unit_is_not_cf(self):
         def change(flight):
             odd = flight.createVariable("ODD", "f4", flight["PSFD"].dimensions)
             odd.units = "bananas"
@@ -117,7 +117,7 @@ class Outputs(unittest.TestCase):
         self.assertEqual(sum(hasattr(variable, "cf_role") for variable in again.variables.values()), 1)
         self.assertEqual(again.pcor_input, "first.nc")
 
-    def test_results_are_not_missing_where_only_an_input_is(self):
+    def test_results_need_only_their_inputs(self):
         """PCORFLAG has bits for missing inputs; the results of these samples are still read back."""
         self.edit(lambda flight: flight["TTRR"].__setitem__(slice(100, 200), -32767.0))
         output = self.output()
@@ -145,7 +145,7 @@ class Outputs(unittest.TestCase):
             elif variable.dtype != "S1":
                 self.assertTrue(variable.units)
 
-    def test_what_acdd_highly_recommends_is_there(self):
+    def test_acdd_recommended_attributes_are_present(self):
         output = self.output()
         for attribute in ("title", "summary", "keywords", "Conventions", "history", "date_created",
                           "time_coverage_start", "time_coverage_duration", "geospatial_lat_min", "geospatial_lat_units"):

@@ -109,7 +109,7 @@ class Simulated(CaseTest):
             self.assertEqual(inspected["roles"][role]["variable"], variable)
         self.assertTrue(any("THDG (valid_range = 'as usual')" in note["text"] for note in inspected["notes"]), inspected["notes"])
 
-    def test_a_corrected_pair_alone(self):
+    def test_a_corrected_pair_only(self):
         flight = self.write(self.CORRECTED, {"institution": "NCAR", "Platform": "N130AR"})
         inspected = self.inspect(flight)
         self.assertTrue(any(note["text"].startswith("PSXC and QCXC ") for note in inspected["notes"]), inspected["notes"])
@@ -118,7 +118,7 @@ class Simulated(CaseTest):
             self.assertIn("PSXC_NEW", corrected.variables)
         self.assertTrue((self.path / "corrected.html").exists())
 
-    def test_a_model_of_pressures_alone_gets_the_other_roles(self):
+    def test_a_model_with_pressures_only_gets_the_other_roles(self):
         flight = self.write(self.CORRECTED, {"institution": "NCAR"})
         (self.path / "two.toml").write_text(
             BARE.format('[variables]\nstatic_pressure = "PSXC"\ndynamic_pressure = "QCXC"\n'))
@@ -148,14 +148,14 @@ class Simulated(CaseTest):
             self.assertIn("--fix static-x: the model has no such parameter or effect", result.stderr)
         self.assertIn("a0 = 0.0", (self.path / "r.toml").read_text())
 
-    def test_heights_alone_are_enough_to_diagnose(self):
+    def test_diagnose_needs_only_heights(self):
         flight = self.write(self.NCAR, {"institution": "NCAR"})
         (self.path / "m.toml").write_text(BARE.format(""))
         self.run_tool("diagnose", flight, "-m", "m.toml", "--reference", "height", "--quiet", "--json", "d.json")
         self.assertIn(json.loads((self.path / "d.json").read_text())["verdict"],
                       {"silent", "identified", "cannot be told apart", "partial", "unexplained"})
 
-    def test_hectopascals_that_are_called_pascals(self):
+    def test_hectopascals_labelled_as_pascals(self):
         flight = self.write(self.NCAR, {"institution": "NCAR"}, {"PSFD": "Pa"})
         (self.path / "m.toml").write_text(BARE.format(""))
         for command in (("process", flight, "-m", "m.toml", "-o", "o.nc"), ("compare", flight, "-m", "m.toml", "--reference",
@@ -227,7 +227,7 @@ class Simulated(CaseTest):
         self.assertIn("ground_speed jumps by up to", self.run_tool("compare", flight, "-m", "m.toml", "--reference",
                                                                    "wind").stdout)
 
-    def test_a_model_that_changes_nothing_says_so(self):
+    def test_a_neutral_model_is_reported(self):
         flight = self.write(self.CORRECTED, {"institution": "NCAR"})
         (self.path / "m.toml").write_text(BARE.format(""))
         self.assertIn("changes no pressure", self.run_tool("process", flight, "-m", "m.toml", "--suffix", "_NEW", "-o",
@@ -246,7 +246,7 @@ class Simulated(CaseTest):
             self.assertEqual(inspected["next"], [])
             self.assertIn(expected, inspected["why_no_model"])
 
-    def test_names_that_nobody_knows(self):
+    def test_unknown_names(self):
         """An unknown file gets a model that runs."""
         names = {"static_pressure": "PSFD", "impact_pressure": "QCF", "total_air_temperature": "TTRR",
                  "gps_altitude": "GGALT", "lat": "GGLAT", "pitch_angle": "PITCH", "roll_angle": "ROLL", "true_heading": "THDG",

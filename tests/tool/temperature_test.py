@@ -177,14 +177,14 @@ class Fit(TemperatureTest):
             self.assertEqual(set(flight), FLIGHT_KEYS)
         self.assertEqual(sum(flight["samples"] for flight in result["flights"]), result["samples"])
 
-    def test_finds_what_is_wrong_with_the_thermometer(self):
+    def test_finds_the_error_of_the_thermometer(self):
         for flights in ((ONE,), (TWO,), (ONE, TWO, THREE)):
             with self.subTest(flights=len(flights)):
                 result = self.temperature(flights=flights)
                 self.assertEqual(set(result["coefficients"]), {"a0", "a1"})
                 self.assert_is_truth(result)
 
-    def test_least_squares_stands_beside_it_with_smaller_errors(self):
+    def test_least_squares_is_printed_with_smaller_errors(self):
         result = self.temperature(flights=(ONE, TWO))
         for name, error in result["least_squares"]["stderr"].items():
             self.assertLess(error, 0.5 * result["stderr"][name])
@@ -224,7 +224,7 @@ class Fit(TemperatureTest):
         # An error in proportion to the pressure moves the temperature by a quarter as much, so a fifth is enough.
         self.assertAlmostEqual(unsure["stderr"]["a0"] / expected, 1.0, delta=0.2)
 
-    def test_what_an_error_of_the_pressure_does(self):
+    def test_effect_of_an_error_of_the_pressure(self):
         """All pressures 0.1 hPa higher move the coefficients by what is stated; to a twentieth, as a pressure also
         moves the Mach number and with it the temperature, which the statement leaves out."""
         before = self.temperature("--degree", "1")
@@ -239,7 +239,7 @@ class Fit(TemperatureTest):
         for words in ("one.nc", "two.nc", "likelihood", "std. error", "least squares", "held-out", "too small"):
             self.assertIn(words, text)
 
-    def test_says_what_errors_leave_out(self):
+    def test_lists_sources_outside_the_stated_error(self):
         """A constant error of the static pressure is many times the noise: 0.3 hPa are about 0.1 K."""
         text = self.text_of("--pressure-error", "0")
         self.assertIn("std. error, noise only", text)
@@ -273,7 +273,7 @@ class Fit(TemperatureTest):
         self.assertNotIn("To apply it", self.text_of(*arguments, flights=(flight,)))
         self.refuse(*arguments, "--quiet", flights=(flight,), words=["no model was written", "--force"])
 
-    def test_a_lag_is_not_taken_for_noise_in_silence(self):
+    def test_a_lag_is_reported(self):
         lag = '\n[[effect]]\nid = "static-lag"\ntau = 3.0\n\n[[leg]]'
         flight = self.simulated(SCENARIO.replace("\n[[leg]]", lag, 1))
         self.assertIn("a lag of the static line", " ".join(note_texts(self.temperature(flights=(flight,)))))
@@ -294,7 +294,7 @@ class Fit(TemperatureTest):
         result = self.done("temperature", ONE, TWO, "-m", PUBLISHED, "-o", self.path / "out.toml")
         self.assertEqual(result.stderr, "")
 
-    def test_report_is_one_file_that_fetches_nothing(self):
+    def test_report_is_one_file_without_network_access(self):
         report = self.path / "out.html"
         before = set(contents(self.path))
         self.temperature("--report", report, flights=(ONE, TWO))
@@ -328,7 +328,7 @@ class Refusal(TemperatureTest):
         return self.write(f"{name}.toml",
                           replace(rf"{coefficient} = \S+ ", f"{coefficient} = {value} ")(PUBLISHED.read_text()))
 
-    def test_a_wrong_law_is_not_taken_for_a_thermometer(self):
+    def test_a_wrong_law_is_not_mistaken_for_a_thermometer_error(self):
         """Wrong in the constant, with the attack and with q, by 0.3 and 1 hPa at 700 hPa, q = 80 hPa and a range of the
         radome ratio of 0.12; a thermometer that is right. Not written is as good as right."""
         terms = {"a0": 1.0 / 700.0, "a1": 1.0 / (700.0 * 0.12), "a2": 1.0 / 80.0}
@@ -428,7 +428,7 @@ class Model(TemperatureTest):
         for name in ("PCOR", "PSXC", "QCXC", "MACHX"):
             numpy.testing.assert_array_equal(series(after, name)[good], series(PROCESSED, name)[good], name)
 
-    def test_process_comes_closer_to_the_air(self):
+    def test_process_reduces_the_temperature_error(self):
         self.temperature()
         after = self.process(ONE, self.path / "out.toml")
         flying = series(ONE, "TRUE_TAS") > 80.0
@@ -477,7 +477,7 @@ class Model(TemperatureTest):
 
 
 class Iterate(TemperatureTest):
-    def test_converges_and_says_how_far_each_moved(self):
+    def test_converges_and_reports_changes(self):
         result = self.temperature("--iterate", flights=(ONE, TWO), model=self.with_laser())
         self.assertTrue(result["converged"])
         rounds = result["rounds"]
@@ -513,7 +513,7 @@ class Iterate(TemperatureTest):
         self.assertRegex(text, r"round .*change of delta-p, hPa.*change of temperature, K")
         self.assertIn("converged", text)
 
-    def test_says_how_the_degree_was_chosen(self):
+    def test_reports_the_choice_of_the_degree(self):
         self.assertIn("--degree", note_texts(self.temperature("--iterate", model=self.with_laser()))[0])
 
     def test_another_reference(self):
@@ -596,7 +596,7 @@ class Archived(TemperatureTest):
         flight = self.process(ONE, self.with_laser(), "--hydrostatic", "--correct-with", "lams")
         self.refuse("--archived", flights=(flight,), model=self.with_laser(), words=["corrected.nc", "LAMS"])
 
-    def test_what_does_not_touch_pressures_may_differ(self):
+    def test_models_may_differ_outside_the_pressures(self):
         model = self.write("same.toml", replace("^name = .*$", 'name = "another name"')(
             replace(r"^parameters = { a0 = .*$", r"\g<0>\nstderr = { a0 = 1e-5 }")(
                 replace("^note = .*$", 'note = "another"')(PUBLISHED.read_text()))))
@@ -650,7 +650,7 @@ class Options(TemperatureTest):
         self.assert_is_truth(result)
         self.assertIn("balance", " ".join(note_texts(result)))
 
-    def test_a_slope_of_no_size_is_none(self):
+    def test_a_zero_slope_size_equals_slope_none(self):
         none = self.temperature("--slope", "none", "--degree", "1")
         zero = self.temperature("--slope-size", "0", "--degree", "1")
         self.assert_agree(none, zero, share=1e-6)
@@ -731,7 +731,7 @@ class BadHeight(TemperatureTest):
         self.assertIn("461 samples have no GPS height", " ".join(note_texts(result)))
         self.assert_is_truth(result)
 
-    def test_feet_that_are_called_metres(self):
+    def test_feet_labelled_as_metres(self):
         flight = self.edited(changed("GGALT", lambda height: height / 0.3048))
         self.refuse(flights=(flight,), words=["flight.nc", "GGALT", "in feet", '[units] altitude = "ft"'])
         self.assert_agree(self.temperature(), self.temperature(flights=(flight,), model=in_feet(self)), share=0.1)
@@ -742,7 +742,7 @@ class BadHeight(TemperatureTest):
         self.refuse(flights=(flight,), words=["flight.nc", "GGALT has no unit", "[units] altitude"])
         self.assert_agree(self.temperature(), self.temperature(flights=(flight,), model=in_feet(self)), share=0.1)
 
-    def test_feet_that_are_called_feet(self):
+    def test_feet_labelled_as_feet(self):
         """Values are floats of up to 32768 ft, rounded to 1e-3 ft, far below the noise of 0.3 m."""
         flight = self.edited(changed("GGALT", lambda height: height / 0.3048),
                              lambda file: file["GGALT"].setncattr("units", "ft"))
@@ -755,7 +755,7 @@ class BadHeight(TemperatureTest):
         flight = self.edited(changed("GGALT", lambda height: numpy.nan * height))
         self.refuse(flights=(flight,), words=["flight.nc", "GGALT"])
 
-    def test_that_stands_still(self):
+    def test_constant_height(self):
         flight = self.edited(changed("GGALT", lambda height: 0.0 * height + 3000.0))
         self.refuse(flights=(flight,), words=["flight.nc", "GGALT", "pressure altitude"])
 
@@ -875,7 +875,7 @@ class BadInput(TemperatureTest):
         self.refuse(flights=(ONE, none), words=[none, "no such file"])
         self.refuse(model=none, words=[none, "no such file"])
 
-    def test_a_file_that_is_no_flight(self):
+    def test_a_file_that_is_not_a_flight(self):
         self.refuse(flights=(self.write("flight.nc", "not a flight"),), words=["flight.nc"])
 
     def test_wrong_usage(self):

@@ -129,14 +129,14 @@ class Done(ToolTest):
         one = self.run_tool("effects", "static-qp", "--json", "-")
         self.assertEqual(json.loads(one.stdout)["parameters"][0]["name"], "a2")
 
-    def test_prints_where_an_effect_sits_and_how_it_may_scale(self):
+    def test_prints_place_and_scaling_of_an_effect(self):
         odd = json.loads(self.run_tool("effects", "static-beta-odd", "--json", "-").stdout)
         self.assertEqual((odd["family"], odd["place"]), ("sideslip", "port"))
         self.assertEqual(odd["scalings"], [{"static_pressure": -1, "dynamic_pressure": 1}])
         text = self.run_tool("effects", "clock-skew").stdout
         self.assertRegex(text, r"family +clock\n *place +clock\n")
 
-    def test_says_why_an_effect_leaves_no_trace(self):
+    def test_explains_undetectable_effects(self):
         self.assertIn("lams-fold", self.run_tool("effects").stdout)
         result = self.run_tool("effects", "lams-fold")
         self.assertEqual(result.returncode, 0)
@@ -163,7 +163,7 @@ class Usage(ToolTest):
         self.assert_refused(result, "'--sufix'", "--suffix", status=2)
         self.assert_refused(self.run_tool("process", "--sufix"), "'--sufix'", "--suffix", status=2)
 
-    def test_nothing_asked(self):
+    def test_no_arguments(self):
         self.assert_refused(self.run_tool(), "pcor --help", status=2)
 
     def test_unknown_effect(self):
@@ -195,12 +195,12 @@ class Notes(ToolTest):
             means.append(json.loads(result.stdout)["delta_p_hpa"]["mean"])
         self.assertAlmostEqual(means[0], means[1], places=9)
 
-    def test_formula_of_another_variable_tells_its_unit(self):
+    def test_formula_of_another_variable_states_its_unit(self):
         effect = '\n[[effect]]\nid = "mine"\nformula = "k * GGALT"\nparameters = { k = 0.0 }\n'
         result = self.process(self.flight(), self.model(lambda toml: toml + effect))
         self.assertIn("a formula takes GGALT in", result.stdout)
 
-    def test_dependencies_name_what_was_used(self):
+    def test_dependencies_name_used_variables(self):
         self.process(self.flight())
         header = subprocess.run(["ncdump", "-h", self.path / "out.nc"], capture_output=True, text=True).stdout
         self.assertIn('PCOR:Dependencies = "3 PSFD QCR ADIFR"', header)
@@ -254,7 +254,7 @@ class BadFlight(ToolTest):
         flight = self.flight(with_data("time_offset", lambda t: t[:100] + [t[99]] + t[101:]))
         self.assert_refused(self.process(flight), "time", "100")
 
-    def test_gap_is_told(self):
+    def test_gap_is_reported(self):
         flight = self.flight(
             with_data("time_offset", lambda t: t[:300] + [str(float(x) + 50) for x in t[300:]])
         )
@@ -314,7 +314,7 @@ class BadOutput(ToolTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(json.loads(result.stdout)["records"], 600)
 
-    def test_a_stopped_run_leaves_nothing(self):
+    def test_a_stopped_run_writes_no_file(self):
         flight, model = self.flight(), self.model()
         for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             run = subprocess.Popen([TOOL, "process", flight, "-m", model, "-o", self.path / "out.nc"],
@@ -337,7 +337,7 @@ class BadOutput(ToolTest):
         self.assertEqual(self.process(flight).returncode, 1)
         self.assertEqual(output.read_text(), "old")
 
-    def test_taken_name(self):
+    def test_existing_name(self):
         flight = self.flight(lambda cdl: cdl.replace("GGALT", "PSXC"))
         self.assert_refused(self.process(flight, None, None, "--all"), "PSXC", "--suffix")
         self.assertEqual(self.process(flight, None, None, "--all", "--suffix", "_NEW").returncode, 0)

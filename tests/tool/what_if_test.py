@@ -129,7 +129,7 @@ class WhatIfTest(ComparisonTest):
 
 
 class OneEffect(WhatIfTest):
-    def test_what_it_finds_is_what_the_refit_finds(self):
+    def test_its_coefficients_equal_those_of_refit(self):
         self.diagnosed(FIRST, SECOND)
         self.switch("static-lag")
         page = self.told()
@@ -138,7 +138,7 @@ class OneEffect(WhatIfTest):
         self.assertAlmostEqual(shown, page["coefficients"]["static-lag.tau"][0], delta=1e-4)
         self.assertIn("static-lag", self.value("pcorReport.whatIf.steps.bars.map(({label}) => label).join()"))
 
-    def test_the_page_says_what_its_numbers_say(self):
+    def test_the_text_of_the_page_agrees_with_its_numbers(self):
         self.diagnosed(FIRST, SECOND)
         # Not one sample in 2,000 is between points here, and the sums leave out those of bins that are too short.
         statistics = "statistics(pcorReport.samples.columns.get({!r}).values, pcorReport.samples.indices([pcorReport.samples.columns.get({!r})])).rms"
@@ -152,7 +152,7 @@ class OneEffect(WhatIfTest):
         figures = self.value("pcorReport.whatIf.figures.tBodies[0].rows[0].lastChild.textContent")
         self.assertAlmostEqual(float(figures), told, delta=1e-4)
 
-    def test_keys_move_a_slider_and_undo_goes_back(self):
+    def test_keys_move_a_slider_and_undo_restores_it(self):
         self.diagnosed(FIRST, SECOND)
         self.switch("static-lag")
         slider = f"{self.row('static-lag')}.sliders[0]"
@@ -184,7 +184,7 @@ class OneEffect(WhatIfTest):
         self.assertNotIn("whatIf", self.value("location.href"))
         self.assertFalse(self.value(f"{self.row('static-lag')}.box.checked"))
 
-    def test_a_mouse_moves_a_slider_which_switches_the_effect_on(self):
+    def test_moving_a_slider_switches_its_effect_on(self):
         self.diagnosed(FIRST)
         row = self.row("static-lag")
         x, y = self.middle(f"{row}.sliders[0].range")
@@ -210,7 +210,7 @@ class OneEffect(WhatIfTest):
         self.browser.wait("pcorReport.whatIf.copy.textContent === 'Copied'")
         self.assertEqual(self.value("navigator.clipboard.readText()"), self.value("pcorReport.whatIf.commandText"))
 
-    def test_two_effects_stand_side_by_side(self):
+    def test_two_effects_are_compared(self):
         self.diagnosed(FIRST, SECOND)
         effects = self.value("pcorReport.whatIf.item.effects.map(({id}) => id)")
         self.assertEqual(effects[0], "static-lag")
@@ -241,7 +241,7 @@ class OneEffect(WhatIfTest):
 
 
 class TwoEffects(WhatIfTest):
-    def test_each_and_both_are_what_the_refit_finds(self):
+    def test_each_and_both_equal_refit(self):
         self.diagnosed(BOTH, BOTH_TOO)
         found = [finding["effect"] for finding in self.diagnosis["findings"]]
         self.assertEqual(len(found), 2, found)
