@@ -308,13 +308,28 @@ double StructureTest::chance_of(double equivalent) const {
                   chance_among(equivalent, largest_.tail(draws)));
 }
 
-bool shares_noise(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
-                  const std::vector<const double*>& values) {
+bool ChangeSlope::is_correlated() const {
+  constexpr double level = 0.12;
+  return std::abs(correlation) > level;
+}
+
+bool ChangeSlope::agrees_with(const Structure& structure) const {
+  constexpr double seen = 5.0;       // standard errors
+  constexpr double certain = 3.0;    // standard errors
+  constexpr double tolerance = 0.2;  // the recorded variable and the residual are filtered and delayed
+  if (!(std::abs(structure.slope) > seen * structure.slope_error)) return false;
+  const double allowed =
+      certain * std::hypot(error, structure.slope_error) + tolerance * std::abs(structure.slope);
+  return std::abs(slope - structure.slope) < allowed;
+}
+
+ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
+                             const std::vector<const double*>& values) {
   constexpr std::size_t window = 300;
   constexpr std::size_t fewest = 60;
-  constexpr double level = 0.12;
-  const auto of_flights = share.of_each_flight<std::vector<double>>([&](std::size_t f) {
-    std::vector<double> correlations;
+  using Parts = std::vector<std::array<double, 2>>;  // correlation and slope of each part
+  const auto of_flights = share.of_each_flight<Parts>([&](std::size_t f) {
+    Parts parts;
     const std::vector<double>& residual = residuals[f];
     for (std::size_t first = 1; first < residual.size(); first += window) {
       double rr = 0.0;
@@ -331,15 +346,29 @@ bool shares_noise(const FlightPartition& share, const std::vector<std::vector<do
         ++count;
       }
       if (count < fewest) continue;
-      correlations.push_back(rr > 0.0 && vv > 0.0 ? rv / std::sqrt(rr * vv) : 0.0);
+      const bool varies = rr > 0.0 && vv > 0.0;
+      parts.push_back({varies ? rv / std::sqrt(rr * vv) : 0.0, varies ? rv / vv : 0.0});
     }
-    return correlations;
+    return parts;
   });
   std::vector<double> correlations;
-  for (const std::vector<double>& part : of_flights)
-    correlations.insert(correlations.end(), part.begin(), part.end());
-  if (correlations.empty()) return false;
-  return std::abs(median(std::move(correlations))) > level;
+  std::vector<double> slopes;
+  for (const Parts& parts : of_flights) {
+    for (const auto& [correlation, slope] : parts) {
+      correlations.push_back(correlation);
+      slopes.push_back(slope);
+    }
+  }
+  ChangeSlope result;
+  if (slopes.empty()) return result;
+  result.correlation = median(std::move(correlations));
+  result.slope = median(slopes);
+  std::vector<double> deviations;
+  for (const double slope : slopes) deviations.push_back(std::abs(slope - result.slope));
+  constexpr double of_normal = 1.4826;        // standard deviation / median absolute deviation
+  constexpr double of_median = 1.2533141373;  // error of a median / that of a mean
+  result.error = of_normal * of_median * median(std::move(deviations)) / std::sqrt(slopes.size());
+  return result;
 }
 
 }  // namespace pcor::internal

@@ -127,11 +127,26 @@ class StructureTest {
   Eigen::VectorXd largest_{};  // maximum of each draw over all variables
 };
 
-/// Whether a variable shares the noise of the residual: their record-to-record changes are correlated
-/// everywhere, in and out of manoeuvres. Such a variable was computed from the same noisy measurement, so
-/// structure that varies with it is not evidence.
-/// @param residuals and @param values of local flights
-bool shares_noise(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
-                  const std::vector<const double*>& values);
+/// Slope of the residual in a variable, from the changes between records.
+///
+/// If the changes are correlated everywhere, in and out of manoeuvres, the variable either was computed from
+/// the same noisy measurement, and structure that varies with it is not evidence, or it causes fast changes
+/// of the residual. A cause has the same slope in slow changes; common noise has not, because the slow
+/// changes of the variable are not noise.
+struct ChangeSlope {
+  double correlation = 0.0;  ///< of the changes, median over parts of 300 records; 0 without such parts
+  double slope = 0.0;        ///< hPa per unit of the variable, median over the parts
+  double error = 0.0;        ///< standard error of `slope`
+
+  /// Whether the changes are correlated more than by chance.
+  bool is_correlated() const;
+
+  /// Whether the straight line of a structure has this slope, within the errors and a fifth.
+  bool agrees_with(const Structure& structure) const;
+};
+
+/// @param residuals and @param values of local flights; missing values are ignored
+ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
+                             const std::vector<const double*>& values);
 
 }  // namespace pcor::internal

@@ -204,7 +204,7 @@ std::string hash_of(std::string_view script) {
   constexpr std::size_t bytes = 32;
   std::array<unsigned char, bytes> digest{};
   if (EVP_Digest(script.data(), script.size(), digest.data(), nullptr, EVP_sha256(), nullptr) != 1)
-    throw std::runtime_error("libcrypto has no SHA-256");
+    throw Error(Error::Code::system, "report: libcrypto has no SHA-256; install a complete OpenSSL");
   std::array<unsigned char, 4 * (bytes / 3 + 1) + 1> text{};
   const int length = EVP_EncodeBlock(text.data(), digest.data(), bytes);
   return "sha256-" + std::string(text.begin(), text.begin() + length);

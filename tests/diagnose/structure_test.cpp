@@ -374,17 +374,40 @@ TEST(StructureTest, ConstantOrMissingVariablesAreSkipped) {
   EXPECT_TRUE(std::isfinite(test.structures()[0].gain));
 }
 
-TEST(SharesNoise, VariablesOfOneMeasurementShareNoise) {
+pcor::internal::ChangeSlope changes(const std::vector<double>& residual,
+                                    const std::vector<double>& variable) {
+  return pcor::internal::slope_of_changes(pcor::internal::FlightPartition(1), {residual}, {variable.data()});
+}
+
+TEST(ChangeSlope, IsThatOfACause) {
+  std::vector<double> residual = draws(3600, 20);
+  const std::vector<double> cause = draws(3600, 21);
+  for (std::size_t i = 0; i < cause.size(); ++i) residual[i] += 0.5 * cause[i];
+  const pcor::internal::ChangeSlope found = changes(residual, cause);
+  EXPECT_NEAR(found.slope, 0.5, 4.0 * found.error);
+  EXPECT_LT(found.error, 0.05) << "the changes of 3600 records have an error of 0.017";
+  pcor::internal::Structure slow;
+  slow.slope = 0.5;
+  slow.slope_error = 0.02;
+  EXPECT_TRUE(found.agrees_with(slow));
+  slow.slope = 0.1;
+  EXPECT_FALSE(found.agrees_with(slow)) << "common noise has no slope in slow changes";
+  slow.slope = 0.5;
+  slow.slope_error = 0.2;
+  EXPECT_FALSE(found.agrees_with(slow)) << "slow changes show no slope";
+}
+
+TEST(ChangeSlope, VariablesOfOneMeasurementAreCorrelated) {
   const std::vector<double> residual = draws(3600, 7);
   std::vector<double> derived = draws(3600, 8);
   for (std::size_t i = 0; i < derived.size(); ++i) derived[i] = 3.0 * derived[i] - residual[i];
-  EXPECT_TRUE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {derived.data()}));
+  EXPECT_TRUE(changes(residual, derived).is_correlated());
   const std::vector<double> other = draws(3600, 9);
-  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {other.data()}));
+  EXPECT_FALSE(changes(residual, other).is_correlated());
 }
 
 // An effect makes residual and variable go together in its manoeuvres alone.
-TEST(SharesNoise, CommonManoeuvresDoNotShareNoise) {
+TEST(ChangeSlope, CommonManoeuvresAreNotCorrelatedEverywhere) {
   std::vector<double> residual = draws(3600, 10);
   std::vector<double> variable(3600, 0.0);
   const std::vector<double> sensor = draws(3600, 11);
@@ -393,27 +416,25 @@ TEST(SharesNoise, CommonManoeuvresDoNotShareNoise) {
     if (i >= 1000 && i < 1400) variable[i] += 3.0 * std::sin(static_cast<double>(i) / 2.0);
     residual[i] = 0.3 * residual[i] + variable[i];
   }
-  EXPECT_FALSE(
-      pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {variable.data()}));
+  EXPECT_FALSE(changes(residual, variable).is_correlated());
 }
 
-TEST(SharesNoise, EmptyInputSharesNoNoise) {
+TEST(ChangeSlope, EmptyInputIsNotCorrelated) {
   const std::vector<double> nothing(600, missing);
   const std::vector<double> values = draws(600, 12);
-  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {nothing}, {values.data()}));
+  EXPECT_FALSE(changes(nothing, values).is_correlated());
   const std::vector<double> constant(600, 1.0);
-  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {values}, {constant.data()}));
+  EXPECT_FALSE(changes(values, constant).is_correlated());
 }
 
 // In twenty minutes few unrelated variables are reported: two windows of 300 have a median whose deviation
 // is below 0.058, and the limit of 0.12 is two of them.
-TEST(SharesNoise, IsRarelyChance) {
+TEST(ChangeSlope, IsRarelyCorrelatedByChance) {
   int shared = 0;
   const std::vector<double> residual = draws(1200, 13);
   for (unsigned seed = 0; seed < 100; ++seed) {
     const std::vector<double> other = draws(1200, 500 + seed);
-    shared +=
-        pcor::internal::shares_noise(pcor::internal::FlightPartition(1), {residual}, {other.data()}) ? 1 : 0;
+    shared += changes(residual, other).is_correlated() ? 1 : 0;
   }
   EXPECT_LE(shared, 6);
 }
