@@ -134,7 +134,7 @@ class StructureTest {
 /// of the residual. A cause has the same slope in slow changes; common noise has not, because the slow
 /// changes of the variable are not noise.
 struct ChangeSlope {
-  double correlation = 0.0;  ///< of the changes, median over parts of 300 records; 0 without such parts
+  double correlation = 0.0;  ///< correlation of the changes, median over parts of 300 records; 0 if unknown
   double slope = 0.0;        ///< hPa per unit of the variable, median over the parts
   double error = 0.0;        ///< standard error of `slope`
 
