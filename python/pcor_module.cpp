@@ -92,7 +92,7 @@ class ArrayModel {
   }
 
   std::map<std::string, Array> run(const std::map<std::string, Array>& arrays,
-                                   const std::vector<std::string>& wanted,
+                                   const std::vector<std::string>& requested,
                                    const std::map<std::string, Array>& out) const {
     std::vector<py::ssize_t> shape;
     std::vector<Batch::Input> inputs;
@@ -110,7 +110,7 @@ class ArrayModel {
     for (const py::ssize_t extent : shape) samples *= static_cast<std::size_t>(extent);
     std::map<std::string, Array> results;
     std::vector<Batch::Output> outputs;
-    for (const std::string& name : wanted) {
+    for (const std::string& name : requested) {
       const auto given = out.find(name);
       const auto [result, is_new] = results.emplace(name, given == out.end() ? Array(shape) : given->second);
       if (is_new) outputs.push_back({known_quantity(name), result->second.mutable_data()});

@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
       Quantity::corrected_mach, Quantity::ambient_temperature,       Quantity::corrected_airspeed};
   std::vector<std::unique_ptr<double[]>> arrays(results.size());
   for (const bool anew : {true, false}) {
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 10; ++i) {
       const auto begin = std::chrono::steady_clock::now();
       std::vector<pcor::Batch::Output> outputs;
@@ -41,9 +41,9 @@ int main(int argc, char** argv) {
         outputs.push_back({results[k], arrays[k].get()});
       }
       batch.run(inputs, outputs, samples);
-      least =
-          std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+      minimum =
+          std::min(minimum, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     }
-    std::printf("%.4f\n", least);
+    std::printf("%.4f\n", minimum);
   }
 }

@@ -63,13 +63,13 @@ std::string one_line(std::string_view text) {
   return line;
 }
 
-std::string shortened(std::string_view text, std::size_t most) {
+std::string shortened(std::string_view text, std::size_t maximum) {
   std::size_t letters = 0;
   std::string first;
   each_letter(text, [&](std::string_view letter, bool) {
-    if (++letters <= most) first += letter;
+    if (++letters <= maximum) first += letter;
   });
-  return letters <= most ? std::string(text) : fmt::format("{}... ({} characters)", first, letters);
+  return letters <= maximum ? std::string(text) : fmt::format("{}... ({} characters)", first, letters);
 }
 
 std::string quote(std::string_view text) { return "'" + one_line(shortened(text)) + "'"; }

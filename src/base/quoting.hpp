@@ -15,8 +15,9 @@ using Names = std::vector<std::string>;
 /// or change the direction of writing, and bytes that are not UTF-8 become \x1b and the like.
 std::string one_line(std::string_view text);
 
-/// First characters of a text; a text with more than `most` characters ends with an ellipsis and its length.
-std::string shortened(std::string_view text, std::size_t most = 100);
+/// First characters of a text; a text with more than `maximum` characters ends with an ellipsis and its
+/// length.
+std::string shortened(std::string_view text, std::size_t maximum = 100);
 
 /// `text` on one line in quotation marks, shortened.
 std::string quote(std::string_view text);

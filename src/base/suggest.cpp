@@ -42,21 +42,21 @@ std::size_t changes_between(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::vector<std::string> suggest(std::string_view wrong, const std::vector<std::string>& known,
-                                 std::size_t most) {
+                                 std::size_t maximum) {
   struct Candidate {
     std::size_t changes, prefix;
     const std::string* name;
   };
-  const std::string wanted = lower(wrong);
-  if (wanted.empty() || wanted.size() > max_name) return {};
+  const std::string requested = lower(wrong);
+  if (requested.empty() || requested.size() > max_name) return {};
   std::vector<Candidate> candidates;
   for (const std::string& name : known) {
     const std::string candidate = lower(name);
     if (candidate.empty()) continue;
-    const std::size_t changes = changes_between(wanted, candidate);
-    const std::size_t prefix = shared_prefix(wanted, candidate);
-    const bool one_begins_the_other = prefix >= 2 && prefix == std::min(wanted.size(), candidate.size());
-    if (2 * changes <= std::max(wanted.size(), candidate.size()) || one_begins_the_other)
+    const std::size_t changes = changes_between(requested, candidate);
+    const std::size_t prefix = shared_prefix(requested, candidate);
+    const bool one_begins_the_other = prefix >= 2 && prefix == std::min(requested.size(), candidate.size());
+    if (2 * changes <= std::max(requested.size(), candidate.size()) || one_begins_the_other)
       candidates.push_back({changes, prefix, &name});
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -64,14 +64,14 @@ std::vector<std::string> suggest(std::string_view wrong, const std::vector<std::
   });
   std::vector<std::string> result;
   for (const Candidate& candidate : candidates) {
-    if (result.size() == most) break;
+    if (result.size() == maximum) break;
     result.push_back(*candidate.name);
   }
   return result;
 }
 
-std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& known, std::size_t most) {
-  const std::vector<std::string> names = suggest(wrong, known, most);
+std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& known, std::size_t maximum) {
+  const std::vector<std::string> names = suggest(wrong, known, maximum);
   if (names.empty()) return {};
   std::string text = "did you mean " + names[0];
   for (std::size_t i = 1; i < names.size(); ++i) text += (i + 1 == names.size() ? " or " : ", ") + names[i];

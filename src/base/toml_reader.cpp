@@ -169,28 +169,28 @@ Entry TomlReader::format_of(const toml::table& root, std::string_view is, std::s
   fail(Place{1, 1}, fmt::format("is not declared to be {}; begin the file with format = \"{}\"", is, format));
 }
 
-std::string TomlReader::wrong_kind(const Entry& entry, const std::string& wanted) {
-  return fmt::format("{} is {}; give {}", called(entry), kind_of(*entry.node), wanted);
+std::string TomlReader::wrong_kind(const Entry& entry, const std::string& requested) {
+  return fmt::format("{} is {}; give {}", called(entry), kind_of(*entry.node), requested);
 }
 
 bool TomlReader::boolean(const Entry& entry) const {
   return as<bool>(*entry.node, wrong_kind(entry, "true or false"));
 }
 
-std::int64_t TomlReader::whole_number(const Entry& entry, const std::string& wanted) const {
-  return as<std::int64_t>(*entry.node, wrong_kind(entry, wanted));
+std::int64_t TomlReader::whole_number(const Entry& entry, const std::string& requested) const {
+  return as<std::int64_t>(*entry.node, wrong_kind(entry, requested));
 }
 
-std::string TomlReader::text(const Entry& entry, const std::string& wanted) const {
-  return as<std::string>(*entry.node, wrong_kind(entry, wanted));
+std::string TomlReader::text(const Entry& entry, const std::string& requested) const {
+  return as<std::string>(*entry.node, wrong_kind(entry, requested));
 }
 
-const toml::table& TomlReader::table(const Entry& entry, const std::string& wanted) const {
-  return as<toml::table>(*entry.node, wrong_kind(entry, wanted));
+const toml::table& TomlReader::table(const Entry& entry, const std::string& requested) const {
+  return as<toml::table>(*entry.node, wrong_kind(entry, requested));
 }
 
-const toml::array& TomlReader::array(const Entry& entry, const std::string& wanted) const {
-  return as<toml::array>(*entry.node, wrong_kind(entry, wanted));
+const toml::array& TomlReader::array(const Entry& entry, const std::string& requested) const {
+  return as<toml::array>(*entry.node, wrong_kind(entry, requested));
 }
 
 double TomlReader::finite(const toml::node& node, const std::string& what) const {
@@ -203,45 +203,46 @@ double TomlReader::finite(const toml::node& node, const std::string& what) const
 
 double TomlReader::number(const Entry& entry) const { return finite(*entry.node, called(entry)); }
 
-std::vector<double> TomlReader::numbers(const Entry& entry, const std::string& wanted) const {
+std::vector<double> TomlReader::numbers(const Entry& entry, const std::string& requested) const {
   std::vector<double> values;
-  for (const toml::node& node : array(entry, wanted)) {
+  for (const toml::node& node : array(entry, requested)) {
     values.push_back(finite(node, "a number of " + called(entry)));
   }
   return values;
 }
 
 std::pair<double, double> TomlReader::range(const Entry& entry) const {
-  const std::string wanted = "[lower, upper]";
-  const std::vector<double> ends = numbers(entry, wanted);
+  const std::string requested = "[lower, upper]";
+  const std::vector<double> ends = numbers(entry, requested);
   if (ends.size() != 2) {
-    fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), ends.size(), wanted));
+    fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), ends.size(), requested));
   }
   if (!(ends[0] < ends[1])) {
     fail(entry, fmt::format("{}: the lower end {} is not below the upper end {}; give {}", called(entry),
-                            ends[0], ends[1], wanted));
+                            ends[0], ends[1], requested));
   }
   return {ends[0], ends[1]};
 }
 
 std::vector<std::pair<const toml::node*, std::string>> TomlReader::texts(const Entry& entry,
-                                                                         const std::string& wanted) const {
+                                                                         const std::string& requested) const {
   std::vector<std::pair<const toml::node*, std::string>> values;
-  for (const toml::node& node : array(entry, wanted)) {
-    const std::string otherwise = fmt::format("{} holds {}; give {}", called(entry), kind_of(node), wanted);
+  for (const toml::node& node : array(entry, requested)) {
+    const std::string otherwise =
+        fmt::format("{} holds {}; give {}", called(entry), kind_of(node), requested);
     values.emplace_back(&node, as<std::string>(node, otherwise));
   }
   return values;
 }
 
 std::string TomlReader::date(const Entry& entry) const {
-  const std::string wanted = "a date like \"2011-11-02\"";
+  const std::string requested = "a date like \"2011-11-02\"";
   std::optional<toml::date> day = entry.node->value<toml::date>();
   if (!day) {
-    const std::string written = text(entry, wanted);
+    const std::string written = text(entry, requested);
     day = moment_in<toml::date>(written);
     if (!day) {
-      fail(entry, fmt::format("{}: {} is not a date; give {}", called(entry), quote(written), wanted));
+      fail(entry, fmt::format("{}: {} is not a date; give {}", called(entry), quote(written), requested));
     }
   }
   return fmt::format("{:04}-{:02}-{:02}", day->year, day->month, day->day);

@@ -108,31 +108,31 @@ class TomlReader {
     }
   }
 
-  /// Values of an entry. Any other kind than the `wanted` one is an error.
+  /// Values of an entry. Any other kind than the `requested` one is an error.
   bool boolean(const Entry& entry) const;
-  std::int64_t whole_number(const Entry& entry, const std::string& wanted = "a whole number") const;
-  std::string text(const Entry& entry, const std::string& wanted = "a text in quotes") const;
-  const toml::table& table(const Entry& entry, const std::string& wanted) const;
+  std::int64_t whole_number(const Entry& entry, const std::string& requested = "a whole number") const;
+  std::string text(const Entry& entry, const std::string& requested = "a text in quotes") const;
+  const toml::table& table(const Entry& entry, const std::string& requested) const;
   const toml::table& table(const Entry& entry) const { return table(entry, "a table [" + entry.key + "]"); }
-  const toml::array& array(const Entry& entry, const std::string& wanted) const;
+  const toml::array& array(const Entry& entry, const std::string& requested) const;
 
   /// A finite number; `what` is what messages call it.
   double finite(const toml::node& node, const std::string& what) const;
   double number(const Entry& entry) const;
-  std::vector<double> numbers(const Entry& entry, const std::string& wanted) const;
+  std::vector<double> numbers(const Entry& entry, const std::string& requested) const;
 
   /// The two ends of [lower, upper], of which the lower one is below the upper one.
   std::pair<double, double> range(const Entry& entry) const;
 
   /// The texts of a list, each with its place.
   std::vector<std::pair<const toml::node*, std::string>> texts(const Entry& entry,
-                                                               const std::string& wanted) const;
+                                                               const std::string& requested) const;
 
   /// A date such as 2011-11-02, which the file may have in quotes.
   std::string date(const Entry& entry) const;
 
-  /// That an entry is of the wrong kind, and what is `wanted`.
-  static std::string wrong_kind(const Entry& entry, const std::string& wanted);
+  /// That an entry is of the wrong kind, and what is `requested`.
+  static std::string wrong_kind(const Entry& entry, const std::string& requested);
 
  private:
   void refuse_crowd(const toml::node& node) const;

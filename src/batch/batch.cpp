@@ -86,7 +86,7 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
     if (!given)
       throw Error(Error::Code::variable, fmt::format("the values of '{}' are missing", to_string(needed)));
   }
-  std::bitset<state_capacity> wanted;
+  std::bitset<state_capacity> requested;
   for (const Output& output : outputs) {
     if (!finds(output.quantity)) {
       throw Error(
@@ -95,15 +95,15 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
                       "samples; pass it as an input",
                       to_string(output.quantity)));
     }
-    wanted.set(index(output.quantity));
+    requested.set(index(output.quantity));
   }
   BatchJob job;
   job.chain = &chain_;
   job.with = with_;
   job.parameters = parameters != nullptr ? parameters : chain_.parameters().data();
   for (std::size_t i = stages_.size(); i-- > 0;) {
-    job.runs[i] = (stages_[i].writes & wanted).any();
-    if (job.runs[i]) wanted |= stages_[i].reads;
+    job.runs[i] = (stages_[i].writes & requested).any();
+    if (job.runs[i]) requested |= stages_[i].reads;
   }
   job.inputs = inputs.data();
   job.input_count = inputs.size();

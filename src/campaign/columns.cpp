@@ -81,10 +81,10 @@ std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t r
 
 /// Fills a few missing values with the previous value (at the beginning the next one); longer gaps remain.
 void bridge(Eigen::Ref<Eigen::VectorXf> column, const std::vector<std::size_t>& used) {
-  constexpr double most = 0.1;  // maximum fraction of the samples
+  constexpr double maximum = 0.1;  // maximum fraction of the samples
   std::size_t missing = 0;
   for (const std::size_t i : used) missing += std::isfinite(column[as_index(i)]) ? 0 : 1;
-  if (missing == 0 || static_cast<double>(missing) > most * static_cast<double>(used.size())) return;
+  if (missing == 0 || static_cast<double>(missing) > maximum * static_cast<double>(used.size())) return;
   const auto first = std::find_if(used.begin(), used.end(),
                                   [&](std::size_t i) { return std::isfinite(column[as_index(i)]); });
   float last = column[as_index(*first)];
@@ -315,10 +315,10 @@ Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins)
 
 }  // namespace
 
-const std::vector<double>& FlightColumns::quantity(Quantity wanted) const {
+const std::vector<double>& FlightColumns::quantity(Quantity requested) const {
   static const std::vector<double> none;
   const auto found = std::find_if(quantities.begin(), quantities.end(),
-                                  [wanted](const auto& each) { return each.first == wanted; });
+                                  [requested](const auto& each) { return each.first == requested; });
   return found == quantities.end() ? none : found->second;
 }
 
@@ -374,14 +374,14 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   columns.samples = extended;
   columns.mask = rows.mask();
   columns.exact = residuals.values(start);
-  std::vector<std::size_t> wanted;
+  std::vector<std::size_t> requested;
   for (const System& system : systems) {
     if (is_wind) continue;
-    wanted.insert(wanted.end(), system.free.begin(), system.free.end());
+    requested.insert(requested.end(), system.free.begin(), system.free.end());
     for (std::size_t place = system.first_place; place < system.end && !of_neighbours; ++place)
-      wanted.push_back(place);
+      requested.push_back(place);
   }
-  const Eigen::MatrixXd found = rows.evaluate(used, start, wanted);
+  const Eigen::MatrixXd found = rows.evaluate(used, start, requested);
   columns.given.assign(residuals.size(), nan);
   columns.flaps_out = columns.given;
   for (std::size_t k = 0; k < used.size(); ++k) {

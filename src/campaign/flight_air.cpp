@@ -39,23 +39,23 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
     inputs.push_back({input, samples.model.find(input)->data()});
   const std::size_t count = samples.time.size();
   std::vector<Batch::Output> outputs;
-  const auto wanted = [&](Quantity quantity, std::vector<double>& values) {
+  const auto requested = [&](Quantity quantity, std::vector<double>& values) {
     values.resize(count);
     outputs.push_back({quantity, values.data()});
   };
   const auto if_there = [&](Quantity quantity, std::vector<double>& values) {
-    if (batch.chain().needs(quantity) && !batch.chain().recorded(quantity)) wanted(quantity, values);
+    if (batch.chain().needs(quantity) && !batch.chain().recorded(quantity)) requested(quantity, values);
     if (batch.chain().recorded(quantity)) values = *samples.model.find(quantity);
   };
   std::vector<double> humidity;
-  wanted(Quantity::static_defect, air.static_defect);
-  wanted(Quantity::corrected_static_pressure, air.pressure);
-  wanted(Quantity::corrected_dynamic_pressure, air.dynamic);
-  wanted(Quantity::corrected_mach, air.mach);
-  wanted(Quantity::humidity, humidity);
+  requested(Quantity::static_defect, air.static_defect);
+  requested(Quantity::corrected_static_pressure, air.pressure);
+  requested(Quantity::corrected_dynamic_pressure, air.dynamic);
+  requested(Quantity::corrected_mach, air.mach);
+  requested(Quantity::humidity, humidity);
   if (batch.chain().has_temperature()) {
-    wanted(Quantity::ambient_temperature, air.temperature);
-    wanted(Quantity::corrected_airspeed, air.airspeed);
+    requested(Quantity::ambient_temperature, air.temperature);
+    requested(Quantity::corrected_airspeed, air.airspeed);
   }
   if_there(Quantity::attack, air.attack);
   if_there(Quantity::sideslip, air.sideslip);
@@ -63,8 +63,8 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
   if_there(Quantity::sideslip_ratio, air.sideslip_ratio);
   if (batch.chain().has_lams()) {
     air.laser.emplace();
-    wanted(Quantity::lams_static_defect, air.laser->static_defect);
-    wanted(Quantity::lams_temperature, air.laser->temperature);
+    requested(Quantity::lams_static_defect, air.laser->static_defect);
+    requested(Quantity::lams_temperature, air.laser->temperature);
   }
   batch.run(inputs, outputs, count);
   air.gas_constant.resize(count);

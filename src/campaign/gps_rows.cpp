@@ -167,17 +167,17 @@ class Differentiation {
  public:
   /// @param inputs of the law
   Differentiation(const ModelOnSamples& law, const ModelSamples& inputs, const double* parameters,
-                  const std::vector<std::size_t>& wanted, const AddedEffects& effects)
+                  const std::vector<std::size_t>& requested, const AddedEffects& effects)
       : law_(law),
         parameters_(parameters),
-        wanted_(wanted),
+        requested_(requested),
         at_location_(effects.at),
         dual_(law.parameters().size()) {
-    wanted_.insert(wanted_.end(), effects.amounts_of_model.begin(), effects.amounts_of_model.end());
-    for (std::size_t& location : at_location_) location += wanted.size();
-    own_ = as_index(wanted.size());
+    requested_.insert(requested_.end(), effects.amounts_of_model.begin(), effects.amounts_of_model.end());
+    for (std::size_t& location : at_location_) location += requested.size();
+    own_ = as_index(requested.size());
     if (!at_location_.empty()) amounts_ = effects.amounts(inputs);
-    const Eigen::Index size = as_index(wanted_.size());
+    const Eigen::Index size = as_index(requested_.size());
     at_.airspeed.resize(size);
     at_.pressure.resize(size);
     at_.temperature.resize(size);
@@ -203,13 +203,13 @@ class Differentiation {
   }
 
   void differentiate(std::size_t sample) {
-    for (std::size_t first = 0; first < wanted_.size(); first += jet_width) {
-      const std::size_t width = std::min<std::size_t>(jet_width, wanted_.size() - first);
+    for (std::size_t first = 0; first < requested_.size(); first += jet_width) {
+      const std::size_t width = std::min<std::size_t>(jet_width, requested_.size() - first);
       for (std::size_t p = 0; p < dual_.size(); ++p) dual_[p] = Jet(parameters_[p]);
       for (std::size_t k = 0; k < width; ++k) {
         // GPS is independent of the model of another system.
-        if (wanted_[first + k] < dual_.size())
-          dual_[wanted_[first + k]].v[static_cast<Eigen::Index>(k)] = 1.0;
+        if (requested_[first + k] < dual_.size())
+          dual_[requested_[first + k]].v[static_cast<Eigen::Index>(k)] = 1.0;
       }
       State<Jet> state;
       law_.air(sample, dual_.data(), state);
@@ -227,7 +227,7 @@ class Differentiation {
 
   const ModelOnSamples& law_;
   const double* parameters_;
-  std::vector<std::size_t> wanted_;       // including the amounts at the locations of effects
+  std::vector<std::size_t> requested_;    // including the amounts at the locations of effects
   std::vector<std::size_t> at_location_;  // index of the location of each coefficient of the effects
   Eigen::Index own_ = 0;
   Eigen::MatrixXd amounts_{};
@@ -297,7 +297,7 @@ Series gust_level(const Series& east, const Series& north, const Series& time, d
   constexpr double over = 4.0;
   constexpr double within = 150.0;
   constexpr double factor = 8.26;
-  constexpr double least = 1e-6;
+  constexpr double minimum = 1e-6;
   const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(over / step)));
   const auto reach = static_cast<std::size_t>(std::round(within / step));
   const std::size_t size = east.size();
@@ -313,14 +313,14 @@ Series gust_level(const Series& east, const Series& north, const Series& time, d
     sums[i + 1] += square;
     counts[i + 1] += 1.0;
   }
-  Series level(size, least);
+  Series level(size, minimum);
   for (std::size_t i = 0; i < size; ++i) {
     const std::size_t from = i - std::min(i, reach);
     const std::size_t to = std::min(i + reach + 1, size);
     const double count = counts[to] - counts[from];
     const double mean =
         count > 0.0 ? (sums[to] - sums[from]) / count : sums.back() / std::max(1.0, counts.back());
-    level[i] = std::max(least, mean / factor);
+    level[i] = std::max(minimum, mean / factor);
   }
   return level;
 }
@@ -343,7 +343,7 @@ void add_rises(GpsRows& result, const Series& z) {
 
 GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
                   const std::vector<std::size_t>& used, const double* parameters,
-                  const std::vector<std::size_t>& wanted, const AddedEffects& effects) {
+                  const std::vector<std::size_t>& requested, const AddedEffects& effects) {
   const ModelOnSamples law(file, samples.model);
   const Air air = air_of(samples, law, parameters);
   const std::size_t size = samples.time.size();
@@ -388,9 +388,9 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
   result.thickness = thickness_of(air);
   const ModelSamples calm = without_gusts(samples, file, parameters, air, airspeed);
   const ModelOnSamples calm_law(file, calm);
-  Differentiation differentiate(calm_law, calm, parameters, wanted, effects);
+  Differentiation differentiate(calm_law, calm, parameters, requested, effects);
   const Eigen::Index count = differentiate.count();
-  const Eigen::Index own = as_index(wanted.size());
+  const Eigen::Index own = as_index(requested.size());
   const Eigen::Index records = as_index(size);
   result.rows = RowByRow::Constant(2 * records, count + gps_nuisance_count + 1, nan);
   result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), own);
@@ -454,7 +454,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
 
 GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
                     const std::vector<std::size_t>& used, const double* parameters,
-                    const std::vector<std::size_t>& wanted, const AddedEffects& effects, double warmer) {
+                    const std::vector<std::size_t>& requested, const AddedEffects& effects, double warmer) {
   const ModelOnSamples law(file, samples.model);
   const Air air = air_of(samples, law, parameters);
   const std::size_t size = samples.time.size();
@@ -481,9 +481,9 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
     if (Series* const values = calm.find(input)) *values = low_passed(*values, 5.0 / samples.step);
   }
   const ModelOnSamples calm_law(file, calm);
-  Differentiation differentiate(calm_law, calm, parameters, wanted, effects);
+  Differentiation differentiate(calm_law, calm, parameters, requested, effects);
   const Eigen::Index count = differentiate.count();
-  const Eigen::Index own = as_index(wanted.size());
+  const Eigen::Index own = as_index(requested.size());
   const Eigen::Index columns = count + gps_nuisance_count;
   result.rows = RowByRow::Constant(as_index(size), columns + 1, nan);
   result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), own);
@@ -560,9 +560,9 @@ Eigen::VectorXd gps_nuisance_deviations() {
 
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
-                 const std::vector<std::size_t>& wanted, const AddedEffects& effects, double warmer) {
-  return kind == GpsKind::wind ? wind_rows(samples, model, used, parameters, wanted, effects)
-                               : height_rows(samples, model, used, parameters, wanted, effects, warmer);
+                 const std::vector<std::size_t>& requested, const AddedEffects& effects, double warmer) {
+  return kind == GpsKind::wind ? wind_rows(samples, model, used, parameters, requested, effects)
+                               : height_rows(samples, model, used, parameters, requested, effects, warmer);
 }
 
 }  // namespace pcor::internal

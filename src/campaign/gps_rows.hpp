@@ -65,7 +65,7 @@ struct GpsRows {
   std::vector<double> thickness;  ///< height change by a pressure change, m/hPa
   std::vector<bool> is_break;     ///< height: the height since the sample before is not known
   RowByRow rows;                  ///< wind: of the east, then of the north component of all samples
-  Eigen::MatrixXd defect;         ///< derivatives of the corrected static pressure by the wanted coefficients
+  Eigen::MatrixXd defect;  ///< derivatives of the corrected static pressure by the requested coefficients
 };
 
 /// Effects that the model lacks: each coefficient adds an amount at a location of the model.
@@ -87,12 +87,12 @@ struct AddedEffects {
 /// low-passed by 15 s, because even a thousandth of the noise of pressure or GPS in them would appear as a
 /// temperature error of a few tenths of a kelvin.
 /// @param used samples of the fit @param parameters all parameters of the model; the rows have derivatives by
-/// `wanted` @param effects have further columns, after those of `wanted` @param warmer estimate of the
+/// `requested` @param effects have further columns, after those of `requested` @param warmer estimate of the
 /// thermometer's nuisance, K: the residual is reduced by the fast part of this error, which the low-passed
 /// column omits
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
-                 const std::vector<std::size_t>& wanted, const AddedEffects& effects = {},
+                 const std::vector<std::size_t>& requested, const AddedEffects& effects = {},
                  double warmer = 0.0);
 
 }  // namespace pcor::internal

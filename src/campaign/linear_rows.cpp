@@ -93,22 +93,22 @@ void LinearRows::keep_regimes(const std::vector<Regime>& regimes) {
 }
 
 Eigen::MatrixXd LinearRows::evaluate(const std::vector<std::size_t>& samples, const double* parameters,
-                                     const std::vector<std::size_t>& wanted, bool as_recorded) const {
-  Eigen::MatrixXd result(as_index(samples.size()), as_index(wanted.size()) + 1);
+                                     const std::vector<std::size_t>& requested, bool as_recorded) const {
+  Eigen::MatrixXd result(as_index(samples.size()), as_index(requested.size()) + 1);
   const auto put = [&](const Residuals& residuals, const std::vector<std::size_t>& derivatives) {
     const auto evaluate = at_sensor_ ? &Residuals::evaluate_at_sensor : &Residuals::evaluate;
     (residuals.*evaluate)(samples.data(), samples.size(), parameters, derivatives, result.rightCols(1).data(),
                           result.data());
   };
-  const bool elsewhere = derived_ && !as_recorded && !wanted.empty();
-  put(elsewhere ? *derived_ : residuals_, wanted);
+  const bool elsewhere = derived_ && !as_recorded && !requested.empty();
+  put(elsewhere ? *derived_ : residuals_, requested);
   if (elsewhere) put(residuals_, {});  // residual only
   return result;
 }
 
 Eigen::MatrixXd LinearRows::means(const Binning& bins, const double* parameters,
-                                  const std::vector<std::size_t>& wanted) const {
-  return bin_means(bins, evaluate(used_, parameters, wanted));
+                                  const std::vector<std::size_t>& requested) const {
+  return bin_means(bins, evaluate(used_, parameters, requested));
 }
 
 Eigen::MatrixXd LinearRows::bin_means(const Binning& bins, const Eigen::MatrixXd& rows) const {

@@ -71,7 +71,7 @@ class LinearRows {
   /// Derivatives at some samples with respect to some parameters, a column each, hPa per unit, followed by
   /// the residual, hPa. @param as_recorded derivatives at the recorded samples in all cases
   Eigen::MatrixXd evaluate(const std::vector<std::size_t>& samples, const double* parameters,
-                           const std::vector<std::size_t>& wanted, bool as_recorded = false) const;
+                           const std::vector<std::size_t>& requested, bool as_recorded = false) const;
 
   /// Bins of a series with values at the used samples, NaN elsewhere.
   Binning bins(const std::vector<double>& series) const { return bins_of(samples(), window_, series); }
@@ -81,7 +81,7 @@ class LinearRows {
 
   /// Bin means of derivatives with respect to some parameters, followed by the residual.
   Eigen::MatrixXd means(const Binning& bins, const double* parameters,
-                        const std::vector<std::size_t>& wanted) const;
+                        const std::vector<std::size_t>& requested) const;
 
  private:
   void choose_inputs(const ModelDefinition& model, const Reference& reference, Inputs inputs);

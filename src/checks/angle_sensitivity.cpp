@@ -70,7 +70,7 @@ struct AngleSensitivity {
   AngleReference reference{};
   std::vector<double> residual;   ///< residual at the records of the manoeuvre, hPa, minus its mean
   double swing = 0.0;             ///< standard deviation of the angle, deg
-  double greatest = 0.0;          ///< largest absolute angle, deg
+  double maximum = 0.0;           ///< largest absolute angle, deg
   Estimated slope{};              ///< slope of the residual, hPa/deg
   Estimated per_ratio{nan, nan};  ///< slope against the ratio of the radome pressures, hPa; NaN: not recorded
   Estimated bend{nan, nan};       ///< coefficient of the square of the angle, hPa/deg2; NaN if not fitted
@@ -121,7 +121,7 @@ AngleSensitivity sensitivity_of(const Flown& flown, const AngleReference& refere
   result.slope = against_angle.coefficients[2];
   result.scatter = against_angle.rms;
   if (check.with_square) result.bend = against_angle.coefficients[3];
-  for (const double each : angles) result.greatest = std::fmax(result.greatest, std::abs(each));
+  for (const double each : angles) result.maximum = std::fmax(result.maximum, std::abs(each));
   if (!(air.*check.ratio).empty()) result.per_ratio = fit(flown.of(air.*check.ratio), false).coefficients[2];
   return result;
 }
@@ -198,7 +198,7 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   std::vector<double> squares;
   for (const AngleSensitivity& each : manoeuvres) {
     swings.push_back(ends_of_sine * each.swing);
-    squares.push_back(each.greatest * each.greatest);
+    squares.push_back(each.maximum * each.maximum);
   }
   const Estimated across = mean_of(swings) * slope;
   const Estimated bent = mean_of(squares) * bend;

@@ -377,8 +377,8 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
     std::size_t first = climb.first;
     for (double part = 1.0; part <= parts; part += 1.0) {
       std::size_t end = first;
-      const double wanted = std::abs(thickness) * part / parts;
-      while (end < last && std::abs(heights[end] - heights[climb.first]) < wanted) ++end;
+      const double requested = std::abs(thickness) * part / parts;
+      while (end < last && std::abs(heights[end] - heights[climb.first]) < requested) ++end;
       if (part == parts) end = last;
       if (end == first) continue;
       Layer layer = make_layer(air, heights, first, end);

@@ -170,9 +170,9 @@ RedundantFit fit_of(const Redundant& both) {
   fit.difference = mean.coefficients.front();
   fit.scatter = mean.rms;
   fit.samples = mean.samples;
-  const auto [least, greatest] = range_of(both.first);
-  fit.across = {(fit.orthogonal.slope - 1.0) * (greatest - least),
-                fit.orthogonal.slope_error * (greatest - least)};
+  const auto [minimum, maximum] = range_of(both.first);
+  fit.across = {(fit.orthogonal.slope - 1.0) * (maximum - minimum),
+                fit.orthogonal.slope_error * (maximum - minimum)};
   return fit;
 }
 

@@ -52,8 +52,8 @@ Trend trend_of(const std::vector<double>& series, const Flown& flown, double air
   const std::vector<double> values = flown.of(series);
   Trend trend;
   trend.scatter = standard_deviation(values);
-  const auto [least, greatest] = range_of(values);
-  trend.range = greatest - least;
+  const auto [minimum, maximum] = range_of(values);
+  trend.range = maximum - minimum;
   const LeastSquares line = line_against(flown.of(flown.flight->air.airspeed), values, flown);
   trend.slope = line.coefficients[2];
   const double across = airspeed_range * per_unit;

@@ -194,14 +194,14 @@ FlightPart part_of(FlightResiduals flight, bool with_series, std::vector<SummedR
 }
 
 /// Flights that a report shows.
-std::vector<std::size_t> to_show(const std::vector<FlightPart>& parts, std::size_t most) {
+std::vector<std::size_t> to_show(const std::vector<FlightPart>& parts, std::size_t maximum) {
   std::vector<FlightToShow> flights;
   for (const FlightPart& part : parts) {
     FlightToShow& flight = flights.emplace_back();
     flight.begin = part.begin;
     for (const ModelSums& model : part.models) flight.failure += model.all.statistics().rms;
   }
-  return flights_to_show(flights, most);
+  return flights_to_show(flights, maximum);
 }
 
 /// Every n-th entry.

@@ -109,16 +109,17 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::V
 }
 
 /// Keeps the records of the flights in pictures and shares them with all members.
-void keep_series(const Analysis& analysis, const std::optional<std::vector<std::size_t>>& wanted,
+void keep_series(const Analysis& analysis, const std::optional<std::vector<std::size_t>>& requested,
                  std::vector<FlightDiagnosis>& flights) {
   for (std::size_t f = 0; f < flights.size(); ++f) {
     flights[f].number = analysis.flights()[f].file;
     flights[f].name = analysis.flights()[f].samples->name;
   }
   std::vector<std::size_t> kept;
-  if (wanted) {
+  if (requested) {
     for (std::size_t f = 0; f < flights.size(); ++f) {
-      if (std::find(wanted->begin(), wanted->end(), flights[f].number) != wanted->end()) kept.push_back(f);
+      if (std::find(requested->begin(), requested->end(), flights[f].number) != requested->end())
+        kept.push_back(f);
     }
   } else {
     kept = flights_to_show(analysis.share().of_each_flight<FlightToShow>([&](std::size_t f) {

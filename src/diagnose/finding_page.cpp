@@ -137,9 +137,9 @@ std::string with_error(double value, double error) {
 std::string hpa(double value) { return std::isfinite(value) ? fmt::format("{:.3f}", value) : "unknown"; }
 
 std::string probability(double p) {
-  constexpr double least = 1e-6;
+  constexpr double minimum = 1e-6;
   if (!std::isfinite(p)) return "unknown size";
-  return p < least ? "less than one in a million" : fmt::format("{:.2g}", p);
+  return p < minimum ? "less than one in a million" : fmt::format("{:.2g}", p);
 }
 
 std::string percent(double share) {

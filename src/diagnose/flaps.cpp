@@ -78,30 +78,31 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns
        }))
     samples += count;
   if (samples < min_with_flaps_out) return flaps;
-  std::vector<Wanted> wanted;
+  std::vector<Wanted> requested;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
     const Candidate& candidate = set.candidates[c];
     const bool reads = reads_flaps(candidate.effect, flights.front().samples->flaps_variable);
     if (reads || looks_like_flaps(candidate.effect))
-      wanted.push_back({&candidate, reads, as_index(set.first_column(c)), as_index(candidate.tested.size())});
+      requested.push_back(
+          {&candidate, reads, as_index(set.first_column(c)), as_index(candidate.tested.size())});
   }
   const auto found = columns.share.of_each_flight<std::vector<Testability>>([&](std::size_t f) {
-    std::vector<Testability> of_flight(wanted.size());
+    std::vector<Testability> of_flight(requested.size());
     if (flights[f].reference != 0) return of_flight;
     const std::vector<double> given = all_given(flights[f]);
-    for (std::size_t k = 0; k < wanted.size(); ++k)
-      of_flight[k] = testability_of(flights[f], given, wanted[k].first, wanted[k].count);
+    for (std::size_t k = 0; k < requested.size(); ++k)
+      of_flight[k] = testability_of(flights[f], given, requested[k].first, requested[k].count);
     return of_flight;
   });
   std::vector<Eigen::Index> kept;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
+  for (std::size_t k = 0; k < requested.size(); ++k) {
     const auto misses = [k](const std::vector<Testability>& of_flight) { return of_flight[k].missing > 0; };
     const auto varies = [k](const std::vector<Testability>& of_flight) { return of_flight[k].varies; };
     if (std::any_of(found.begin(), found.end(), misses) || std::none_of(found.begin(), found.end(), varies))
       continue;
-    for (Eigen::Index c = 0; c < wanted[k].count; ++c) kept.push_back(wanted[k].first + c);
-    flaps.candidates.push_back(*wanted[k].candidate);
-    flaps.reads_flaps.push_back(wanted[k].reads_flaps);
+    for (Eigen::Index c = 0; c < requested[k].count; ++c) kept.push_back(requested[k].first + c);
+    flaps.candidates.push_back(*requested[k].candidate);
+    flaps.reads_flaps.push_back(requested[k].reads_flaps);
   }
   if (std::find(flaps.reads_flaps.begin(), flaps.reads_flaps.end(), true) == flaps.reads_flaps.end())
     return {};

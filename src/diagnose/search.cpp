@@ -56,20 +56,20 @@ class EquivalentTable {
 
 /// Greatest equivalent score among groups for each column of `scores` (a draw); the rows are the directions
 /// of all groups in order.
-std::vector<double> greatest(const Eigen::MatrixXd& scores, const std::vector<Eigen::Index>& freedom) {
+std::vector<double> maxima_of(const Eigen::MatrixXd& scores, const std::vector<Eigen::Index>& freedom) {
   std::vector<EquivalentTable> tables;
-  const Eigen::Index most = freedom.empty() ? 0 : *std::max_element(freedom.begin(), freedom.end());
-  for (Eigen::Index k = 0; k <= most; ++k) tables.emplace_back(k);
+  const Eigen::Index max_freedom = freedom.empty() ? 0 : *std::max_element(freedom.begin(), freedom.end());
+  for (Eigen::Index k = 0; k <= max_freedom; ++k) tables.emplace_back(k);
   std::vector<double> result(static_cast<std::size_t>(scores.cols()), 0.0);
   for (Eigen::Index draw = 0; draw < scores.cols(); ++draw) {
     Eigen::Index row = 0;
-    double& greatest = result[static_cast<std::size_t>(draw)];
+    double& maximum = result[static_cast<std::size_t>(draw)];
     for (const Eigen::Index count : freedom) {
       if (count == 0) continue;
       const double chi2 = scores.col(draw).segment(row, count).squaredNorm();
       row += count;
-      if (chi2 <= greatest) continue;  // the equivalent never exceeds chi2
-      greatest = std::max(greatest, count == 1 ? chi2 : tables[static_cast<std::size_t>(count)](chi2));
+      if (chi2 <= maximum) continue;  // the equivalent never exceeds chi2
+      maximum = std::max(maximum, count == 1 ? chi2 : tables[static_cast<std::size_t>(count)](chi2));
     }
   }
   return result;
@@ -134,11 +134,11 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
     Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
     while (told.size() < static_cast<std::size_t>(group.count)) {
       Eigen::Index next = 0;
-      const double most = left.diagonal().maxCoeff(&next);
-      if (told.empty()) remaining_.back() = std::clamp(most, 0.0, 1.0);
-      if (!(most > min_left)) break;
+      const double pivot = left.diagonal().maxCoeff(&next);
+      if (told.empty()) remaining_.back() = std::clamp(pivot, 0.0, 1.0);
+      if (!(pivot > min_left)) break;
       told.push_back(next);
-      left -= Eigen::MatrixXd(left.col(next) * left.row(next) / most);
+      left -= Eigen::MatrixXd(left.col(next) * left.row(next) / pivot);
       for (const Eigen::Index column : told) left(column, column) = 0.0;
     }
     std::sort(told.begin(), told.end());
@@ -277,7 +277,7 @@ double Search::threshold_of(const Conditional& conditional, const std::vector<st
   boost::random::normal_distribution<double> normal;  // the same on every machine
   const Eigen::MatrixXd independent = Eigen::MatrixXd::NullaryExpr(
       turn.cols(), as_index(options.draws), [&](Eigen::Index, Eigen::Index) { return normal(engine); });
-  std::vector<double> maxima = greatest(root * independent, freedom);
+  std::vector<double> maxima = maxima_of(root * independent, freedom);
   const auto place = static_cast<std::ptrdiff_t>(options.confidence * static_cast<double>(maxima.size() - 1));
   std::nth_element(maxima.begin(), maxima.begin() + place, maxima.end());
   return maxima[static_cast<std::size_t>(place)];
@@ -482,7 +482,7 @@ SearchResult Search::run(const SearchOptions& options) const {
     const Conditional conditional = given(chosen);
     std::vector<std::size_t> rest;
     std::size_t winner = groups_.size();
-    double most = 0.0;
+    double best_value = 0.0;
     GroupScore best;
     for (const std::size_t group : open) {
       if (is_in(group, chosen) || is_taken(group, chosen)) continue;
@@ -492,8 +492,8 @@ SearchResult Search::run(const SearchOptions& options) const {
       std::vector<std::size_t> with = chosen;
       with.push_back(group);
       const double value = evidence(with);
-      if (winner != groups_.size() && value <= most) continue;
-      most = value;
+      if (winner != groups_.size() && value <= best_value) continue;
+      best_value = value;
       best = score;
       winner = group;
     }

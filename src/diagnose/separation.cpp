@@ -28,10 +28,10 @@ double distinct(const Eigen::MatrixXd& information, const std::vector<Eigen::Ind
 
 /// Minimum of that part over all rivals.
 double min_distinct(const SeparationProblem& rivalry, const Eigen::MatrixXd& information) {
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (const std::vector<Eigen::Index>& rest : rivalry.rests)
-    least = std::min(least, distinct(information, rest, rivalry.own, rivalry.size) / rivalry.variance);
-  return least;
+    minimum = std::min(minimum, distinct(information, rest, rivalry.own, rivalry.size) / rivalry.variance);
+  return minimum;
 }
 
 double power_of(double distinct) {

@@ -24,7 +24,7 @@ bool Smooth::describe(const VariableValues& values) {
   centre_ = values.mean();
   deviation_ = values.deviation();
   // Variation in the last digits only is ignored.
-  return deviation_ > 1e-9 * std::max(std::abs(values.least()), std::abs(values.most()));
+  return deviation_ > 1e-9 * std::max(std::abs(values.minimum()), std::abs(values.maximum()));
 }
 
 Smooth Smooth::with_knots_at_values(const VariableValues& values, std::size_t columns) {
@@ -58,8 +58,8 @@ Smooth Smooth::with_even_knots(const VariableValues& values, std::size_t columns
   // constant.
   const std::size_t spans = columns - 1;
   smooth.columns_ = columns;
-  smooth.distance_ = (values.most() - values.least()) / static_cast<double>(spans);
-  smooth.first_ = values.least();
+  smooth.distance_ = (values.maximum() - values.minimum()) / static_cast<double>(spans);
+  smooth.first_ = values.minimum();
   return smooth;
 }
 

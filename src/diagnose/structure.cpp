@@ -150,15 +150,15 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
   const VariableValues known = values_of(values);
   if (misses_too_much(known)) return false;
   if (turn > 0.0) return add(name, values, Smooth::periodic(known, turn));
-  const std::size_t most = std::clamp(rows_ / bins_per_column, std::size_t{1}, max_columns);
-  return add(name, values, Smooth::with_knots_at_values(known, most));
+  const std::size_t maximum = std::clamp(rows_ / bins_per_column, std::size_t{1}, max_columns);
+  return add(name, values, Smooth::with_knots_at_values(known, maximum));
 }
 
 bool StructureTest::add_fine(const std::string& name, const std::vector<const double*>& values) {
-  const std::size_t most = std::min(rows_ / bins_per_column, fine_columns);
-  if (most <= max_columns) return false;
+  const std::size_t maximum = std::min(rows_ / bins_per_column, fine_columns);
+  if (maximum <= max_columns) return false;
   const VariableValues known = values_of(values);
-  return !misses_too_much(known) && add(name, values, Smooth::with_even_knots(known, most));
+  return !misses_too_much(known) && add(name, values, Smooth::with_even_knots(known, maximum));
 }
 
 std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,

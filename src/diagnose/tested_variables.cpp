@@ -97,13 +97,13 @@ struct Described {
 
 /// Description of a variable in a file, without its values.
 struct Seen {
-  double least = std::numeric_limits<double>::infinity();
-  double most = -std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
   std::size_t spacing = 1;  // records from one value to the next
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(least, most, spacing);
+    archive(minimum, maximum, spacing);
   }
 };
 
@@ -126,8 +126,8 @@ Values read_variable(const Flight& file, const Described& variable, Seen& seen) 
   if (seen.spacing > 1) fill_between(values, variable.turn > 0.0);
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
-    seen.least = std::min(seen.least, value);
-    seen.most = std::max(seen.most, value);
+    seen.minimum = std::min(seen.minimum, value);
+    seen.maximum = std::max(seen.maximum, value);
   }
   return std::make_shared<const std::vector<double>>(std::move(values));
 }
@@ -141,17 +141,17 @@ TestedVariable tested(const Described& described, const std::vector<Seen>& seen)
   variable.in_file = true;
   variable.may_be_cause = true;
   if (described.rate > 1) variable.sampling = fmt::format("means of {} samples a record", described.rate);
-  double least = described.turn;
-  double most = -described.turn;
+  double minimum = described.turn;
+  double maximum = -described.turn;
   for (const Seen& each : seen) {
-    least = std::min(least, each.least);
-    most = std::max(most, each.most);
+    minimum = std::min(minimum, each.minimum);
+    maximum = std::max(maximum, each.maximum);
     if (each.spacing > 1)
       variable.sampling = fmt::format("one value in {} records, {} in between", each.spacing,
                                       described.turn > 0.0 ? "held" : "interpolated");
   }
   // An angle within less than half of all directions is treated as an ordinary number.
-  if (described.turn > 0.0 && most - least > 0.5 * described.turn && most - least <= described.turn)
+  if (described.turn > 0.0 && maximum - minimum > 0.5 * described.turn && maximum - minimum <= described.turn)
     variable.turn = described.turn;
   return variable;
 }

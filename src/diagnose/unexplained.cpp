@@ -218,10 +218,10 @@ struct Tested {
   /// Whether the structure with the greatest gain, for its degrees of freedom, is significant.
   bool explains_most_beyond_chance() const {
     const std::vector<Structure>& all = test.structures();
-    const auto most = std::max_element(all.begin(), all.end(), [](const Structure& a, const Structure& b) {
+    const auto maximum = std::max_element(all.begin(), all.end(), [](const Structure& a, const Structure& b) {
       return a.gain - a.freedom < b.gain - b.freedom;
     });
-    return most != all.end() && test.chance_of(most->equivalent) < chance;
+    return maximum != all.end() && test.chance_of(maximum->equivalent) < chance;
   }
 
   double p_value() const {

@@ -14,21 +14,21 @@ struct ValueSums {
   std::size_t count = 0;
   std::size_t missing = 0;
   double sum = 0.0;
-  double least = std::numeric_limits<double>::infinity();
-  double most = -std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
 
   ValueSums& operator+=(const ValueSums& other) {
     count += other.count;
     missing += other.missing;
     sum += other.sum;
-    least = std::min(least, other.least);
-    most = std::max(most, other.most);
+    minimum = std::min(minimum, other.minimum);
+    maximum = std::max(maximum, other.maximum);
     return *this;
   }
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(count, missing, sum, least, most);
+    archive(count, missing, sum, minimum, maximum);
   }
 };
 
@@ -48,16 +48,16 @@ VariableValues::VariableValues(const FlightPartition& share,
     own.missing -= own.count;
     for (const double value : values) {
       own.sum += value;
-      own.least = std::min(own.least, value);
-      own.most = std::max(own.most, value);
+      own.minimum = std::min(own.minimum, value);
+      own.maximum = std::max(own.maximum, value);
     }
     return own;
   });
   count_ = sums.count;
   missing_ = sums.missing;
   if (count_ == 0) return;
-  least_ = sums.least;
-  most_ = sums.most;
+  minimum_ = sums.minimum;
+  maximum_ = sums.maximum;
   mean_ = sums.sum / static_cast<double>(count_);
   const auto squares = share.sum_of_each_flight<double>([this](std::size_t flight) {
     double own = 0.0;
@@ -67,7 +67,7 @@ VariableValues::VariableValues(const FlightPartition& share,
   deviation_ = std::sqrt(squares / static_cast<double>(count_));
 }
 
-std::vector<double> VariableValues::distinct(std::size_t most) const {
+std::vector<double> VariableValues::distinct(std::size_t maximum) const {
   std::vector<double> all;  // sorted
   const auto add = [&all](double value) {
     const auto place = std::lower_bound(all.begin(), all.end(), value);
@@ -75,7 +75,7 @@ std::vector<double> VariableValues::distinct(std::size_t most) const {
   };
   const auto of_flights = share_.of_each_flight<std::vector<double>>([&](std::size_t flight) {
     all.clear();
-    for (std::size_t i = 0; i < values_[flight].size() && all.size() <= most; ++i) add(values_[flight][i]);
+    for (std::size_t i = 0; i < values_[flight].size() && all.size() <= maximum; ++i) add(values_[flight][i]);
     return all;
   });
   all.clear();
@@ -89,12 +89,12 @@ std::vector<double> VariableValues::quantiles(std::size_t places) const {
   std::vector<double> own;
   for (const std::vector<double>& values : values_) own.insert(own.end(), values.begin(), values.end());
   return values_at(share_.comm(), std::move(own), [places](std::uint64_t count) {
-    std::vector<std::uint64_t> wanted;
+    std::vector<std::uint64_t> requested;
     for (std::size_t k = 0; k < places; ++k) {
       const double part = static_cast<double>(k) / static_cast<double>(places - 1);
-      wanted.push_back(static_cast<std::uint64_t>(part * static_cast<double>(count - 1)));
+      requested.push_back(static_cast<std::uint64_t>(part * static_cast<double>(count - 1)));
     }
-    return wanted;
+    return requested;
   });
 }
 

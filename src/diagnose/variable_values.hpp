@@ -18,13 +18,13 @@ class VariableValues {
 
   std::size_t count() const { return count_; }      ///< finite values
   std::size_t missing() const { return missing_; }  ///< all others
-  double least() const { return least_; }
-  double most() const { return most_; }
+  double minimum() const { return minimum_; }
+  double maximum() const { return maximum_; }
   double mean() const { return mean_; }
   double deviation() const { return deviation_; }  ///< standard deviation
 
-  /// Distinct values, ascending; if there are more than `most`, an incomplete list of more than `most`.
-  std::vector<double> distinct(std::size_t most) const;
+  /// Distinct values, ascending; if there are more than `maximum`, an incomplete list of more than `maximum`.
+  std::vector<double> distinct(std::size_t maximum) const;
 
   /// Quantiles at equidistant ranks, including minimum and maximum.
   std::vector<double> quantiles(std::size_t places) const;
@@ -34,8 +34,8 @@ class VariableValues {
   std::vector<std::vector<double>> values_;  // finite values of local flights
   std::size_t count_ = 0;
   std::size_t missing_ = 0;
-  double least_ = 0.0;
-  double most_ = 0.0;
+  double minimum_ = 0.0;
+  double maximum_ = 0.0;
   double mean_ = 0.0;
   double deviation_ = 0.0;
 };

@@ -31,52 +31,53 @@ namespace {
 
 constexpr std::size_t max_traced = 2;
 
-/// Whether a candidate is the wanted effect, in its shape.
-bool is_meant(const Candidate& candidate, const WhatIfCandidate& wanted) {
-  if (candidate.id != wanted.id || candidate.is_shared != wanted.is_alike) return false;
-  if (!wanted.effect) return !candidate.is_variant;
-  if (!(candidate.effect.scaling == wanted.effect->scaling)) return false;
+/// Whether a candidate is the requested effect, in its shape.
+bool is_meant(const Candidate& candidate, const WhatIfCandidate& requested) {
+  if (candidate.id != requested.id || candidate.is_shared != requested.is_alike) return false;
+  if (!requested.effect) return !candidate.is_variant;
+  if (!(candidate.effect.scaling == requested.effect->scaling)) return false;
   for (std::size_t p = 0; p < candidate.effect.parameters.size(); ++p) {
     const bool is_tested =
         std::any_of(candidate.tested.begin(), candidate.tested.end(),
                     [p](const CandidateParameter& parameter) { return parameter.place == p; });
-    if (!is_tested && candidate.effect.parameters[p] != wanted.effect->parameters[p]) return false;
+    if (!is_tested && candidate.effect.parameters[p] != requested.effect->parameters[p]) return false;
   }
   return true;
 }
 
-/// Distance between the candidate's time for the need and that of the wanted effect.
-double distance(const Candidate& candidate, const WhatIfCandidate& wanted) {
+/// Distance between the candidate's time for the need and that of the requested effect.
+double distance(const Candidate& candidate, const WhatIfCandidate& requested) {
   const Memory memory = memory_of(candidate.effect);
-  if (memory.of == Quantity::count || !wanted.effect) return 0.0;
-  return std::abs(candidate.memory - std::abs(wanted.effect->parameters[memory.parameter]));
+  if (memory.of == Quantity::count || !requested.effect) return 0.0;
+  return std::abs(candidate.memory - std::abs(requested.effect->parameters[memory.parameter]));
 }
 
 /// Index of the matching candidate; the number of candidates if there is no match.
-std::size_t place_of(const std::vector<Candidate>& candidates, const WhatIfCandidate& wanted) {
+std::size_t place_of(const std::vector<Candidate>& candidates, const WhatIfCandidate& requested) {
   std::size_t best = candidates.size();
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    if (!is_meant(candidates[c], wanted)) continue;
-    if (best == candidates.size() || distance(candidates[c], wanted) < distance(candidates[best], wanted))
+    if (!is_meant(candidates[c], requested)) continue;
+    if (best == candidates.size() ||
+        distance(candidates[c], requested) < distance(candidates[best], requested))
       best = c;
   }
   return best;
 }
 
-/// Dates of wanted steps; empty for any date.
-std::vector<double> dates_for(const std::vector<WhatIfCandidate>& wanted, const FlightSet& files) {
+/// Dates of requested steps; empty for any date.
+std::vector<double> dates_for(const std::vector<WhatIfCandidate>& requested, const FlightSet& files) {
   std::vector<ModelEffect> effects;
-  for (const WhatIfCandidate& each : wanted) {
+  for (const WhatIfCandidate& each : requested) {
     if (each.effect) effects.push_back(*each.effect);
   }
   std::vector<double> dates = dates_of(effects);
   return dates.empty() ? StepDates(files).tried() : dates;
 }
 
-/// Keeps the wanted candidates and those that they depend on.
-void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& wanted) {
+/// Keeps the requested candidates and those that they depend on.
+void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& requested) {
   std::vector<bool> kept(set.candidates.size() + 1, false);
-  for (const WhatIfCandidate& each : wanted) {
+  for (const WhatIfCandidate& each : requested) {
     std::size_t place = place_of(set.candidates, each);
     kept[place] = true;
     while (place < set.candidates.size() && set.candidates[place].is_shared) --place;
@@ -89,13 +90,13 @@ void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& wanted) {
   set.candidates = std::move(candidates);
 }
 
-/// Sorts candidates and columns into the wanted order; returns the wanted effects that could be tested.
+/// Sorts candidates and columns into the requested order; returns the requested effects that could be tested.
 std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flights,
-                                          const std::vector<WhatIfCandidate>& wanted) {
+                                          const std::vector<WhatIfCandidate>& requested) {
   std::vector<WhatIfCandidate> found;
   std::vector<Candidate> candidates;
   std::vector<Eigen::Index> columns;
-  for (const WhatIfCandidate& each : wanted) {
+  for (const WhatIfCandidate& each : requested) {
     const std::size_t place = place_of(set.candidates, each);
     if (place == set.candidates.size()) continue;
     found.push_back(each);
@@ -325,7 +326,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
 }
 
 WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const References& all_references,
-               const std::vector<WhatIfCandidate>& wanted, const WhatIfOptions& options) {
+               const std::vector<WhatIfCandidate>& requested, const WhatIfOptions& options) {
   const FlightSet files = flights.with(options.holdout);
   // A refit by GPS does not minimise one residual per sample.
   References references = in_order_of_diagnosis(all_references);
@@ -335,14 +336,14 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   if (references.empty()) return {};
   Notes notes;  // reported by the diagnosis
   std::vector<ModelEffect> formulas = options.diagnose.formulas;
-  for (const WhatIfCandidate& each : wanted) {
+  for (const WhatIfCandidate& each : requested) {
     const auto same = [&each](const ModelEffect& formula) { return formula.id == each.id; };
     if (each.effect && each.effect->is_formula() && std::none_of(formulas.begin(), formulas.end(), same))
       formulas.push_back(*each.effect);
   }
-  CandidateSet set = find_candidates(model, formulas, files, references, dates_for(wanted, files),
+  CandidateSet set = find_candidates(model, formulas, files, references, dates_for(requested, files),
                                      options.diagnose.trust_reference);
-  keep(set, wanted);
+  keep(set, requested);
   TeamColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);
   if (columns.flights.empty()) throw Error(Error::Code::samples, "no sample is left to try effects on");
@@ -350,8 +351,8 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   TeamColumns others = held_out_columns(files, flights.size(), columns, model, set, options);
   hold_imitated_coefficients(set, columns, &others);
   CandidateSet ordered = set;
-  const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns, wanted);
-  put_in_order(set, others, wanted);
+  const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns, requested);
+  put_in_order(set, others, requested);
 
   WhatIf result;
   if (found.empty()) return result;
@@ -406,9 +407,9 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
     if (sums.samples > 0.0) panel.held_out = std::move(sums);
   }
   const auto is_shown = [&](std::size_t file) {
-    const auto& wanted_flights = options.diagnose.series_of;
-    return !wanted_flights || file >= flights.size() ||
-           std::find(wanted_flights->begin(), wanted_flights->end(), file) != wanted_flights->end();
+    const auto& requested_flights = options.diagnose.series_of;
+    return !requested_flights || file >= flights.size() ||
+           std::find(requested_flights->begin(), requested_flights->end(), file) != requested_flights->end();
   };
   for (const FlightColumns& flight : shown(fit.flights(), is_shown))
     result.flights.push_back({flight.samples, by_records(flight)});

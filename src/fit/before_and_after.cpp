@@ -56,7 +56,7 @@ struct Compared {
 FitSums sums_of(const FitFlight& fit, const FitTask& task, const std::vector<double>& before,
                 const std::vector<double>& after, const NoiseFloor& noise) {
   // Delta-p of the reference from its unchanged file, so that R2 does not grow with a fitted reference.
-  const std::vector<double> wanted = fit.residuals().target_defect(task.start.data());
+  const std::vector<double> requested = fit.residuals().target_defect(task.start.data());
   FitSums sums;
   sums.samples = fit.kept().size();
   std::vector<double> was;
@@ -69,8 +69,8 @@ FitSums sums_of(const FitFlight& fit, const FitTask& task, const std::vector<dou
     sums.squares_before += was[i] * was[i];
     sums.squares += is[i] * is[i];
     sums.relative_squares += relative * relative;
-    sums.wanted += wanted[sample];
-    sums.wanted_squares += wanted[sample] * wanted[sample];
+    sums.requested += requested[sample];
+    sums.requested_squares += requested[sample] * requested[sample];
     sums.noise_squares += noise.local_rms[sample] * noise.local_rms[sample];
   }
   const auto bulk_squares = [](const std::vector<double>& residual) {
@@ -104,7 +104,7 @@ OutlierRun longest_run_of(const FitFlight& fit, const std::vector<double>& resid
 
 /// @param fitted flight of the fit with the first reference; null for others
 Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::VectorXd& values,
-                  const std::vector<std::size_t>& wanted, const FitFlight* fitted = nullptr) {
+                  const std::vector<std::size_t>& requested, const FitFlight* fitted = nullptr) {
   const Residuals& residuals = rows.residuals();
   const FlightSamples& samples = residuals.samples();
   const std::vector<double> before = residuals.values(own_parameters(residuals, task, task.start).data());
@@ -124,7 +124,7 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
     const std::vector<double> means = means_of_blocks(samples, is);
     if (held) {
       result.held_out_blocks = means.size();
-      result.held_out_derivatives = mean_derivatives(rows, task, part, values, wanted);
+      result.held_out_derivatives = mean_derivatives(rows, task, part, values, requested);
     } else {
       result.fitted_blocks = means;
     }
@@ -143,27 +143,27 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
 
 /// The flights that are held out.
 std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& values,
-                               const std::vector<std::size_t>& wanted) {
+                               const std::vector<std::size_t>& requested) {
   const FlightSet& flights = task.options.holdout;
   return flights.share().of_each_flight<Compared>([&](std::size_t number) {
     const auto samples = flights.samples(number, task.model, task.reference, task.options.mask);
     constexpr double fitted = 0.0;  // fraction of the samples
     const LinearRows rows(residuals_at(samples, task, values), task.model, task.reference,
                           {Inputs::none, {}, fitted});
-    return compared(rows, task, values, wanted);
+    return compared(rows, task, values, requested);
   });
 }
 
 /// Flights in the fit, and held-out flights.
 std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values, bool is_first_reference) {
   const FitTask& task = flights.task();
-  const std::vector<std::size_t>& wanted = flights.setup().wanted;
+  const std::vector<std::size_t>& requested = flights.setup().requested;
   std::vector<Compared> each = flights.of_each(
       [&](std::size_t, const FitFlight& fit) {
-        return compared(fit.linear_rows(), task, values, wanted, is_first_reference ? &fit : nullptr);
+        return compared(fit.linear_rows(), task, values, requested, is_first_reference ? &fit : nullptr);
       },
       values);
-  for (Compared& one : held_out(task, values, wanted)) each.push_back(std::move(one));
+  for (Compared& one : held_out(task, values, requested)) each.push_back(std::move(one));
   return each;
 }
 
@@ -176,8 +176,8 @@ void FitSums::add(const FitSums& other) {
   squares += other.squares;
   bulk_squares += other.bulk_squares;
   relative_squares += other.relative_squares;
-  wanted += other.wanted;
-  wanted_squares += other.wanted_squares;
+  requested += other.requested;
+  requested_squares += other.requested_squares;
   noise_squares += other.noise_squares;
 }
 

@@ -19,22 +19,22 @@ struct FitSums {
   double squares = 0.0;
   double bulk_squares = 0.0;
   double relative_squares = 0.0;  ///< residual over static pressure
-  double wanted = 0.0;            ///< delta-p implied by the reference, hPa
-  double wanted_squares = 0.0;
+  double requested = 0.0;         ///< delta-p implied by the reference, hPa
+  double requested_squares = 0.0;
   double noise_squares = 0.0;  ///< noise floor, hPa^2
 
   void add(const FitSums& other);
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(samples, squares_before, bulk_squares_before, squares, bulk_squares, relative_squares, wanted,
-            wanted_squares, noise_squares);
+    archive(samples, squares_before, bulk_squares_before, squares, bulk_squares, relative_squares, requested,
+            requested_squares, noise_squares);
   }
 
   double rms_of(double sum) const { return std::sqrt(sum / static_cast<double>(samples)); }
   /// R^2 of a model with that sum of squared residuals.
   double r_squared(double of_squares) const {
-    return 1.0 - of_squares / (wanted_squares - wanted * wanted / static_cast<double>(samples));
+    return 1.0 - of_squares / (requested_squares - requested * requested / static_cast<double>(samples));
   }
 };
 

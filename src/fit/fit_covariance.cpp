@@ -121,7 +121,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   const FitEquations& last = equations.back();
   FitFlights& main = *last.flights;
   const FitTask& task = main.task();
-  const std::vector<std::size_t>& parameters = main.setup().wanted;
+  const std::vector<std::size_t>& parameters = main.setup().requested;
   const Eigen::Index fitted = as_index(parameters.size());
   const Eigen::Index size = fitted + as_index(main.setup().held.size());
   const Blocks blocks(main);

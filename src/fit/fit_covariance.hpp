@@ -10,8 +10,8 @@
 
 namespace pcor::internal {
 
-/// Equations of a fit: some of the wanted parameters from the samples of some flights, at the result of their
-/// stage.
+/// Equations of a fit: some of the requested parameters from the samples of some flights, at the result of
+/// their stage.
 struct FitEquations {
   FitFlights* flights;
   std::vector<std::size_t> parameters;
@@ -47,7 +47,7 @@ struct FitCovariance {
 /// the noise (`noise_covariance`) and the misfit of the law. Errors of fixed parameters propagate to the
 /// others.
 ///
-/// @param equations in the order of the wanted parameters; the last ones include all samples
+/// @param equations in the order of the requested parameters; the last ones include all samples
 FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Misfit& misfit);
 
 }  // namespace pcor::internal

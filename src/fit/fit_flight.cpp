@@ -36,26 +36,26 @@ std::vector<Alike> alike_in(const FitTask& task) {
   return alike;
 }
 
-/// Derivatives by the wanted parameters, and the residual; zero for parameters unknown to the residual.
+/// Derivatives by the requested parameters, and the residual; zero for parameters unknown to the residual.
 /// @param evaluate gives those by known parameters at parameters of the residuals
-Eigen::MatrixXd by_wanted(
+Eigen::MatrixXd by_requested(
     const Residuals& residuals, const FitTask& task, const Eigen::VectorXd& parameters,
-    const std::vector<std::size_t>& wanted,
+    const std::vector<std::size_t>& requested,
     const std::function<Eigen::MatrixXd(const double* own, const std::vector<std::size_t>& known)>&
         evaluate) {
   const std::vector<Alike> alike = alike_in(task);
   std::vector<std::size_t> known;
   std::vector<std::size_t> columns;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    const bool is_alike =
-        std::any_of(alike.begin(), alike.end(), [&](const Alike& each) { return each.place == wanted[k]; });
-    if (is_alike || wanted[k] >= shared_parameters(residuals, task)) continue;
-    known.push_back(wanted[k]);
+  for (std::size_t k = 0; k < requested.size(); ++k) {
+    const bool is_alike = std::any_of(alike.begin(), alike.end(),
+                                      [&](const Alike& each) { return each.place == requested[k]; });
+    if (is_alike || requested[k] >= shared_parameters(residuals, task)) continue;
+    known.push_back(requested[k]);
     columns.push_back(k);
   }
-  columns.push_back(wanted.size());
+  columns.push_back(requested.size());
   const Eigen::MatrixXd rows = evaluate(own_parameters(residuals, task, parameters).data(), known);
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows.rows(), as_index(wanted.size()) + 1);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows.rows(), as_index(requested.size()) + 1);
   all(Eigen::all, columns) = rows;
   return all;
 }
@@ -99,11 +99,11 @@ Residuals masked_by(std::vector<Mask>& mask, std::shared_ptr<const FlightSamples
 
 Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
                                  const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
-                                 const std::vector<std::size_t>& wanted) {
-  const Eigen::MatrixXd all = by_wanted(
-      rows.residuals(), task, parameters, wanted,
+                                 const std::vector<std::size_t>& requested) {
+  const Eigen::MatrixXd all = by_requested(
+      rows.residuals(), task, parameters, requested,
       [&](const double* own, const auto& known) { return rows.evaluate(samples, own, known, true); });
-  return all.leftCols(as_index(wanted.size())).colwise().mean().transpose();
+  return all.leftCols(as_index(requested.size())).colwise().mean().transpose();
 }
 
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup,
@@ -112,7 +112,7 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
       setup_(&setup),
       moving_(samples->model.moving.empty() ? nullptr : std::make_shared<FlightSamples>(*samples)),
       rows_(masked_by(mask, moving_ ? moving_ : std::move(samples), task, setup.values), task.model,
-            task.reference, {Inputs::recorded, setup.wanted, task.options.training_share, setup.regimes}),
+            task.reference, {Inputs::recorded, setup.requested, task.options.training_share, setup.regimes}),
       static_pressure_(rows_.samples().model.find(Quantity::static_pressure)) {
   if (!moving_) return;
   const Eigen::VectorXd own = own_parameters(residuals(), task, parameters);
@@ -146,9 +146,9 @@ Binning FitFlight::bins(const Eigen::VectorXd& parameters, std::size_t& spikes) 
 }
 
 Eigen::MatrixXd FitFlight::rows(const Binning& bins, const Eigen::VectorXd& parameters,
-                                const std::vector<std::size_t>& wanted) const {
-  return by_wanted(residuals(), *task_, parameters, wanted,
-                   [&](const double* own, const auto& known) { return rows_.means(bins, own, known); });
+                                const std::vector<std::size_t>& requested) const {
+  return by_requested(residuals(), *task_, parameters, requested,
+                      [&](const double* own, const auto& known) { return rows_.means(bins, own, known); });
 }
 
 Eigen::MatrixXd FitFlight::by_offsets(const Binning& bins) const {
@@ -168,8 +168,8 @@ Eigen::MatrixXd FitFlight::by_doubts(const Binning& bins, const ReferenceDoubt& 
 }
 
 Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) const {
-  const Eigen::MatrixXd rows = by_wanted(
-      residuals(), *task_, parameters, setup_->wanted,
+  const Eigen::MatrixXd rows = by_requested(
+      residuals(), *task_, parameters, setup_->requested,
       [&](const double* own, const auto& known) { return rows_.evaluate(kept(), own, known, true); });
   TriangularFactor factor(rows.cols());
   factor.add(rows, Eigen::VectorXd::Ones(rows.rows()));

@@ -51,7 +51,7 @@ std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
 FitFlights::FitFlights(const FitTask& task, FitSetup setup)
     : task_(task),
       setup_(std::move(setup)),
-      columns_(joined(setup_.wanted, setup_.held)),
+      columns_(joined(setup_.requested, setup_.held)),
       doubt_(task.model, task.reference, task.options.trust_reference),
       prepared_(setup_.values),
       evaluated_(setup_.values),
@@ -93,9 +93,9 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
 /// Whether any derivative is not zero, and the bins are enough to find the noise.
 bool FitFlights::sees_parameters() {
   constexpr std::size_t min_bins = 100;
-  if (bins_ < min_bins || setup_.wanted.empty()) return false;
+  if (bins_ < min_bins || setup_.requested.empty()) return false;
   const auto largest = share().of_each_flight<double>([this](std::size_t flight) {
-    return bins(flight).size() > 0 ? columns(flight).leftCols(wanted()).cwiseAbs().maxCoeff() : 0.0;
+    return bins(flight).size() > 0 ? columns(flight).leftCols(requested()).cwiseAbs().maxCoeff() : 0.0;
   });
   return std::any_of(largest.begin(), largest.end(), [](double each) { return each > 0.0; });
 }
@@ -214,8 +214,8 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
                              const std::vector<std::size_t>& free) {
   std::vector<Eigen::Index> places;
   for (const std::size_t parameter : free) {
-    places.push_back(std::find(setup_.wanted.begin(), setup_.wanted.end(), parameter) -
-                     setup_.wanted.begin());
+    places.push_back(std::find(setup_.requested.begin(), setup_.requested.end(), parameter) -
+                     setup_.requested.begin());
   }
   const Eigen::Index fitted = as_index(free.size());
   Reduction whole;
@@ -249,7 +249,7 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
 
 Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters) {
   const auto factor = [&](std::size_t, const FitFlight& fit) { return fit.unweighted_factor(parameters); };
-  TriangularFactor sum(wanted() + 1);
+  TriangularFactor sum(requested() + 1);
   for (const Eigen::MatrixXd& part : of_each(factor, parameters)) sum.add(part);
   return sum.factor();
 }
@@ -269,7 +269,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters,
   weigh(parameters);
   for (FitFlights* const each : joint()) {
     BinnedFit fit;
-    fit.columns = [&](std::size_t flight) { return each->columns(flight).leftCols(wanted()); };
+    fit.columns = [&](std::size_t flight) { return each->columns(flight).leftCols(requested()); };
     fit.left = [&](std::size_t flight) -> Eigen::VectorXd {
       if (each != this || !misfit) return each->residual(flight, parameters);
       return residual(flight, parameters) - misfit(flight);

@@ -23,9 +23,9 @@ namespace pcor::internal {
 
 /// Input of a fit from the flights, or of a stage of it.
 struct FitSetup {
-  Eigen::VectorXd values{};           ///< start of all parameters; masks use these values
-  std::vector<std::size_t> wanted{};  ///< the fitted parameters
-  std::vector<std::size_t> held{};    ///< fixed parameters with an error stated in the files
+  Eigen::VectorXd values{};              ///< start of all parameters; masks use these values
+  std::vector<std::size_t> requested{};  ///< the fitted parameters
+  std::vector<std::size_t> held{};       ///< fixed parameters with an error stated in the files
   /// If not empty, only samples in these intervals are used, and every interval has a separate offset of
   /// delta-p/p.
   std::vector<Regime> regimes{};
@@ -42,10 +42,10 @@ Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
 Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
                        const Eigen::VectorXd& parameters);
 
-/// The derivatives of the residual by the wanted parameters of the fit, mean over some samples.
+/// The derivatives of the residual by the requested parameters of the fit, mean over some samples.
 Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
                                  const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
-                                 const std::vector<std::size_t>& wanted);
+                                 const std::vector<std::size_t>& requested);
 
 /// The samples of one flight of a fit with one reference.
 ///
@@ -73,7 +73,7 @@ class FitFlight {
 
   /// Derivatives by some parameters, and the residual, hPa, by columns, one row for each bin.
   Eigen::MatrixXd rows(const Binning& bins, const Eigen::VectorXd& parameters,
-                       const std::vector<std::size_t>& wanted) const;
+                       const std::vector<std::size_t>& requested) const;
 
   /// Derivatives by the offsets of the intervals, hPa, in bins.
   Eigen::MatrixXd by_offsets(const Binning& bins) const;
@@ -102,7 +102,7 @@ std::uint64_t digest_of(const Eigen::VectorXd& parameters);
 /// of the derivatives that they absorb is removed, so that derivatives of the minimum loss are exact (Golub
 /// and Pereyra 1973, SIAM Journal on Numerical Analysis 10, 413).
 struct FitRows {
-  Eigen::MatrixXd columns{};      ///< derivatives by wanted and held parameters
+  Eigen::MatrixXd columns{};      ///< derivatives by requested and held parameters
   Eigen::VectorXd innovations{};  ///< residuals with the offsets of minimum loss
   Eigen::MatrixXd offsets{};      ///< derivatives by the offsets
 
@@ -112,7 +112,7 @@ struct FitRows {
 
 /// Result of a pass over all flights.
 struct Reduction {
-  /// Factor of weighted rows (derivatives by wanted parameters, residual), minus the part absorbed by
+  /// Factor of weighted rows (derivatives by requested parameters, residual), minus the part absorbed by
   /// offsets.
   Eigen::MatrixXd factor;
   /// Sums of the squares of the same derivatives absorbed by offsets.
@@ -156,8 +156,8 @@ class FitFlights {
   /// Flights with each further reference.
   const std::vector<std::unique_ptr<FitFlights>>& further() const { return further_; }
 
-  /// Fitted entries: these and the further references that depend on some of the wanted parameters. Numbers
-  /// of flights and samples, masks and single figures refer to the first reference.
+  /// Fitted entries: these and the further references that depend on some of the requested parameters.
+  /// Numbers of flights and samples, masks and single figures refer to the first reference.
   std::vector<FitFlights*> joint();
 
   /// True if the residuals against all fitted references are linear in the free parameters.
@@ -205,11 +205,11 @@ class FitFlights {
   /// Whether other samples of any flight are used at these parameters.
   bool masks_change_at(const Eigen::VectorXd& parameters);
 
-  /// Sums of all references. @param free those of the wanted parameters whose columns are wanted
+  /// Sums of all references. @param free those of the requested parameters whose columns are requested
   Reduction reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss,
                    const std::vector<std::size_t>& free);
   Reduction reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss) {
-    return reduce(parameters, loss, setup_.wanted);
+    return reduce(parameters, loss, setup_.requested);
   }
 
   /// Triangular factor of rows (derivatives, residual) in hPa for the first reference, with equal weight for
@@ -243,7 +243,7 @@ class FitFlights {
   const Binning& bins(std::size_t flight) const { return binned_.bins[flight]; }
   /// Noise in these bins, after it was measured at their parameters.
   const NoiseModel& noise(std::size_t flight) const { return noise_[flight]; }
-  /// Derivatives by the wanted and the held parameters, hPa per unit, in bins.
+  /// Derivatives by the requested and the held parameters, hPa per unit, in bins.
   const Eigen::MatrixXd& columns(std::size_t flight) const { return binned_.columns[flight]; }
   /// Residual in bins, hPa, without offsets.
   Eigen::VectorXd residual(std::size_t flight, const Eigen::VectorXd& parameters) const;
@@ -259,11 +259,11 @@ class FitFlights {
   void evaluate(std::size_t flight, const FitFlight& fit);
   void evaluate_at(const Eigen::VectorXd& parameters);
   bool sees_parameters();
-  Eigen::Index wanted() const { return as_index(setup_.wanted.size()); }
+  Eigen::Index requested() const { return as_index(setup_.requested.size()); }
 
   const FitTask& task_;
   const FitSetup setup_;
-  const std::vector<std::size_t> columns_;  // wanted and held parameters
+  const std::vector<std::size_t> columns_;  // requested and held parameters
   const ReferenceDoubt doubt_;
   std::vector<bool> linear_;
   bool rows_are_linear_ = true;

@@ -93,14 +93,14 @@ std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>
   }
   std::vector<std::vector<std::size_t>> result;
   for (const FitStage& stage : stages) {
-    std::vector<std::size_t>& wanted = result.emplace_back();
+    std::vector<std::size_t>& requested = result.emplace_back();
     for (const std::string& name : stage.parameters) {
       for (const std::size_t p : places_of(parameters, name, "--stage")) {
         if (!left[p])
           throw Error(Error::Code::usage,
                       fmt::format("--stage: {} is fixed, or fitted in a stage before", parameters[p].name));
         left[p] = false;
-        wanted.push_back(p);
+        requested.push_back(p);
       }
     }
   }

@@ -25,7 +25,7 @@ class Trial {
     for (std::size_t k = 0; k < free.size(); ++k) {
       (flights.is_linear()[free[k]] ? linear_ : searched_).push_back(as_index(k));
     }
-    best_ = wanted();
+    best_ = requested();
   }
 
   const std::vector<Eigen::Index>& searched() const { return searched_; }
@@ -38,15 +38,15 @@ class Trial {
     if (!reduction.valid) return infinity;
     const Eigen::VectorXd residual = reduction.factor.rightCols(1);
     double squares = residual.squaredNorm();
-    Eigen::VectorXd found = wanted();
+    Eigen::VectorXd found = requested();
     if (!linear_.empty()) {
       const Eigen::MatrixXd rows = reduction.factor(Eigen::all, linear_);
       const Eigen::VectorXd step = least_norm_solution(rows, -residual);
       squares = (residual + rows * step).squaredNorm();
       for (std::size_t i = 0; i < linear_.size(); ++i) found[linear_[i]] += step[as_index(i)];
     }
-    if (squares < least_) {
-      least_ = squares;
+    if (squares < minimum_) {
+      minimum_ = squares;
       best_ = found;
     }
     return squares;
@@ -55,14 +55,14 @@ class Trial {
  private:
   Eigen::Index parameter(Eigen::Index k) const { return as_index(free_[static_cast<std::size_t>(k)]); }
 
-  Eigen::VectorXd wanted() const { return parameters_(free_); }
+  Eigen::VectorXd requested() const { return parameters_(free_); }
 
   FitFlights& flights_;
   const std::vector<std::size_t>& free_;
   Eigen::VectorXd parameters_;
   std::vector<Eigen::Index> linear_;
   std::vector<Eigen::Index> searched_;
-  double least_ = infinity;
+  double minimum_ = infinity;
   Eigen::VectorXd best_;
 };
 

@@ -26,10 +26,10 @@ constexpr double block_time = 300.0;     // s
 
 /// Information of a flight through one reference.
 struct Part {
-  /// Products of whitened rows (wanted, nuisances, residual) over blocks of a few minutes, with their
+  /// Products of whitened rows (requested, nuisances, residual) over blocks of a few minutes, with their
   /// numbers.
   std::vector<std::pair<std::int64_t, Eigen::MatrixXd>> blocks{};
-  Eigen::MatrixXd defects{};  ///< products of the derivatives of delta-p by the wanted coefficients
+  Eigen::MatrixXd defects{};  ///< products of the derivatives of delta-p by the requested coefficients
   std::size_t samples = 0;
 
   template <class Archive>
@@ -44,8 +44,8 @@ struct FlightState {
   Eigen::VectorXd outliers{};
 };
 
-/// Information of the flights about the wanted coefficients and the shared nuisances: normal equations of all
-/// blocks, with the nuisances of each flight eliminated.
+/// Information of the flights about the requested coefficients and the shared nuisances: normal equations of
+/// all blocks, with the nuisances of each flight eliminated.
 struct Equations {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right;
@@ -55,24 +55,24 @@ struct Equations {
 class GpsSolver {
  public:
   GpsSolver(const std::vector<FitFlights*>& flights, Eigen::VectorXd start, const BeforeGps& before,
-            const std::vector<std::size_t>& wanted)
+            const std::vector<std::size_t>& requested)
       : flights_(flights),
         task_(flights.front()->task()),
         values_(std::move(start)),
         before_(before),
-        wanted_(wanted),
-        count_(as_index(wanted.size())),
+        requested_(requested),
+        count_(as_index(requested.size())),
         states_(flights.size()) {
     for (auto& each : states_) each.resize(task_.flights.size());
-    values_(wanted_) = before.values;
+    values_(requested_) = before.values;
     prior_deviation_.resize(count_);
     for (Eigen::Index k = 0; k < count_; ++k)
       prior_deviation_[k] =
-          gps_prior_in_typical_sizes * task_.parameters[wanted_[static_cast<std::size_t>(k)]].typical;
+          gps_prior_in_typical_sizes * task_.parameters[requested_[static_cast<std::size_t>(k)]].typical;
     // A fitted coefficient replaces the nuisance for the same error.
     constexpr double held = 1e-3;  // of its prior: no result depends on it
     for (std::size_t n = 0; n < gps_nuisances.size(); ++n) {
-      if (std::any_of(wanted.begin(), wanted.end(),
+      if (std::any_of(requested.begin(), requested.end(),
                       [&](std::size_t p) { return task_.parameters[p].name == gps_nuisances[n].same_as; }))
         nuisance_deviation_[as_index(n)] *= held;
     }
@@ -85,7 +85,7 @@ class GpsSolver {
       read(round < rounds_with_noise, round == rounds - 2);
       step();
     }
-    const Eigen::VectorXd before_last = values_(wanted_);
+    const Eigen::VectorXd before_last = values_(requested_);
     read(false, false);
     GpsFit fit = result();
     add_warning_of_convergence(fit.values - before_last, fit);
@@ -99,7 +99,7 @@ class GpsSolver {
   GpsPrior flight_prior() const {
     GpsPrior prior{Eigen::VectorXd::Zero(all()), Eigen::VectorXd(all())};
     prior.deviation << prior_deviation_, nuisance_deviation_;
-    prior.mean.head(count_) = before_.values - values_(wanted_);
+    prior.mean.head(count_) = before_.values - values_(requested_);
     return prior;
   }
 
@@ -108,7 +108,8 @@ class GpsSolver {
     const Eigen::VectorXd own = own_parameters(fit.residuals(), task_, values_);
     const FlightSamples& samples = fit.residuals().samples();
     Part part;
-    const GpsRows rows = gps_rows(kind, samples, task_.model, fit.kept(), own.data(), wanted_, {}, warmer_);
+    const GpsRows rows =
+        gps_rows(kind, samples, task_.model, fit.kept(), own.data(), requested_, {}, warmer_);
     part.samples = static_cast<std::size_t>(rows.defect.rows());
     part.defects = rows.defect.transpose() * rows.defect;
     if (part.samples == 0) return part;
@@ -188,7 +189,7 @@ class GpsSolver {
     }
   }
 
-  /// Prior covariance of the wanted coefficients and shared nuisances.
+  /// Prior covariance of the requested coefficients and shared nuisances.
   Eigen::MatrixXd prior_covariance() const {
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(shared(), shared());
     if (before_.covariance.size() > 0) {
@@ -246,22 +247,22 @@ class GpsSolver {
     const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(shared(), shared());
     posterior_ = (identity + prior * equations_.matrix).partialPivLu().solve(prior);
     Eigen::VectorXd from = Eigen::VectorXd::Zero(shared());
-    const Eigen::VectorXd now = values_(wanted_);
+    const Eigen::VectorXd now = values_(requested_);
     from.head(count_) = now - before_.values;
     change_ = posterior_ * (equations_.right + equations_.matrix * from);
     change_.head(count_) = level_held() * change_.head(count_);
     keep_bounds();
-    values_(wanted_) = before_.values + change_.head(count_);
+    values_(requested_) = before_.values + change_.head(count_);
     warmer_ = change_[count_];
   }
 
   const Bounds& bounds_of(Eigen::Index k) const {
-    return task_.parameters[wanted_[static_cast<std::size_t>(k)]].bounds;
+    return task_.parameters[requested_[static_cast<std::size_t>(k)]].bounds;
   }
 
   /// Sets coefficients beyond a bound to the bound. The others get their best values with the bound held.
   void keep_bounds() {
-    at_bound_.assign(wanted_.size(), false);
+    at_bound_.assign(requested_.size(), false);
     const Eigen::MatrixXd level = level_held();
     Eigen::MatrixXd covariance = posterior_;
     covariance.topRows(count_) = level * covariance.topRows(count_).eval();
@@ -307,7 +308,7 @@ class GpsSolver {
   GpsFit result() {
     step();
     GpsFit fit;
-    fit.values = values_(wanted_);
+    fit.values = values_(requested_);
     fit.at_bound = at_bound_;
     // Change of the solution without each block of five minutes. Scores of the blocks would understate the
     // error if one block decides, for example the only climb.
@@ -352,7 +353,7 @@ class GpsSolver {
 
   /// Covariance of the fixed directions: the prior, or the value stated in the file.
   Eigen::MatrixXd doubt_of_held() const {
-    const Eigen::MatrixXd stated = task_.doubt(wanted_, wanted_);
+    const Eigen::MatrixXd stated = task_.doubt(requested_, requested_);
     if (!(stated.diagonal().minCoeff() > 0.0)) return held_ * held_.transpose();
     const Eigen::MatrixXd scaled =
         prior_deviation_.cwiseInverse().asDiagonal() * held_;  // orthonormal columns
@@ -373,7 +374,7 @@ class GpsSolver {
       const Eigen::VectorXd shares = directions.col(h).cwiseQuotient(prior_deviation_).cwiseAbs2();
       std::vector<std::string> some;
       for (Eigen::Index k = 0; k < count_; ++k) {
-        if (shares[k] > much) some.push_back(task_.parameters[wanted_[static_cast<std::size_t>(k)]].name);
+        if (shares[k] > much) some.push_back(task_.parameters[requested_[static_cast<std::size_t>(k)]].name);
       }
       names.push_back(fmt::format("{}", fmt::join(some, " against ")));
     }
@@ -424,7 +425,7 @@ class GpsSolver {
   const FitTask& task_;
   Eigen::VectorXd values_;  // one per parameter
   const BeforeGps& before_;
-  const std::vector<std::size_t>& wanted_;
+  const std::vector<std::size_t>& requested_;
   Eigen::Index count_;
   Eigen::VectorXd prior_deviation_{};
   Eigen::VectorXd nuisance_deviation_ = gps_nuisance_deviations();
@@ -446,8 +447,8 @@ class GpsSolver {
 bool is_by_gps(const Reference& reference) { return gps_kind(reference).has_value(); }
 
 GpsFit fit_gps(const std::vector<FitFlights*>& flights, const Eigen::VectorXd& start, const BeforeGps& before,
-               const std::vector<std::size_t>& wanted) {
-  return GpsSolver(flights, start, before, wanted).solve();
+               const std::vector<std::size_t>& requested) {
+  return GpsSolver(flights, start, before, requested).solve();
 }
 
 }  // namespace pcor::internal

@@ -10,13 +10,13 @@
 
 namespace pcor::internal {
 
-/// Prior knowledge of the wanted coefficients before the comparison with GPS.
+/// Prior knowledge of the requested coefficients before the comparison with GPS.
 struct BeforeGps {
-  Eigen::VectorXd values;      ///< wanted coefficients
+  Eigen::VectorXd values;      ///< requested coefficients
   Eigen::MatrixXd covariance;  ///< covariance from the other references; empty if there are no others
 };
 
-/// Result of the GPS fit for the wanted coefficients.
+/// Result of the GPS fit for the requested coefficients.
 struct GpsFit {
   Eigen::VectorXd values{};
   std::vector<bool> at_bound{};
@@ -37,16 +37,16 @@ struct GpsFit {
 /// Whether a reference is one of GPS, wind or height.
 bool is_by_gps(const Reference& reference);
 
-/// Fits the wanted coefficients to GPS: maximum a posteriori, with the latent processes of `GpsNoise` and the
-/// nuisances of `gps_nuisances`. Without other references each coefficient has a prior about its start, some
-/// typical sizes of its effect wide. Directions in which the error of delta-p would be above 1 hPa are held:
-/// delta-p stays there as near to that of the start as the rest allows, and the error is that of the prior,
-/// or as the file states it.
+/// Fits the requested coefficients to GPS: maximum a posteriori, with the latent processes of `GpsNoise` and
+/// the nuisances of `gps_nuisances`. Without other references each coefficient has a prior about its start,
+/// some typical sizes of its effect wide. Directions in which the error of delta-p would be above 1 hPa are
+/// held: delta-p stays there as near to that of the start as the rest allows, and the error is that of the
+/// prior, or as the file states it.
 ///
 /// The stated covariance is that of the likelihood or that of a jackknife over parts of five minutes, the one
 /// with the larger error of delta-p.
 /// @param flights for each reference of GPS the flights of the fit
 GpsFit fit_gps(const std::vector<FitFlights*>& flights, const Eigen::VectorXd& start, const BeforeGps& before,
-               const std::vector<std::size_t>& wanted);
+               const std::vector<std::size_t>& requested);
 
 }  // namespace pcor::internal

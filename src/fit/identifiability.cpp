@@ -23,15 +23,15 @@ constexpr double weak_share = 0.25;
 }  // namespace
 
 double condition_number(const Reduction& reduction, const FitTask& task,
-                        const std::vector<std::size_t>& wanted) {
+                        const std::vector<std::size_t>& requested) {
   // Coefficients of a surface have a prior, which makes them identifiable.
   std::vector<Eigen::Index> free;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    if (task.surface_of(wanted[k]) == nullptr) free.push_back(as_index(k));
+  for (std::size_t k = 0; k < requested.size(); ++k) {
+    if (task.surface_of(requested[k]) == nullptr) free.push_back(as_index(k));
   }
   if (free.empty()) return 1.0;
   const auto to_string = [&](Eigen::Index k) -> const std::string& {
-    return task.parameters[wanted[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])]].name;
+    return task.parameters[requested[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])]].name;
   };
   Eigen::MatrixXd scaled = reduction.factor(Eigen::all, free);
   const Eigen::VectorXd lengths = reduction.lengths()(free);

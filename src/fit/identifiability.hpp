@@ -9,13 +9,13 @@
 
 namespace pcor::internal {
 
-/// Ratio of the largest to the smallest singular value of the derivatives by the wanted parameters, with
+/// Ratio of the largest to the smallest singular value of the derivatives by the requested parameters, with
 /// columns of unit length and without the part explained by offsets; infinite if one column is a sum of
 /// others.
 /// @throws Error if a coefficient is not identifiable or, without a prior, some are not separable: the
 /// message names them and recommends which to fix.
 double condition_number(const Reduction& reduction, const FitTask& task,
-                        const std::vector<std::size_t>& wanted);
+                        const std::vector<std::size_t>& requested);
 
 /// Warnings that name undetermined coefficients and the manoeuvres that would determine them.
 /// @param covariance of the fitted parameters; @param flown the regimes in the flights

@@ -119,7 +119,7 @@ double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& var
 /// derivatives.
 Eigen::VectorXd variances_of(const Heights& heights, double rms) {
   constexpr int max_rounds = 500;
-  constexpr double most = 5.0;  // relative to the rms of the residual
+  constexpr double maximum = 5.0;  // relative to the rms of the residual
   const auto square = [](double size) { return size * size; };
   Eigen::VectorXd variance = Eigen::VectorXd::Constant(states * bumps, square(0.3 * rms));
   for (int round = 0; round < max_rounds; ++round) {
@@ -130,7 +130,7 @@ Eigen::VectorXd variances_of(const Heights& heights, double rms) {
       const double before = variance[first];
       const double determined = bumps - posterior.covariance.diagonal().segment(first, bumps).sum() / before;
       const double found = posterior.mean.segment(first, bumps).squaredNorm() / std::max(determined, 1e-6);
-      const double now = std::clamp(found, square(min_bump * rms), square(most * rms));
+      const double now = std::clamp(found, square(min_bump * rms), square(maximum * rms));
       variance.segment(first, bumps).setConstant(now);
       change = std::max(change, std::abs(std::log(now / before)));
     }
@@ -231,7 +231,7 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
   const std::vector<Eigen::MatrixXd> in_bins = binned_states(flights);
   misfit.bumps = MisfitBasis(share, in_bins);
   if (flights.bins() < min_bins) return misfit;
-  const Eigen::Index own = as_index(flights.setup().wanted.size());
+  const Eigen::Index own = as_index(flights.setup().requested.size());
   const Eigen::Index count = MisfitBasis::count();
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {

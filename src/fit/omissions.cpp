@@ -15,8 +15,8 @@ constexpr int max_omissions = 8;
 
 SquaredResiduals::SquaredResiduals(FitFlights& flights, const Solution& solution)
     : flights_(flights), solution_(solution) {
-  const std::vector<std::size_t>& wanted = flights.setup().wanted;
-  is_linear_ = std::all_of(wanted.begin(), wanted.end(),
+  const std::vector<std::size_t>& requested = flights.setup().requested;
+  is_linear_ = std::all_of(requested.begin(), requested.end(),
                            [&flights](std::size_t parameter) { return flights.is_linear()[parameter]; });
   if (is_linear_) factor_ = flights.unweighted_factor(solution.values);
 }
@@ -35,13 +35,13 @@ double SquaredResiduals::at(const Eigen::VectorXd& values) const {
       sum += part;
     return sum;
   }
-  const std::vector<std::size_t>& wanted = flights_.setup().wanted;
-  Eigen::VectorXd step = Eigen::VectorXd::Ones(as_index(wanted.size()) + 1);
-  step.head(as_index(wanted.size())) = values(wanted) - solution_.values(wanted);
+  const std::vector<std::size_t>& requested = flights_.setup().requested;
+  Eigen::VectorXd step = Eigen::VectorXd::Ones(as_index(requested.size()) + 1);
+  step.head(as_index(requested.size())) = values(requested) - solution_.values(requested);
   return (factor_ * step).squaredNorm();
 }
 
-double SquaredResiduals::least() const {
+double SquaredResiduals::minimum() const {
   if (!is_linear_ || flights_.task().options.fit_reference) return nan;
   const double left = factor_(factor_.rows() - 1, factor_.cols() - 1);
   return left * left;
@@ -49,24 +49,24 @@ double SquaredResiduals::least() const {
 
 std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, const FitSums& sums,
                                 const SquaredResiduals& squares) {
-  const std::vector<std::size_t>& wanted = flights.setup().wanted;
+  const std::vector<std::size_t>& requested = flights.setup().requested;
   const FitTask& task = flights.task();
   const ScaledLoss loss(task.options.loss, solution.deviation);
-  const Eigen::Index size = as_index(wanted.size());
-  const PriorRows drawn = prior_rows(task, wanted);
+  const Eigen::Index size = as_index(requested.size());
+  const PriorRows drawn = prior_rows(task, requested);
   const Eigen::MatrixXd prior = solution.deviation * drawn.rows;
   // Rows of derivatives and residual at some coefficients, with the rows of the prior.
   const auto rows_at = [&](const Eigen::VectorXd& values) {
     Eigen::MatrixXd rows(size + prior.rows(), size + 1);
     rows.topRows(size) = flights.reduce(values, loss).factor.topRows(size);
     rows.bottomLeftCorner(prior.rows(), size) = prior;
-    rows.bottomRightCorner(prior.rows(), 1) = prior * (values(wanted) - drawn.centre);
+    rows.bottomRightCorner(prior.rows(), 1) = prior * (values(requested) - drawn.centre);
     task.tell();
     return rows;
   };
   const Eigen::MatrixXd rows_of_fit = rows_at(solution.values);
   std::vector<std::string> effects;
-  for (const std::size_t p : wanted) {
+  for (const std::size_t p : requested) {
     const std::string& effect = task.parameters[p].effect;
     if (std::find(effects.begin(), effects.end(), effect) == effects.end()) effects.push_back(effect);
   }
@@ -77,7 +77,7 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
     Eigen::VectorXd away = Eigen::VectorXd::Zero(size);
     Eigen::VectorXd changed = solution.values;
     for (Eigen::Index k = 0; k < size; ++k) {
-      const std::size_t p = wanted[static_cast<std::size_t>(k)];
+      const std::size_t p = requested[static_cast<std::size_t>(k)];
       if (task.parameters[p].effect == effect) {
         changed[as_index(p)] = task.parameters[p].neutral;
         away[k] = changed[as_index(p)] - solution.values[as_index(p)];

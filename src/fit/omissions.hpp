@@ -14,7 +14,7 @@ class SquaredResiduals {
   double at(const Eigen::VectorXd& values) const;
   /// Minimum over all coefficients; NaN if the residual is not linear, or if two systems are fitted, because
   /// their derivatives contain the noise of the residual.
-  double least() const;
+  double minimum() const;
 
  private:
   FitFlights& flights_;

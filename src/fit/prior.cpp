@@ -27,13 +27,13 @@ Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference&
 
 namespace {
 
-Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>& wanted) {
-  const Eigen::Index size = as_index(wanted.size());
+Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>& requested) {
+  const Eigen::Index size = as_index(requested.size());
   if (!task.uses_prior()) return Eigen::MatrixXd::Zero(0, size);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, size);
   std::vector<Eigen::Index> stated;
   for (Eigen::Index k = 0; k < size; ++k) {
-    const std::size_t parameter = wanted[static_cast<std::size_t>(k)];
+    const std::size_t parameter = requested[static_cast<std::size_t>(k)];
     if (task.surface_of(parameter) != nullptr) continue;
     const double typical = task.parameters[parameter].typical;
     if (task.doubt(as_index(parameter), as_index(parameter)) > 0.0) {
@@ -44,7 +44,7 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
   }
   if (stated.empty()) return rows;
   std::vector<std::size_t> places;
-  for (const Eigen::Index k : stated) places.push_back(wanted[static_cast<std::size_t>(k)]);
+  for (const Eigen::Index k : stated) places.push_back(requested[static_cast<std::size_t>(k)]);
   const Eigen::MatrixXd covariance = task.doubt(places, places);
   // The inverse root, of the correlations: coefficients of one law may differ by powers of ten.
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
@@ -57,12 +57,12 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
 }
 
 /// Adds the prior of the effects that a diagnosis added.
-void add_rows_of_added(const FitTask& task, const std::vector<std::size_t>& wanted, PriorRows& prior) {
+void add_rows_of_added(const FitTask& task, const std::vector<std::size_t>& requested, PriorRows& prior) {
   if (task.uses_prior()) return;
   const std::vector<std::string>& added = task.options.added;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    const FitParameter& parameter = task.parameters[wanted[k]];
-    if (!(parameter.typical > 0.0) || task.surface_of(wanted[k]) != nullptr ||
+  for (std::size_t k = 0; k < requested.size(); ++k) {
+    const FitParameter& parameter = task.parameters[requested[k]];
+    if (!(parameter.typical > 0.0) || task.surface_of(requested[k]) != nullptr ||
         std::find(added.begin(), added.end(), parameter.effect) == added.end())
       continue;
     const Eigen::Index row = prior.rows.rows();
@@ -76,17 +76,17 @@ void add_rows_of_added(const FitTask& task, const std::vector<std::size_t>& want
 
 }  // namespace
 
-PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& wanted) {
-  PriorRows prior{stated_rows(task, wanted), task.start(wanted), {}};
-  add_rows_of_added(task, wanted, prior);
+PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& requested) {
+  PriorRows prior{stated_rows(task, requested), task.start(requested), {}};
+  add_rows_of_added(task, requested, prior);
   prior.inflation = Eigen::VectorXd::Ones(prior.rows.rows());
   for (const SurfaceRoughness& surface : task.surfaces) {
     std::vector<Eigen::Index> columns;
     std::vector<Eigen::Index> own;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      if (!surface.has(wanted[k])) continue;
+    for (std::size_t k = 0; k < requested.size(); ++k) {
+      if (!surface.has(requested[k])) continue;
       columns.push_back(as_index(k));
-      own.push_back(as_index(wanted[k] - surface.first));
+      own.push_back(as_index(requested[k] - surface.first));
     }
     if (own.empty()) continue;
     const Eigen::MatrixXd penalty = std::sqrt(surface.inflation) * surface.rows()(Eigen::all, own);

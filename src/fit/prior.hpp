@@ -11,7 +11,7 @@ namespace pcor::internal {
 /// `FitTask::parameters`; zero if not stated.
 Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference& reference);
 
-/// Rows W of the Gaussian prior of wanted parameters around `centre`: the cost is |W (x - centre)|^2 / 2.
+/// Rows W of the Gaussian prior of requested parameters around `centre`: the cost is |W (x - centre)|^2 / 2.
 struct PriorRows {
   Eigen::MatrixXd rows{};
   Eigen::VectorXd centre{};
@@ -23,6 +23,6 @@ struct PriorRows {
 /// files, otherwise with the typical size of the effect as the standard error. A parameter without either has
 /// no prior. Otherwise coefficients of the effects `RefitOptions::added` have the prior of a diagnosis about
 /// their neutral value. Coefficients of a surface always have the prior of its roughness.
-PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& wanted);
+PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& requested);
 
 }  // namespace pcor::internal

@@ -146,7 +146,7 @@ void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
   constexpr int noise_rounds = 3;
   for (int round = 0;
        round < max_rounds && find_roughness(flights, solution, task.surfaces, round < noise_rounds); ++round)
-    solution = solve(flights, std::move(solution), flights.setup().wanted);
+    solution = solve(flights, std::move(solution), flights.setup().requested);
 }
 
 Fitted fit_in_stages(FitTask& task) {
@@ -359,7 +359,7 @@ std::string reference_text(FitFlights& flights) {
 /// Triangular factor of rows (derivatives, residual) of all references, in hPa, with equal weight for all
 /// samples.
 Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
-  TriangularFactor sum(as_index(flights.setup().wanted.size()) + 1);
+  TriangularFactor sum(as_index(flights.setup().requested.size()) + 1);
   for (FitFlights* const each : flights.joint()) sum.add(each->unweighted_factor(values));
   Reduction result;
   result.factor = sum.factor();
@@ -432,7 +432,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.left = misfit.left;
   // Gusts are in the residual of the wind: a better law need not make it smaller.
   result.worse = why_worse(result, by_gps_alone ? infinity : sums.rms_of(sums.bulk_squares_before));
-  result.least_squares_rms = gps ? result.rms : sums.rms_of(squares.least());
+  result.least_squares_rms = gps ? result.rms : sums.rms_of(squares.minimum());
   // Gusts and drifts of the wind are not errors of the model.
   if (!by_gps_alone) result.warnings = fit_warnings(result, compared.longest_run);
   if (gps) result.warnings.insert(result.warnings.begin(), gps->warnings.begin(), gps->warnings.end());

@@ -96,8 +96,8 @@ class Solver {
       measure();
       settles();
       // The noise is that of residuals at the solution.
-      constexpr int most = 5;
-      for (int round = 0; round < most && flights_.has_moving_columns(); ++round) {
+      constexpr int maximum = 5;
+      for (int round = 0; round < maximum && flights_.has_moving_columns(); ++round) {
         const Eigen::VectorXd before = unknowns_;
         flights_.prepare(solution_.values);
         settles();
@@ -160,12 +160,12 @@ class Solver {
       // Outliers do not matter either.
       const ScaledLoss huber(Loss::huber, deviation);
       Eigen::VectorXd best = start;
-      double least = infinity;
+      double minimum = infinity;
       for (const Eigen::VectorXd& solution : solutions) {
         put(solution);
         const double cost = flights_.reduce(solution_.values, huber, free_).cost;
-        if (cost < least) best = solution;
-        least = std::min(least, cost);
+        if (cost < minimum) best = solution;
+        minimum = std::min(minimum, cost);
       }
       std::tie(lower_[k], upper_[k]) = std::pair(lower, upper);
       put(best);
@@ -251,23 +251,23 @@ class Solver {
   void reweight(const ScaledLoss& loss) {
     constexpr int max_steps = 200;
     Eigen::VectorXd best = unknowns_;
-    double least = infinity;
+    double minimum = infinity;
     for (int step = 0; step < max_steps; ++step) {
       const Eigen::VectorXd now = unknowns_;
       const auto [cost, length] = linear_step(loss);
-      if (!std::isfinite(cost) && !std::isfinite(least)) {
+      if (!std::isfinite(cost) && !std::isfinite(minimum)) {
         throw Error(
             Error::Code::fit,
             "the fit found no coefficients: from their values in the model the residuals are not numbers; "
             "give other starting values, or look for them with --search");
       }
-      if (cost > (1.0 + 1e-12) * least) {
+      if (cost > (1.0 + 1e-12) * minimum) {
         unknowns_ = 0.5 * (now + best);
         spread();
         continue;
       }
       best = now;
-      least = cost;
+      minimum = cost;
       if (length < 1e-6 * solution_.deviation) break;
     }
   }

@@ -10,7 +10,7 @@ namespace pcor::internal {
 /// reference. Weighted least squares then minimise the loss of the innovations, from Huber's solution if the
 /// loss requires it, until their deviation is stable. Derivatives that do not follow the coefficients are
 /// renewed until the solution converges.
-/// @param free some of the wanted parameters
+/// @param free some of the requested parameters
 /// @param is_stage keeps the weights and the deviation of the whole fit
 /// @throws Error if samples are too few, or residuals are not numbers.
 Solution solve(FitFlights& flights, Solution from, const std::vector<std::size_t>& free,

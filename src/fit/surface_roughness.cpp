@@ -36,7 +36,7 @@ struct SurfaceProducts {
 };
 
 SurfaceProducts products_of(FitFlights& flights, const Eigen::VectorXd& values) {
-  const Eigen::Index count = as_index(flights.setup().wanted.size());
+  const Eigen::Index count = as_index(flights.setup().requested.size());
   return flights.share().sum_of_each_flight<SurfaceProducts>([&](std::size_t flight) {
     const FitRows rows = flights.rows(flight, values, {});
     const Eigen::MatrixXd all = side_by_side(rows.columns.leftCols(count), rows.innovations);
@@ -122,7 +122,7 @@ std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinit
 
 bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces,
                     bool has_new_noise) {
-  const std::vector<std::size_t>& wanted = flights.setup().wanted;
+  const std::vector<std::size_t>& requested = flights.setup().requested;
   if (has_new_noise) flights.measure_noise(solution.values);
   const double unit = solution.deviation * solution.deviation;
   const SurfaceProducts products = products_of(flights, solution.values);
@@ -130,15 +130,15 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
   for (SurfaceRoughness& surface : surfaces) {
     std::vector<Eigen::Index> own;
     std::vector<Eigen::Index> coefficients;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      if (!surface.has(wanted[k])) continue;
+    for (std::size_t k = 0; k < requested.size(); ++k) {
+      if (!surface.has(requested[k])) continue;
       own.push_back(as_index(k));
-      coefficients.push_back(as_index(wanted[k] - surface.first));
+      coefficients.push_back(as_index(requested[k] - surface.first));
     }
     if (own.empty() || !products.squares.allFinite()) continue;
-    Determined found = determined(products, prior_rows(flights.task(), wanted), unit, own);
+    Determined found = determined(products, prior_rows(flights.task(), requested), unit, own);
     // About zero, not about the solution.
-    found.right -= found.information * solution.values(wanted)(own);
+    found.right -= found.information * solution.values(requested)(own);
     const auto precision = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
       return rows(Eigen::all, coefficients).transpose() * rows(Eigen::all, coefficients);
     };

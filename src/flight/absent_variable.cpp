@@ -43,11 +43,11 @@ int shared_words(const std::string& role, const std::string& text) {
 }  // namespace
 
 Error missing_variable(const std::string& path, const std::vector<VariableInfo>& series,
-                       const std::string& name, const std::string& wanted, const std::string& role) {
+                       const std::string& name, const std::string& requested, const std::string& role) {
   std::vector<const VariableInfo*> fitting;
   std::vector<std::string> namesakes;
   for (const VariableInfo& each : series) {
-    if (!is_convertible(each.units, wanted) || is_angle(each.units) != is_angle(wanted)) continue;
+    if (!is_convertible(each.units, requested) || is_angle(each.units) != is_angle(requested)) continue;
     fitting.push_back(&each);
     if (begins_alike(each.name, name)) namesakes.push_back(each.name);
   }
@@ -63,7 +63,7 @@ Error missing_variable(const std::string& path, const std::vector<VariableInfo>&
         Error::Code::variable,
         fmt::format("{}; it has no time series in {} or a unit that converts to it, see ncdump -h {}; change "
                     "[variables] of the model",
-                    absent, wanted, shell_path(path))};
+                    absent, requested, shell_path(path))};
 
   constexpr std::size_t max_named = 6;
   // Files call the temperature of the recovery probe "total".

@@ -8,12 +8,12 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t maximum = std::numeric_limits<std::uint64_t>::max();
 
 // Saturates: a result that is too large is the largest number of the type.
-std::uint64_t times(std::uint64_t a, std::uint64_t b) { return b != 0 && a > most / b ? most : a * b; }
-std::uint64_t plus(std::uint64_t a, std::uint64_t b) { return a > most - b ? most : a + b; }
-std::uint64_t padded(std::uint64_t bytes) { return bytes > most - 3 ? most : (bytes + 3) / 4 * 4; }
+std::uint64_t times(std::uint64_t a, std::uint64_t b) { return b != 0 && a > maximum / b ? maximum : a * b; }
+std::uint64_t plus(std::uint64_t a, std::uint64_t b) { return a > maximum - b ? maximum : a + b; }
+std::uint64_t padded(std::uint64_t bytes) { return bytes > maximum - 3 ? maximum : (bytes + 3) / 4 * 4; }
 
 // The header as the netCDF classic format specification lays it out; all numbers are big-endian. An
 // impossible number makes the header unsound, and every further number is then 0.

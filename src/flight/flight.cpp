@@ -247,12 +247,12 @@ struct Flight::Implementation {
                                                           : fmt::format("{}", fmt::join(alike, ", "))));
   }
 
-  // The names of rates that can be brought to the wanted one, as this file has them: "1, 5 or 25".
-  std::string rates_that_fit(int wanted) {
+  // The names of rates that can be brought to the requested one, as this file has them: "1, 5 or 25".
+  std::string rates_that_fit(int requested) {
     std::set<int> rates;
     for (std::size_t i = 0; i < names.size(); ++i) {
       const int rate = variable(i).info.rate;
-      if (rate > 0 && (rate % wanted == 0 || wanted % rate == 0)) rates.insert(rate);
+      if (rate > 0 && (rate % requested == 0 || requested % rate == 0)) rates.insert(rate);
     }
     std::string text;
     for (auto rate = rates.begin(); rate != rates.end(); ++rate)
@@ -317,9 +317,9 @@ struct Flight::Implementation {
     for (const double marker : variable.missing_values)
       for (std::size_t i = 0; i < count; ++i) values[i] = values[i] == marker ? missing : values[i];
     RejectedCounts left_out;
-    const auto [least, greatest] = variable.valid_range;
+    const auto [minimum, maximum] = variable.valid_range;
     for (std::size_t i = 0; i < count; ++i) {
-      const bool is_invalid = values[i] < least || values[i] > greatest;
+      const bool is_invalid = values[i] < minimum || values[i] > maximum;
       const bool is_enormous = std::abs(values[i]) >= no_value;
       left_out.invalid += is_invalid && !is_enormous ? 1 : 0;
       left_out.enormous += is_enormous ? 1 : 0;
@@ -477,25 +477,25 @@ const VariableInfo& Flight::variable(const std::string& name) const {
   return implementation_->find(name).info;
 }
 
-UnitConversion Flight::conversion(const std::string& name, const std::string& wanted, const std::string& role,
-                                  const std::string& stated) const {
+UnitConversion Flight::conversion(const std::string& name, const std::string& requested,
+                                  const std::string& role, const std::string& stated) const {
   if (!has(name) && !role.empty()) {
     std::vector<VariableInfo> series;
     for (std::size_t i = 0; i < variables().size(); ++i) {
       const VariableInfo& info = implementation_->variable(i).info;
       if (info.is_series) series.push_back(info);
     }
-    throw missing_variable(path().string(), series, name, wanted, role);
+    throw missing_variable(path().string(), series, name, requested, role);
   }
   const std::string& own = variable(name).units;
-  if (stated.empty()) return UnitConversion::between(own, wanted, {name, path().string(), role});
-  if (!is_convertible(stated, wanted))
+  if (stated.empty()) return UnitConversion::between(own, requested, {name, path().string(), role});
+  if (!is_convertible(stated, requested))
     throw Error(
         Error::Code::unit,
         fmt::format("{}: the unit \"{}\" that the model states for {} ({}) is not known or does not convert "
                     "to {}; correct unit.{} in the [units] of the model",
-                    path().string(), stated, name, role, wanted, role));
-  return UnitConversion::between(stated, wanted, {name, path().string(), role});
+                    path().string(), stated, name, role, requested, role));
+  return UnitConversion::between(stated, requested, {name, path().string(), role});
 }
 
 void Flight::require_values(const std::string& name) const {
@@ -546,15 +546,15 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
     value = missing;
     ++left_out.impossible;
   }
-  const auto wanted = block.count * static_cast<std::size_t>(rate);
+  const auto requested = block.count * static_cast<std::size_t>(rate);
   if (rate > own) {
     const auto held = static_cast<std::size_t>(rate / own);
-    for (std::size_t i = 0; i < wanted; ++i) out[i] = conversion(values[i / held]);
+    for (std::size_t i = 0; i < requested; ++i) out[i] = conversion(values[i / held]);
     return left_out;
   }
   const int group = own / rate;
   const auto& circle = variable.info.modulus_range;
-  for (std::size_t i = 0; i < wanted; ++i) {
+  for (std::size_t i = 0; i < requested; ++i) {
     const double* samples = values.data() + i * static_cast<std::size_t>(group);
     out[i] = conversion(circle ? mean_on_circle(samples, group, *circle) : mean(samples, group));
   }

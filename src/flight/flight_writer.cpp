@@ -29,14 +29,14 @@ constexpr const char* writing = "cannot be written";
 constexpr const char* iso_8601 = "%Y-%m-%dT%H:%M:%SZ";
 
 struct Range {
-  double least = std::numeric_limits<double>::infinity();
-  double greatest = -std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
 
   void include(double value) {
-    least = std::min(least, value);
-    greatest = std::max(greatest, value);
+    minimum = std::min(minimum, value);
+    maximum = std::max(maximum, value);
   }
-  bool empty() const { return least > greatest; }
+  bool empty() const { return minimum > maximum; }
 };
 
 constexpr Range reserved{fill, fill};  // keeps the place of a range until the values are known
@@ -337,11 +337,11 @@ struct FlightWriter::Implementation {
                                   block.first + i / rate));
       file->variable(variable.id).putVar({block.first, 0}, {block.count, rate}, values);
     } else {
-      constexpr double most = std::numeric_limits<float>::max();
+      constexpr double max_float = std::numeric_limits<float>::max();
       floats.resize(total);
       Range range = variable.range;  // a local one stays in registers
       for (std::size_t i = 0; i < total; ++i) {
-        const bool present = std::abs(values[i]) <= most;  // false for NaN
+        const bool present = std::abs(values[i]) <= max_float;  // false for NaN
         floats[i] = present ? static_cast<float>(values[i]) : fill;
         if (present) range.include(static_cast<double>(floats[i]));
       }
@@ -384,7 +384,7 @@ struct FlightWriter::Implementation {
   // A variable has both bounds in one attribute, the whole file in two. The attributes of an empty range are
   // removed.
   void put_range(int variable, const std::string& name, const Range& range) const {
-    const float bounds[] = {static_cast<float>(range.least), static_cast<float>(range.greatest)};
+    const float bounds[] = {static_cast<float>(range.minimum), static_cast<float>(range.maximum)};
     const auto put = [&](const std::string& attribute, std::size_t count, const float* numbers) {
       if (range.empty()) return file->drop(variable, attribute);
       file->variable(variable).putAtt(attribute, netCDF::ncFloat, count, numbers);

@@ -164,9 +164,9 @@ class IcarttFile::Reader {
     return static_cast<int>(value);
   }
 
-  std::vector<double> numbers(int wanted) {
+  std::vector<double> numbers(int requested) {
     std::vector<double> all;
-    while (static_cast<int>(all.size()) < wanted) {
+    while (static_cast<int>(all.size()) < requested) {
       for (const std::string& field : fields_of(next())) all.push_back(number(field));
     }
     return all;

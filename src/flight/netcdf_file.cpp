@@ -140,8 +140,8 @@ std::size_t elements(const std::vector<std::size_t>& shape) {
 
 std::size_t records_in_buffer(std::size_t record_bytes) {
   // A block does not begin where a buffer does.
-  constexpr std::size_t least = 16, max_bytes = classic_buffer_bytes / 4 * 3;
-  return std::clamp(max_bytes / std::max<std::size_t>(record_bytes, 1), least, records_per_block);
+  constexpr std::size_t minimum = 16, max_bytes = classic_buffer_bytes / 4 * 3;
+  return std::clamp(max_bytes / std::max<std::size_t>(record_bytes, 1), minimum, records_per_block);
 }
 
 std::size_t NetcdfFile::records_at_once() const {

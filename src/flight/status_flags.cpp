@@ -26,8 +26,8 @@ bool says_unusable(const std::string& meaning) {
 }
 
 /// Number of values of the integer type with this maximum; 0 above 32 bits.
-double span_of(double greatest) {
-  const double bits = std::log2(greatest + 1.0);
+double span_of(double maximum) {
+  const double bits = std::log2(maximum + 1.0);
   return bits <= 32.0 ? std::exp2(8.0 * std::ceil(bits / 8.0)) : 0.0;
 }
 

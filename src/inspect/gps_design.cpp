@@ -52,8 +52,8 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
   }
   const Eigen::Index count = as_index(deviations.size());
   for (const GpsNuisance& nuisance : gps_nuisances) deviations.push_back(nuisance.deviation);
-  std::vector<std::size_t> wanted(static_cast<std::size_t>(count));
-  std::iota(wanted.begin(), wanted.end(), 0);
+  std::vector<std::size_t> requested(static_cast<std::size_t>(count));
+  std::iota(requested.begin(), requested.end(), 0);
   GpsDesign design;
   Eigen::MatrixXd defects;
   Eigen::MatrixXd information =
@@ -69,7 +69,7 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
       for (std::size_t i = 0; i < residuals.size(); ++i) {
         if (residuals.mask()[i] == Mask::none) used.push_back(i);
       }
-      const GpsRows rows = gps_rows(kind, *samples, model, used, residuals.parameters().data(), wanted);
+      const GpsRows rows = gps_rows(kind, *samples, model, used, residuals.parameters().data(), requested);
       if (rows.defect.rows() == 0) continue;
       const WhiteRows white = GpsNoise(kind).white(rows, Eigen::VectorXd::Zero(rows.rows.rows()));
       const auto columns = white.rows.leftCols(information.cols());

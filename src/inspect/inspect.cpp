@@ -245,18 +245,18 @@ class Look {
     return true;
   }
 
-  /// Where one of the two pressures is there, the other is what is wanted.
+  /// Where one of the two pressures is there, the other is what is requested.
   std::string what_pressures_lack(const Error& error) const {
     const bool has_static = evidence_.count("static_pressure") != 0;
     const bool has_dynamic = evidence_.count("dynamic_pressure") != 0;
     if (!roles_.empty() || has_static == has_dynamic) return error.what();
-    const auto& [there, wanted] =
+    const auto& [there, requested] =
         has_static ? std::pair("static_pressure", "dynamic") : std::pair("dynamic_pressure", "static");
     return fmt::format(
         "{}: it has {} ({}), but no {} pressure of a known name, unit and size, without which nothing can be "
         "corrected; {}get the file with the {} pressure, or name it in the [variables] of a model",
         flight_.path().string(), evidence_.at(there).front().variable, evidence_.at(there).front().why,
-        wanted, has_static ? dynamic_pressure_by_airspeed() : "", wanted);
+        requested, has_static ? dynamic_pressure_by_airspeed() : "", requested);
   }
 
   /// The formula of a dynamic pressure by a Mach number or an airspeed; empty without both.

@@ -86,7 +86,8 @@ class Plausibility {
       const auto present = static_cast<double>(
           std::count_if(read.values.begin(), read.values.end(), [](double x) { return !std::isnan(x); }));
       if (impossible > present)
-        add(variable, fmt::format("share of values beyond {:g} to {:g} {}", info.least, info.most, info.unit),
+        add(variable,
+            fmt::format("share of values beyond {:g} to {:g} {}", info.minimum, info.maximum, info.unit),
             100.0 * impossible / (impossible + present), "%",
             "these values are missing; state the unit of the variable in the [units] of the model");
     }
@@ -107,10 +108,10 @@ class Plausibility {
   void temperature_against_height() {
     const RecordedSeries temperature = read(Q::ambient_temperature);
     const RecordedSeries altitude = read(Q::altitude);
-    constexpr double most = 40.0;  // K: no air is so far from the standard atmosphere
+    constexpr double maximum = 40.0;  // K: no air is so far from the standard atmosphere
     const double excess = median_of(temperature.values, altitude.values,
                                     [](double t, double h) { return t - standard_temperature(h); });
-    if (std::abs(excess) > most)
+    if (std::abs(excess) > maximum)
       add(temperature.variable, "temperature against height", excess, "K",
           "used unchanged; state its unit in the [units] of the model");
   }
@@ -130,8 +131,8 @@ class Plausibility {
       ratios.push_back(true_airspeed(mach, t, dry_air<double>()) / airspeed.values[i]);
     }
     const double ratio = median(std::move(ratios));
-    constexpr double most = 0.1;
-    if (std::abs(ratio - 1.0) > most)
+    constexpr double maximum = 0.1;
+    if (std::abs(ratio - 1.0) > maximum)
       add(q.variable, "airspeed by the pressures over " + airspeed.variable, ratio, "1",
           "used unchanged; name another dynamic pressure in the [variables] of the model, or its unit in "
           "[units]");
@@ -141,14 +142,14 @@ class Plausibility {
     for (const Quantity role : {Q::heading, Q::ground_track, Q::pitch, Q::roll}) {
       const RecordedSeries angle = read(role);
       if (angle.values.empty()) continue;
-      double most = 0.0;
+      double maximum = 0.0;
       for (const double each : angle.values)
-        most = std::isfinite(each) ? std::max(most, std::abs(each)) : most;
+        maximum = std::isfinite(each) ? std::max(maximum, std::abs(each)) : maximum;
       // The maximum heading is 6.28 in radians and 360 in degrees, unless the flight is one leg.
       const bool is_turn = role == Q::heading || role == Q::ground_track;
-      const bool looks_like_radians = is_turn && most > 3.0 && most < 6.3;
+      const bool looks_like_radians = is_turn && maximum > 3.0 && maximum < 6.3;
       if (looks_like_radians)
-        add(angle.variable, "angle with a maximum typical of radians", most, "degree",
+        add(angle.variable, "angle with a maximum typical of radians", maximum, "degree",
             fmt::format("used unchanged; if it is in radians, {} = \"radian\" in the [units] of the model",
                         info_of(role).name));
     }
@@ -170,8 +171,8 @@ class Plausibility {
       if (speed.values[i] > 40.0) ratios.push_back(by_position / speed.values[i]);
     }
     const double ratio = median(std::move(ratios));
-    constexpr double most = 0.05;
-    if (std::abs(ratio - 1.0) > most)
+    constexpr double maximum = 0.05;
+    if (std::abs(ratio - 1.0) > maximum)
       add(speed.variable, "speed by the positions over it", ratio, "1",
           "used unchanged; state its unit in the [units] of the model");
   }

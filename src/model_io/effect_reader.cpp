@@ -21,9 +21,9 @@ class EffectReader final : TomlReader {
   EffectReader(std::string_view name, ModelDefinition& file) : TomlReader(name), file_(file) {}
 
   void read(const Entry& effects) {
-    const std::string wanted = "each effect under a heading [[effect]]";
-    for (const toml::node& node : array(effects, wanted)) {
-      read_effect(as<toml::table>(node, fmt::format("an effect is {}; give {}", kind_of(node), wanted)));
+    const std::string requested = "each effect under a heading [[effect]]";
+    for (const toml::node& node : array(effects, requested)) {
+      read_effect(as<toml::table>(node, fmt::format("an effect is {}; give {}", kind_of(node), requested)));
     }
   }
 
@@ -77,13 +77,13 @@ class EffectReader final : TomlReader {
   }
 
   ModelEffect surface(const std::string& id, const EffectEntries& given) const {
-    const std::string wanted =
+    const std::string requested =
         "axes = { attack_ratio = [lower, upper], mach = [lower, upper] } and coefficients = [[...], ...], "
         "one "
         "row for each spline of the first axis";
     if (!given.axes || !given.coefficients)
       fail(*given.id->node,
-           fmt::format("surface {} lacks its knots or coefficients; give {}", quote(id), wanted));
+           fmt::format("surface {} lacks its knots or coefficients; give {}", quote(id), requested));
     if (effect_named(id) != catalogue_size)
       fail(given.axes->place, fmt::format("effect {} has its formula in the catalogue; remove 'axes' and "
                                           "'coefficients', or choose another id",
@@ -93,22 +93,22 @@ class EffectReader final : TomlReader {
       if (*entry) fail((*entry)->place, fmt::format("a surface takes no '{}'; remove it", (*entry)->key));
     }
     std::vector<std::vector<double>> rows;
-    for (const toml::node& node : array(*given.coefficients, wanted)) {
-      rows.push_back(numbers({given.coefficients->key, given.coefficients->place, &node, {}}, wanted));
+    for (const toml::node& node : array(*given.coefficients, requested)) {
+      rows.push_back(numbers({given.coefficients->key, given.coefficients->place, &node, {}}, requested));
       if (rows.back().size() != rows.front().size())
         fail(node, fmt::format("this row has {} coefficients, the first one {}; give as many in each",
                                rows.back().size(), rows.front().size()));
     }
-    const std::vector<Entry> axes = entries_of(table(*given.axes, wanted), quote(given.axes->key));
+    const std::vector<Entry> axes = entries_of(table(*given.axes, requested), quote(given.axes->key));
     if (axes.size() != 2)
-      fail(*given.axes, fmt::format("a surface has two axes, not {}; give {}", axes.size(), wanted));
+      fail(*given.axes, fmt::format("a surface has two axes, not {}; give {}", axes.size(), requested));
     std::array<SurfaceAxis, 2> made;
     for (std::size_t k = 0; k < made.size(); ++k) {
       const auto [lower, upper] = range(axes[k]);
       const std::size_t count = k == 0 ? rows.size() : rows.empty() ? 0 : rows.front().size();
       made[k] = {quantity_named(axes[k].key), lower, upper, count};
       if (made[k].quantity == Quantity::count)
-        fail(axes[k].place, fmt::format("there is no quantity {}; give {}", quote(axes[k].key), wanted));
+        fail(axes[k].place, fmt::format("there is no quantity {}; give {}", quote(axes[k].key), requested));
       if (!made[k].is_valid())
         fail(*given.coefficients, fmt::format("{} has {} splines; give {} to {}", quote(axes[k].key), count,
                                               SurfaceAxis::min_count, SurfaceAxis::max_count));
@@ -147,8 +147,8 @@ class EffectReader final : TomlReader {
 
   Scaling scaling(const Entry& entry) const {
     Scaling result;
-    const std::string wanted = "{ static_pressure = POWER, dynamic_pressure = POWER }";
-    for (const Entry& power : entries_of(table(entry, wanted), quote(entry.key))) {
+    const std::string requested = "{ static_pressure = POWER, dynamic_pressure = POWER }";
+    for (const Entry& power : entries_of(table(entry, requested), quote(entry.key))) {
       if (power.key == "static_pressure") {
         result.static_pressure = whole_power(power);
       } else if (power.key == "dynamic_pressure") {
@@ -156,7 +156,7 @@ class EffectReader final : TomlReader {
       } else {
         fail(power.place,
              fmt::format("an effect is scaled by powers of the two pressures, not of {}; give {}",
-                         quote(power.key), wanted));
+                         quote(power.key), requested));
       }
     }
     return result;
@@ -254,12 +254,12 @@ class EffectReader final : TomlReader {
 
   std::string unit_of_action(const Entry& entry, EffectLocation location) const {
     std::string unit = text(entry, "a unit in quotes");
-    const std::string wanted(info_of(location).unit);
-    if (standard_unit(unit) != standard_unit(wanted)) {
+    const std::string requested(info_of(location).unit);
+    if (standard_unit(unit) != standard_unit(requested)) {
       fail(entry,
            fmt::format(
                "the quantity at '{}' is in {}, not in {}; write the formula in {} and set unit = \"{}\"",
-               info_of(location).name, wanted, quote(unit), wanted, wanted));
+               info_of(location).name, requested, quote(unit), requested, requested));
     }
     return unit;
   }

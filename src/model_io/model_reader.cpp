@@ -87,13 +87,13 @@ class Reader final : TomlReader {
     const Entry entry = format_of(root, "is a model file", model_format);
     const std::string format = text(entry, quote(model_format));
     if (format == model_format) return;
-    const std::string wanted = fmt::format("format = \"{}\"", model_format);
+    const std::string requested = fmt::format("format = \"{}\"", model_format);
     if (format.rfind("pcor-model/", 0) == 0) {
       fail(entry, fmt::format("the file has the format {}, but this program reads {} only; use the pcor "
                               "version that wrote it, or write {}",
-                              quote(format), quote(model_format), wanted));
+                              quote(format), quote(model_format), requested));
     }
-    fail(entry, fmt::format("{} is not a format of model files; write {}", quote(format), wanted));
+    fail(entry, fmt::format("{} is not a format of model files; write {}", quote(format), requested));
   }
 
   void read_root(const toml::table& root) {
@@ -212,7 +212,7 @@ class Reader final : TomlReader {
   void read_unit(const Entry& entry) {
     const Quantity quantity = role(entry);
     const std::string unit = text(entry, "a unit in quotes");
-    const std::string wanted(info_of(quantity).unit);
+    const std::string requested(info_of(quantity).unit);
     // Without pressure variables the names follow from the flight's aircraft.
     if (file_.variables.count(quantity) == 0 && file_.variables.count(Quantity::static_pressure) != 0) {
       fail(entry.place, fmt::format("the role {} has a unit but no variable; name its variable in "
@@ -221,14 +221,14 @@ class Reader final : TomlReader {
     }
     if (!is_known_unit(unit)) {
       fail(entry, fmt::format("{}: unknown unit {}; give one that converts to {}", called(entry), quote(unit),
-                              wanted));
+                              requested));
     }
     try {
-      UnitConversion::between(unit, wanted, {});
+      UnitConversion::between(unit, requested, {});
     } catch (const Error& error) {
       if (error.code() != Error::Code::unit) throw;
       fail(entry, fmt::format("{}: the unit {} does not convert to {}; give one that does", called(entry),
-                              quote(unit), wanted));
+                              quote(unit), requested));
     }
     if (!file_.units.emplace(quantity, unit).second) {
       fail(entry.place, fmt::format("the unit of {} is given twice; remove one", quote(entry.key)));
@@ -290,17 +290,17 @@ class Reader final : TomlReader {
       file_.recovery_factor_name = name;
       return;
     }
-    const std::string wanted = "a number, the name of a published law, or [c0, c1, c2, c3]";
+    const std::string requested = "a number, the name of a published law, or [c0, c1, c2, c3]";
     if (entry.node->is_array()) {
-      const std::vector<double> coefficients = numbers(entry, wanted);
+      const std::vector<double> coefficients = numbers(entry, requested);
       if (coefficients.size() != recovery.coefficients.size()) {
-        fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), coefficients.size(), wanted));
+        fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), coefficients.size(), requested));
       }
       std::copy(coefficients.begin(), coefficients.end(), recovery.coefficients.begin());
     } else if (entry.node->is_number()) {
       recovery.coefficients = {number(entry), 0.0, 0.0, 0.0};
     } else {
-      fail(entry, wrong_kind(entry, wanted));
+      fail(entry, wrong_kind(entry, requested));
     }
     const double constant = recovery.coefficients[0];
     if (!(constant > 0.0 && constant <= max_recovery_factor)) {
@@ -321,10 +321,10 @@ class Reader final : TomlReader {
   }
 
   RadomeCalibration radome(const Entry& entry) const {
-    const std::string wanted = "[offset, slope] or [offset, slope, slope for a unit of Mach number]";
-    std::vector<double> values = numbers(entry, wanted);
+    const std::string requested = "[offset, slope] or [offset, slope, slope for a unit of Mach number]";
+    std::vector<double> values = numbers(entry, requested);
     if (values.size() != 2 && values.size() != 3) {
-      fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), values.size(), wanted));
+      fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), values.size(), requested));
     }
     values.resize(3);
     return {values[0], values[1], values[2]};
@@ -398,10 +398,10 @@ class Reader final : TomlReader {
   // The covariance applies only to the values at which it was found.
   void check_values(const Entry& entry) const {
     const Names& names = file_.covariance.parameters;
-    const std::string wanted = fmt::format("{} numbers, one for each parameter", names.size());
-    const std::vector<double> values = numbers(entry, wanted);
+    const std::string requested = fmt::format("{} numbers, one for each parameter", names.size());
+    const std::vector<double> values = numbers(entry, requested);
     if (values.size() != names.size())
-      fail(entry, fmt::format("'values' has {} numbers; give {}", values.size(), wanted));
+      fail(entry, fmt::format("'values' has {} numbers; give {}", values.size(), requested));
     for (std::size_t i = 0; i < names.size(); ++i) {
       const double* const own = parameter_named(file_.model, names[i]);
       const double value = own != nullptr ? *own : 0.0;
@@ -481,16 +481,17 @@ class Reader final : TomlReader {
 
   void read_matrix(const Entry& entry) {
     const std::size_t size = file_.covariance.parameters.size();
-    const std::string wanted = fmt::format("{} rows of {} numbers, one for each parameter", size, size);
+    const std::string requested = fmt::format("{} rows of {} numbers, one for each parameter", size, size);
     std::vector<std::vector<double>>& matrix = file_.covariance.matrix;
-    for (const toml::node& node : array(entry, wanted)) {
-      matrix.push_back(numbers({entry.key, entry.place, &node, entry.title}, wanted));
+    for (const toml::node& node : array(entry, requested)) {
+      matrix.push_back(numbers({entry.key, entry.place, &node, entry.title}, requested));
       if (matrix.back().size() != size) {
-        fail(node, fmt::format("a row of the matrix has {} numbers; give {}", matrix.back().size(), wanted));
+        fail(node,
+             fmt::format("a row of the matrix has {} numbers; give {}", matrix.back().size(), requested));
       }
     }
     if (matrix.size() != size) {
-      fail(entry, fmt::format("the matrix has {} rows; give {}", matrix.size(), wanted));
+      fail(entry, fmt::format("the matrix has {} rows; give {}", matrix.size(), requested));
     }
     for (std::size_t i = 0; i < size; ++i) {
       if (matrix[i][i] < 0.0) fail(entry, "a variance of the matrix is negative; refit the model");

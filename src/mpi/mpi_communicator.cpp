@@ -26,15 +26,15 @@ std::vector<std::string> MpiCommunicator::exchange(const std::string& own) {
   std::vector<std::uint64_t> lengths(size_);
   MPI_Allgather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
   std::vector<std::string> all(size_);
-  const std::size_t most = max_at_once / size_;
+  const std::size_t maximum = max_at_once / size_;
   const std::size_t longest = *std::max_element(lengths.begin(), lengths.end());
-  for (std::size_t first = 0; first < longest; first += most) {
+  for (std::size_t first = 0; first < longest; first += maximum) {
     std::vector<int> counts;
     std::vector<int> places;
     int end = 0;
     for (const std::uint64_t of_member : lengths) {
       const std::size_t left = of_member > first ? of_member - first : 0;
-      counts.push_back(static_cast<int>(std::min(left, most)));
+      counts.push_back(static_cast<int>(std::min(left, maximum)));
       places.push_back(end);
       end += counts.back();
     }

@@ -3,9 +3,9 @@
 namespace pcor::internal {
 namespace {
 
-/// One over the eigenvalues above `least`; zero for the others.
-Eigen::VectorXd inverse_above(double least, Eigen::VectorXd eigenvalues) {
-  for (double& value : eigenvalues) value = value > least ? 1.0 / value : 0.0;
+/// One over the eigenvalues above `minimum`; zero for the others.
+Eigen::VectorXd inverse_above(double minimum, Eigen::VectorXd eigenvalues) {
+  for (double& value : eigenvalues) value = value > minimum ? 1.0 / value : 0.0;
   return eigenvalues;
 }
 
@@ -27,20 +27,20 @@ Eigen::VectorXd weakest_direction(const Eigen::MatrixXd& matrix) {
 
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) { return matrix.inverse(); }
 
-Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least) {
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double minimum) {
   if (matrix.rows() == 0) return matrix;
   const SymmetricEigen solver(matrix);
-  return solver.eigenvectors() * inverse_above(least, solver.eigenvalues()).asDiagonal() *
+  return solver.eigenvectors() * inverse_above(minimum, solver.eigenvalues()).asDiagonal() *
          solver.eigenvectors().transpose();
 }
 
 Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen::VectorXd& right,
-                                double least) {
+                                double minimum) {
   if (information.rows() == 0) return right;
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const SymmetricEigen solver(scale.asDiagonal() * information * scale.asDiagonal());
   return scale.asDiagonal() *
-         (solver.eigenvectors() * (inverse_above(least, solver.eigenvalues()).asDiagonal() *
+         (solver.eigenvectors() * (inverse_above(minimum, solver.eigenvalues()).asDiagonal() *
                                    (solver.eigenvectors().transpose() * (scale.asDiagonal() * right))));
 }
 

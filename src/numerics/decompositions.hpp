@@ -28,14 +28,14 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 /// do not determine a direction.
 inline constexpr double rank_limit = 1e-11;
 
-/// The inverse of a symmetric matrix over the directions whose eigenvalue is above `least`; zero over the
+/// The inverse of a symmetric matrix over the directions whose eigenvalue is above `minimum`; zero over the
 /// others.
-Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least);
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double minimum);
 
-/// The x of information x = right, unknowns scaled alike, over the directions above `least`; zero over the
+/// The x of information x = right, unknowns scaled alike, over the directions above `minimum`; zero over the
 /// others.
 Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen::VectorXd& right,
-                                double least = rank_limit);
+                                double minimum = rank_limit);
 
 /// The inverse of the information on unknowns in any units, over the directions that it determines.
 Eigen::MatrixXd information_inverse(const Eigen::MatrixXd& information);

@@ -26,9 +26,9 @@ double guarded_cost(const std::vector<double>& x, std::vector<double>&, void* da
 void minimize_objective(nlopt::opt& search, const Cost& cost, std::vector<double>& x) {
   Guarded guarded{cost};
   search.set_min_objective(guarded_cost, &guarded);
-  double least = 0.0;
+  double minimum = 0.0;
   try {
-    search.optimize(x, least);
+    search.optimize(x, minimum);
   } catch (const nlopt::roundoff_limited&) {
     // The best point so far is used.
   } catch (const nlopt::forced_stop&) {

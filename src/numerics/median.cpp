@@ -21,8 +21,8 @@ void keep(std::vector<double>& values, const Condition& condition) {
   values.resize(kept);
 }
 
-/// One of the values, near the wanted rank and a little towards the middle of all, so that most rounds keep
-/// the smaller part.
+/// One of the values, near the requested rank and a little towards the middle of all, so that most rounds
+/// keep the smaller part.
 double pivot(const std::vector<double>& values, std::size_t rank) {
   constexpr std::size_t size = 31;
   std::array<double, size> sample{};

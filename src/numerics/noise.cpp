@@ -152,8 +152,8 @@ Autoregression autoregression(const std::vector<double>& values, const std::vect
   std::vector<double> coefficients;
   double best_criterion = count * std::log(power);
   // At least ten values per coefficient: with fewer the process would fit the noise.
-  const std::size_t most = std::min(max_order, kept.size() / 10);
-  for (std::size_t order = 1; order <= most; ++order) {
+  const std::size_t maximum = std::min(max_order, kept.size() / 10);
+  for (std::size_t order = 1; order <= maximum; ++order) {
     double across = 0.0;
     double total = 0.0;
     std::size_t begin = 0;

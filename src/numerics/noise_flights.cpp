@@ -6,10 +6,10 @@
 namespace pcor::internal {
 
 std::vector<std::size_t> flights_for_noise(const std::vector<NoiseFlight>& flights) {
-  constexpr std::size_t most = 16;
+  constexpr std::size_t maximum = 16;
   std::vector<std::size_t> all(flights.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  if (flights.size() <= most) return all;
+  if (flights.size() <= maximum) return all;
   const std::size_t bins =
       std::accumulate(flights.begin(), flights.end(), std::size_t{0},
                       [](std::size_t sum, const NoiseFlight& flight) { return sum + flight.bins; });
@@ -18,7 +18,7 @@ std::vector<std::size_t> flights_for_noise(const std::vector<NoiseFlight>& fligh
             all.end());
   std::stable_sort(all.begin(), all.end(),
                    [&](std::size_t a, std::size_t b) { return flights[a].begin < flights[b].begin; });
-  const std::size_t every = (all.size() + most - 1) / most;
+  const std::size_t every = (all.size() + maximum - 1) / maximum;
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < all.size(); k += every) chosen.push_back(all[k]);
   std::sort(chosen.begin(), chosen.end());

@@ -234,13 +234,13 @@ class RestrictedLikelihood {
 
 /// The sizes of the first `parts` slow parts, of the rms of the residuals, with the least cost.
 std::vector<double> least_of(const Cost& cost, std::size_t parts) {
-  constexpr double most = 5.0;
+  constexpr double maximum = 5.0;
   std::vector<double> sizes(parts, 0.0);
   if (parts < 2) return sizes;  // minutes are too short to show a drift
   std::fill(sizes.begin(), sizes.end(), 0.25);
   nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(parts));
   search.set_lower_bounds(0.0);
-  search.set_upper_bounds(most);
+  search.set_upper_bounds(maximum);
   search.set_initial_step(0.2);
   search.set_xtol_abs(0.03);
   search.set_maxeval(120);
@@ -276,17 +276,17 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
       std::count_if(slow_times.begin(), slow_times.end(), [&](double time) { return time < 0.5 * longest; }));
   std::vector<double> sizes = least_of(cost, parts);
   // Parts that do not reduce the cost are removed, slowest first: flights determine the slowest part least.
-  double least = cost(sizes);
+  double minimum = cost(sizes);
   for (std::size_t k = sizes.size(); k-- > 0;) {
     if (sizes[k] == 0.0) continue;
     std::vector<double> without = sizes;
     without[k] = 0.0;
     const double left = cost(without);
-    if (!(left < least + worth_of_a_part)) continue;
+    if (!(left < minimum + worth_of_a_part)) continue;
     sizes = without;
-    least = left;
+    minimum = left;
   }
-  found.drift_gain = cost(std::vector<double>(sizes.size(), 0.0)) - least;
+  found.drift_gain = cost(std::vector<double>(sizes.size(), 0.0)) - minimum;
   const RestrictedLikelihood::Value best = with(sizes);
   found.likelihood = -best.plain;
   noise.scale = std::sqrt(best.variance);
@@ -342,7 +342,7 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
   std::array<double, slow_times.size()> squares{};
   double variance = 0.0;
   double sum = 0.0;
-  double most = -std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
   double longest = 0.0;  // s
   for (const Binning& flight : bins) {
     if (flight.size() > 0) longest = std::max(longest, flight.time().back() - flight.time().front());
@@ -357,10 +357,10 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
       tried.slow[first_uncertain + k] = sizes.slowest[k] * rms;
     const RestrictedLikelihood::Value value = likelihood(tried);
     const double logarithm = std::log(sizes.prior) - 0.5 * value.restricted;
-    const double before = logarithm > most ? std::exp(most - logarithm) : 1.0;  // relative to the most likely
-                                                                                // one
-    most = std::max(most, logarithm);
-    const double weight = std::exp(logarithm - most);
+    const double before = logarithm > maximum ? std::exp(maximum - logarithm) : 1.0;  // relative to the most
+                                                                                      // likely one
+    maximum = std::max(maximum, logarithm);
+    const double weight = std::exp(logarithm - maximum);
     sum = before * sum + weight;
     variance = before * variance + weight * value.variance;
     for (std::size_t k = 0; k < squares.size(); ++k)

@@ -60,10 +60,10 @@ std::vector<double> values_of_one(std::vector<double> values, const std::vector<
 
 }  // namespace
 
-std::vector<double> values_at(Communicator& comm, std::vector<double> values, const WantedPlaces& wanted) {
+std::vector<double> values_at(Communicator& comm, std::vector<double> values, const WantedPlaces& requested) {
   for (double& value : values) value += 0.0;  // there is one zero
   if (comm.size() == 1) {
-    const std::vector<std::uint64_t> places = wanted(values.size());
+    const std::vector<std::uint64_t> places = requested(values.size());
     return values_of_one(std::move(values), places);
   }
   std::vector<Place> places(1);
@@ -79,7 +79,7 @@ std::vector<double> values_at(Communicator& comm, std::vector<double> values, co
     if (shift + bits_at_a_time == 64) {
       std::uint64_t count = 0;
       for (const std::uint64_t each : all[0]) count += each;
-      const std::vector<std::uint64_t> below = wanted(count);
+      const std::vector<std::uint64_t> below = requested(count);
       places.resize(below.size(), places[0]);
       all.resize(below.size(), all[0]);
       for (std::size_t k = 0; k < places.size(); ++k) places[k].below = below[k];

@@ -15,6 +15,6 @@ using WantedPlaces = std::function<std::vector<std::uint64_t>(std::uint64_t coun
 /// distribution of the values. Found bit by bit from counts, in eight exchanges of 2 kB for each position,
 /// for any number of values.
 /// @param values without NaN
-std::vector<double> values_at(Communicator& comm, std::vector<double> values, const WantedPlaces& wanted);
+std::vector<double> values_at(Communicator& comm, std::vector<double> values, const WantedPlaces& requested);
 
 }  // namespace pcor::internal

@@ -16,9 +16,9 @@ FlightPartition::FlightPartition(Communicator& comm, const std::vector<std::uint
                    [&sizes](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
   std::vector<std::uint64_t> load(comm.size(), 0);
   for (const std::size_t flight : longest_first) {
-    const auto least = std::min_element(load.begin(), load.end());
-    owner_[flight] = static_cast<std::size_t>(least - load.begin());
-    *least += std::max<std::uint64_t>(sizes[flight], 1);
+    const auto minimum = std::min_element(load.begin(), load.end());
+    owner_[flight] = static_cast<std::size_t>(minimum - load.begin());
+    *minimum += std::max<std::uint64_t>(sizes[flight], 1);
   }
   own_ = static_cast<std::size_t>(std::count(owner_.begin(), owner_.end(), comm.rank()));
 }

@@ -68,9 +68,10 @@ bool send_text(int connection, const std::string& text) {
          send_all(connection, text.data(), text.size());
 }
 
-bool receive_text(int connection, std::string& text, std::uint64_t most) {
+bool receive_text(int connection, std::string& text, std::uint64_t maximum) {
   std::uint64_t count = 0;
-  if (!receive_all(connection, reinterpret_cast<char*>(&count), sizeof count) || count > most) return false;
+  if (!receive_all(connection, reinterpret_cast<char*>(&count), sizeof count) || count > maximum)
+    return false;
   text.resize(count);
   return receive_all(connection, text.data(), text.size());
 }

@@ -27,10 +27,10 @@ struct ForkedProcess {
 std::optional<ForkedProcess> fork_process(int when_alone);
 
 /// Send and receive complete texts. On failure they return false; errno is 0 if the other process has ended.
-/// @param most maximum accepted length of a text, characters
+/// @param maximum maximum accepted length of a text, characters
 bool send_text(int connection, const std::string& text);
 bool receive_text(int connection, std::string& text,
-                  std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+                  std::uint64_t maximum = std::numeric_limits<std::uint64_t>::max());
 
 /// Exit status of the process, as from waitpid; nullopt if the system no longer has it.
 std::optional<int> end_of(int process);

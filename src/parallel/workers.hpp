@@ -13,11 +13,12 @@ struct Workers {
   Communicator& comm;
   std::size_t threads;  ///< threads of this rank, at least one
 
-  /// @param wanted threads; 0: as many as processors, and one in a team of several, which has a processor for
+  /// @param requested threads; 0: as many as processors, and one in a team of several, which has a processor
+  /// for
   ///        each member
-  Workers(Communicator& of, std::size_t wanted)
+  Workers(Communicator& of, std::size_t requested)
       : comm(of),
-        threads(wanted > 0      ? wanted
+        threads(requested > 0   ? requested
                 : of.size() > 1 ? 1
                                 : std::max<std::size_t>(1, std::thread::hardware_concurrency())) {}
 };

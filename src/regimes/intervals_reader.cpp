@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view intervals_format = "pcor-intervals/1";
 constexpr double day_length = 86400.0;           // s
 constexpr double max_of_day = day_length / 2.0;  // s between two times of day; a longer interval is a mistake
-constexpr const char* wanted_time =
+constexpr const char* requested_time =
     "a date and time such as 2011-11-17T20:10:00Z, or a time of the day such as \"20:10:00\"";
 
 // Formats "20:10" and "20:10:00.5".
@@ -119,10 +119,10 @@ class Reader final : TomlReader {
   }
 
   int pair_of(const toml::node& node, Regime regime) const {
-    constexpr std::int64_t most = 10000;
+    constexpr std::int64_t maximum = 10000;
     const auto* number = node.as_integer();
-    if (number == nullptr || number->get() < 1 || number->get() > most) {
-      fail(node, fmt::format("'pair' is not a whole number from 1 to {}; give one to both legs", most));
+    if (number == nullptr || number->get() < 1 || number->get() > maximum) {
+      fail(node, fmt::format("'pair' is not a whole number from 1 to {}; give one to both legs", maximum));
     }
     if (regime != Regime::reverse_heading) {
       fail(node, "'pair' is for the regime 'reverse heading' only; remove it");
@@ -162,7 +162,7 @@ class Reader final : TomlReader {
     }
     const std::optional<toml::time> time =
         node.is_string() ? time_of_day(node.as_string()->get()) : node.value<toml::time>();
-    if (!time) fail(node, fmt::format("the value is not a time; give {}", wanted_time));
+    if (!time) fail(node, fmt::format("the value is not a time; give {}", requested_time));
     return seconds_of(*time);
   }
 

@@ -50,22 +50,22 @@ double mean(const std::vector<double>& values, Run run) {
 Extent extent(const std::vector<double>& values, Run run) {
   Extent extent{nan, nan};
   for (std::size_t i = run.first; i < run.end; ++i) {
-    extent.least = std::fmin(extent.least, values[i]);
-    extent.greatest = std::fmax(extent.greatest, values[i]);
+    extent.minimum = std::fmin(extent.minimum, values[i]);
+    extent.maximum = std::fmax(extent.maximum, values[i]);
   }
   return extent;
 }
 
 std::size_t best_step(const std::vector<double>& values, Run run, std::size_t shortest,
                       std::size_t otherwise) {
-  const auto least = static_cast<double>(shortest);
+  const auto minimum = static_cast<double>(shortest);
   Sum all, left;
   for (std::size_t i = run.first; i < run.end; ++i) all.add(values[i]);
   std::size_t best = otherwise;
   double best_fit = -1.0;
   for (std::size_t i = run.first; i < run.end; ++i) {
     const Sum right{all.value - left.value, all.known - left.known};
-    if (left.known >= least && right.known >= least) {
+    if (left.known >= minimum && right.known >= minimum) {
       const double fit = left.squared_over_count() + right.squared_over_count();
       if (fit > best_fit) {
         best_fit = fit;

@@ -30,10 +30,10 @@ double mean(const std::vector<double>& values, Run run);
 
 /// Minimum and maximum of the known values of a run; NaN if all are missing.
 struct Extent {
-  double least;
-  double greatest;
+  double minimum;
+  double maximum;
 
-  double range() const { return greatest - least; }
+  double range() const { return maximum - minimum; }
 };
 Extent extent(const std::vector<double>& values, Run run);
 

@@ -81,7 +81,7 @@ std::vector<Found> find_speed_runs(const Cells& cells, const std::vector<bool>& 
     if (!(speeds.range() >= criteria.speed_range)) continue;
     if (extent(altitude, whole).range() > 2.0 * criteria.speed_run_height) continue;
     found.push_back(
-        {Regime::speed_run, whole, 0, fmt::format("{:.0f} to {:.0f} m/s", speeds.least, speeds.greatest)});
+        {Regime::speed_run, whole, 0, fmt::format("{:.0f} to {:.0f} m/s", speeds.minimum, speeds.maximum)});
   }
   return found;
 }

@@ -16,14 +16,14 @@ struct Turn {
   bool right = false;
 };
 
-// Runs of a roll beyond `least` deg to one side.
-std::vector<Turn> turns_beyond(double least, const Cells& cells, const std::vector<bool>& flying,
+// Runs of a roll beyond `minimum` deg to one side.
+std::vector<Turn> turns_beyond(double minimum, const Cells& cells, const std::vector<bool>& flying,
                                const RegimeCriteria& criteria) {
   const std::vector<double> roll = running_mean(cells.roll, roll_smoothing);
   std::vector<Turn> turns;
   for (const bool right : {false, true}) {
     const std::vector<Run> banked = runs_where(
-        cells.count(), [&](std::size_t i) { return flying[i] && (right ? roll[i] : -roll[i]) > least; });
+        cells.count(), [&](std::size_t i) { return flying[i] && (right ? roll[i] : -roll[i]) > minimum; });
     const std::vector<Run> bridged_runs = bridged(banked, cells_in(criteria.bridged));
     for (const Run& run : not_shorter(bridged_runs, cells_in(criteria.turn_time)))
       turns.push_back({run, right});

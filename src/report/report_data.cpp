@@ -71,24 +71,24 @@ std::string packed(const std::vector<std::uint32_t>& numbers) {
 constexpr double all_steps = 65534.0;   // steps between the minimum and the maximum of a column
 constexpr double steps_along = 4094.0;  // steps of a column used along axes only
 
-// 65535 is missing; any other number n is `least` + n * `step`.
-json quantised(const ReportColumn& column, double most = all_steps) {
+// 65535 is missing; any other number n is `minimum` + n * `step`.
+json quantised(const ReportColumn& column, double steps = all_steps) {
   constexpr std::uint32_t missing = 65535;
-  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum;
   for (const double value : column.values)
     if (std::isfinite(value)) {
-      least = std::min(least, value);
-      greatest = std::max(greatest, value);
+      minimum = std::min(minimum, value);
+      maximum = std::max(maximum, value);
     }
-  if (least > greatest) least = greatest = 0.0;
-  const double step = greatest > least ? (greatest - least) / most : 1.0;
+  if (minimum > maximum) minimum = maximum = 0.0;
+  const double step = maximum > minimum ? (maximum - minimum) / steps : 1.0;
   std::vector<std::uint32_t> numbers;
   numbers.reserve(column.values.size());
   for (const double value : column.values)
-    numbers.push_back(std::isfinite(value) ? static_cast<std::uint32_t>(std::lround((value - least) / step))
+    numbers.push_back(std::isfinite(value) ? static_cast<std::uint32_t>(std::lround((value - minimum) / step))
                                            : missing);
   return {{"name", column.name}, {"title", column.title.empty() ? column.name : column.title},
-          {"unit", column.unit}, {"least", least},
+          {"unit", column.unit}, {"least", minimum},
           {"step", step},        {"values", packed(numbers)}};
 }
 
@@ -141,7 +141,7 @@ class AlongAxes {
 // Flights with the time of their samples: `start` in seconds since 1970, and the milliseconds between
 // successive samples, beginning with the difference between the first one and the start.
 json flights(const Report& report) {
-  constexpr double most = std::numeric_limits<std::uint32_t>::max();
+  constexpr double max_time = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::size_t> bounds = report.flight_starts;
   if (bounds.empty() && !report.time.empty()) bounds.push_back(0);
   bounds.push_back(report.time.size());
@@ -152,7 +152,7 @@ json flights(const Report& report) {
     double before = 0.0;
     for (std::size_t i = bounds[flight]; i < bounds[flight + 1]; ++i) {
       const double milliseconds = std::round((report.time[i] - start) * 1000.0);
-      if (milliseconds > most)
+      if (milliseconds > max_time)
         throw Error(Error::Code::usage, "report: flight " + std::to_string(flight + 1) +
                                             " lasts over 49 days; begin a new flight in flight_starts");
       steps.push_back(static_cast<std::uint32_t>(milliseconds - before));
@@ -191,13 +191,14 @@ json sums_json(const std::vector<WhatIfSums>& all) {
 
 // Samples at which the columns are kept, and their values there.
 json what_if_columns(const WhatIfPanel& panel, const Report& report) {
-  constexpr std::size_t most = 4000;
+  constexpr std::size_t max_points = 4000;
   // The kept values are drawn only; a hundredth of the noise is invisible.
   const double enough = 0.01 * panel.noise;
   std::vector<ScaledSeries> series;
   for (const WhatIfCoefficient& coefficient : panel.coefficients)
     series.push_back({&coefficient.column, coefficient.size});
-  const std::vector<std::size_t> points = thinned(report.time, report.flight_starts, series, most, enough);
+  const std::vector<std::size_t> points =
+      thinned(report.time, report.flight_starts, series, max_points, enough);
   json columns = json::array();
   for (const WhatIfCoefficient& coefficient : panel.coefficients) {
     ReportColumn column;
@@ -295,8 +296,8 @@ struct ItemJson {
                               {"unit", each.unit},
                               {"given", each.given},
                               {"start", each.start},
-                              {"least", each.least},
-                              {"greatest", each.greatest},
+                              {"least", each.minimum},
+                              {"greatest", each.maximum},
                               {"fixed", each.fixed},
                               {"argument", each.argument}});
     json effects = json::array();

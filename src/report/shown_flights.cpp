@@ -15,10 +15,10 @@ namespace {
 
 /// Some of the flights, at even distances in the order of time.
 template <class Begin>
-std::vector<std::size_t> spread(std::vector<std::size_t> flights, std::size_t most, const Begin& begin) {
+std::vector<std::size_t> spread(std::vector<std::size_t> flights, std::size_t maximum, const Begin& begin) {
   std::stable_sort(flights.begin(), flights.end(),
                    [&](std::size_t a, std::size_t b) { return begin(a) < begin(b); });
-  const std::size_t count = std::min(flights.size(), most);
+  const std::size_t count = std::min(flights.size(), maximum);
   std::vector<std::size_t> some;
   for (std::size_t k = 0; k < count; ++k) some.push_back(flights[(2 * k + 1) * flights.size() / (2 * count)]);
   return some;
@@ -62,36 +62,36 @@ void show_only(Report& report, const std::vector<std::size_t>& flights) {
 
 }  // namespace
 
-std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flights, std::size_t most) {
+std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flights, std::size_t maximum) {
   std::vector<std::size_t> all = numbers_to(flights.size());
-  if (flights.size() <= most) return all;
+  if (flights.size() <= maximum) return all;
   all.erase(
       std::remove_if(all.begin(), all.end(), [&](std::size_t f) { return std::isnan(flights[f].failure); }),
       all.end());
   std::stable_sort(all.begin(), all.end(),
                    [&](std::size_t a, std::size_t b) { return flights[a].failure > flights[b].failure; });
-  const auto worst = all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), most / 2));
+  const auto worst = all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), maximum / 2));
   std::vector<std::size_t> chosen(all.begin(), worst);
-  for (const std::size_t f : spread({worst, all.end()}, most - chosen.size(),
+  for (const std::size_t f : spread({worst, all.end()}, maximum - chosen.size(),
                                     [&](std::size_t each) { return flights[each].begin; }))
     chosen.push_back(f);
   std::sort(chosen.begin(), chosen.end());
   return chosen;
 }
 
-std::vector<std::size_t> flights_over_time(const std::vector<double>& begins, std::size_t most) {
+std::vector<std::size_t> flights_over_time(const std::vector<double>& begins, std::size_t maximum) {
   std::vector<std::size_t> chosen =
-      spread(numbers_to(begins.size()), most, [&](std::size_t f) { return begins[f]; });
+      spread(numbers_to(begins.size()), maximum, [&](std::size_t f) { return begins[f]; });
   std::sort(chosen.begin(), chosen.end());
   return chosen;
 }
 
-void show_flights_over_time(Report& report, std::size_t most) {
+void show_flights_over_time(Report& report, std::size_t maximum) {
   std::vector<double> begins;
   for (const std::size_t first : report.flight_starts)
     begins.push_back(first < report.time.size() ? report.time[first]
                                                 : std::numeric_limits<double>::infinity());
-  const std::vector<std::size_t> shown = flights_over_time(begins, most);
+  const std::vector<std::size_t> shown = flights_over_time(begins, maximum);
   if (shown.size() == begins.size()) return;
   report.summary.push_back(shown_text(shown.size(), begins.size(), "flights spread over the campaign"));
   show_only(report, shown);

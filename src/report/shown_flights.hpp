@@ -22,18 +22,18 @@ struct FlightToShow {
   }
 };
 
-/// Numbers, in increasing order, of the flights that a report shows: all flights, up to `most`. Otherwise
+/// Numbers, in increasing order, of the flights that a report shows: all flights, up to `maximum`. Otherwise
 /// half are the flights with the largest residual, and half are spread over the time of the others.
 std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flights,
-                                         std::size_t most = max_flights_shown);
+                                         std::size_t maximum = max_flights_shown);
 
 /// Flights as by `flights_to_show` without known residuals: for many flights, those spread over time.
 /// @param begins of the flights, s since 1970 UTC
 std::vector<std::size_t> flights_over_time(const std::vector<double>& begins,
-                                           std::size_t most = max_flights_shown);
+                                           std::size_t maximum = max_flights_shown);
 
 /// Keeps the records and intervals of `flights_over_time`, and adds a note to the summary.
-void show_flights_over_time(Report& report, std::size_t most = max_flights_shown);
+void show_flights_over_time(Report& report, std::size_t maximum = max_flights_shown);
 
 /// Note on pictures that do not show all flights, a sentence; empty if they show all.
 /// @param which description of the shown flights

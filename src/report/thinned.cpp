@@ -22,7 +22,8 @@ struct Line {
 }  // namespace
 
 std::vector<std::size_t> thinned(const std::vector<double>& time, const std::vector<std::size_t>& begins,
-                                 const std::vector<ScaledSeries>& series, std::size_t most, double enough) {
+                                 const std::vector<ScaledSeries>& series, std::size_t maximum,
+                                 double enough) {
   std::vector<std::size_t> known;
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (std::all_of(series.begin(), series.end(),
@@ -63,7 +64,7 @@ std::vector<std::size_t> thinned(const std::vector<double>& time, const std::vec
     kept.push_back(known[b]);
     lines.push(line(a, b));
   }
-  for (std::size_t count = 0; count < most && !lines.empty(); ++count) {
+  for (std::size_t count = 0; count < maximum && !lines.empty(); ++count) {
     const Line worst = lines.top();
     if (worst.error <= enough || worst.error == 0.0) break;
     lines.pop();

@@ -16,9 +16,9 @@ struct ScaledSeries {
 /// from its line. Samples at which a series has no value are excluded.
 ///
 /// @param begins the first sample of each flight
-/// @param most number of kept samples, in addition to two for each flight
+/// @param maximum number of kept samples, in addition to two for each flight
 /// @param enough lines with smaller (scaled) deviations of all series are not divided
 std::vector<std::size_t> thinned(const std::vector<double>& time, const std::vector<std::size_t>& begins,
-                                 const std::vector<ScaledSeries>& series, std::size_t most, double enough);
+                                 const std::vector<ScaledSeries>& series, std::size_t maximum, double enough);
 
 }  // namespace pcor::internal::report

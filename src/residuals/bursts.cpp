@@ -66,9 +66,9 @@ std::vector<std::size_t> find_bursts(const std::vector<double>& residual,
     const std::size_t begin = jumps[first];
     const std::size_t end = jumps[last] + 1;
     if (time[end - 1] - time[begin] > longest + 2.0 * step) continue;
-    double greatest = 0.0;
-    for (std::size_t i = begin; i < end; ++i) greatest = std::max(greatest, both[i]);
-    if (greatest < jump_limit) continue;
+    double maximum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) maximum = std::max(maximum, both[i]);
+    if (maximum < jump_limit) continue;
     const std::size_t from = bursts.empty() ? 0 : bursts.back() + 1;
     const std::size_t to = std::min(end + beyond, residual.size());
     for (std::size_t i = std::max(from, begin - std::min(begin, beyond)); i < to; ++i) bursts.push_back(i);

@@ -178,7 +178,7 @@ class LiftLaw {
 
   /// Integrated autocorrelation time, in pieces, from the correlation of neighbours.
   double pieces_per_independent(std::vector<double> clean) const {
-    constexpr double most = 0.95;
+    constexpr double maximum = 0.95;
     double product = 0.0;
     double square = 0.0;
     for (double& each : clean) each = std::clamp(each, -3.0 * deviation_, 3.0 * deviation_);
@@ -186,7 +186,7 @@ class LiftLaw {
       square += clean[i] * clean[i];
       if (i > 0) product += clean[i] * clean[i - 1];
     }
-    const double correlation = std::clamp(product / square, 0.0, most);
+    const double correlation = std::clamp(product / square, 0.0, maximum);
     return (1.0 + correlation) / (1.0 - correlation);
   }
 

@@ -75,11 +75,11 @@ std::vector<Mask> masks_without_flaps(const FlightSamples& samples, const MaskOp
   return masks;
 }
 
-void mark_flaps(const FlightSamples& samples, double most, std::vector<Mask>& masks) {
+void mark_flaps(const FlightSamples& samples, double maximum, std::vector<Mask>& masks) {
   for (std::size_t i = 0; i < masks.size(); ++i) {
     const bool out = samples.flaps.empty()
-                         ? !samples.flaps_by_lift.empty() && samples.flaps_by_lift[i] && most < fully_out
-                         : samples.flaps[i] > most;
+                         ? !samples.flaps_by_lift.empty() && samples.flaps_by_lift[i] && maximum < fully_out
+                         : samples.flaps[i] > maximum;
     if (masks[i] == Mask::none && out) masks[i] = Mask::flaps;
   }
 }

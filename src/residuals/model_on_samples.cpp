@@ -113,12 +113,12 @@ double ModelOnSamples::step_of(std::size_t parameter) const {
 
 void ModelOnSamples::differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
                                           const double* parameters,
-                                          const std::vector<LinearColumn>& wanted) const {
-  if (wanted.empty()) return;
+                                          const std::vector<LinearColumn>& requested) const {
+  if (requested.empty()) return;
   std::vector<double> defect(count);
   batch_.run(inputs, {{Quantity::static_defect, defect.data()}}, count, parameters);
   std::vector<double> moved(parameters, parameters + this->parameters().size());
-  for (const auto& [parameter, derivatives] : wanted) {
+  for (const auto& [parameter, derivatives] : requested) {
     moved[parameter] += step_of(parameter);
     batch_.run(inputs, {{Quantity::static_defect, derivatives}}, count, moved.data());
     const double scale = 1.0 / (moved[parameter] - parameters[parameter]);

@@ -91,7 +91,7 @@ class ModelOnSamples {
 
   /// Derivatives of delta-p of a block with respect to linear parameters, hPa per unit.
   void differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
-                            const double* parameters, const std::vector<LinearColumn>& wanted) const;
+                            const double* parameters, const std::vector<LinearColumn>& requested) const;
 
   /// True if the columns that depend on coefficients were computed at these parameters.
   bool stands_at(const double* parameters) const;

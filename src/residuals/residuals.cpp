@@ -20,11 +20,11 @@ using namespace internal;
 
 namespace {
 
-/// Derivatives by dual numbers with respect to the parameters `places` among the `wanted` ones, into their
+/// Derivatives by dual numbers with respect to the parameters `places` among the `requested` ones, into their
 /// columns. `values(dual, out)` computes the `count` values for dual parameters.
 template <class Values>
 void differentiate(std::size_t count, const std::vector<double>& parameters,
-                   const std::vector<std::size_t>& wanted, const std::vector<std::size_t>& places,
+                   const std::vector<std::size_t>& requested, const std::vector<std::size_t>& places,
                    double* derivatives, const Values& values) {
   std::vector<Jet> dual(parameters.size());
   std::vector<Jet> out(count);
@@ -32,7 +32,7 @@ void differentiate(std::size_t count, const std::vector<double>& parameters,
     const std::size_t width = std::min<std::size_t>(jet_width, places.size() - first);
     for (std::size_t p = 0; p < dual.size(); ++p) dual[p] = Jet(parameters[p]);
     for (std::size_t k = 0; k < width; ++k)
-      dual[wanted[places[first + k]]].v[static_cast<Eigen::Index>(k)] = 1.0;
+      dual[requested[places[first + k]]].v[static_cast<Eigen::Index>(k)] = 1.0;
     values(dual.data(), out.data());
     for (std::size_t k = 0; k < width; ++k) {
       double* const column = derivatives + places[first + k] * count;
@@ -130,7 +130,7 @@ std::vector<double> Residuals::values(const double* parameters) const {
 }
 
 void Residuals::evaluate(const std::size_t* samples, std::size_t count, const double* parameters,
-                         const std::vector<std::size_t>& wanted, double* residual,
+                         const std::vector<std::size_t>& requested, double* residual,
                          double* derivatives) const {
   const Implementation& own = *implementation_;
   std::vector<double> store;
@@ -141,17 +141,17 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
   own.reference->residuals({inputs, reference_inputs, samples, count}, parameters, residual);
 
   const std::size_t of_model = own.model.parameters().size();
-  std::vector<std::size_t> curved;  // indices in `wanted`
+  std::vector<std::size_t> curved;  // indices in `requested`
   std::vector<LinearColumn> by_model;
   std::vector<LinearColumn> by_reference;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
+  for (std::size_t k = 0; k < requested.size(); ++k) {
     double* const column = derivatives + k * count;
-    if (!own.linear[wanted[k]]) {
+    if (!own.linear[requested[k]]) {
       curved.push_back(k);
-    } else if (wanted[k] < of_model) {
-      by_model.push_back({wanted[k], column});
+    } else if (requested[k] < of_model) {
+      by_model.push_back({requested[k], column});
     } else {
-      by_reference.push_back({wanted[k] - of_model, column});
+      by_reference.push_back({requested[k] - of_model, column});
     }
   }
   own.model.differentiate_linear(inputs, count, parameters, by_model);
@@ -162,16 +162,16 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
     own.reference->model()->differentiate_linear(reference_inputs, count, parameters + of_model,
                                                  by_reference);
   }
-  differentiate(count, {parameters, parameters + own.parameters.size()}, wanted, curved, derivatives,
+  differentiate(count, {parameters, parameters + own.parameters.size()}, requested, curved, derivatives,
                 [&](const Jet* dual, Jet* out) { own.reference->residuals(samples, count, dual, out); });
 }
 
 void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count, const double* parameters,
-                                   const std::vector<std::size_t>& wanted, double* residual,
+                                   const std::vector<std::size_t>& requested, double* residual,
                                    double* derivatives) const {
   const Implementation& own = *implementation_;
   const NoisySensor* const sensor = own.reference->sensor();
-  if (sensor == nullptr) return evaluate(samples, count, parameters, wanted, residual, derivatives);
+  if (sensor == nullptr) return evaluate(samples, count, parameters, requested, residual, derivatives);
   const std::vector<double>& recorded = *own.samples->model.find(sensor->quantity());
   const std::vector<double>& sensitivity = own.sensitivity();
   sensor->predict(samples, count, parameters, residual);
@@ -179,11 +179,11 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
     residual[i] = sensitivity[samples[i]] * (recorded[samples[i]] - residual[i]);
   // In some coefficients delta-p is linear, and the reading depends on them through delta-p alone.
   const std::vector<bool> linear = own.model.linear();
-  std::vector<std::size_t> curved;  // indices in `wanted`
+  std::vector<std::size_t> curved;  // indices in `requested`
   std::vector<LinearColumn> by_defect;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    if (wanted[k] < linear.size() && linear[wanted[k]])
-      by_defect.push_back({wanted[k], derivatives + k * count});
+  for (std::size_t k = 0; k < requested.size(); ++k) {
+    if (requested[k] < linear.size() && linear[requested[k]])
+      by_defect.push_back({requested[k], derivatives + k * count});
     else
       curved.push_back(k);
   }
@@ -197,9 +197,9 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
       for (std::size_t i = 0; i < count; ++i) each.derivatives[i] *= slope[i];
     }
   }
-  differentiate(count, {parameters, parameters + own.parameters.size()}, wanted, curved, derivatives,
+  differentiate(count, {parameters, parameters + own.parameters.size()}, requested, curved, derivatives,
                 [&](const Jet* dual, Jet* out) { sensor->predict(samples, count, dual, out); });
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
+  for (std::size_t k = 0; k < requested.size(); ++k) {
     for (std::size_t i = 0; i < count; ++i) derivatives[k * count + i] *= -sensitivity[samples[i]];
   }
 }

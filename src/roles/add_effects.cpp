@@ -25,9 +25,9 @@ std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
   if (variables.empty() && !usual.empty()) return usual.front();
   for (const char* const suffix : {"", "_"}) {
     for (const std::string& name : usual) {
-      const std::string wanted = name + suffix;
+      const std::string requested = name + suffix;
       for (const std::string& variable : variables) {
-        if (*suffix == '\0' ? variable == wanted : variable.rfind(wanted, 0) == 0) return variable;
+        if (*suffix == '\0' ? variable == requested : variable.rfind(requested, 0) == 0) return variable;
       }
     }
   }

@@ -164,12 +164,12 @@ const std::vector<VariableNaming>& aircraft_families() {
 
 std::vector<const VariableNaming*> families_like(const Flight& flight) {
   std::vector<const VariableNaming*> best;
-  int most = 1;
+  int maximum = 1;
   for (const VariableNaming& family : aircraft_families()) {
     const int here = likeness(family, flight);
-    if (here < most || here == 0) continue;
-    if (here > most) best.clear();
-    most = here;
+    if (here < maximum || here == 0) continue;
+    if (here > maximum) best.clear();
+    maximum = here;
     best.push_back(&family);
   }
   return best;

@@ -117,9 +117,9 @@ std::vector<Segment> find_frozen(const std::vector<double>& values, const std::v
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!is_long(runs[i])) continue;
     const auto length = static_cast<double>(runs[i].count);
-    const double least =
+    const double minimum =
         is_noisy_around(values, runs[i], resolution) ? more_than_half * of_half : more_than_most * of_most;
-    if (length >= least && length >= more_than_near * near_length(runs, i)) frozen.push_back(runs[i]);
+    if (length >= minimum && length >= more_than_near * near_length(runs, i)) frozen.push_back(runs[i]);
   }
   return frozen;
 }

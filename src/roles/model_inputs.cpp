@@ -125,7 +125,7 @@ void note_left_out(const ModelInput& input, const RejectedCounts& left_out, Note
   };
   const std::string unit = is_role(input.quantity) ? fmt::format(" {}", info_of(input.quantity).unit) : "";
   note(left_out.impossible, fmt::format("outside {:g} to {:g}{}, which is impossible",
-                                        input.conversion.least(), input.conversion.greatest(), unit));
+                                        input.conversion.minimum(), input.conversion.maximum(), unit));
   note(left_out.invalid, "outside the range that the file states as valid");
   note(left_out.enormous, "above 1e30, which marks missing values");
 }

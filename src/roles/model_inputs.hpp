@@ -18,7 +18,7 @@ struct ModelInput {
   UnitConversion conversion;
 };
 
-/// The roles of a model, without that of the laser where its reading is not wanted.
+/// The roles of a model, without that of the laser where its reading is not requested.
 std::vector<Quantity> roles_of(const ModelDefinition& file, bool with_laser);
 
 /// The chain of a model on these roles. @throws Error if the model cannot be used on them.

@@ -39,14 +39,14 @@ HeightEvidence compare_height(const std::vector<double>& height, const std::vect
   evidence.bias = median(differences);
   for (double& each : differences) each = std::abs(each - evidence.bias);
   evidence.scatter = deviation_of_median * median(std::move(differences));
-  const auto [least, most] = std::minmax_element(pressures.begin(), pressures.end());
+  const auto [minimum, maximum] = std::minmax_element(pressures.begin(), pressures.end());
   // Both are recorded in steps; the gradient converts a step of height to one of pressure.
   const double middle = pressure_altitude(median(pressures));
   const double gradient = standard_pressure(middle) - standard_pressure(middle + 1.0);
   const double rounding =
       std::hypot(rounding_of(resolution_of(pressure)), gradient * rounding_of(resolution_of(height)));
   const double allowed = std::max(same_scatter, 1.5 * rounding);
-  const bool tells = *most - *least >= min_range || evidence.scatter < 0.1 * same_scatter;
+  const bool tells = *maximum - *minimum >= min_range || evidence.scatter < 0.1 * same_scatter;
   if (tells && std::abs(evidence.bias) < same_bias && evidence.scatter < allowed) {
     evidence.kind = Kind::pressure_altitude;
   } else if (std::abs(evidence.bias) < near_bias && evidence.scatter < near_scatter) {

@@ -21,7 +21,7 @@ struct RecordedSeries {
 /// Conversion that gives NaN beyond the limits of a series: undeclared marks of missing values, a dead
 /// sensor, or another unit.
 inline UnitConversion believed(const UnitConversion& conversion, const QuantityInfo& info) {
-  return conversion.within(info.least, info.most);
+  return conversion.within(info.minimum, info.maximum);
 }
 
 /// The values of a variable.

@@ -25,7 +25,7 @@ struct Signs {
   std::string_view phrases;
   std::string_view not_words;       ///< words that exclude a name or long_name
   std::string_view standard_names;  ///< CF standard names
-  double least, most;               ///< limits of the median in flight, in the unit of the series
+  double minimum, maximum;          ///< limits of the median in flight, in the unit of the series
 };
 
 constexpr std::string_view no_pressure = "dynamic total cabin differential vapor altitude bay error";
@@ -137,10 +137,10 @@ double likeness(const std::vector<std::string>& words, std::string_view phrases)
   double best = 0.0;
   double rank = 0.0;
   for (const std::string& phrase : split(phrases, ';')) {
-    const std::vector<std::string> wanted = split(phrase, ' ');
-    if (std::all_of(wanted.begin(), wanted.end(),
+    const std::vector<std::string> requested = split(phrase, ' ');
+    if (std::all_of(requested.begin(), requested.end(),
                     [&](const std::string& word) { return has(words, word); })) {
-      const double others = std::min(5.0, static_cast<double>(words.size() - wanted.size()));
+      const double others = std::min(5.0, static_cast<double>(words.size() - requested.size()));
       best = std::max(best, full - later_phrase * rank - other_word * others);
     }
     ++rank;
@@ -201,10 +201,10 @@ std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described&
         states_unit ? flight.conversion(variable.info.name, unit) : UnitConversion();
     std::vector<double> values = some_values(flight, variable.info.name, conversion);
     if (values.empty()) return std::nullopt;
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    const std::string range = fmt::format("{:.5g} to {:.5g} {}", *least, *most, unit);
+    const auto [minimum, maximum] = std::minmax_element(values.begin(), values.end());
+    const std::string range = fmt::format("{:.5g} to {:.5g} {}", *minimum, *maximum, unit);
     const double middle = median(std::move(values));
-    if (!(middle >= sign.least && middle <= sign.most)) return std::nullopt;
+    if (!(middle >= sign.minimum && middle <= sign.maximum)) return std::nullopt;
     const std::string who = by_standard_name ? fmt::format("its standard_name is {}", variable.standard_name)
                             : by_long_name > 0 ? fmt::format("it is called '{}'", variable.info.long_name)
                                                : fmt::format("its name is {}", fmt::join(variable.name, " "));

@@ -83,8 +83,8 @@ double Pilot::towards_height(double height, double rate) {
   constexpr double response = 2.0;        // s
   constexpr double comfortable = 1.0;     // m/s2
   constexpr double smoothing_time = 0.4;  // s
-  const double wanted = std::clamp((height - this->height()) / capture, -rate, rate);
-  const double acceleration = std::clamp((wanted - vertical_speed_) / response, -comfortable, comfortable);
+  const double requested = std::clamp((height - this->height()) / capture, -rate, rate);
+  const double acceleration = std::clamp((requested - vertical_speed_) / response, -comfortable, comfortable);
   follow(smooth_vertical_, acceleration, smoothing_time);
   return smooth_vertical_;
 }
@@ -205,15 +205,15 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   truth_.torque.push_back(torque(aircraft_, rolling, flow, speed_, energy) *
                           (1.0 + trim_rms * trim_.next(kept(trim_memory))));
 
-  const double cabin_wanted =
+  const double cabin_requested =
       std::max(air.pressure, std::min(0.7 * atmosphere.ground_pressure + 0.3 * air.pressure,
                                       air.pressure + aircraft_.cabin_differential));
-  if (!cabin_) cabin_ = cabin_wanted;
-  follow(*cabin_, cabin_wanted, cabin_time);
+  if (!cabin_) cabin_ = cabin_requested;
+  follow(*cabin_, cabin_requested, cabin_time);
   truth_.cabin_pressure.push_back(*cabin_);
-  const double bay_wanted = 290.0 + 0.4 * (air.temperature - 290.0);  // heated from inside
-  if (!bay_) bay_ = bay_wanted;
-  follow(*bay_, bay_wanted, bay_time);
+  const double bay_requested = 290.0 + 0.4 * (air.temperature - 290.0);  // heated from inside
+  if (!bay_) bay_ = bay_requested;
+  follow(*bay_, bay_requested, bay_time);
   truth_.bay_temperature.push_back(*bay_);
 
   // To the next step

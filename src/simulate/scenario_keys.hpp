@@ -12,8 +12,8 @@ namespace pcor::internal::simulate {
 
 /// The values that a number may have, with its unit for the message.
 struct Domain {
-  double least;
-  double greatest;
+  double minimum;
+  double maximum;
   std::string_view unit;
 };
 

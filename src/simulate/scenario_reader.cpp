@@ -53,10 +53,10 @@ class Reader final : TomlReader {
 
   double number(const Entry& entry, const Domain& domain) const {
     const double value = TomlReader::number(entry);
-    if (value < domain.least || value > domain.greatest) {
+    if (value < domain.minimum || value > domain.maximum) {
       const std::string unit = domain.unit.empty() ? "" : " " + std::string(domain.unit);
       fail(entry, fmt::format("{} = {}{} is impossible; give a number from {} to {}{}", entry.key, value,
-                              unit, domain.least, domain.greatest, unit));
+                              unit, domain.minimum, domain.maximum, unit));
     }
     return value;
   }
@@ -72,9 +72,9 @@ class Reader final : TomlReader {
   /// Calls `read(table, place)` for each table of a list of tables.
   template <class Read>
   void tables(const Entry& entry, Read read) const {
-    const std::string wanted = fmt::format("tables [[{}]]", entry.key);
-    for (const toml::node& node : array(entry, wanted)) {
-      read(as<toml::table>(node, "this is not a table; give " + wanted), node.source().begin);
+    const std::string requested = fmt::format("tables [[{}]]", entry.key);
+    for (const toml::node& node : array(entry, requested)) {
+      read(as<toml::table>(node, "this is not a table; give " + requested), node.source().begin);
     }
   }
 

@@ -55,12 +55,12 @@ Air air_at(const Truth& truth, std::size_t i) {
 
 double static_defect(const Scenario::Law& law, const PortState& state) {
   constexpr double tolerance = 1e-11;  // hPa
-  constexpr int most = 30;
+  constexpr int maximum = 30;
   const auto miss = [&](double d) { return law_value(law, state, state.pressure - d) + state.extra - d; };
   double last = state.extra;
   double miss_last = miss(last);
   double now = last + miss_last;
-  for (int i = 0; i < most && std::abs(now - last) > tolerance; ++i) {
+  for (int i = 0; i < maximum && std::abs(now - last) > tolerance; ++i) {
     const double miss_now = miss(now);
     if (miss_now == miss_last) break;
     const double next = now - miss_now * (now - last) / (miss_now - miss_last);
@@ -73,7 +73,7 @@ double static_defect(const Scenario::Law& law, const PortState& state) {
 
 Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftInfo& aircraft) {
   constexpr double tolerance = 1e-12;
-  constexpr int most = 30;
+  constexpr int maximum = 30;
   const Scenario::System& system = scenario.systems.front();
   Series mach = truth.mach;
   for (std::size_t i = 0; i < mach.size(); ++i) {
@@ -89,7 +89,7 @@ Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftI
     double last = truth.mach[i];
     double now = last + 1e-4;
     double miss_last = miss(last);
-    for (int step = 0; step < most && std::abs(now - last) > tolerance; ++step) {
+    for (int step = 0; step < maximum && std::abs(now - last) > tolerance; ++step) {
       const double miss_now = miss(now);
       if (miss_now == miss_last) break;
       const double next = now - miss_now * (now - last) / (miss_now - miss_last);

@@ -28,9 +28,9 @@ using Coefficients = std::array<double, 3>;
           flight.path().string(), steps_variable, what, attribute));
 }
 
-std::string attribute_of(const Flight& flight, const std::string& wanted) {
+std::string attribute_of(const Flight& flight, const std::string& requested) {
   for (const auto& [name, text] : flight.variable(steps_variable).attributes) {
-    if (name == wanted) return text;
+    if (name == requested) return text;
   }
   return "";
 }

@@ -33,10 +33,11 @@ Sum sum_of(const std::vector<double>& gains) {
 
 }  // namespace
 
-Degrees::Degrees(const std::vector<HeightEquations>& flights, std::size_t most) : flights_(flights.size()) {
+Degrees::Degrees(const std::vector<HeightEquations>& flights, std::size_t maximum)
+    : flights_(flights.size()) {
   HeightEquations all;
   for (const HeightEquations& one : flights) all += one;
-  for (std::size_t terms = 0; terms <= most; ++terms) {
+  for (std::size_t terms = 0; terms <= maximum; ++terms) {
     const auto n = static_cast<Eigen::Index>(terms);
     DegreeChoice& choice = choices_.emplace_back();
     choice.degree = static_cast<int>(terms) - 1;

@@ -17,8 +17,8 @@ inline constexpr std::size_t min_for_choice = 3;
 /// How well corrections of each degree explain the flights, and those that are held out.
 class Degrees {
  public:
-  /// Degrees from none to that of `most` coefficients.
-  Degrees(const std::vector<HeightEquations>& flights, std::size_t most);
+  /// Degrees from none to that of `maximum` coefficients.
+  Degrees(const std::vector<HeightEquations>& flights, std::size_t maximum);
 
   const std::vector<DegreeChoice>& choices() const { return choices_; }
 

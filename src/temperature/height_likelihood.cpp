@@ -122,8 +122,8 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
 /// matter: over a flight it moves heights by centimetres.
 struct Searched {
   double HeightNoise::*value;
-  double least;
-  double greatest;
+  double minimum;
+  double maximum;
 };
 
 constexpr std::array<Searched, 5> searched{{
@@ -137,7 +137,7 @@ constexpr std::array<Searched, 5> searched{{
 std::vector<double> as_logarithms(const HeightNoise& noise) {
   std::vector<double> x;
   for (const Searched& each : searched)
-    x.push_back(std::log(std::clamp(noise.*each.value, each.least, each.greatest)));
+    x.push_back(std::log(std::clamp(noise.*each.value, each.minimum, each.maximum)));
   return x;
 }
 
@@ -170,8 +170,8 @@ class AroundLikeliest {
     for (std::size_t i = 0; i < searched.size(); ++i) {
       const Eigen::Index row = as_index(i);
       centre_[row] = x[i];
-      lower_[row] = std::log(searched[i].least);
-      upper_[row] = std::log(searched[i].greatest);
+      lower_[row] = std::log(searched[i].minimum);
+      upper_[row] = std::log(searched[i].maximum);
     }
   }
 
@@ -426,8 +426,8 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
   std::vector<double> lower;
   std::vector<double> upper;
   for (const Searched& each : searched) {
-    lower.push_back(std::log(each.least));
-    upper.push_back(std::log(each.greatest));
+    lower.push_back(std::log(each.minimum));
+    upper.push_back(std::log(each.maximum));
   }
   std::vector<double> x = as_logarithms(start);
   // BOBYQA finds the valley; a restart from its end corrects steps that stopped at a bound.

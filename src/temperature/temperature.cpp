@@ -52,14 +52,15 @@ class TemperatureCalibration {
   TemperatureResult run() {
     read();
     find_prior();
-    const std::size_t most = static_cast<std::size_t>(options_.degree.value_or(2)) + 1;
-    likeliest_ = maximise_likelihood(records_, static_cast<Eigen::Index>(most), prior_, start(), workers_);
+    const std::size_t max_terms = static_cast<std::size_t>(options_.degree.value_or(2)) + 1;
+    likeliest_ =
+        maximise_likelihood(records_, static_cast<Eigen::Index>(max_terms), prior_, start(), workers_);
     std::vector<HeightEquations> equations;
     for (const HeightRecord& record : records_)
       equations.push_back(height_equations(record, likeliest_.noise, prior_));
-    const Degrees degrees(equations, most);
+    const Degrees degrees(equations, max_terms);
     result_.degrees = degrees.choices();
-    terms_ = options_.degree ? most : degrees.worthwhile_terms();
+    terms_ = options_.degree ? max_terms : degrees.worthwhile_terms();
     fit();
     describe_flights();
     write_notes();
@@ -279,15 +280,15 @@ class TemperatureCalibration {
   /// Range of the static pressure over the segments due to an error of one unit, hPa.
   double range_of(HeightError error) const {
     double range = 0.0;
-    double least = 0.0;
-    double greatest = 0.0;
+    double minimum = 0.0;
+    double maximum = 0.0;
     for (const HeightRecord& record : records_) {
       for (const HeightBlock& block : record.blocks) {
         const double pressure = block.errors[error] / block.metres_per_hpa;
-        if (block.starts_segment) least = greatest = pressure;
-        least = std::min(least, pressure);
-        greatest = std::max(greatest, pressure);
-        range = std::max(range, greatest - least);
+        if (block.starts_segment) minimum = maximum = pressure;
+        minimum = std::min(minimum, pressure);
+        maximum = std::max(maximum, pressure);
+        range = std::max(range, maximum - minimum);
       }
     }
     return range;
@@ -325,11 +326,11 @@ class TemperatureCalibration {
                                  workers_, &held)
           .deviance;
     };
-    const double least = deviance_at(best);
+    const double minimum = deviance_at(best);
     const auto limit = [&](double side) {
       double reach = error;
       for (int step = 0; step < 3; ++step) {
-        const double rise = deviance_at(best + side * reach) - least;
+        const double rise = deviance_at(best + side * reach) - minimum;
         if (!(rise > 0.05) || !std::isfinite(rise)) return nan;
         reach /= std::sqrt(rise);
         if (std::abs(rise - 1.0) < 0.02) break;
@@ -557,10 +558,10 @@ TemperatureResult fit_temperature(const FlightSet& flights, const ModelDefinitio
                                   const TemperatureOptions& options) {
   if (flights.empty())
     throw Error(Error::Code::usage, "no flights for the temperature fit; give at least one flight");
-  constexpr int most = static_cast<int>(calibration_terms) - 1;
-  if (options.degree && (*options.degree < 0 || *options.degree > most))
-    throw Error(Error::Code::usage,
-                fmt::format("a correction has no degree {}; give one from 0 to {}", *options.degree, most));
+  constexpr int max_degree = static_cast<int>(calibration_terms) - 1;
+  if (options.degree && (*options.degree < 0 || *options.degree > max_degree))
+    throw Error(Error::Code::usage, fmt::format("a correction has no degree {}; give one from 0 to {}",
+                                                *options.degree, max_degree));
   TemperatureResult result = TemperatureCalibration(flights, model, options).run();
   flights.require_unchanged();
   return result;

@@ -177,7 +177,7 @@ std::string how_to_state(const UnitOwner& owner, const std::string& to) {
 std::string standard_unit(const std::string& unit) {
   const auto alias =
       std::lower_bound(aliases.begin(), aliases.end(), std::string_view(unit),
-                       [](const Alias& each, std::string_view wanted) { return each.seen < wanted; });
+                       [](const Alias& each, std::string_view requested) { return each.seen < requested; });
   return alias != aliases.end() && alias->seen == unit ? std::string(alias->standard) : unit;
 }
 

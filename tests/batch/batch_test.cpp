@@ -255,11 +255,11 @@ TEST(Batch, TakesRatesOfChangeAsArrays) {
 
 TEST(Batch, WritesEverySampleAndNotOneMore) {
   const Batch batch(gv(), gv_roles);
-  constexpr std::size_t most = 40;
-  const Arrays recorded = random_samples(most, gv_roles);
-  const Arrays whole = in_batch(batch, recorded, most);
-  for (std::size_t count = 0; count < most; ++count) {
-    std::vector<double> found(most + 1, 12345.0);
+  constexpr std::size_t maximum = 40;
+  const Arrays recorded = random_samples(maximum, gv_roles);
+  const Arrays whole = in_batch(batch, recorded, maximum);
+  for (std::size_t count = 0; count < maximum; ++count) {
+    std::vector<double> found(maximum + 1, 12345.0);
     batch.run(inputs_of(recorded), {{Quantity::corrected_airspeed, found.data()}}, count);
     for (std::size_t i = 0; i < count; ++i) {
       const double expected = whole.at(Quantity::corrected_airspeed)[i];
@@ -340,10 +340,10 @@ TEST(Batch, EachFormulaFunctionMatchesLoopInEveryKernel) {
       const Arrays found = in_kernel(kernel, batch, recorded, values.size());
       for (std::size_t i = 0; i < values.size(); ++i) {
         const double defect = found.at(Quantity::static_defect)[i];
-        const double wanted = expected.at(Quantity::static_defect)[i];
-        if (std::isnan(defect) && std::isnan(wanted)) continue;
+        const double requested = expected.at(Quantity::static_defect)[i];
+        if (std::isnan(defect) && std::isnan(requested)) continue;
         // Rounding of the functions of packs, and of a sine near its zeros.
-        EXPECT_NEAR(defect, wanted, 4e-15 * std::abs(wanted) + 1e-17) << text << " of " << values[i];
+        EXPECT_NEAR(defect, requested, 4e-15 * std::abs(requested) + 1e-17) << text << " of " << values[i];
       }
     }
   }

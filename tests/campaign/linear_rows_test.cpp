@@ -57,8 +57,8 @@ std::vector<std::size_t> all_parameters(const LinearRows& rows) {
 }
 
 Eigen::MatrixXd at_used(const LinearRows& rows, const std::vector<double>& parameters,
-                        const std::vector<std::size_t>& wanted, bool as_recorded = false) {
-  return rows.evaluate(rows.used(), parameters.data(), wanted, as_recorded);
+                        const std::vector<std::size_t>& requested, bool as_recorded = false) {
+  return rows.evaluate(rows.used(), parameters.data(), requested, as_recorded);
 }
 
 /// Compares derivatives of residuals with centred differences of them.

@@ -283,8 +283,8 @@ TEST(DiagnosisOfATeam, FindsTheSameVariablesOfTheFiles) {
 TEST(DiagnosisOfATeam, HoldsTheRecordsThatAreAskedFor) {
   DiagnoseOptions options;
   options.whole_file = false;
-  for (const std::vector<std::size_t>& wanted : {std::vector<std::size_t>{}, {1, 4}}) {
-    options.series_of = wanted;
+  for (const std::vector<std::size_t>& requested : {std::vector<std::size_t>{}, {1, 4}}) {
+    options.series_of = requested;
     const Diagnosis diagnosis = expect_that_of_one(flights("", 30), {lams_reference()}, options);
     std::vector<std::size_t> held;
     for (const FlightDiagnosis& flight : diagnosis.flights) {
@@ -293,11 +293,11 @@ TEST(DiagnosisOfATeam, HoldsTheRecordsThatAreAskedFor) {
       if (flight.samples) held.push_back(flight.number);
     }
     EXPECT_THAT(what_if_candidates(diagnosis, {}), Not(IsEmpty()));
-    if (!wanted.empty()) {
+    if (!requested.empty()) {
       EXPECT_THAT(diagnosis_report(diagnosis, model()).summary,
                   testing::Contains(HasSubstr("2 of the 5 flights")));
     }
-    EXPECT_EQ(held, wanted);
+    EXPECT_EQ(held, requested);
   }
 }
 

@@ -70,14 +70,15 @@ Eigen::Vector3d normal_equations(const FlightSamples& samples, double* rms = nul
   const std::vector<double>& adifr = *samples.model.find(Quantity::attack_differential_pressure);
   const std::vector<double>& reference = *samples.reference.find(Quantity::corrected_static_pressure);
   Eigen::MatrixXd columns(p.size(), 3);
-  Eigen::VectorXd wanted(p.size());
+  Eigen::VectorXd requested(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
     columns.row(static_cast<Eigen::Index>(i)) << p[i], p[i] * adifr[i] / q[i], q[i];
-    wanted[static_cast<Eigen::Index>(i)] = reference[i] - p[i];
+    requested[static_cast<Eigen::Index>(i)] = reference[i] - p[i];
   }
   if (without >= 0) columns.col(without).setZero();
-  const Eigen::Vector3d solution = columns.completeOrthogonalDecomposition().solve(wanted);
-  if (rms != nullptr) *rms = (wanted - columns * solution).norm() / std::sqrt(static_cast<double>(p.size()));
+  const Eigen::Vector3d solution = columns.completeOrthogonalDecomposition().solve(requested);
+  if (rms != nullptr)
+    *rms = (requested - columns * solution).norm() / std::sqrt(static_cast<double>(p.size()));
   return solution;
 }
 
@@ -235,11 +236,11 @@ TEST(Refit, ReportsTheValueOfEachEffect) {
   for (int i = 0; i < 3; ++i) {
     const pcor::Omission& omission = all.omissions[static_cast<std::size_t>(i)];
     EXPECT_EQ(omission.effect, equation_18[static_cast<std::size_t>(i)]);
-    double least = 0.0;
-    normal_equations(*samples, &least, i);
+    double minimum = 0.0;
+    normal_equations(*samples, &minimum, i);
     // The weights of the full fit stay, and give some stretches more weight than least squares does.
-    EXPECT_GE(omission.rms, (1.0 - 1e-9) * least) << omission.effect;
-    EXPECT_LT(omission.rms, 1.1 * least) << omission.effect;
+    EXPECT_GE(omission.rms, (1.0 - 1e-9) * minimum) << omission.effect;
+    EXPECT_LT(omission.rms, 1.1 * minimum) << omission.effect;
     EXPECT_GT(omission.rms, all.rms);
     EXPECT_LT(omission.r_squared, all.r_squared);
   }

@@ -128,10 +128,10 @@ TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
   for (std::size_t i = 0; i < std::min(with_few.size(), with_many.size()); ++i) {
     if (with_many[i] > with_few[i]) ++growths[(with_many[i] - with_few[i]) / (many - few)];
   }
-  const auto most = std::max_element(growths.begin(), growths.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; });
-  EXPECT_LE(most->first, 8 * (unknowns + 1) * (unknowns + 2) / 2 + 64);
-  EXPECT_GT(most->second, 3U);
+  const auto maximum = std::max_element(growths.begin(), growths.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+  EXPECT_LE(maximum->first, 8 * (unknowns + 1) * (unknowns + 2) / 2 + 64);
+  EXPECT_GT(maximum->second, 3U);
 }
 
 TEST(TeamFit, FailsEquallyOnAllMembers) {

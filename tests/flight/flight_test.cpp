@@ -650,10 +650,10 @@ TEST_F(FlightTest, InvalidValuesAreMissing) {
     maker.time({100, 101, 102});
     const int range = maker.series("RANGE", "hPa", {850, 99.9f, 5000});
     maker.numbers(range, "valid_range", NC_FLOAT, {100, 1100});
-    const int least = maker.series("LEAST", "hPa", {850, 0.1f, 0.05f});
-    maker.numbers(least, "valid_min", NC_DOUBLE, {0.1});
-    const int greatest = maker.series("GREATEST", "hPa", {850, 0.1f, 5000});
-    maker.numbers(greatest, "valid_max", NC_FLOAT, {1100});
+    const int minimum = maker.series("LEAST", "hPa", {850, 0.1f, 0.05f});
+    maker.numbers(minimum, "valid_min", NC_DOUBLE, {0.1});
+    const int maximum = maker.series("GREATEST", "hPa", {850, 0.1f, 5000});
+    maker.numbers(maximum, "valid_max", NC_FLOAT, {1100});
     const int packed = maker.variable("PACKED", NC_SHORT, {maker.time_dimension});
     maker.numbers(packed, "scale_factor", NC_DOUBLE, {0.5});
     maker.numbers(packed, "valid_range", NC_SHORT, {10, 20});

@@ -7,9 +7,10 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   return fuzz::reading(bytes, size, [](const std::string& text) {
-    for (const char* wanted : {"hPa", "K", "m/s", "degree", "1", "seconds since 1970-01-01 00:00:00 UTC"}) {
+    for (const char* requested :
+         {"hPa", "K", "m/s", "degree", "1", "seconds since 1970-01-01 00:00:00 UTC"}) {
       fuzz::refusable([&] {
-        const auto conversion = pcor::UnitConversion::between(text, wanted, {"PSFD", "a file", ""});
+        const auto conversion = pcor::UnitConversion::between(text, requested, {"PSFD", "a file", ""});
         const bool is_one = std::isnormal(conversion.scale()) && std::isfinite(conversion.offset());
         if (!is_one) std::abort();
       });

@@ -88,7 +88,7 @@ source = "engine run-up, 2011-11-02"
 )";
 
 // The smallest valid model. Additions of a test begin at line 5.
-const std::string least = R"(format = "pcor-model/1"
+const std::string minimum = R"(format = "pcor-model/1"
 [variables]
 static_pressure = "PSFD"
 dynamic_pressure = "QCF"
@@ -534,7 +534,7 @@ TEST(ModelDefinition, ReadsThePublishedFormulaEffect) {
 }
 
 TEST(ModelDefinition, IsWrittenInTheLayoutOfTheExample) {
-  EXPECT_EQ(write_model(parse_model(least + published_formula, "m.toml")), R"(format = "pcor-model/1"
+  EXPECT_EQ(write_model(parse_model(minimum + published_formula, "m.toml")), R"(format = "pcor-model/1"
 
 [variables]
 static_pressure = "PSFD"
@@ -551,7 +551,7 @@ source = "engine run-up, 2011-11-02"
 }
 
 TEST(ModelDefinition, ReadsEveryTable) {
-  const ModelDefinition file = parse_model(least + R"(dew_point = "DPXC"
+  const ModelDefinition file = parse_model(minimum + R"(dew_point = "DPXC"
 flaps = "FLAPS"
 [units]
 static_pressure = "mbar"
@@ -634,7 +634,7 @@ apple = { used = 12, share = 0.5, clean = true }
 
 // Uncertainties of fitted parameters, of parameters that are only considered, and of samples.
 TEST(ModelDefinition, GathersItsUncertainty) {
-  const ModelDefinition file = parse_model(least + R"([[effect]]
+  const ModelDefinition file = parse_model(minimum + R"([[effect]]
 id = "static-constant"
 parameters = { a0 = 0.004 }
 stderr = { a0 = 1e-4 }
@@ -660,26 +660,26 @@ static_defect_ratio = 0.00045
   EXPECT_EQ(uncertainty.random[index(Quantity::dynamic_pressure)], 0.03);
   EXPECT_EQ(uncertainty.random[index(Quantity::static_pressure)], 0.0);
   EXPECT_EQ(uncertainty.static_defect_ratio, 0.00045);
-  EXPECT_FALSE(uncertainty_of(parse_model(least, "m.toml")).has_systematic());
+  EXPECT_FALSE(uncertainty_of(parse_model(minimum, "m.toml")).has_systematic());
 }
 
 TEST(ModelDefinition, AnUncertaintyIsCalledLikeItsResult) {
   const ModelDefinition file = parse_model(
-      least + "[output]\nPSXC = \"PSFDC\"\nQCXC = \"QCFC\"\nQCXC_uncertainty = \"U\"\n", "m.toml");
+      minimum + "[output]\nPSXC = \"PSFDC\"\nQCXC = \"QCFC\"\nQCXC_uncertainty = \"U\"\n", "m.toml");
   EXPECT_EQ(file.output_name("PSXC_uncertainty"), "PSFDC_uncertainty");
   EXPECT_EQ(file.output_name("QCXC_uncertainty"), "U");
   EXPECT_EQ(file.output_name("ATX_uncertainty"), "ATX_uncertainty");
 }
 
 TEST(ModelDefinition, AnEffectWithoutBoundsHasThoseOfTheCatalogue) {
-  const ModelDefinition file = parse_model(least + "[[effect]]\nid = \"recovery-factor\"\n", "m.toml");
+  const ModelDefinition file = parse_model(minimum + "[[effect]]\nid = \"recovery-factor\"\n", "m.toml");
   EXPECT_EQ(file.bounds(0, 0).lower, -0.2);
   EXPECT_EQ(file.bounds(0, 0).upper, 0.2);
 }
 
 TEST(ModelDefinition, TheThirdApproachOfLamsTakesBothTemperatures) {
   const std::string both = "recovery_temperature = \"RTF1\"\nambient_temperature = \"MTP\"\n";
-  const ModelDefinition file = parse_model(least + both + "[lams]\napproach = 3\n", "m.toml");
+  const ModelDefinition file = parse_model(minimum + both + "[lams]\napproach = 3\n", "m.toml");
   EXPECT_EQ(file.variables.count(Quantity::recovery_temperature), 1u);
   EXPECT_EQ(file.variables.count(Quantity::ambient_temperature), 1u);
 }
@@ -752,7 +752,7 @@ class BadInputTest : public testing::TestWithParam<BadInput> {};
 TEST_P(BadInputTest, IsRefusedWithItsPlaceAndNames) {
   const BadInput& input = GetParam();
   const bool whole = input.text[0] == '\n' || input.text.rfind("format", 0) == 0;
-  const std::optional<Error> error = parse_error_of(whole ? input.text : least + input.text);
+  const std::optional<Error> error = parse_error_of(whole ? input.text : minimum + input.text);
   EXPECT_THAT(error, IsError(Error::Code::definition, "m.toml:" + input.place));
   for (const std::string& name : input.names) EXPECT_THAT(error, IsError(Error::Code::definition, name));
 }
@@ -992,14 +992,14 @@ TEST(ModelDefinition, UnreadableDefinitionCannotBeWritten) {
 
 TEST(ModelDefinition, ChangedRecoveryFactorLosesPublishedName) {
   ModelDefinition file =
-      parse_model(least + "[temperature]\nrecovery_factor = \"rosemount-heated\"\n", "m.toml");
+      parse_model(minimum + "[temperature]\nrecovery_factor = \"rosemount-heated\"\n", "m.toml");
   EXPECT_THAT(write_model(file), HasSubstr("recovery_factor = \"rosemount-heated\""));
   file.model.recovery.coefficients[0] = 0.96;
   EXPECT_THAT(write_model(file), HasSubstr("recovery_factor = 0.96\n"));
 }
 
 TEST_F(ModelFileOnDisk, IsNamedInMessages) {
-  const fs::path path = write("bad.toml", least + "[lams]\nelevation = nan\n");
+  const fs::path path = write("bad.toml", minimum + "[lams]\nelevation = nan\n");
   EXPECT_THAT(read_error_of(path), IsError(Error::Code::definition, path.string() + ":6:13"));
 }
 
@@ -1041,5 +1041,5 @@ TEST_F(ModelFileOnDisk, UnwritableModelKeepsTheFile) {
 }
 
 TEST_F(ModelFileOnDisk, CannotBeSavedWhereThereIsNoDirectory) {
-  EXPECT_THROW(save_model(parse_model(least, "m.toml"), directory_ / "none" / "m.toml", {}), Error);
+  EXPECT_THROW(save_model(parse_model(minimum, "m.toml"), directory_ / "none" / "m.toml", {}), Error);
 }

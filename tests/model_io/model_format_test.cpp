@@ -31,7 +31,7 @@ using testing::UnorderedElementsAreArray;
 
 using Lines = std::vector<std::string>;
 
-const std::string least = R"(format = "pcor-model/1"
+const std::string minimum = R"(format = "pcor-model/1"
 [variables]
 static_pressure = "PSFD"
 dynamic_pressure = "QCF"
@@ -187,7 +187,7 @@ TEST(ModelFormat, ListsTheKeysOfEveryTable) {
                   names_listed_in(error_of("format = \"pcor-model/1\"\n" + unknown), "use one of ")));
   for (const std::string table : {"[lams]", "[temperature]", "[humidity]", "[radome]", "[policy]",
                                   "[[effect]]", "[law]", "[covariance]"}) {
-    const Lines keys = names_listed_in(error_of(least + table + "\n" + unknown), "use one of ");
+    const Lines keys = names_listed_in(error_of(minimum + table + "\n" + unknown), "use one of ");
     EXPECT_THAT(keys, Not(testing::IsEmpty())) << table;
     EXPECT_THAT(names_of(rows_below("## " + table)), UnorderedElementsAreArray(keys)) << table;
   }
@@ -225,7 +225,7 @@ TEST(ModelFormat, ExamplesAreRead) {
     } else if (line == "```" && example) {
       std::string text = *example;
       if (text.rfind("[variables]", 0) == 0) text = "format = \"pcor-model/1\"\n" + text;
-      if (text.rfind("format", 0) != 0) text = least + text;
+      if (text.rfind("format", 0) != 0) text = minimum + text;
       EXPECT_EQ(error_of(text), "no error") << *example;
       ++examples;
       example.reset();

@@ -315,13 +315,14 @@ TEST(PublishedModels, MemoFitsStateDistanceFromLawOf2016) {
     const ModelDefinition model = read_published(name);
     if (model.law.valid_from != "2011-11-17") continue;
     const std::string pair = name.substr(0, name.find('-', 5));
-    double most = 0.0;
+    double maximum = 0.0;
     for (const C130Row& row : c130_rows()) {
       const DomainRange& domain = model.model.domain.at(0);
       if (row.attack_ratio < domain.lower || row.attack_ratio > domain.upper) continue;
-      most = std::max(most, std::abs(row.defects[column(name)] - row.defects[column(pair + "-2016")]));
+      maximum = std::max(maximum, std::abs(row.defects[column(name)] - row.defects[column(pair + "-2016")]));
     }
-    EXPECT_THAT(model.law.note, testing::EndsWith(fmt::format("up to {:.1f} hPa from the law of 2016", most)))
+    EXPECT_THAT(model.law.note,
+                testing::EndsWith(fmt::format("up to {:.1f} hPa from the law of 2016", maximum)))
         << name;
   }
 }

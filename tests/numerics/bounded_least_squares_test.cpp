@@ -15,7 +15,7 @@ double least_of_all_ways(const Eigen::MatrixXd& rows, const Eigen::VectorXd& rig
   const Eigen::Index size = rows.cols();
   long ways = 1;
   for (Eigen::Index k = 0; k < size; ++k) ways *= 3;
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (long way = 0; way < ways; ++way) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
     std::vector<Eigen::Index> free;
@@ -30,9 +30,9 @@ double least_of_all_ways(const Eigen::MatrixXd& rows, const Eigen::VectorXd& rig
       for (std::size_t i = 0; i < free.size(); ++i) x[free[i]] = solution[static_cast<Eigen::Index>(i)];
     }
     if ((x.array() >= lower.array()).all() && (x.array() <= upper.array()).all())
-      least = std::min(least, (rows * x - right).squaredNorm());
+      minimum = std::min(minimum, (rows * x - right).squaredNorm());
   }
-  return least;
+  return minimum;
 }
 
 }  // namespace

@@ -48,9 +48,9 @@ TEST(OctaveSpectrum, FindsAWaveWhereItIs) {
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = 0.2 * std::sin(2.0 * pi * static_cast<double>(i) / 24.0);
   const OctaveSpectrum spectrum = octave_spectrum(values, times(values.size()), 1.0);
-  const auto most = std::max_element(spectrum.rms.begin(), spectrum.rms.end()) - spectrum.rms.begin();
+  const auto maximum = std::max_element(spectrum.rms.begin(), spectrum.rms.end()) - spectrum.rms.begin();
   // Within a band of a third of an octave.
-  EXPECT_NEAR(spectrum.period[static_cast<std::size_t>(most)], 24.0, 3.0);
+  EXPECT_NEAR(spectrum.period[static_cast<std::size_t>(maximum)], 24.0, 3.0);
 }
 
 TEST(OctaveSpectrum, UsesSegmentsBetweenGaps) {

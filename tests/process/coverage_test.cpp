@@ -182,8 +182,8 @@ TEST(Coverage, SharesWithinOneAndTwoSigmaAreNormal) {
   };
   // Four standard errors of a share if only flights are independent, which 200 of them satisfy: with four
   // results and six samples each the errors of the shares are less than half as large.
-  const auto tolerance = [flights](double probability, double wanted) {
-    if (flights >= 200) return wanted;
+  const auto tolerance = [flights](double probability, double requested) {
+    if (flights >= 200) return requested;
     return 4.0 * std::sqrt(probability * (1.0 - probability) / static_cast<double>(flights));
   };
   EXPECT_NEAR(share(all.within_one, all.count), 0.683, tolerance(0.683, 0.04));

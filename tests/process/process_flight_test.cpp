@@ -47,17 +47,17 @@ class RealFlight : public testing::Test {
     const std::vector<double> derived = read_all(ours, name, unit == "1" ? "1" : unit);
     const std::vector<double> reference = read_all(nimbus, theirs, unit);
     const std::vector<double> airspeed = read_all(nimbus, "TASX", "m/s");
-    double greatest = 0.0;
+    double maximum = 0.0;
     std::size_t compared = 0;
     for (std::size_t i = 0; i < derived.size(); ++i) {
       if (!(airspeed[i] > 60.0)) continue;
       ++compared;
       const double difference = std::abs(of_ours(derived[i]) - reference[i]);
-      if (!(difference <= greatest)) greatest = difference;  // a NaN stays
+      if (!(difference <= maximum)) maximum = difference;  // a NaN stays
     }
     EXPECT_GT(compared, 2000U) << "most of the flight is in the air";
-    RecordProperty("worst_" + name + "_" + theirs, std::to_string(greatest));
-    return greatest;
+    RecordProperty("worst_" + name + "_" + theirs, std::to_string(maximum));
+    return maximum;
   }
 
   std::filesystem::path path_;

@@ -375,12 +375,12 @@ TEST_F(FilteredTemperature, HasNoShiftForAnyBlockSize) {
     const std::vector<double> found = difference();
     ASSERT_EQ(found.size(), records * static_cast<std::size_t>(rate));
     const std::size_t end = 7 * static_cast<std::size_t>(rate);
-    double square = 0.0, greatest = 0.0;
+    double square = 0.0, maximum = 0.0;
     for (std::size_t i = end; i + end < found.size(); ++i) {
       square += found[i] * found[i];
-      greatest = std::max(greatest, std::abs(found[i]));
+      maximum = std::max(maximum, std::abs(found[i]));
     }
-    EXPECT_LT(greatest, 0.02) << rate << " Hz";
+    EXPECT_LT(maximum, 0.02) << rate << " Hz";
     EXPECT_LT(std::sqrt(square / static_cast<double>(found.size())), rate == 1 ? 0.012 : 0.010);
     // Where half of the weights are within the flight there is a value: from 0.8 s on at 25 Hz.
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -399,8 +399,8 @@ TEST_F(FilteredTemperature, LosesPeriodsUnderThreeSeconds) {
   process_flight(input_, lams_model(), output_);
   const std::vector<double> filtered = read("ATLAMSF", "K"), unfiltered = read("ATLAMS", "K");
   const auto swing = [](const std::vector<double>& values) {
-    const auto [least, greatest] = std::minmax_element(values.begin() + 200, values.end() - 200);
-    return *greatest - *least;
+    const auto [minimum, maximum] = std::minmax_element(values.begin() + 200, values.end() - 200);
+    return *maximum - *minimum;
   };
   EXPECT_GT(swing(unfiltered), 4.0);
   EXPECT_LT(swing(filtered), 0.003 * swing(unfiltered));

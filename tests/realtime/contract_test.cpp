@@ -169,8 +169,8 @@ TEST_P(Contract, AMissingInputChangesNoResultOrSetsABit) {
 TEST_P(Contract, AnyNumberGivesAValueOrABit) {
   const pcor::QuantityInfo& info = pcor::info_of(GetParam().role);
   for (const double number :
-       {0.0, -0.0, -GetParam().good, info.least, info.most, 2.0 * info.least, 2.0 * info.most, 1e-310, 1e30,
-        -1e30, std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()}) {
+       {0.0, -0.0, -GetParam().good, info.minimum, info.maximum, 2.0 * info.minimum, 2.0 * info.maximum,
+        1e-310, 1e30, -1e30, std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()}) {
     judge_each(number, [](double value, double expected, std::uint32_t bits) {
       EXPECT_FALSE(std::isinf(value));
       EXPECT_TRUE(!std::isnan(value) || std::isnan(expected) || bits != 0U) << "missing without a bit";

@@ -138,9 +138,9 @@ std::uint32_t own_bits(const Loop& loop) {
 void expect_same(const Loop& loop, const Loop& expected) {
   for (const Quantity result : results) {
     const double value = loop.state()[result];
-    const double wanted = expected.state()[result];
-    EXPECT_TRUE(value == wanted || (std::isnan(value) && std::isnan(wanted)))
-        << pcor::info_of(result).name << ": " << value << " for " << wanted;
+    const double requested = expected.state()[result];
+    EXPECT_TRUE(value == requested || (std::isnan(value) && std::isnan(requested)))
+        << pcor::info_of(result).name << ": " << value << " for " << requested;
   }
   EXPECT_EQ(own_bits(loop), own_bits(expected));
 }

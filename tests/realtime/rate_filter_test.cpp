@@ -81,8 +81,8 @@ TEST(RateFilter, IsTheIdealResponseAtThePeriodsThatAreLeft) {
     for (const double delay : delays) {
       RateFilter filter(rate, delay);
       for (double period = shortest; period < 40.0; period *= 1.3) {
-        const Complex wanted = ideal(delay, period);
-        EXPECT_LT(std::abs(response(filter, rate, period) - wanted), 0.015 * std::abs(ideal(0.0, period)))
+        const Complex requested = ideal(delay, period);
+        EXPECT_LT(std::abs(response(filter, rate, period) - requested), 0.015 * std::abs(ideal(0.0, period)))
             << rate << " Hz, delay " << delay << " s, period " << period << " s";
       }
     }

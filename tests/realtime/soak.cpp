@@ -56,8 +56,8 @@ constexpr double rate = 25.0;  // samples in a second
 /// Usual values of a role in flight.
 struct Usual {
   Quantity quantity;
-  double least;
-  double most;
+  double minimum;
+  double maximum;
 };
 
 /// A model, and the roles that its aircraft records.
@@ -70,8 +70,8 @@ struct World {
 /// Expected properties of a result. A filtered result belongs to an earlier sample, and so do its bits.
 struct Believed {
   Quantity quantity;
-  double least;
-  double most;
+  double minimum;
+  double maximum;
 };
 
 constexpr Believed results[] = {
@@ -220,7 +220,7 @@ class Soak {
   // As in flight, as a fault leaves it, or anything at all.
   double value(const Usual& role, bool is_fair) {
     const double usual =
-        role.least + (role.most - role.least) * std::uniform_real_distribution<double>()(random_);
+        role.minimum + (role.maximum - role.minimum) * std::uniform_real_distribution<double>()(random_);
     if (is_fair || random_() % 4 != 0) return usual;
     constexpr double denormal = std::numeric_limits<double>::denorm_min();
     const double faults[] = {missing,  infinity,  -infinity, 0.0,    -0.0,        -usual,
@@ -269,7 +269,7 @@ class Soak {
       const double value = loop_.state()[result.quantity];
       const bool is_right = std::isnan(value)
                                 ? !loop_.writes(result.quantity) || says_why(loop_.quality(), result.quantity)
-                                : value >= result.least && value <= result.most;
+                                : value >= result.minimum && value <= result.maximum;
       if (!is_right) tell(result.quantity, value);
     }
   }
@@ -295,10 +295,10 @@ class Soak {
 std::size_t quantile(double share) {
   std::uint64_t runs = 0;
   for (const std::uint64_t count : Soak::durations) runs += count;
-  const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(runs));
+  const auto requested = static_cast<std::uint64_t>(share * static_cast<double>(runs));
   std::uint64_t seen = 0;
   std::size_t i = 0;
-  while (i + 1 < Soak::durations.size() && (seen += Soak::durations[i]) < wanted) ++i;
+  while (i + 1 < Soak::durations.size() && (seen += Soak::durations[i]) < requested) ++i;
   return i;
 }
 

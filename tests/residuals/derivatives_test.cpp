@@ -26,8 +26,8 @@ using pcor::State;
 
 namespace {
 
-constexpr int most = 4;
-using Jet = ceres::Jet<double, most>;
+constexpr int maximum = 4;
+using Jet = ceres::Jet<double, maximum>;
 
 // With a step of 1e-5 of the range of x, a central difference errs by 1e-10 of f''' x^3/6 and by 1e-11 of
 // rounding of f: 1e-6 of f/x covers both for powers up to the fourth.

@@ -52,11 +52,11 @@ struct Flight {
 TEST(LaserLock, IsNotDoubtedBecauseThePressuresAreWrong) {
   for (const double defect : {-0.03, -0.01, 0.0, 0.01, 0.03}) {
     const Flight flight(defect);
-    double most = 0.0;
+    double maximum = 0.0;
     for (std::size_t i = 0; i < flight.beam.size(); ++i)
-      most = std::max(most, std::abs(flight.beam[i] - flight.airspeed[i]));
+      maximum = std::max(maximum, std::abs(flight.beam[i] - flight.airspeed[i]));
     if (std::abs(defect) == 0.03) {
-      EXPECT_GT(most, 8.0) << "a limit in m/s would take samples out";
+      EXPECT_GT(maximum, 8.0) << "a limit in m/s would take samples out";
     }
     EXPECT_THAT(flight.unlocked(), IsEmpty()) << defect;
   }

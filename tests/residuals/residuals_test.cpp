@@ -51,15 +51,15 @@ double rms_of(const Residuals& residuals, const std::vector<double>& values) {
 void expect_derivatives(const Residuals& tested) {
   const std::vector<std::size_t> places = used(tested);
   ASSERT_GT(places.size(), 500U);
-  std::vector<std::size_t> wanted(tested.parameters().size());
-  std::iota(wanted.begin(), wanted.end(), 0);
+  std::vector<std::size_t> requested(tested.parameters().size());
+  std::iota(requested.begin(), requested.end(), 0);
   std::vector<double> values(places.size());
-  std::vector<double> derivatives(places.size() * wanted.size());
+  std::vector<double> derivatives(places.size() * requested.size());
   const std::vector<double>& at = tested.parameters();
-  tested.evaluate(places.data(), places.size(), at.data(), wanted, values.data(), derivatives.data());
+  tested.evaluate(places.data(), places.size(), at.data(), requested, values.data(), derivatives.data());
   const std::vector<double> all = tested.values(at.data());
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(values[i], all[places[i]], 1e-10);
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
+  for (std::size_t k = 0; k < requested.size(); ++k) {
     // A centred difference over 3e-4 hPa: rounding leaves 1e-9 of the derivative, curvature less than 1e-6.
     double largest = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i)
@@ -93,10 +93,10 @@ TEST(Residuals, LamsResidualIsLaserMinusModelDefect) {
   const std::vector<double> values = tested.values(at);
   const std::vector<double> laser = tested.quantity(Quantity::lams_static_defect, at);
   const std::vector<double> model = tested.quantity(Quantity::static_defect, at);
-  const std::vector<double> wanted = tested.target_defect(at);
+  const std::vector<double> requested = tested.target_defect(at);
   for (const std::size_t i : used(tested)) {
     EXPECT_NEAR(values[i], laser[i] - model[i], 1e-12);
-    EXPECT_NEAR(wanted[i], laser[i], 1e-12);
+    EXPECT_NEAR(requested[i], laser[i], 1e-12);
   }
 }
 

@@ -49,8 +49,8 @@ double rms_of_difference(const std::vector<double>& found, double shift, double 
   double count = 0.0;
   for (std::size_t i = 60; i + 60 < found.size(); ++i) {
     const double t = static_cast<double>(i) + 0.5;
-    const double wanted = factor * std::cos(2.0 * pi * (t - shift) / 40.0);
-    squares += (found[i] - wanted) * (found[i] - wanted);
+    const double requested = factor * std::cos(2.0 * pi * (t - shift) / 40.0);
+    squares += (found[i] - requested) * (found[i] - requested);
     count += 1.0;
   }
   return std::sqrt(squares / count);

@@ -42,8 +42,8 @@ TEST(NamesOfSeries, MeasuredSeriesHaveLimits) {
   for (const std::string& series : pcor::internal::names_of_series()) {
     const pcor::QuantityInfo& info = *pcor::internal::series_named(series);
     if (info.quantity == pcor::Quantity::date) continue;
-    EXPECT_GT(info.least, -1e6) << series;
-    EXPECT_LT(info.most, 1e6) << series;
+    EXPECT_GT(info.minimum, -1e6) << series;
+    EXPECT_LT(info.maximum, 1e6) << series;
   }
 }
 

@@ -380,8 +380,8 @@ TEST(Simulate, FliesPitchManoeuvres) {
   const auto [low, high] = flight.range("GGALT", "pitch");
   EXPECT_NEAR(high - low, 81.0, 3.0);
   EXPECT_NEAR(high + low, 2.0 * 1500.0, 8.0);
-  const auto [least, greatest] = flight.range("TRUE_ALPHA", "pitch");
-  EXPECT_NEAR(0.5 * (greatest - least), 2.2, 0.5);
+  const auto [minimum, maximum] = flight.range("TRUE_ALPHA", "pitch");
+  EXPECT_NEAR(0.5 * (maximum - minimum), 2.2, 0.5);
 }
 
 TEST(Simulate, FliesYawManoeuvres) {

@@ -11,8 +11,8 @@ namespace pcor::test {
 
 /// Number of seeds: 10, or the value of PCOR_SEEDS in the environment.
 inline std::size_t number_of_seeds() {
-  const char* wanted = std::getenv("PCOR_SEEDS");
-  return wanted == nullptr ? 10 : std::stoul(wanted);
+  const char* requested = std::getenv("PCOR_SEEDS");
+  return requested == nullptr ? 10 : std::stoul(requested);
 }
 
 /// The probabilities that a normal error is within two and three standard errors.

@@ -110,16 +110,17 @@ TEST(HeightLikelihood, FilterIsGeneralisedLeastSquaresWrittenOut) {
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
   const double weight = ones.dot(inverse * ones);
   const Eigen::MatrixXd projected = inverse - inverse * ones * ones.transpose() * inverse / weight;
-  const Eigen::MatrixXd wanted = rows.transpose() * projected * rows;
+  const Eigen::MatrixXd requested = rows.transpose() * projected * rows;
   // The unknown height has a variance of 1e8 m2 in the filter: relative errors of 1e-8 times the condition.
   for (Eigen::Index i = 0; i < unknowns; ++i) {
     for (Eigen::Index j = 0; j < unknowns; ++j)
-      EXPECT_NEAR(found.information(i, j), wanted(i, j), 1e-5 * std::sqrt(wanted(i, i) * wanted(j, j)))
+      EXPECT_NEAR(found.information(i, j), requested(i, j),
+                  1e-5 * std::sqrt(requested(i, i) * requested(j, j)))
           << i << " " << j;
-    EXPECT_NEAR(found.right(i), wanted(i, unknowns),
-                1e-5 * std::sqrt(wanted(i, i) * wanted(unknowns, unknowns)));
+    EXPECT_NEAR(found.right(i), requested(i, unknowns),
+                1e-5 * std::sqrt(requested(i, i) * requested(unknowns, unknowns)));
   }
-  EXPECT_NEAR(found.squares / wanted(unknowns, unknowns), 1.0, 1e-5);
+  EXPECT_NEAR(found.squares / requested(unknowns, unknowns), 1.0, 1e-5);
   // ln det of the contrasts: ln det of the whole plus ln of the weight of a constant.
   const double determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum() + std::log(weight);
   EXPECT_NEAR(found.log_determinant, determinant, 1e-4);
@@ -128,14 +129,14 @@ TEST(HeightLikelihood, FilterIsGeneralisedLeastSquaresWrittenOut) {
 TEST(HeightLikelihood, BestCoefficientsMakeTheDevianceLeast) {
   const HeightEquations equations = height_equations(short_record(), {}, {});
   const Eigen::VectorXd best = equations.best(2);
-  const double least = equations.deviance(2);
+  const double minimum = equations.deviance(2);
   for (const double side : {-1.0, 1.0}) {
     for (Eigen::Index k = 0; k < 2; ++k) {
       Eigen::VectorXd moved = best;
       moved[k] += side * std::sqrt(equations.covariance(2)(k, k));
       // A coefficient moved alone by its standard error raises the deviance by 1 or more (more where others
       // would follow).
-      EXPECT_GE(equations.deviance_at(moved), least + 1.0 - 1e-6);
+      EXPECT_GE(equations.deviance_at(moved), minimum + 1.0 - 1e-6);
     }
   }
   EXPECT_LE(equations.deviance(2), equations.deviance(1));
@@ -336,9 +337,9 @@ TEST(HeightLeastSquares, ErrorsAreTooSmallForCorrelatedNoise) {
     plan.gps = 1.0;
     plan.gps_memory = 120.0;
     const HeightRecord record = record_of(plan);
-    const pcor::TemperatureFit least = pcor::internal::fit_height_by_least_squares({record}, 1);
+    const pcor::TemperatureFit minimum = pcor::internal::fit_height_by_least_squares({record}, 1);
     const HeightEquations likely = height_equations(record, noise, {0.0, {}});
-    squares_least += std::pow(least.coefficients[0] / least.standard_errors[0], 2);
+    squares_least += std::pow(minimum.coefficients[0] / minimum.standard_errors[0], 2);
     squares_likely += std::pow(likely.best(1)[0], 2) / likely.covariance(1)(0, 0);
   }
   // Scores of the likelihood have a mean square of 1, known to sqrt(2/40) = 0.22 from 40 seeds; scores of

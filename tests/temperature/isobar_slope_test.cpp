@@ -34,10 +34,10 @@ HeightRecord record_of(const made::AirPlan& plan) {
 }
 
 double range_of_excess(const HeightRecord& record) {
-  const auto [least, greatest] =
+  const auto [minimum, maximum] =
       std::minmax_element(record.blocks.begin(), record.blocks.end(),
                           [](const HeightBlock& a, const HeightBlock& b) { return a.excess < b.excess; });
-  return greatest->excess - least->excess;
+  return maximum->excess - minimum->excess;
 }
 
 TEST(IsobarSlope, ClimbsAndDescentsAndTheWholeFlightFindIt) {

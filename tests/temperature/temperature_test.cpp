@@ -154,10 +154,11 @@ class Temperature : public testing::Test {
 /// Greatest difference of two corrections, in standard errors of the first.
 double apart(const TemperatureFit& one, const TemperatureFit& other) {
   if (one.coefficients.size() != other.coefficients.size()) return std::nan("");
-  double most = 0.0;
+  double maximum = 0.0;
   for (std::size_t k = 0; k < one.coefficients.size(); ++k)
-    most = std::max(most, std::abs(one.coefficients[k] - other.coefficients[k]) / one.standard_errors[k]);
-  return most;
+    maximum =
+        std::max(maximum, std::abs(one.coefficients[k] - other.coefficients[k]) / one.standard_errors[k]);
+  return maximum;
 }
 
 // Where the search for the noise stops, 0.001 of -2 ln L, coefficients move by a small part of their

@@ -43,20 +43,20 @@ ModelEffect own_effect(const AddArguments& options, const std::vector<std::strin
   }
   ModelEffect effect = formula_effect(options.effects.front(), options.formula, "--formula");
   effect.location = location_named(options.location);
-  const std::string wanted(info_of(effect.location).unit);
-  if (!options.unit.empty() && standard_unit(options.unit) != standard_unit(wanted)) {
+  const std::string requested(info_of(effect.location).unit);
+  if (!options.unit.empty() && standard_unit(options.unit) != standard_unit(requested)) {
     throw Error(Error::Code::usage,
                 fmt::format("--unit {}: the quantity at '{}' is in {}; write the formula in {}", options.unit,
-                            options.location, wanted, wanted));
+                            options.location, requested, requested));
   }
-  effect.unit = wanted;
+  effect.unit = requested;
   effect.source = options.source;
   if (!variables.empty()) require_known_variables(effect, "--formula", variables, options.flight);
   return effect;
 }
 
-std::vector<ModelEffect> wanted_effects(const AddArguments& options, const FlightSet& flights,
-                                        const ModelDefinition& model) {
+std::vector<ModelEffect> requested_effects(const AddArguments& options, const FlightSet& flights,
+                                           const ModelDefinition& model) {
   const Flight* const flight = flights.empty() ? nullptr : &flights[0];
   if (!options.formula.empty())
     return {own_effect(options, flight == nullptr ? std::vector<std::string>() : flight->variables())};
@@ -152,7 +152,7 @@ void run(const AddArguments& options) {
   }
   std::vector<std::string> variables;
   if (!flights.empty()) variables = flights[0].variables();
-  const ModelDefinition extended = add_effects(model, wanted_effects(options, flights, model), variables);
+  const ModelDefinition extended = add_effects(model, requested_effects(options, flights, model), variables);
   OutputTransaction together;
   deliver(extended, options.output, inputs);
   json.write(extension_of(model, extended, options.output));

@@ -119,11 +119,11 @@ void print_further(const Comparison& comparison, bool with_names) {
 /// Output file for the residual of flight `number`: the given file, or a file next to it with the flight's
 /// name.
 std::filesystem::path residual_file(const CompareArguments& options, std::size_t number) {
-  const std::filesystem::path wanted = options.residuals;
-  if (options.comparison.flights.size() == 1) return wanted;
+  const std::filesystem::path requested = options.residuals;
+  if (options.comparison.flights.size() == 1) return requested;
   const std::filesystem::path flight = options.comparison.flights[number];
-  return wanted.parent_path() /
-         (wanted.stem().string() + "-" + flight.stem().string() + wanted.extension().string());
+  return requested.parent_path() /
+         (requested.stem().string() + "-" + flight.stem().string() + requested.extension().string());
 }
 
 void print_in_full(const Comparison& comparison, const ChosenReferences& references,

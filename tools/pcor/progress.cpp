@@ -16,15 +16,15 @@ constexpr auto min_wait = std::chrono::milliseconds(500);
 
 }  // namespace
 
-Progress::Progress(std::string task, bool wanted)
+Progress::Progress(std::string task, bool requested)
     : task_(std::move(task)),
-      wanted_(wanted && (wants_events() || isatty(fileno(stderr)) == 1)),
+      requested_(requested && (wants_events() || isatty(fileno(stderr)) == 1)),
       last_(wants_events() ? std::chrono::steady_clock::time_point() : std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() { erase(); }
 
 void Progress::show(std::size_t done, std::size_t total) {
-  if (!wanted_ || total == 0) return;
+  if (!requested_ || total == 0) return;
   const auto now = std::chrono::steady_clock::now();
   if (now - last_ < min_wait) return;
   last_ = now;

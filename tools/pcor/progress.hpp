@@ -10,7 +10,7 @@ namespace pcor::tool {
 /// and short runs stay clean. A program that requests events gets the numbers instead, the first at once.
 class Progress {
  public:
-  Progress(std::string task, bool wanted);
+  Progress(std::string task, bool requested);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
@@ -22,7 +22,7 @@ class Progress {
   void erase();
 
   std::string task_;
-  bool wanted_;
+  bool requested_;
   bool shown_ = false;
   std::chrono::steady_clock::time_point last_;
 };

@@ -93,9 +93,10 @@ std::optional<ModelEffect> surface_argument(const std::string& argument, const F
                 fmt::format("{}: the knots of a surface span what was flown; give --flight IN.nc", id));
   const auto the_flight = [flight](std::size_t) -> const Flight& { return *flight; };
   if (colon == std::string::npos) return surface_over(1, the_flight, model, id);
-  constexpr std::string_view wanted = "splines=";
+  constexpr std::string_view requested = "splines=";
   const std::string shape = argument.substr(colon + 1);
-  const double splines = shape.rfind(wanted, 0) == 0 ? number_in(shape.substr(wanted.size()), argument) : 0.0;
+  const double splines =
+      shape.rfind(requested, 0) == 0 ? number_in(shape.substr(requested.size()), argument) : 0.0;
   if (!(splines >= SurfaceAxis::min_count && splines <= SurfaceAxis::max_count))
     throw Error(Error::Code::usage,
                 fmt::format("{}: '{}' shapes no surface; give splines= and a number from {} to {}", argument,

@@ -143,7 +143,7 @@ class Flight {
   /// Metadata of a variable. @throws Error with similar names, if it is absent.
   const VariableInfo& variable(const std::string& name) const;
 
-  /// Conversion of a variable's values to the unit `wanted`.
+  /// Conversion of a variable's values to the unit `requested`.
   ///
   /// `role` is the role in the model file, for the message. `stated`, if not empty, is the unit in the model
   /// file; it overrides the unit of the flight file.
@@ -151,8 +151,8 @@ class Flight {
   /// @throws Error as UnitConversion::between, or if the variable is absent: with a role, the message lists
   /// time series with a convertible unit and a similar name with the same prefix, or up to six others with a
   /// convertible unit.
-  UnitConversion conversion(const std::string& name, const std::string& wanted, const std::string& role = "",
-                            const std::string& stated = "") const;
+  UnitConversion conversion(const std::string& name, const std::string& requested,
+                            const std::string& role = "", const std::string& stated = "") const;
 
   /// @throws Error if the variable is not a time series or has no value anywhere. Reads up to the first
   /// value.

@@ -11,15 +11,15 @@ namespace pcor {
 
 /// Range of plausible values.
 struct Limits {
-  double least = std::numeric_limits<double>::lowest();
-  double most = std::numeric_limits<double>::max();
+  double minimum = std::numeric_limits<double>::lowest();
+  double maximum = std::numeric_limits<double>::max();
 };
 
 /// Limits of every element of a state: the limits of the quantity, or any finite number for other variables.
 inline constexpr std::array<Limits, state_capacity> limits_of_places = [] {
   std::array<Limits, state_capacity> limits{};
   for (std::size_t i = 0; i < quantity_count; ++i) {
-    limits[i] = {quantity_info[i].least, quantity_info[i].most};
+    limits[i] = {quantity_info[i].minimum, quantity_info[i].maximum};
   }
   return limits;
 }();
@@ -29,7 +29,7 @@ inline constexpr std::array<Limits, state_capacity> limits_of_places = [] {
 template <class S>
 constexpr auto is_implausible(Quantity quantity, const S& value) {
   const Limits& limits = limits_of_places[index(quantity)];
-  return value < S(limits.least) || value > S(limits.most);
+  return value < S(limits.minimum) || value > S(limits.maximum);
 }
 
 /// Value if it is plausible, otherwise NaN.

@@ -104,8 +104,8 @@ struct QuantityInfo {
   std::string_view unit;
   std::string_view description;
   Quantity quantity = Quantity::count;
-  double least = std::numeric_limits<double>::lowest();
-  double most = std::numeric_limits<double>::max();
+  double minimum = std::numeric_limits<double>::lowest();
+  double maximum = std::numeric_limits<double>::max();
 };
 
 /// Metadata of every quantity, in the order of the enumeration.

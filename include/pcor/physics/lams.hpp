@@ -101,16 +101,16 @@ LamsSolution<S> lams_simultaneous(const S& static_pressure, const S& dynamic_pre
 ///
 /// Each pass takes M from the corrected pressures (eq. 7), T from the recovery temperature, chi and delta-p.
 /// It converges as a_r x/(1+x) with x = M^2 (gamma-1)/2: 0.03 at M 0.39, 0.11 at M 0.79. It stops when
-/// delta-p moves by less than `tolerance` hPa, or after `most` passes. Arguments as in `lams_simultaneous`,
-/// with which it agrees.
+/// delta-p moves by less than `tolerance` hPa, or after `maximum` passes. Arguments as in
+/// `lams_simultaneous`, with which it agrees.
 template <class S, class Recovery, class Calibration = Uncalibrated>
 LamsSolution<S> lams_iterated(const S& static_pressure, const S& dynamic_pressure, const S& airspeed,
                               const S& recovery_temperature, const S& vapor_pressure,
-                              const Recovery& recovery, double tolerance = 1e-7, int most = 30,
+                              const Recovery& recovery, double tolerance = 1e-7, int maximum = 30,
                               const Calibration& calibrate = Calibration()) {
   LamsSolution<S> solution;
   solution.static_defect = S(0.0);
-  for (int pass = 0; pass < most; ++pass) {
+  for (int pass = 0; pass < maximum; ++pass) {
     const S p = static_pressure + solution.static_defect;
     const S q = dynamic_pressure - solution.static_defect;
     const MoistAir<S> air = moist_air(vapor_pressure / p);

@@ -66,11 +66,11 @@ static_assert(is_missing(std::numeric_limits<double>::quiet_NaN()) &&
 /// or an attribute can set without a macro, do not.
 inline bool arithmetic_keeps_nan() noexcept {
   const volatile double zero = 0.0;
-  const volatile double greatest = std::numeric_limits<double>::max();
+  const volatile double maximum = std::numeric_limits<double>::max();
   const double nan = zero / zero;
-  const double beyond = greatest * greatest;
+  const double beyond = maximum * maximum;
   return is_missing(nan) && !is_finite(nan) && !is_finite(beyond) && !is_missing(beyond) && !(nan < 1.0) &&
-         !(nan > 1.0) && !(nan <= 1.0 || nan >= 1.0) && is_missing(nan * zero + greatest) &&
+         !(nan > 1.0) && !(nan <= 1.0 || nan >= 1.0) && is_missing(nan * zero + maximum) &&
          beyond > std::numeric_limits<double>::max();
 }
 

@@ -272,12 +272,12 @@ namespace detail {
 
 // Name in `names` that shares the longest prefix and suffix with `name`, case-insensitive.
 inline std::string nearest_name(const std::string& name, const std::vector<std::string>& names) {
-  const std::string wanted = in_capitals(name);
-  const auto in_common = [&wanted](const std::string& other) {
+  const std::string requested = in_capitals(name);
+  const auto in_common = [&requested](const std::string& other) {
     const std::string found = in_capitals(other);
-    const auto begin = std::mismatch(wanted.begin(), wanted.end(), found.begin(), found.end()).first;
-    const auto end = std::mismatch(wanted.rbegin(), wanted.rend(), found.rbegin(), found.rend()).first;
-    return (begin - wanted.begin()) + (end - wanted.rbegin());
+    const auto begin = std::mismatch(requested.begin(), requested.end(), found.begin(), found.end()).first;
+    const auto end = std::mismatch(requested.rbegin(), requested.rend(), found.rbegin(), found.rend()).first;
+    return (begin - requested.begin()) + (end - requested.rbegin());
   };
   const auto nearest = std::max_element(
       names.begin(), names.end(),

@@ -19,9 +19,9 @@ class SampleClock {
   /// @param step s since the sample before
   bool is_uneven(double step) noexcept {
     constexpr double kept = 0.8;
-    constexpr double most = 0.1;  // samples
+    constexpr double maximum = 0.1;  // samples
     ahead_ = ahead_ * kept + (step * rate_ - 1.0);
-    if (std::abs(ahead_) <= most) return false;
+    if (std::abs(ahead_) <= maximum) return false;
     ahead_ = 0.0;
     return true;
   }

@@ -200,8 +200,8 @@ struct WhatIfCoefficient {
   std::string unit{};
   double given = 0.0;  ///< value in the model; for a missing effect, its neutral value
   double start = 0.0;  ///< value at which the residual equals its column
-  double least = -std::numeric_limits<double>::infinity();  ///< physical bounds
-  double greatest = std::numeric_limits<double>::infinity();
+  double minimum = -std::numeric_limits<double>::infinity();  ///< physical bounds
+  double maximum = std::numeric_limits<double>::infinity();
   bool fixed = false;      ///< true: keeps its given value
   std::string argument{};  ///< command-line argument that names it, shell-quoted
   double size = 0.0;       ///< typical change; the linearisation is checked over this range

@@ -64,13 +64,13 @@ class Residuals {
   ///
   /// @param samples `count` indices of samples
   /// @param parameters all of them
-  /// @param wanted requested parameters of the derivatives
+  /// @param requested requested parameters of the derivatives
   /// @param residual `count` values, hPa
-  /// @param derivatives `wanted.size()` columns of `count` values, column by column, hPa per unit of the
+  /// @param derivatives `requested.size()` columns of `count` values, column by column, hPa per unit of the
   /// parameter
   /// Derivatives are exact: linear ones from the model, others by dual numbers through the whole chain.
   void evaluate(const std::size_t* samples, std::size_t count, const double* parameters,
-                const std::vector<std::size_t>& wanted, double* residual, double* derivatives) const;
+                const std::vector<std::size_t>& requested, double* residual, double* derivatives) const;
 
   /// Variant of `evaluate` with the residual at the sensor of the reference, to which its noise is added: the
   /// LAMS speed along the beam minus `predicted_sensor`, multiplied by the derivative of the residual with
@@ -81,7 +81,7 @@ class Residuals {
   /// elevation of the beam) changes that gain: least squares of delta-p would reduce the gain to reduce the
   /// noise, and detect a false effect.
   void evaluate_at_sensor(const std::size_t* samples, std::size_t count, const double* parameters,
-                          const std::vector<std::size_t>& wanted, double* residual,
+                          const std::vector<std::size_t>& requested, double* residual,
                           double* derivatives) const;
 
   /// Half-width of the window of samples on which a residual depends; zero if it depends on one sample only.

@@ -28,29 +28,29 @@ class UnitConversion {
   static UnitConversion between(const std::string& from, const std::string& to, const UnitOwner& owner);
 
   /// Copy limited to [least, greatest]; results outside become NaN.
-  UnitConversion within(double least, double greatest) const {
+  UnitConversion within(double minimum, double maximum) const {
     UnitConversion limited = *this;
-    limited.least_ = least;
-    limited.greatest_ = greatest;
+    limited.minimum_ = minimum;
+    limited.maximum_ = maximum;
     return limited;
   }
 
   double scale() const { return scale_; }
   double offset() const { return offset_; }
-  double least() const { return least_; }
-  double greatest() const { return greatest_; }
+  double minimum() const { return minimum_; }
+  double maximum() const { return maximum_; }
 
   double operator()(double value) const {
     const double converted = value * scale_ + offset_;
-    return converted >= least_ && converted <= greatest_ ? converted
-                                                         : std::numeric_limits<double>::quiet_NaN();
+    return converted >= minimum_ && converted <= maximum_ ? converted
+                                                          : std::numeric_limits<double>::quiet_NaN();
   }
 
  private:
   double scale_ = 1;
   double offset_ = 0;
-  double least_ = std::numeric_limits<double>::lowest();
-  double greatest_ = std::numeric_limits<double>::max();
+  double minimum_ = std::numeric_limits<double>::lowest();
+  double maximum_ = std::numeric_limits<double>::max();
 };
 
 /// UDUNITS and CF spelling of a unit in flight files: "C" is "degC", "M/s" is "m/s", "none" is "1". The

@@ -50,12 +50,12 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
                      const std::vector<Direction>& directions, double* derivatives) const override {
     if (count == 0) return;
     const Span span = span_of(samples, count);
-    std::vector<std::size_t> wanted;
-    for (const Direction& direction : directions) wanted.push_back(direction.parameter);
-    std::sort(wanted.begin(), wanted.end());
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    std::vector<std::size_t> requested;
+    for (const Direction& direction : directions) requested.push_back(direction.parameter);
+    std::sort(requested.begin(), requested.end());
+    requested.erase(std::unique(requested.begin(), requested.end()), requested.end());
     const std::vector<Parts<double>> values = parts(span, parameters);
-    const std::vector<std::vector<Parts<double>>> slopes = slopes_of_parts(span, parameters, wanted);
+    const std::vector<std::vector<Parts<double>>> slopes = slopes_of_parts(span, parameters, requested);
     std::vector<Jet> out(count);
     for (std::size_t first = 0; first < directions.size(); first += jet_width) {
       const std::size_t width = std::min<std::size_t>(jet_width, directions.size() - first);
@@ -65,8 +65,8 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
                        [](double value) { return Jet(value); });
       for (std::size_t d = 0; d < width; ++d) {
         const Direction& direction = directions[first + d];
-        const auto place = std::lower_bound(wanted.begin(), wanted.end(), direction.parameter);
-        const std::vector<Parts<double>>& slope = slopes[static_cast<std::size_t>(place - wanted.begin())];
+        const auto place = std::lower_bound(requested.begin(), requested.end(), direction.parameter);
+        const std::vector<Parts<double>>& slope = slopes[static_cast<std::size_t>(place - requested.begin())];
         for (std::size_t k = 0; k < span.size(); ++k) {
           const double rate = direction.rate[span.first + k];
           if (rate == 0.0) continue;  // the slope may be missing there
@@ -96,8 +96,8 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
   const Derived& derived() const { return static_cast<const Derived&>(*this); }
 
   Span span_of(const std::size_t* samples, std::size_t count) const {
-    const auto [least, greatest] = std::minmax_element(samples, samples + count);
-    return {*least - std::min(*least, reach()), std::min(*greatest + reach() + 1, size_)};
+    const auto [minimum, maximum] = std::minmax_element(samples, samples + count);
+    return {*minimum - std::min(*minimum, reach()), std::min(*maximum + reach() + 1, size_)};
   }
 
   template <class S>
@@ -110,12 +110,13 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
 
   /// Derivatives of the parts with respect to each of the requested parameters.
   std::vector<std::vector<Parts<double>>> slopes_of_parts(const Span span, const double* parameters,
-                                                          const std::vector<std::size_t>& wanted) const {
-    std::vector<std::vector<Parts<double>>> slopes(wanted.size(), std::vector<Parts<double>>(span.size()));
-    for (std::size_t first = 0; first < wanted.size(); first += jet_width) {
-      const std::size_t width = std::min<std::size_t>(jet_width, wanted.size() - first);
+                                                          const std::vector<std::size_t>& requested) const {
+    std::vector<std::vector<Parts<double>>> slopes(requested.size(), std::vector<Parts<double>>(span.size()));
+    for (std::size_t first = 0; first < requested.size(); first += jet_width) {
+      const std::size_t width = std::min<std::size_t>(jet_width, requested.size() - first);
       std::vector<Jet> dual(parameters, parameters + model_.parameters().size());
-      for (std::size_t d = 0; d < width; ++d) dual[wanted[first + d]].v[static_cast<Eigen::Index>(d)] = 1.0;
+      for (std::size_t d = 0; d < width; ++d)
+        dual[requested[first + d]].v[static_cast<Eigen::Index>(d)] = 1.0;
       const std::vector<Parts<Jet>> of_samples = parts(span, static_cast<const Jet*>(dual.data()));
       for (std::size_t k = 0; k < span.size(); ++k) {
         for (std::size_t part = 0; part < part_count; ++part) {
