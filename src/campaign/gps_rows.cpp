@@ -504,8 +504,8 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
         air.airspeed[i] * air.airspeed[i] / (2.0 * 3.5 * air.gas_constant[i] * temperature);
     const double by_recovery = -temperature * heating / (1.0 + heating);
     result.warmth[i] = 1.0 / temperature;
-    const bool goes_on = last < size && samples.time[i] - samples.time[last] < 3.5 * samples.step;
-    if (goes_on) {
+    const bool is_continuous = last < size && samples.time[i] - samples.time[last] < 3.5 * samples.step;
+    if (is_continuous) {
       const double fall = air.gas_constant[i] / constants::standard_gravity;
       const double step = -fall * (logarithm[i] - logarithm[last]);
       const double calm_step = -fall * (calm_logarithm[i] - calm_logarithm[last]);

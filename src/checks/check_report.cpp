@@ -170,15 +170,15 @@ DotPanel forest(const Checks& checks) {
   for (const CheckResult& result : checks.results) {
     const TestStatistic& key = result.key;
     if (!result.ran || !(key.matters > 0.0) || !std::isfinite(key.value)) continue;
-    const bool is_told = std::isfinite(key.standard_error);
-    const double error = is_told ? key.standard_error : 0.0;
+    const bool is_known = std::isfinite(key.standard_error);
+    const double error = is_known ? key.standard_error : 0.0;
     const ReportTone tone = result.verdict == CheckVerdict::consistent     ? ReportTone::good
                             : result.verdict == CheckVerdict::inconsistent ? ReportTone::bad
                                                                            : ReportTone::open;
     panel.rows.push_back({heading(result.name),
                           {{key.value / key.matters, error / key.matters}},
-                          is_told ? fmt::format("{:+.3f} ± {:.3f} {}", key.value, error, key.unit)
-                                  : fmt::format("{:+.3f} {}, error unknown", key.value, key.unit),
+                          is_known ? fmt::format("{:+.3f} ± {:.3f} {}", key.value, error, key.unit)
+                                   : fmt::format("{:+.3f} {}, error unknown", key.value, key.unit),
                           tone});
   }
   return panel;

@@ -110,7 +110,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
     if (stable) break;
   }
   Eigen::Index columns = 0;
-  for (const std::size_t group : chosen) columns += as_index(search_->told(group).size());
+  for (const std::size_t group : chosen) columns += as_index(search_->identifiable(group).size());
   return likelihood_ - static_cast<double>(columns) * result_.threshold;
 }
 

@@ -318,14 +318,14 @@ void add_info(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelDe
   info.emplace_back("Reference", diagnosis.reference);
   info.insert(info.end(), numbers.begin(), numbers.end());
   info.emplace_back("Samples", std::to_string(diagnosis.samples));
-  std::vector<std::string> left_out;
+  std::vector<std::string> excluded;
   for (std::size_t i = 1; i < mask_count; ++i) {
     if (diagnosis.masks[i] > 0)
-      left_out.push_back(fmt::format("{} {}", diagnosis.masks[i], mask_info[i].meaning));
+      excluded.push_back(fmt::format("{} {}", diagnosis.masks[i], mask_info[i].meaning));
   }
   std::string text = shown_text(diagnosis.flights_with_records().size(), diagnosis.flights.size());
   if (!text.empty()) panels.report().summary.push_back(std::move(text));
-  if (!left_out.empty()) info.emplace_back("Not used", fmt::format("{}", fmt::join(left_out, "; ")));
+  if (!excluded.empty()) info.emplace_back("Not used", fmt::format("{}", fmt::join(excluded, "; ")));
   panels.add_flight_info();
   info.emplace_back("Program", "pcor " PCOR_VERSION);
   for (const Note& note : diagnosis.notes) info.emplace_back(label_of(note), note.text);

@@ -24,10 +24,10 @@ constexpr double alias_margin = 9.0;  // probability of 0.13 % that one rival be
 constexpr std::size_t most_evidence = 6;
 
 /// Parameters that these flights determine; the model's coefficients imitate the others.
-std::vector<Estimate> estimates_of(const Candidate& candidate, const std::vector<Eigen::Index>& told,
+std::vector<Estimate> estimates_of(const Candidate& candidate, const std::vector<Eigen::Index>& identifiable,
                                    const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
   std::vector<Estimate> estimates;
-  for (const Eigen::Index k : told) {
+  for (const Eigen::Index k : identifiable) {
     const CandidateParameter& parameter = candidate.tested[static_cast<std::size_t>(k)];
     estimates.push_back({parameter.name, parameter.unit, values[k],
                          std::sqrt(std::max(0.0, covariance(k, k))), parameter.typical});
@@ -44,10 +44,10 @@ ModelEffect with_estimate(const Candidate& candidate, const Eigen::VectorXd& est
 }
 
 /// Parameters that these flights do not determine.
-std::vector<std::string> held_of(const Candidate& candidate, const std::vector<Eigen::Index>& told) {
+std::vector<std::string> held_of(const Candidate& candidate, const std::vector<Eigen::Index>& identifiable) {
   std::vector<std::string> held;
   for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
-    if (std::find(told.begin(), told.end(), as_index(k)) == told.end())
+    if (std::find(identifiable.begin(), identifiable.end(), as_index(k)) == identifiable.end())
       held.push_back(candidate.tested[k].name);
   }
   return held;
@@ -180,13 +180,13 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     alias.effect = candidates[g].id;
     alias.title = candidates[g].title;
     alias.correction = with_estimate(candidates[g], score.estimate);
-    alias.held = held_of(candidates[g], search.told(g));
+    alias.held = held_of(candidates[g], search.identifiable(g));
     alias.is_alike = candidates[g].is_shared;
     alias.correlation = search.correlation(winner, g, others);
     // Each direction explains one unit of noise.
     alias.chi2_less = (best.chi2 - best.freedom) - (score.chi2 - score.freedom);
     alias.log_likelihood_less = rival.less;
-    alias.estimates = estimates_of(candidates[g], search.told(g), score.estimate, score.covariance);
+    alias.estimates = estimates_of(candidates[g], search.identifiable(g), score.estimate, score.covariance);
     const Estimate& first = alias.estimates.front();
     if (first.typical != 0.0) alias.size_to_usual = first.value / first.typical;
     aliases.push_back(std::move(alias));
@@ -370,7 +370,7 @@ SquareSum at_limit(const Analysis& analysis, const Candidate& candidate, std::si
                    const UpperLimit& limit, std::size_t number) {
   const FlightColumns& flight = analysis.flight(number);
   const Eigen::Index first = analysis.groups()[group].first;
-  const std::vector<Eigen::Index>& told = analysis.search().told(group);
+  const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);
   SquareSum sums;
   if (!candidate.is_measured_by(flight.reference)) return sums;
   for (std::size_t i = 0; i < flight.given.size(); ++i) {
@@ -378,7 +378,7 @@ SquareSum at_limit(const Analysis& analysis, const Candidate& candidate, std::si
     double largest = 0.0;
     for (std::size_t k = 0; k < limit.limits.size(); ++k) {
       const double value =
-          limit.limits[k] * static_cast<double>(flight.candidates(as_index(i), first + told[k]));
+          limit.limits[k] * static_cast<double>(flight.candidates(as_index(i), first + identifiable[k]));
       largest = std::max(largest, std::abs(value));
     }
     sums.add(largest);
@@ -414,10 +414,10 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     finding.is_alike = candidate.is_shared;
     finding.system = candidate.system;
     finding.title = candidate.title;
-    const std::vector<Eigen::Index>& told = analysis.search().told(group);
-    finding.estimates = estimates_of(candidate, told, estimate.segment(place, count),
+    const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);
+    finding.estimates = estimates_of(candidate, identifiable, estimate.segment(place, count),
                                      covariance.block(place, place, count, count));
-    finding.held = held_of(candidate, told);
+    finding.held = held_of(candidate, identifiable);
     place += count;
     measure(analysis, chosen, i, estimate, candidate, finding);
     finding.chi2 = analysis.search().score(group, chosen).chi2;
@@ -512,11 +512,11 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     UpperLimit limit;
     limit.effect = candidates[g].id;
     limit.title = candidates[g].title;
-    limit.estimates = estimates_of(candidates[g], search.told(g), score.estimate, score.covariance);
+    limit.estimates = estimates_of(candidates[g], search.identifiable(g), score.estimate, score.covariance);
     bool seen = false;  // any coefficient determined better than by its bounds
     for (std::size_t k = 0; k < limit.estimates.size(); ++k) {
       const Estimate& estimate = limit.estimates[k];
-      const Bounds& bounds = candidates[g].tested[static_cast<std::size_t>(search.told(g)[k])].bounds;
+      const Bounds& bounds = candidates[g].tested[static_cast<std::size_t>(search.identifiable(g)[k])].bounds;
       const double largest = std::max(std::abs(bounds.lower), std::abs(bounds.upper));
       const double statistical = std::abs(estimate.value) + two_sided_95 * estimate.standard_error;
       limit.limits.push_back(std::min(statistical, largest));

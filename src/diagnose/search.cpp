@@ -128,25 +128,25 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
   Eigen::Index width = 0;
   for (const ColumnGroup& group : groups) {
     const Eigen::MatrixXd own = left_.block(group.first, group.first, group.count, group.count);
-    std::vector<Eigen::Index>& told = told_.emplace_back();
+    std::vector<Eigen::Index>& identifiable = identifiable_.emplace_back();
     remaining_.push_back(0.0);
     // Information after the base and the columns already found identifiable.
     Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
-    while (told.size() < static_cast<std::size_t>(group.count)) {
+    while (identifiable.size() < static_cast<std::size_t>(group.count)) {
       Eigen::Index next = 0;
       const double pivot = left.diagonal().maxCoeff(&next);
-      if (told.empty()) remaining_.back() = std::clamp(pivot, 0.0, 1.0);
+      if (identifiable.empty()) remaining_.back() = std::clamp(pivot, 0.0, 1.0);
       if (!(pivot > min_left)) break;
-      told.push_back(next);
+      identifiable.push_back(next);
       left -= Eigen::MatrixXd(left.col(next) * left.row(next) / pivot);
-      for (const Eigen::Index column : told) left(column, column) = 0.0;
+      for (const Eigen::Index column : identifiable) left(column, column) = 0.0;
     }
-    std::sort(told.begin(), told.end());
-    const Eigen::Index kept = as_index(told.size());
+    std::sort(identifiable.begin(), identifiable.end());
+    const Eigen::Index kept = as_index(identifiable.size());
     Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(group.count, kept);
     if (kept > 0) {
-      const SymmetricEigen solver = symmetric_eigen(own(told, told));
-      turned(told, Eigen::all) =
+      const SymmetricEigen solver = symmetric_eigen(own(identifiable, identifiable));
+      turned(identifiable, Eigen::all) =
           solver.eigenvectors() *
           solver.eigenvalues().cwiseMax(rank_limit).cwiseSqrt().cwiseInverse().asDiagonal();
     }
@@ -387,7 +387,7 @@ double Search::evidence(const std::vector<std::size_t>& set,
   std::vector<Eigen::Index> begin;
   for (const std::size_t group : set) {
     begin.push_back(as_index(columns.size()));
-    for (const Eigen::Index column : told_[group]) columns.push_back(groups_[group].first + column);
+    for (const Eigen::Index column : identifiable_[group]) columns.push_back(groups_[group].first + column);
   }
   if (columns.empty()) return 0.0;
   Eigen::VectorXd precision(as_index(columns.size()));
@@ -398,8 +398,8 @@ double Search::evidence(const std::vector<std::size_t>& set,
     precision[precision.size() - 1] = std::max(scale * scale, 1e-300);
   }
   const auto choose = [&](std::size_t i, const Tail& tail) {
-    precision.segment(begin[i], as_index(told_[set[i]].size())) =
-        precision_of(set[i], tail.times)(told_[set[i]]);
+    precision.segment(begin[i], as_index(identifiable_[set[i]].size())) =
+        precision_of(set[i], tail.times)(identifiable_[set[i]]);
   };
   std::vector<double> share(set.size(), std::log(tails.front().share));
   for (std::size_t i = 0; i < set.size(); ++i) choose(i, tails.front());
@@ -451,7 +451,7 @@ void Search::improve(std::vector<std::size_t>& chosen, double price) const {
 }
 
 void Search::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
-  constexpr double told = 4.5;  // change of the log likelihood, chi2 of 9
+  constexpr double significant = 4.5;  // change of the log likelihood, chi2 of 9
   for (std::size_t& group : chosen) {
     const auto usual = std::find_if(groups_.begin(), groups_.end(), [&](const ColumnGroup& each) {
       return each.effect == groups_[group].effect && each.system == groups_[group].system;
@@ -460,7 +460,7 @@ void Search::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
     if (first == group || is_absorbed(first)) continue;
     const double as_it_is = evidence(chosen);
     const std::size_t shape = std::exchange(group, first);
-    if (evidence(chosen) < as_it_is - told || !all_possible(chosen)) group = shape;
+    if (evidence(chosen) < as_it_is - significant || !all_possible(chosen)) group = shape;
   }
 }
 
@@ -552,7 +552,7 @@ SearchFit Search::fit(const std::vector<std::size_t>& chosen) const {
   std::vector<Eigen::Index> out = places;  // positions among the estimates
   Eigen::Index size = base_;
   for (const std::size_t group : chosen) {
-    for (const Eigen::Index column : told_[group]) {
+    for (const Eigen::Index column : identifiable_[group]) {
       places.push_back(base_ + groups_[group].first + column);
       out.push_back(size + column);
     }
@@ -563,7 +563,7 @@ SearchFit Search::fit(const std::vector<std::size_t>& chosen) const {
   Eigen::Index place = base_;
   for (const std::size_t group : chosen) {
     const Eigen::VectorXd precision = precision_of(group, tails.back().times);
-    for (const Eigen::Index column : told_[group]) {
+    for (const Eigen::Index column : identifiable_[group]) {
       const auto k = static_cast<std::size_t>(column);
       if (k < groups_[group].usual.size() && groups_[group].usual[k] != 0.0)
         scaled(place, place) += precision[column];

@@ -84,7 +84,7 @@ class Search {
 
   /// Columns of a group that the base and the group's other columns do not imitate, counted within the group.
   /// The other coefficients stay zero.
-  const std::vector<Eigen::Index>& told(std::size_t group) const { return told_[group]; }
+  const std::vector<Eigen::Index>& identifiable(std::size_t group) const { return identifiable_[group]; }
 
   SearchResult run(const SearchOptions& options) const;
 
@@ -156,7 +156,7 @@ class Search {
   std::vector<ColumnGroup> groups_;
   Eigen::VectorXd scale_;  // scale of every column to unit length
   std::vector<double> remaining_;
-  std::vector<std::vector<Eigen::Index>> told_;
+  std::vector<std::vector<Eigen::Index>> identifiable_;
   std::vector<Eigen::MatrixXd> turned_;  // scaled columns of a group to its directions
   std::vector<Eigen::Index> begin_;      // first turned column of each group
   Eigen::MatrixXd left_;                 // information of scaled candidates after the base

@@ -30,7 +30,7 @@ constexpr double min_drift_gain = 30.0;
 /// Drift of transducers, hPa rms, not exceeded in 95 % of flights: 1.96 times the usual drift, 0.06 hPa.
 constexpr double max_usual_drift = 0.12;
 
-std::set<std::string> left_out(const FlightSet& files, const ModelDefinition& model,
+std::set<std::string> excluded(const FlightSet& files, const ModelDefinition& model,
                                const Reference& reference, const DiagnoseOptions& options) {
   std::set<std::string> names(options.not_variables.begin(), options.not_variables.end());
   for (const FlightOutline& file : files.outlines()) names.insert(file.time_variable);
@@ -171,7 +171,7 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
   std::vector<TestedVariable> correlated;
   std::vector<ChangeSlope> slopes;
   for (TestedVariable& variable :
-       recorded_variables(files, analysis.flights(), left_out(files, model, reference, options))) {
+       recorded_variables(files, analysis.flights(), excluded(files, model, reference, options))) {
     if (std::find(computed.begin(), computed.end(), variable.name) != computed.end()) {
       found.computed.push_back(variable.name);
       continue;

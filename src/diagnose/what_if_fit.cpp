@@ -98,14 +98,15 @@ WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
     }
   }
   sum_held_out();
-  for (const ColumnGroup& group : groups_) told_.push_back(places_of(group, base_));
+  for (const ColumnGroup& group : groups_) identifiable_.push_back(places_of(group, base_));
   for (const std::vector<std::size_t>& some : subsets_of(found)) find_sums(some, is_robust, residual_with);
   sum_records();
 }
 
 std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>& groups) const {
   Places free = own_;
-  for (const std::size_t group : groups) free.insert(free.end(), told_[group].begin(), told_[group].end());
+  for (const std::size_t group : groups)
+    free.insert(free.end(), identifiable_[group].begin(), identifiable_[group].end());
   return free;
 }
 
@@ -199,8 +200,9 @@ void WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust,
       find_scores(share, binned_.bins, binned_.columns, binned_.residuals, noise);
   const Search search(with_noise, base_, groups_);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    told_[g].clear();
-    for (const Eigen::Index column : search.told(g)) told_[g].push_back(base_ + groups_[g].first + column);
+    identifiable_[g].clear();
+    for (const Eigen::Index column : search.identifiable(g))
+      identifiable_[g].push_back(base_ + groups_[g].first + column);
   }
   Weights& result = weights_.emplace_back();
   result.found = found;
@@ -283,7 +285,7 @@ void WhatIfFit::describe(std::vector<WhatIfCoefficient>& coefficients) const {
     for (const Eigen::Index c : own_) grow(c, std::abs(with.values[c] - none.values[c]));
     for (Eigen::Index k = 0; k < groups_[g].count; ++k)
       coefficients[static_cast<std::size_t>(base_ + groups_[g].first + k)].fixed = true;
-    for (const Eigen::Index c : told_[g]) {
+    for (const Eigen::Index c : identifiable_[g]) {
       coefficients[static_cast<std::size_t>(c)].fixed = false;
       grow(c, std::abs(with.values[c]) + surely * with.errors[c]);
     }

@@ -91,7 +91,7 @@ class WhatIfFit {
   TeamColumns flights_;
   TeamColumns others_;
   std::vector<ColumnGroup> groups_;
-  std::vector<std::vector<Eigen::Index>> told_{};  // columns of each group
+  std::vector<std::vector<Eigen::Index>> identifiable_{};  // columns of each group
   Eigen::Index base_ = 0;
   std::vector<Eigen::Index> own_{};
   Eigen::VectorXd start_{};

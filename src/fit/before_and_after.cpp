@@ -88,13 +88,13 @@ OutlierRun longest_run_of(const FitFlight& fit, const std::vector<double>& resid
   OutlierRun longest{samples.name};
   OutlierRun now;
   for (const std::size_t i : fit.kept()) {
-    const bool goes_on =
+    const bool is_continuous =
         now.samples > 0 && residual[i] * now.mean > 0.0 && samples.time[i] - now.end < 1.5 * samples.step;
     if (!(std::abs(residual[i]) > tukey_width * noise.local_rms[i])) {
       now = {};
       continue;
     }
-    if (!goes_on) now = {samples.name, 0, samples.time[i]};
+    if (!is_continuous) now = {samples.name, 0, samples.time[i]};
     now.end = samples.time[i];
     now.mean += (residual[i] - now.mean) / static_cast<double>(++now.samples);
     if (now.duration() > longest.duration()) longest = now;

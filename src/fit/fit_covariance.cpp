@@ -126,7 +126,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   const Eigen::Index size = fitted + as_index(main.setup().held.size());
   const Blocks blocks(main);
   const std::vector<std::string> doubts = doubts_of(main);
-  std::vector<BlockSums> left_out(blocks.count(),
+  std::vector<BlockSums> excluded(blocks.count(),
                                   {Eigen::MatrixXd::Zero(fitted, size), Eigen::VectorXd::Zero(fitted)});
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
   Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitBasis::count());
@@ -190,7 +190,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
         }
         return scores;
       };
-      auto block = left_out.begin();
+      auto block = excluded.begin();
       for (const FlightScores& flight :
            main.share().of_each_flight<FlightScores>(scores_of, digest_of(values))) {
         score += flight.covariance;
@@ -205,7 +205,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
     first += own;
   }
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
-  for (const BlockSums& block : left_out) derivatives += block.derivatives;
+  for (const BlockSums& block : excluded) derivatives += block.derivatives;
   const PriorRows prior = prior_rows(task, parameters);
   const double unit = last.solution.deviation * last.solution.deviation;
   derivatives.leftCols(fitted) += unit * prior.rows.transpose() * prior.rows;
@@ -215,7 +215,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   for (const double part : main.share().of_each_flight<double>(
            [&](std::size_t flight) { return information_about_mean(main.bins(flight), main.noise(flight)); }))
     found.information += part;
-  found.blocks = left_out.size();
+  found.blocks = excluded.size();
   found.matrix = Eigen::MatrixXd::Zero(size, size);
   found.by_noise = found.by_flights = Eigen::MatrixXd::Zero(fitted, fitted);
   found.jackknife = Eigen::VectorXd::Constant(fitted, nan);
@@ -252,15 +252,15 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   }
 
   // One Newton step from the fit of all blocks to the fit without one block.
-  Eigen::MatrixXd moved(as_index(varying.size()), as_index(left_out.size()));
-  for (std::size_t b = 0; b < left_out.size(); ++b) {
-    const Eigen::MatrixXd rest = derivatives(varying, varying) - left_out[b].derivatives(varying, varying);
-    moved.col(as_index(b)) = scaled_inverse(rest) * left_out[b].score(varying);
+  Eigen::MatrixXd moved(as_index(varying.size()), as_index(excluded.size()));
+  for (std::size_t b = 0; b < excluded.size(); ++b) {
+    const Eigen::MatrixXd rest = derivatives(varying, varying) - excluded[b].derivatives(varying, varying);
+    moved.col(as_index(b)) = scaled_inverse(rest) * excluded[b].score(varying);
   }
-  const auto count = static_cast<double>(left_out.size());
+  const auto count = static_cast<double>(excluded.size());
   moved.colwise() -= moved.rowwise().mean().eval();
   const Eigen::VectorXd errors = (moved.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt();
-  if (left_out.size() > 2) found.jackknife(varying) = errors;
+  if (excluded.size() > 2) found.jackknife(varying) = errors;
   return found;
 }
 

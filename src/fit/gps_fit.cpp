@@ -220,10 +220,10 @@ class GpsSolver {
     std::vector<Eigen::Index> weak;
     const Eigen::MatrixXd directions = prior_deviation_.asDiagonal() * eigen.eigenvectors();
     for (Eigen::Index k = 0; k < count_; ++k) {
-      const double tells = eigen.eigenvalues()[k];
-      const double error = error_along(directions.col(k)) / std::sqrt(1.0 + std::max(0.0, tells));
+      const double eigenvalue = eigen.eigenvalues()[k];
+      const double error = error_along(directions.col(k)) / std::sqrt(1.0 + std::max(0.0, eigenvalue));
       (error < max_error ? known : unknown).push_back(k);
-      if (error < max_error && tells < min_information) weak.push_back(k);
+      if (error < max_error && eigenvalue < min_information) weak.push_back(k);
     }
     free_ = directions(Eigen::all, known);
     held_ = directions(Eigen::all, unknown);

@@ -91,9 +91,9 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
         flight.flight, flight.before.rms, flight.after.rms, flight.before.scatter(), flight.after.scatter()));
   }
   for (const Note& note : fit.notes) {
-    const bool told =
+    const bool is_reported =
         std::find(comparison.notes.begin(), comparison.notes.end(), note) != comparison.notes.end();
-    if (!told) report.summary.push_back(sentence(format_note(note)));
+    if (!is_reported) report.summary.push_back(sentence(format_note(note)));
   }
   panels.summarise();
   if (auto picture = coefficient_picture(fit.parameters, "before the fit", "after the fit"))

@@ -316,25 +316,25 @@ struct Flight::Implementation {
   static RejectedCounts clean(const Variable& variable, std::size_t count, double* values) {
     for (const double marker : variable.missing_values)
       for (std::size_t i = 0; i < count; ++i) values[i] = values[i] == marker ? missing : values[i];
-    RejectedCounts left_out;
+    RejectedCounts excluded;
     const auto [minimum, maximum] = variable.valid_range;
     for (std::size_t i = 0; i < count; ++i) {
       const bool is_invalid = values[i] < minimum || values[i] > maximum;
       const bool is_enormous = std::abs(values[i]) >= no_value;
-      left_out.invalid += is_invalid && !is_enormous ? 1 : 0;
-      left_out.enormous += is_enormous ? 1 : 0;
+      excluded.invalid += is_invalid && !is_enormous ? 1 : 0;
+      excluded.enormous += is_enormous ? 1 : 0;
       values[i] = is_invalid || is_enormous ? missing : variable.unpacking(values[i]);
     }
-    return left_out;
+    return excluded;
   }
 
   RejectedCounts read(Variable& variable, RecordBlock block, double* out) {
     if (variable.refusal) throw *variable.refusal;
     read_stored(variable, block, out);
     const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
-    const RejectedCounts left_out = clean(variable, count, out);
+    const RejectedCounts excluded = clean(variable, count, out);
     for (const StatusFlags& each : variable.flags) leave_out(each, block, count, out);
-    return left_out;
+    return excluded;
   }
 
   void leave_out(const StatusFlags& unusable, RecordBlock block, std::size_t count, double* values) {
@@ -514,14 +514,14 @@ void Flight::require_values(const std::string& name) const {
 RejectedCounts Flight::read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
                             double* out) const {
   Variable& variable = implementation_->find_series(name);
-  RejectedCounts left_out = implementation_->read(variable, block, out);
+  RejectedCounts excluded = implementation_->read(variable, block, out);
   const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
   for (std::size_t i = 0; i < count; ++i) {
     const double converted = conversion(out[i]);
-    left_out.impossible += std::isnan(converted) && !std::isnan(out[i]) ? 1 : 0;
+    excluded.impossible += std::isnan(converted) && !std::isnan(out[i]) ? 1 : 0;
     out[i] = converted;
   }
-  return left_out;
+  return excluded;
 }
 
 RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
@@ -540,17 +540,17 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
                             path().string(), name, own, rate, implementation_->rates_that_fit(rate)));
   std::vector<double>& values = implementation_->scratch;
   values.resize(block.count * static_cast<std::size_t>(own));
-  RejectedCounts left_out = implementation_->read(variable, block, values.data());
+  RejectedCounts excluded = implementation_->read(variable, block, values.data());
   for (double& value : values) {
     if (std::isnan(value) || !std::isnan(conversion(value))) continue;
     value = missing;
-    ++left_out.impossible;
+    ++excluded.impossible;
   }
   const auto requested = block.count * static_cast<std::size_t>(rate);
   if (rate > own) {
     const auto held = static_cast<std::size_t>(rate / own);
     for (std::size_t i = 0; i < requested; ++i) out[i] = conversion(values[i / held]);
-    return left_out;
+    return excluded;
   }
   const int group = own / rate;
   const auto& circle = variable.info.modulus_range;
@@ -558,7 +558,7 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
     const double* samples = values.data() + i * static_cast<std::size_t>(group);
     out[i] = conversion(circle ? mean_on_circle(samples, group, *circle) : mean(samples, group));
   }
-  return left_out;
+  return excluded;
 }
 
 void Flight::read_time_stamps(RecordBlock block, double* out) const {

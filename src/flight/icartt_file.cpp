@@ -160,7 +160,7 @@ class IcarttFile::Reader {
 
   int count() {
     const double value = number(next());
-    if (!(value >= 0.0 && value < 100'000.0)) fail("a number of lines is wanted here");
+    if (!(value >= 0.0 && value < 100'000.0)) fail("a number of lines is required here");
     return static_cast<int>(value);
   }
 
@@ -181,7 +181,7 @@ class IcarttFile::Reader {
     int month = 0;
     int day = 0;
     if (std::sscanf(line.c_str(), "%4d%*[ ,]%2d%*[ ,]%2d", &year, &month, &day) != 3)
-      fail("the date of the data is wanted here, as 2018,11,04");
+      fail("the date of the data is required here, as 2018,11,04");
     return fmt::format("{:04}-{:02}-{:02}", year, month, day);
   }
 
@@ -259,7 +259,7 @@ class IcarttFile::Reader {
         const bool is_last = &variable == &file_.variables_.back();
         while (*end == ' ' || *end == '\t' || *end == '\r') ++end;
         if (end == at || (*end != ',' && !(is_last && *end == '\0')))
-          fail(fmt::format("{} numbers with commas between them are wanted here", file_.variables_.size()));
+          fail(fmt::format("{} numbers with commas between them are required here", file_.variables_.size()));
         const bool is_missing =
             std::find(variable.missing.begin(), variable.missing.end(), value) != variable.missing.end();
         variable.values.push_back(is_missing ? nan : value * variable.scale);

@@ -82,7 +82,7 @@ class Plausibility {
       if (!has_values(flight_, variable, std::string(info.unit), unit)) continue;
       const UnitConversion conversion = flight_.conversion(variable, std::string(info.unit), "", unit);
       const ReadValues read = read_values(flight_, variable, believed(conversion, info));
-      const auto impossible = static_cast<double>(read.left_out.impossible);
+      const auto impossible = static_cast<double>(read.excluded.impossible);
       const auto present = static_cast<double>(
           std::count_if(read.values.begin(), read.values.end(), [](double x) { return !std::isnan(x); }));
       if (impossible > present)

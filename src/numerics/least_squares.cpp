@@ -24,8 +24,8 @@ std::vector<std::size_t> ends_of_flights(const std::vector<double>& time) {
   constexpr double max_gap = 3600.0;  // s
   std::vector<std::size_t> ends;
   for (std::size_t i = 1; i <= time.size(); ++i) {
-    const bool goes_on = i < time.size() && time[i] > time[i - 1] && time[i] < time[i - 1] + max_gap;
-    if (!goes_on) ends.push_back(i);
+    const bool is_continuous = i < time.size() && time[i] > time[i - 1] && time[i] < time[i - 1] + max_gap;
+    if (!is_continuous) ends.push_back(i);
   }
   return ends;
 }

@@ -65,8 +65,8 @@ std::vector<Segment> contiguous_segments(const std::vector<double>& values, cons
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
     const double since = i > 0 && !std::isnan(values[i - 1]) ? time[i] - time[i - 1] : 0.0;
-    const bool goes_on = since > 0.0 && since <= 1.5 * step;
-    if (!goes_on) result.push_back({i, 0});
+    const bool is_continuous = since > 0.0 && since <= 1.5 * step;
+    if (!is_continuous) result.push_back({i, 0});
     ++result.back().count;
   }
   return result;

@@ -453,7 +453,7 @@ void Processing::process_block(RecordBlock block, std::vector<double>& times) {
   const std::size_t samples = block.count * static_cast<std::size_t>(summary_.rate);
   for (Input& input : inputs_) {
     input.values.resize(samples);
-    input.left_out +=
+    input.excluded +=
         flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
   }
   times.resize(samples);
@@ -516,7 +516,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   } else {
     summary_.mean_defect = summary_.min_defect = summary_.max_defect = missing<double>();
   }
-  for (const Input& input : inputs_) note_left_out(input, input.left_out, summary_.notes);
+  for (const Input& input : inputs_) note_excluded(input, input.excluded, summary_.notes);
   if (summary_.corrected == 0) note("no sample could be corrected: see the quality bits");
   return summary_;
 }

@@ -25,7 +25,7 @@ namespace pcor::internal {
 /// A variable of the file that the loop reads.
 struct Input : ModelInput {
   std::vector<double> values{};  // values of one block
-  RejectedCounts left_out{};     // total of all inputs
+  RejectedCounts excluded{};     // total of all inputs
   std::vector<bool> frozen{};    // records in which the sensor is frozen; empty: none
 };
 

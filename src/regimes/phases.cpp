@@ -69,10 +69,10 @@ std::vector<PhaseRun> runs_of_phase(const std::vector<double>& climb, Run flight
                                     const RegimeCriteria& criteria) {
   std::vector<PhaseRun> runs;
   for (std::size_t i = flight.first; i < flight.end; ++i) {
-    const bool told = !std::isnan(climb[i]);
+    const bool is_known = !std::isnan(climb[i]);
     if (runs.empty()) {
-      runs.push_back({phase_at(told ? climb[i] : 0.0, criteria), {i, i + 1}});
-    } else if (const Regime phase = phase_at(climb[i], criteria); told && phase != runs.back().phase) {
+      runs.push_back({phase_at(is_known ? climb[i] : 0.0, criteria), {i, i + 1}});
+    } else if (const Regime phase = phase_at(climb[i], criteria); is_known && phase != runs.back().phase) {
       runs.push_back({phase, {i, i + 1}});
     } else {
       runs.back().run.end = i + 1;

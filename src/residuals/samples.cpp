@@ -158,7 +158,7 @@ ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& in
   ModelSamples samples;
   for (const ModelInput& input : inputs) {
     ReadValues read = read_values(flight, input.variable, input.conversion, rate);
-    note_left_out(input, read.left_out, notes);
+    note_excluded(input, read.excluded, notes);
     samples.columns.emplace_back(input.quantity, std::move(read.values));
     samples.variables.emplace_back(input.quantity, input.variable);
     if (is_role(input.quantity)) samples.roles.push_back(input.quantity);

@@ -54,7 +54,7 @@ class Reader final : TomlReader {
   std::vector<std::string> texts(const toml::array& list) const {
     std::vector<std::string> all;
     for (const toml::node& node : list)
-      all.push_back(as<std::string>(node, "a text in quotes is wanted here"));
+      all.push_back(as<std::string>(node, "a text in quotes is required here"));
     return all;
   }
 
@@ -70,7 +70,7 @@ class Reader final : TomlReader {
     std::vector<std::pair<std::string, std::string>> all;
     for (const toml::node& node : array(entry, R"(a list of pairs, [["A", "B"]])")) {
       const std::vector<std::string> two =
-          texts(as<toml::array>(node, R"(a pair ["A", "B"] is wanted here)"));
+          texts(as<toml::array>(node, R"(a pair ["A", "B"] is required here)"));
       if (two.size() != 2) fail(node, R"(a pair has two texts; give it as ["A", "B"])");
       all.emplace_back(two[0], two[1]);
     }
@@ -102,7 +102,7 @@ class Reader final : TomlReader {
   void read_thermometers(const Entry& section) {
     for (const toml::node& node : array(section, "tables [[thermometer]]")) {
       Thermometer& thermometer = family_.thermometers.emplace_back();
-      each(as<toml::table>(node, "a table [[thermometer]] is wanted here"), "[[thermometer]]",
+      each(as<toml::table>(node, "a table [[thermometer]] is required here"), "[[thermometer]]",
            {{"variable", [&](const Entry& entry) { thermometer.variable = text(entry); }},
             {"recovery_factor", [&](const Entry& entry) {
                const PublishedRecoveryFactor* const known = published_recovery_factor(text(entry));

@@ -17,13 +17,13 @@ namespace {
 constexpr std::size_t min_samples = 20;
 constexpr std::size_t min_noise_values = 50;  // minimum number of samples to estimate the noise
 constexpr std::size_t neighbours = 20;
-constexpr std::size_t left_out = 2;
+constexpr std::size_t longest_excluded = 2;
 constexpr double more_than_near = 20.0;
 constexpr double more_than_half = 5.0;
 constexpr double more_than_most = 10.0;
 constexpr double noisy = 3.0;              // steps of resolution in a second difference
 constexpr std::size_t noise_window = 300;  // samples on either side
-constexpr std::size_t told = 3;
+constexpr std::size_t max_listed = 3;
 
 /// The stretches of one value.
 std::vector<Segment> runs_of(const std::vector<double>& values, const std::vector<bool>& looked_at) {
@@ -94,7 +94,7 @@ double near_length(const std::vector<Segment>& runs, std::size_t run) {
     if (i != run) lengths.push_back(runs[i].count);
   }
   std::sort(lengths.begin(), lengths.end());
-  lengths.resize(lengths.size() - std::min(left_out, lengths.size() - 1));
+  lengths.resize(lengths.size() - std::min(longest_excluded, lengths.size() - 1));
   double sum = 0.0;
   for (const std::size_t length : lengths) sum += static_cast<double>(length);
   return sum / static_cast<double>(lengths.size());
@@ -134,13 +134,14 @@ std::string frozen_text(const std::string& variable, Quantity quantity, const st
   std::vector<std::string> spans;
   const std::string unit(index(quantity) < quantity_count ? info_of(quantity).unit : "");
   for (const Segment& span : frozen) {
-    if (spans.size() == told) break;
+    if (spans.size() == max_listed) break;
     spans.push_back(fmt::format("at {:.6g}{} from {} to {} UTC ({} samples)", values[span.first],
                                 unit.empty() || unit == "1" ? "" : " " + unit, utc_text(time[span.first]),
                                 utc_text(time[span.first + span.count - 1], "%H:%M:%S"), span.count));
   }
-  return fmt::format("{} is frozen, {}{}", variable, fmt::join(spans, ", "),
-                     frozen.size() > told ? fmt::format(" and {} times more", frozen.size() - told) : "");
+  return fmt::format(
+      "{} is frozen, {}{}", variable, fmt::join(spans, ", "),
+      frozen.size() > max_listed ? fmt::format(" and {} times more", frozen.size() - max_listed) : "");
 }
 
 }  // namespace pcor::internal

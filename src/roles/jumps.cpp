@@ -68,8 +68,8 @@ void mask(const std::vector<Jump>& jumps, std::vector<double>& values) {
     std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(jump.first), jump.count, nan);
 }
 
-std::string told_of(const std::string& variable, const Jump& jump, const std::vector<double>& time,
-                    const std::string& unit) {
+std::string format_jump(const std::string& variable, const Jump& jump, const std::vector<double>& time,
+                        const std::string& unit) {
   return fmt::format("{} jumps by up to {:.0f} {} from {} to {} UTC ({} samples)", variable, jump.size, unit,
                      utc_text(time[jump.first]), utc_text(time[jump.first + jump.count - 1], "%H:%M:%S"),
                      jump.count);

@@ -27,7 +27,7 @@ std::vector<Jump> find_jumps(const std::vector<double>& values, const std::vecto
 void mask(const std::vector<Jump>& jumps, std::vector<double>& values);
 
 /// "GGALT jumps by up to 320 m from 2015-07-29 19:11:00 to 19:11:03 UTC (4 samples)".
-std::string told_of(const std::string& variable, const Jump& jump, const std::vector<double>& time,
-                    const std::string& unit = "m");
+std::string format_jump(const std::string& variable, const Jump& jump, const std::vector<double>& time,
+                        const std::string& unit = "m");
 
 }  // namespace pcor::internal

@@ -115,7 +115,7 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
   return inputs;
 }
 
-void note_left_out(const ModelInput& input, const RejectedCounts& left_out, Notes& notes) {
+void note_excluded(const ModelInput& input, const RejectedCounts& excluded, Notes& notes) {
   const auto note = [&](std::size_t samples, const std::string& where) {
     if (samples == 0) return;
     notes.push_back(fmt::format("{} {}, and {} taken as missing",
@@ -124,10 +124,10 @@ void note_left_out(const ModelInput& input, const RejectedCounts& left_out, Note
                                 where, samples == 1 ? "is" : "are"));
   };
   const std::string unit = is_role(input.quantity) ? fmt::format(" {}", info_of(input.quantity).unit) : "";
-  note(left_out.impossible, fmt::format("outside {:g} to {:g}{}, which is impossible",
+  note(excluded.impossible, fmt::format("outside {:g} to {:g}{}, which is impossible",
                                         input.conversion.minimum(), input.conversion.maximum(), unit));
-  note(left_out.invalid, "outside the range that the file states as valid");
-  note(left_out.enormous, "above 1e30, which marks missing values");
+  note(excluded.invalid, "outside the range that the file states as valid");
+  note(excluded.enormous, "above 1e30, which marks missing values");
 }
 
 Notes notes_on_law(const Flight& flight, const ModelDefinition& file) {

@@ -32,7 +32,7 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
 
 /// Adds to `notes` the number of samples of an input that are treated as missing without a mark in the file,
 /// and the reason; no note without such samples.
-void note_left_out(const ModelInput& input, const RejectedCounts& left_out, Notes& notes);
+void note_excluded(const ModelInput& input, const RejectedCounts& excluded, Notes& notes);
 
 /// Cautions about a law that was made for another time or aircraft than the flight.
 Notes notes_on_law(const Flight& flight, const ModelDefinition& file);

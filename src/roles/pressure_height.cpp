@@ -46,8 +46,8 @@ HeightEvidence compare_height(const std::vector<double>& height, const std::vect
   const double rounding =
       std::hypot(rounding_of(resolution_of(pressure)), gradient * rounding_of(resolution_of(height)));
   const double allowed = std::max(same_scatter, 1.5 * rounding);
-  const bool tells = *maximum - *minimum >= min_range || evidence.scatter < 0.1 * same_scatter;
-  if (tells && std::abs(evidence.bias) < same_bias && evidence.scatter < allowed) {
+  const bool is_conclusive = *maximum - *minimum >= min_range || evidence.scatter < 0.1 * same_scatter;
+  if (is_conclusive && std::abs(evidence.bias) < same_bias && evidence.scatter < allowed) {
     evidence.kind = Kind::pressure_altitude;
   } else if (std::abs(evidence.bias) < near_bias && evidence.scatter < near_scatter) {
     evidence.kind = Kind::undecided;

@@ -38,7 +38,7 @@ ReadValues read_values(const Flight& flight, const std::string& variable, const 
   ReadValues read;
   read.values.resize(flight.records() * in_record);
   for (const RecordBlock block : blocks_of(flight.records())) {
-    read.left_out +=
+    read.excluded +=
         flight.read_at_rate(rate, variable, block, conversion, read.values.data() + block.first * in_record);
   }
   return read;

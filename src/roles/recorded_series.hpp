@@ -27,7 +27,7 @@ inline UnitConversion believed(const UnitConversion& conversion, const QuantityI
 /// The values of a variable.
 struct ReadValues {
   std::vector<double> values{};  ///< NaN where missing
-  RejectedCounts left_out{};     ///< what is missing though the file does not mark it so
+  RejectedCounts excluded{};     ///< what is missing though the file does not mark it so
 };
 
 /// All values of a variable, converted, at `rate` samples in a record. @throws Error if it is absent.

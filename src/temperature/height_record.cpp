@@ -301,17 +301,17 @@ class BlockMeans {
 void keep_climbs(std::vector<HeightBlock>& blocks, double min_rate) {
   if (min_rate <= 0.0) return;
   std::vector<HeightBlock> kept;
-  bool left_out = true;
+  bool excluded = true;
   double direction = 0.0;
   for (HeightBlock block : blocks) {
     const bool climbs = std::abs(block.climb) >= min_rate;
     if (climbs) {
       const double now = block.climb > 0.0 ? 1.0 : -1.0;
-      block.starts_segment = block.starts_segment || left_out || now != direction;
+      block.starts_segment = block.starts_segment || excluded || now != direction;
       direction = now;
       kept.push_back(block);
     }
-    left_out = !climbs;
+    excluded = !climbs;
   }
   blocks = std::move(kept);
 }

@@ -65,11 +65,11 @@ FlightHeightRecord read_heights(const FlightSet& flights, std::size_t number, co
       throw Error(Error::Code::variable, part.dry + "; --force continues with dry air");
     if (options.skip_returning && part.record->returns) {
       part.record.reset();
-      part.left_out = "it ends at its start point (--skip-returning)";
+      part.excluded = "it ends at its start point (--skip-returning)";
     }
   } catch (const Error& error) {
     part.record.reset();
-    part.left_out = error.what();
+    part.excluded = error.what();
     part.code = error.code();
   }
   return part;

@@ -14,14 +14,14 @@ namespace pcor::internal {
 
 /// Heights of a flight, or the reason why it is not used.
 struct FlightHeightRecord {
-  std::string left_out{};                   ///< reason for exclusion; empty if used
+  std::string excluded{};                   ///< reason for exclusion; empty if used
   Error::Code code = Error::Code::samples;  ///< code of the error that excluded it
   std::string dry{};                        ///< reason against dry air; empty if there is no objection
   std::optional<HeightRecord> record{};
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(left_out, code, dry, record);
+    archive(excluded, code, dry, record);
   }
 };
 

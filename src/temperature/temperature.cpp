@@ -38,7 +38,7 @@ template <class Effect>
 constexpr double usual_size = Effect::info().parameters[0].typical;
 
 constexpr double law_default = 0.3;  // hPa, the rms of the memo's eq. 18
-constexpr double told = 2.6;         // standard errors, which chance makes once in 100 times
+constexpr double significant = 2.6;  // standard errors, which chance makes once in 100 times
 
 class TemperatureCalibration {
  public:
@@ -53,11 +53,11 @@ class TemperatureCalibration {
     read();
     find_prior();
     const std::size_t max_terms = static_cast<std::size_t>(options_.degree.value_or(2)) + 1;
-    likeliest_ =
+    most_likely_ =
         maximise_likelihood(records_, static_cast<Eigen::Index>(max_terms), prior_, start(), workers_);
     std::vector<HeightEquations> equations;
     for (const HeightRecord& record : records_)
-      equations.push_back(height_equations(record, likeliest_.noise, prior_));
+      equations.push_back(height_equations(record, most_likely_.noise, prior_));
     const Degrees degrees(equations, max_terms);
     result_.degrees = degrees.choices();
     terms_ = options_.degree ? max_terms : degrees.worthwhile_terms();
@@ -85,8 +85,8 @@ class TemperatureCalibration {
       FlightHeightRecord& part = parts[number];
       FlightHeights& heights = result_.flights.emplace_back();
       heights.flight = flights_.name(number);
-      heights.left_out = part.left_out;
-      if (first_trouble.empty()) first_trouble = part.left_out;
+      heights.excluded = part.excluded;
+      if (first_trouble.empty()) first_trouble = part.excluded;
       if (!part.record) continue;
       if (dry_.empty()) dry_ = part.dry;
       levelled_.push_back(*part.record);
@@ -150,14 +150,14 @@ class TemperatureCalibration {
   }
 
   void maximise() {
-    likeliest_ =
-        maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, likeliest_.noise, workers_);
+    most_likely_ = maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_,
+                                       most_likely_.noise, workers_);
   }
 
   /// Implausible coefficients of the most likely correction: "a1 = -0.0785, outside [-0.05, 0.05]". Empty if
   /// it is possible.
   std::string impossible() const {
-    const Eigen::VectorXd best = likeliest_.equations.best(static_cast<Eigen::Index>(terms_));
+    const Eigen::VectorXd best = most_likely_.equations.best(static_cast<Eigen::Index>(terms_));
     for (std::size_t k = 0; k < terms_; ++k) {
       const ParameterInfo info = effects::TempCalibration::info().parameters[k];
       const double value = best[static_cast<Eigen::Index>(k)];
@@ -188,9 +188,9 @@ class TemperatureCalibration {
                           : "check recovery_temperature and the altitude in the model"));
     }
     const auto n = static_cast<Eigen::Index>(terms_);
-    const HeightEquations& equations = likeliest_.equations;
+    const HeightEquations& equations = most_likely_.equations;
     const Eigen::VectorXd best = equations.best(n);
-    Eigen::MatrixXd covariance = covariance_over_noise(records_, n, prior_, likeliest_, workers_);
+    Eigen::MatrixXd covariance = covariance_over_noise(records_, n, prior_, most_likely_, workers_);
     const Eigen::MatrixXd moved_by =
         equations.covariance_of_unknowns(n) * equations.information.rightCols<height_errors>();
     const Eigen::VectorXd per_hpa = moved_by.col(lasting).head(n);
@@ -205,7 +205,7 @@ class TemperatureCalibration {
     find_humidity_error();
     find_unseen_errors();
     const Eigen::MatrixXd unseen = covariance_of_unseen(per_hpa, per_part / mean_pressure());
-    const HeightNoise& noise = likeliest_.noise;
+    const HeightNoise& noise = most_likely_.noise;
     result_.likelihood.sigma = std::hypot(noise.white, noise.wander);
     for (Eigen::Index k = 0; k < n; ++k) {
       result_.likelihood.coefficients.push_back(best[k]);
@@ -269,10 +269,10 @@ class TemperatureCalibration {
   }
 
   void find_parts() {
-    const HeightEquations::Vector unknowns = likeliest_.equations.best_unknowns(as_index(terms_));
-    result_.parts_by_flight = corrections_of_flights(records_, likeliest_.noise, prior_, unknowns);
+    const HeightEquations::Vector unknowns = most_likely_.equations.best_unknowns(as_index(terms_));
+    result_.parts_by_flight = corrections_of_flights(records_, most_likely_.noise, prior_, unknowns);
     result_.parts_by_climb =
-        corrections_of_climbs_and_descents(records_, likeliest_.noise, prior_, unknowns, workers_);
+        corrections_of_climbs_and_descents(records_, most_likely_.noise, prior_, unknowns, workers_);
     result_.spread_of_flights = disagreement_of(result_.parts_by_flight).spread;
     result_.spread_of_climbs = disagreement_of(result_.parts_by_climb).spread;
   }
@@ -302,18 +302,18 @@ class TemperatureCalibration {
     found.effect = Effect::info().id;
     found.parameter = Effect::info().parameters[0].name;
     // A pressure that is too high needs a correction that is lower.
-    found.change = -likeliest_.equations.best_unknowns(n)[at];
-    found.standard_error = std::sqrt(likeliest_.equations.covariance_of_unknowns(n)(at, at));
+    found.change = -most_likely_.equations.best_unknowns(n)[at];
+    found.standard_error = std::sqrt(most_likely_.equations.covariance_of_unknowns(n)(at, at));
     found.size = prior_.errors[error];
     found.range = std::abs(found.change) * range_of(error);
-    if (likeliest_.equations.information(at, at) > 0.0) result_.law_errors.push_back(std::move(found));
+    if (most_likely_.equations.information(at, at) > 0.0) result_.law_errors.push_back(std::move(found));
   }
 
   void find_humidity_error() {
     const Eigen::Index n = as_index(terms_);
     const Eigen::Index at = as_index(calibration_terms + with_vapor);
-    result_.humidity_change = likeliest_.equations.best_unknowns(n)[at];
-    result_.humidity_error = std::sqrt(likeliest_.equations.covariance_of_unknowns(n)(at, at));
+    result_.humidity_change = most_likely_.equations.best_unknowns(n)[at];
+    result_.humidity_error = std::sqrt(most_likely_.equations.covariance_of_unknowns(n)(at, at));
   }
 
   /// Values below and above at which -2 ln L, with the noise and the other coefficients optimised, is 1 above
@@ -322,7 +322,7 @@ class TemperatureCalibration {
     const double best = result_.likelihood.coefficients[static_cast<std::size_t>(term)];
     const auto deviance_at = [&](double value) {
       const HeldCoefficient held{term, value};
-      return maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, likeliest_.noise,
+      return maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, most_likely_.noise,
                                  workers_, &held)
           .deviance;
     };
@@ -344,7 +344,7 @@ class TemperatureCalibration {
   /// of isobars of each flight as unknowns: slopes estimated beforehand would include errors of the model
   /// that differ between climbs and descents. Weighted mean over the flights.
   void compare_with_least_squares() {
-    const HeightEquations::Vector unknowns = likeliest_.equations.best_unknowns(as_index(terms_));
+    const HeightEquations::Vector unknowns = most_likely_.equations.best_unknowns(as_index(terms_));
     double weights = 0.0;
     double sum = 0.0;
     for (const HeightRecord& record : records_) {
@@ -387,14 +387,14 @@ class TemperatureCalibration {
 
   void describe_flights() {
     const HeightEquations::Vector unknowns =
-        likeliest_.equations.best_unknowns(static_cast<Eigen::Index>(terms_));
+        most_likely_.equations.best_unknowns(static_cast<Eigen::Index>(terms_));
     double squares = 0.0;
     double products = 0.0;
     double count = 0.0;
     auto record = records_.begin();
     auto levelled = levelled_.begin();
     for (FlightHeights& flight : result_.flights) {
-      if (!flight.left_out.empty()) continue;
+      if (!flight.excluded.empty()) continue;
       flight.samples = record->samples;
       flight.segments = record->segments;
       flight.min_temperature = record->min_temperature;
@@ -408,7 +408,7 @@ class TemperatureCalibration {
       flight.after = height_differences(*levelled, result_.likelihood.coefficients);
       flight.rms_before = rms(flight.before);
       flight.rms_after = rms(flight.after);
-      flight.innovation = height_innovations(*record, likeliest_.noise, prior_, unknowns);
+      flight.innovation = height_innovations(*record, most_likely_.noise, prior_, unknowns);
       for (std::size_t i = 1; i < flight.innovation.size(); ++i) {
         const double product = flight.innovation[i] * flight.innovation[i - 1];
         if (std::isnan(product)) continue;
@@ -441,7 +441,7 @@ class TemperatureCalibration {
 
   /// Rms of heights about their mean in each segment, with a correction and without the other errors, m.
   double rms_without_other_errors(const std::vector<double>& coefficients) const {
-    HeightEquations::Vector others = likeliest_.equations.best_unknowns(as_index(terms_));
+    HeightEquations::Vector others = most_likely_.equations.best_unknowns(as_index(terms_));
     others.head(as_index(calibration_terms)).setZero();
     std::vector<double> heights;
     for (const HeightRecord& record : levelled_) {
@@ -467,11 +467,11 @@ class TemperatureCalibration {
                       worthwhile_gain);
       return;
     }
-    if (std::abs(at.correction) < told * at.standard_error) {
+    if (std::abs(at.correction) < significant * at.standard_error) {
       result_.worse = fmt::format(
           "the correction is not significant: at {:.0f} C, its best determined temperature, the correction "
           "is {} K (threshold {:g} standard errors, p = 0.01)",
-          at.temperature, with_error(at.correction, at.standard_error), told);
+          at.temperature, with_error(at.correction, at.standard_error), significant);
       return;
     }
     if (after > before) {
@@ -523,7 +523,7 @@ class TemperatureCalibration {
     temperature.emplace_back("slope_of_isobars", ProvenanceValue{std::string(to_string(options_.slope))});
     ProvenanceList flights;
     for (const FlightHeights& flight : result_.flights) {
-      if (flight.left_out.empty()) flights.emplace_back(ProvenanceValue{flight.flight});
+      if (flight.excluded.empty()) flights.emplace_back(ProvenanceValue{flight.flight});
     }
     temperature.emplace_back("flights", ProvenanceValue{std::move(flights)});
     temperature.emplace_back("samples", ProvenanceValue{static_cast<std::int64_t>(result_.samples)});
@@ -547,7 +547,7 @@ class TemperatureCalibration {
   HeightPrior prior_;
   std::vector<HeightRecord> records_;
   std::vector<HeightRecord> levelled_;  // heights after subtraction of an estimated isobar slope
-  MostLikely likeliest_;
+  MostLikely most_likely_;
   std::size_t terms_ = 1;
   TemperatureResult result_;
 };

@@ -72,8 +72,8 @@ ReportTable flight_table(const TemperatureResult& result) {
   table.headers = {"flight",      "samples",       "stretches",    "coldest, °C",
                    "warmest, °C", "rms before, m", "rms after, m", ""};
   for (const FlightHeights& flight : result.flights) {
-    if (!flight.left_out.empty()) {
-      table.rows.push_back({flight.flight, "", "", "", "", "", "", "left out: " + flight.left_out});
+    if (!flight.excluded.empty()) {
+      table.rows.push_back({flight.flight, "", "", "", "", "", "", "left out: " + flight.excluded});
       continue;
     }
     table.rows.push_back(

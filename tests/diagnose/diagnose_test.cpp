@@ -268,20 +268,21 @@ TEST(Diagnose, FindsAFormulaThatIsRight) {
 TEST(Diagnose, FormulaWithoutValuesStatesReason) {
   const Diagnosis diagnosis = diagnose({flight("c130-short", 311)}, with_formula("k * log(sideslip - 100)"));
   EXPECT_EQ(diagnosis.verdict, Verdict::silent);
-  bool told = false;
+  bool is_listed = false;
   for (const pcor::NotTestable& each : diagnosis.not_testable) {
     if (each.effect != "try-1") continue;
-    told = true;
+    is_listed = true;
     EXPECT_THAT(each.reason, HasSubstr("impossible"));
   }
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(is_listed);
 }
 
 TEST(Diagnose, AFormulaThatActsNowhereIsNotTested) {
   const Diagnosis diagnosis = diagnose({flight("c130-short", 311)}, with_formula("k * max(mach - 5, 0)"));
-  bool told = false;
-  for (const pcor::NotTestable& each : diagnosis.not_testable) told = told || each.effect == "try-1";
-  EXPECT_TRUE(told);
+  bool is_listed = false;
+  for (const pcor::NotTestable& each : diagnosis.not_testable)
+    is_listed = is_listed || each.effect == "try-1";
+  EXPECT_TRUE(is_listed);
 }
 
 TEST(Diagnose, UsesTheFirstPartOnly) {

@@ -57,8 +57,8 @@ Recorded everything_recorded() {
           {Quantity::airspeed_rate, 0.4}};
 }
 
-Recorded without(Recorded recorded, std::initializer_list<Quantity> left_out) {
-  for (const Quantity quantity : left_out) recorded.erase(quantity);
+Recorded without(Recorded recorded, std::initializer_list<Quantity> excluded) {
+  for (const Quantity quantity : excluded) recorded.erase(quantity);
   return recorded;
 }
 

@@ -261,9 +261,9 @@ class Soak {
     constexpr Quantity filtered = Quantity::filtered_lams_temperature;
     const double of_earlier = loop_.state()[filtered];
     // If that sample is missing the bit was set when it was run.
-    const bool is_told =
+    const bool is_flagged =
         since_gap_ > loop_.delay() + pcor::LowPass::delay(rate) || says_why(loop_.quality(), filtered);
-    if (std::isnan(of_earlier) ? !is_told : !(of_earlier >= 100.0 && of_earlier <= 400.0))
+    if (std::isnan(of_earlier) ? !is_flagged : !(of_earlier >= 100.0 && of_earlier <= 400.0))
       tell(filtered, of_earlier);
     for (const Believed& result : results) {
       const double value = loop_.state()[result.quantity];

@@ -43,11 +43,11 @@ Model every_effect(LamsApproach approach) {
   return model;
 }
 
-Quantities roles_without(const Quantities& left_out) {
+Quantities roles_without(const Quantities& excluded) {
   Quantities roles;
   for (std::size_t i = 0; i < role_count; ++i) {
     const auto role = static_cast<Quantity>(i);
-    if (std::find(left_out.begin(), left_out.end(), role) == left_out.end()) roles.push_back(role);
+    if (std::find(excluded.begin(), excluded.end(), role) == excluded.end()) roles.push_back(role);
   }
   return roles;
 }

@@ -636,7 +636,7 @@ const Item* item(const Report& report, const std::string& title) {
 TEST_F(Temperature, MakesAReport) {
   const std::vector<fs::path> flights{fly(one_climb(), 1), fly(no_climb(), 2), fly(one_climb(), 3)};
   const TemperatureResult result = fit_temperature(flights, model(), of_degree(1));
-  ASSERT_THAT(result.flights[1].left_out, HasSubstr("climbs by"));
+  ASSERT_THAT(result.flights[1].excluded, HasSubstr("climbs by"));
   const Report report = temperature_report(result);
 
   // A picture has the flights that were used, each of which is a separate stretch of time.

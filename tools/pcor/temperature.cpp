@@ -53,8 +53,8 @@ void print_flights(const TemperatureResult& result) {
   say("{:<28} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10}\n", "flight", "samples", "stretches", "coldest",
       "warmest", "rms before", "rms after");
   for (const FlightHeights& flight : result.flights) {
-    if (!flight.left_out.empty()) {
-      say("{:<28} skipped: {}\n", flight.flight, flight.left_out);
+    if (!flight.excluded.empty()) {
+      say("{:<28} skipped: {}\n", flight.flight, flight.excluded);
       continue;
     }
     say("{:<28} {:>8} {:>10} {:>7.1f} C {:>7.1f} C {:>9.2f} m {:>8.2f} m\n", flight.flight, flight.samples,
@@ -131,7 +131,7 @@ void print(const TemperatureResult& result) {
   } else {
     print_corrections(result);
     for (const FlightHeights& flight : result.flights) {
-      if (!flight.left_out.empty()) say("{}: skipped: {}\n", flight.flight, flight.left_out);
+      if (!flight.excluded.empty()) say("{}: skipped: {}\n", flight.flight, flight.excluded);
     }
   }
   say_notes(result.notes);
@@ -154,7 +154,7 @@ void print(const IterativeCalibration& result) {
 /// First used flight, as named by the user.
 const std::string& first_used(const TemperatureResult& result, const TemperatureArguments& options) {
   const auto used = std::find_if(result.flights.begin(), result.flights.end(),
-                                 [](const FlightHeights& flight) { return flight.left_out.empty(); });
+                                 [](const FlightHeights& flight) { return flight.excluded.empty(); });
   return options.comparison.flights.at(static_cast<std::size_t>(used - result.flights.begin()));
 }
 

@@ -159,7 +159,7 @@ void describe(const PartCorrection& self, Field& field) {
 /// Heights of one flight, as means over 10 s.
 struct FlightHeights {
   std::string flight{};
-  std::string left_out{};  ///< reason for exclusion; empty if used
+  std::string excluded{};  ///< reason for exclusion; empty if used
   std::size_t samples = 0;
   std::size_t segments = 0;           ///< contiguous segments of the integral
   double min_temperature = 0.0;       ///< degC
@@ -176,11 +176,11 @@ struct FlightHeights {
 
 template <class Field>
 void describe(const FlightHeights& self, Field& field) {
-  const bool used = self.left_out.empty();
+  const bool used = self.excluded.empty();
   field("name", self.flight, "file of the flight");
   field("used", used, "whether the flight is used");
   if (field.has(!used))
-    field("left_out", self.left_out, "reason for exclusion; absent if the flight is used");
+    field("left_out", self.excluded, "reason for exclusion; absent if the flight is used");
   if (!field.has(used)) return;
   field("samples", self.samples, "number of heights; absent if the flight is not used");
   field("stretches", self.segments, "contiguous segments of the integral; absent if not used");

@@ -128,7 +128,7 @@ class HeightReference final : public Reference {
     }
     const std::vector<Jump> jumps = find_jumps(height.values, time);
     for (const Jump& jump : jumps)
-      notes.push_back(told_of(height.variable, jump, time) + ", which are excluded");
+      notes.push_back(format_jump(height.variable, jump, time) + ", which are excluded");
     mask(jumps, height.values);
     for (std::size_t i = 0; i < height.values.size(); ++i)
       height.values[i] = geopotential_height(latitude.values[i], height.values[i]);

@@ -185,9 +185,9 @@ class WindReference final : public Reference {
                       "which the reference wind requires; name them in the table [variables] of the model");
     }
     for (const Jump& jump : ground.jumps)
-      notes.push_back(told_of(ground.speed.variable, jump, time, "m/s") + ", which are left out");
+      notes.push_back(format_jump(ground.speed.variable, jump, time, "m/s") + ", which are left out");
     for (const Jump& jump : ground.against_position)
-      notes.push_back(told_of(ground.speed.variable + " against the positions", jump, time, "m/s") +
+      notes.push_back(format_jump(ground.speed.variable + " against the positions", jump, time, "m/s") +
                       ", which are left out");
     ModelSamples samples;
     const auto add = [&samples](Quantity quantity, RecordedSeries& series) {
