@@ -17,9 +17,9 @@ namespace pcor {
 
 /// Verdict of a check on the correction.
 enum class CheckVerdict {
-  consistent,    ///< measurements agree within the noise
-  inconsistent,  ///< measurements disagree
-  inconclusive   ///< the noise exceeds the tolerance
+  consistent,    ///< |value| + 2 standard errors is within the tolerance
+  inconsistent,  ///< |value| exceeds the tolerance and 3 standard errors
+  inconclusive   ///< neither; its text is "cannot tell"
 };
 
 /// Text: "consistent", "inconsistent", "cannot tell".
