@@ -87,8 +87,8 @@ std::vector<WorstInterval> worst_of(const FlightResiduals& flight, const std::ve
 void ModelSums::add(const ModelSums& other) {
   all.add(other.all);
   flaps_out.add(other.flaps_out);
-  requested += other.requested;
-  requested_squares += other.requested_squares;
+  reference_defect += other.reference_defect;
+  reference_defect_squares += other.reference_defect_squares;
   pressures.add(other.pressures);
   if (doubt.size() == 0) {
     doubt = other.doubt;
@@ -106,7 +106,7 @@ void ModelSums::add(const ModelSums& other) {
 ModelSums sums_of(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise,
                   SummedRecords& records) {
   const std::vector<double>& values = flight.values[model];
-  const std::vector<double>& requested = flight.reference_defects[model];
+  const std::vector<double>& reference_defect = flight.reference_defects[model];
   const FlightSamples& samples = *flight.samples;
   const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
   ModelSums sums;
@@ -118,8 +118,8 @@ ModelSums sums_of(const FlightResiduals& flight, std::size_t model, const NoiseF
       records_of[&part].push_back(i);
     };
     count(sums.all);
-    sums.requested += requested[i];
-    sums.requested_squares += requested[i] * requested[i];
+    sums.reference_defect += reference_defect[i];
+    sums.reference_defect_squares += reference_defect[i] * reference_defect[i];
     const double pressure = flight.corrected_pressures[model][i];
     sums.pressures.add(pressure, pressure + values[i]);
     for (std::size_t r = 0; r < regime_count; ++r) {
@@ -147,7 +147,8 @@ ModelComparison comparison_of(const std::string& name, const Reference& referenc
   result.flights = std::move(flights);
   result.worst = std::move(sums.worst);
   const auto count = static_cast<double>(sums.all.samples);
-  const double variation = sums.requested_squares - sums.requested * sums.requested / count;
+  const double variation =
+      sums.reference_defect_squares - sums.reference_defect * sums.reference_defect / count;
   const bool varies = reference.is_static_pressure() && variation > count * min_variance;
   if (reference.is_static_pressure()) result.static_pressure = orthogonal_fit(sums.pressures);
   result.r_squared = varies ? 1.0 - sums.all.squares / variation : nan;

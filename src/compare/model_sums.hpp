@@ -43,8 +43,8 @@ inline constexpr std::size_t banding_count = 4;
 struct ModelSums {
   ResidualSums all{};
   ResidualSums flaps_out{};
-  double requested = 0.0;  // delta-p of the reference
-  double requested_squares = 0.0;
+  double reference_defect = 0.0;  // delta-p of the reference
+  double reference_defect_squares = 0.0;
   PairMoments pressures{};  // model and reference
   Eigen::VectorXd doubt{};  // what each doubt of the reference does to the residuals
   std::array<ResidualSums, regime_count> regimes{};
@@ -65,7 +65,8 @@ struct ModelSums {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(all, flaps_out, requested, requested_squares, pressures, doubt, regimes, bands, worst);
+    archive(all, flaps_out, reference_defect, reference_defect_squares, pressures, doubt, regimes, bands,
+            worst);
   }
 };
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include <pcor/numerics/noise.hpp>
+
 #include "campaign/whitened.hpp"
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
@@ -363,11 +365,9 @@ ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std
   if (slopes.empty()) return result;
   result.correlation = median(std::move(correlations));
   result.slope = median(slopes);
-  std::vector<double> deviations;
-  for (const double slope : slopes) deviations.push_back(std::abs(slope - result.slope));
-  constexpr double of_normal = 1.4826;        // standard deviation / median absolute deviation
+  for (double& slope : slopes) slope -= result.slope;
   constexpr double of_median = 1.2533141373;  // error of a median / that of a mean
-  result.error = of_normal * of_median * median(std::move(deviations)) / std::sqrt(slopes.size());
+  result.error = of_median / std::sqrt(slopes.size()) * robust_standard_deviation(std::move(slopes));
   return result;
 }
 

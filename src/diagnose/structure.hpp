@@ -131,8 +131,8 @@ class StructureTest {
 ///
 /// If the changes are correlated everywhere, in and out of manoeuvres, the variable either was computed from
 /// the same noisy measurement, and structure that varies with it is not evidence, or it causes fast changes
-/// of the residual. A cause has the same slope in slow changes; common noise has not, because the slow
-/// changes of the variable are not noise.
+/// of the residual. A cause has the same slope in slow changes. For common noise the slope of slow changes is
+/// smaller, because slow changes of the variable are not noise.
 struct ChangeSlope {
   double correlation = 0.0;  ///< correlation of the changes, median over parts of 300 records; 0 if unknown
   double slope = 0.0;        ///< hPa per unit of the variable, median over the parts

@@ -8,6 +8,7 @@
 #include <memory>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "diagnose/dependencies.hpp"
 #include "diagnose/flight_steps.hpp"
@@ -141,17 +142,15 @@ std::vector<std::string> computed_variables(const FlightSet& files, const std::s
 
 /// Moves variables whose changes are correlated with those of the residual to `variables` if they may be its
 /// cause, otherwise to the list in `found`.
-void sort_correlated(const Analysis& analysis, const std::vector<TestedVariable>& correlated,
-                     const std::vector<ChangeSlope>& slopes, std::uint64_t seed,
-                     std::vector<TestedVariable>& variables, Unexplained& found) {
+void sort_correlated(const Analysis& analysis, std::vector<std::pair<TestedVariable, ChangeSlope>> correlated,
+                     std::uint64_t seed, std::vector<TestedVariable>& variables, Unexplained& found) {
   if (correlated.empty()) return;
   StructureTest test(analysis.share(), analysis.bins(), analysis.columns_of(analysis.result().chosen),
                      analysis.residuals(), analysis.noise(), seed);
-  for (std::size_t k = 0; k < correlated.size(); ++k) {
-    const TestedVariable& variable = correlated[k];
+  for (auto& [variable, slope] : correlated) {
     if (test.add(variable.name, variable.pointers(), variable.turn) &&
-        slopes[k].agrees_with(test.structures().back())) {
-      variables.push_back(variable);
+        slope.agrees_with(test.structures().back())) {
+      variables.push_back(std::move(variable));
     } else {
       found.shares_noise.push_back(variable.name);
     }
@@ -168,8 +167,7 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
   if (!options.whole_file) return variables;
   const std::vector<std::string> computed = computed_variables(files, sensors_of(model, reference));
   const auto altitude = model.variables.find(Quantity::altitude);
-  std::vector<TestedVariable> correlated;
-  std::vector<ChangeSlope> slopes;
+  std::vector<std::pair<TestedVariable, ChangeSlope>> correlated;
   for (TestedVariable& variable :
        recorded_variables(files, analysis.flights(), excluded(files, model, reference, options))) {
     if (std::find(computed.begin(), computed.end(), variable.name) != computed.end()) {
@@ -178,14 +176,13 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
     }
     const ChangeSlope slope = slope_of_changes(analysis.share(), after, variable.pointers());
     if (slope.is_correlated()) {
-      slopes.push_back(slope);
-      correlated.push_back(std::move(variable));
+      correlated.emplace_back(std::move(variable), slope);
     } else {
       variable.fine = altitude != model.variables.end() && altitude->second == variable.name;
       variables.push_back(std::move(variable));
     }
   }
-  sort_correlated(analysis, correlated, slopes, options.seed, variables, found);
+  sort_correlated(analysis, std::move(correlated), options.seed, variables, found);
   return variables;
 }
 

@@ -56,7 +56,7 @@ struct Compared {
 FitSums sums_of(const FitFlight& fit, const FitTask& task, const std::vector<double>& before,
                 const std::vector<double>& after, const NoiseFloor& noise) {
   // Delta-p of the reference from its unchanged file, so that R2 does not grow with a fitted reference.
-  const std::vector<double> requested = fit.residuals().target_defect(task.start.data());
+  const std::vector<double> reference_defect = fit.residuals().target_defect(task.start.data());
   FitSums sums;
   sums.samples = fit.kept().size();
   std::vector<double> was;
@@ -69,8 +69,8 @@ FitSums sums_of(const FitFlight& fit, const FitTask& task, const std::vector<dou
     sums.squares_before += was[i] * was[i];
     sums.squares += is[i] * is[i];
     sums.relative_squares += relative * relative;
-    sums.requested += requested[sample];
-    sums.requested_squares += requested[sample] * requested[sample];
+    sums.reference_defect += reference_defect[sample];
+    sums.reference_defect_squares += reference_defect[sample] * reference_defect[sample];
     sums.noise_squares += noise.local_rms[sample] * noise.local_rms[sample];
   }
   const auto bulk_squares = [](const std::vector<double>& residual) {
@@ -176,8 +176,8 @@ void FitSums::add(const FitSums& other) {
   squares += other.squares;
   bulk_squares += other.bulk_squares;
   relative_squares += other.relative_squares;
-  requested += other.requested;
-  requested_squares += other.requested_squares;
+  reference_defect += other.reference_defect;
+  reference_defect_squares += other.reference_defect_squares;
   noise_squares += other.noise_squares;
 }
 

@@ -19,22 +19,23 @@ struct FitSums {
   double squares = 0.0;
   double bulk_squares = 0.0;
   double relative_squares = 0.0;  ///< residual over static pressure
-  double requested = 0.0;         ///< delta-p implied by the reference, hPa
-  double requested_squares = 0.0;
+  double reference_defect = 0.0;  ///< delta-p implied by the reference, hPa
+  double reference_defect_squares = 0.0;
   double noise_squares = 0.0;  ///< noise floor, hPa^2
 
   void add(const FitSums& other);
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(samples, squares_before, bulk_squares_before, squares, bulk_squares, relative_squares, requested,
-            requested_squares, noise_squares);
+    archive(samples, squares_before, bulk_squares_before, squares, bulk_squares, relative_squares,
+            reference_defect, reference_defect_squares, noise_squares);
   }
 
   double rms_of(double sum) const { return std::sqrt(sum / static_cast<double>(samples)); }
   /// R^2 of a model with that sum of squared residuals.
   double r_squared(double of_squares) const {
-    return 1.0 - of_squares / (requested_squares - requested * requested / static_cast<double>(samples));
+    return 1.0 - of_squares / (reference_defect_squares -
+                               reference_defect * reference_defect / static_cast<double>(samples));
   }
 };
 

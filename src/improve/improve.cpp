@@ -45,6 +45,24 @@ void hold(ModelDefinition& file, const std::vector<std::string>& parameters) {
 
 }  // namespace
 
+std::string_view to_string(StopReason reason) {
+  switch (reason) {
+    case StopReason::nothing_missing:
+      return "nothing missing";
+    case StopReason::reference_system:
+      return "reference system";
+    case StopReason::in_model:
+      return "in model";
+    case StopReason::unexplained:
+      return "unexplained";
+    case StopReason::no_gain:
+      return "no gain";
+    case StopReason::max_steps:
+      return "max steps";
+  }
+  return "";
+}
+
 std::string rivals_text(const ImproveStep& step) {
   if (step.rivals.empty()) return "";
   std::vector<std::string> each;

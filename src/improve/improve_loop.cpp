@@ -153,7 +153,7 @@ class ForwardSelection {
   }
 
   Improvement run() {
-    while (!is_finished_) next_step();
+    while (result_.why_stopped.empty()) next_step();
     result_.model = result_.fit.model;
     result_.refitted = refitted_;
     choose_among_rivals();
@@ -295,7 +295,7 @@ class ForwardSelection {
     step.added = step.delivered = id;
     step.title = std::string(surface_named(id)->title);
     measure(step, offer->fit, before.alike);
-    // Other parts than those of the steps before: the step before times their ratio is comparable.
+    // The parts are others than those of the steps before: their ratio is applied to the step before.
     if (!loop_.has_holdout)
       step.rms_holdout = result_.steps.back().rms_holdout * out.rms_after / out.rms_before;
     step.learnt =
@@ -368,7 +368,6 @@ class ForwardSelection {
   }
 
   void stop(StopReason reason, std::string why) {
-    is_finished_ = true;
     result_.stop_reason = reason;
     result_.why_stopped = std::move(why);
   }
@@ -523,7 +522,6 @@ class ForwardSelection {
   const ImproveLoop& loop_;
   Improvement result_;
   TrialModel given_;
-  bool is_finished_ = false;
   ModelDefinition refitted_;
   std::vector<std::string> alike_{};  // `TrialModel::alike` of the model after the last step
   TrialModel delivered_{};
@@ -540,25 +538,3 @@ Improvement ImproveLoop::run(const ModelDefinition& model) const {
 }
 
 }  // namespace pcor::internal
-
-namespace pcor {
-
-std::string_view to_string(StopReason reason) {
-  switch (reason) {
-    case StopReason::nothing_missing:
-      return "nothing missing";
-    case StopReason::reference_system:
-      return "reference system";
-    case StopReason::in_model:
-      return "in model";
-    case StopReason::unexplained:
-      return "unexplained";
-    case StopReason::no_gain:
-      return "no gain";
-    case StopReason::max_steps:
-      return "max steps";
-  }
-  return "";
-}
-
-}  // namespace pcor

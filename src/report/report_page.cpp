@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdlib>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>

@@ -93,10 +93,8 @@ function selfTest(report) {
   expect(String(report.points) === String(before) && String(pixels()) === String(pixelsBefore),
     'clear does not restore the pictures');
 
-  // All of a kind share their code: the first and the last are tried, because each step draws every picture.
-  const ends = (all) => [...new Set([all[0], all[all.length - 1]])].filter(Boolean);
-  for (const panel of ends(panels.filter(({item}) => item.kind === 'time'))) tryTimePanel(panel, report, expect);
-  for (const chip of ends([...report.bar.chips])) {
+  for (const panel of panels) if (panel.item.kind === 'time') tryTimePanel(panel, report, expect);
+  for (const chip of report.bar.chips) {
     chip.click();
     const inside = countOf(samples.regimes.get(chip.textContent));
     expect(report.selection.count === inside,

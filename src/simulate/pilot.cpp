@@ -205,15 +205,15 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   truth_.torque.push_back(torque(aircraft_, rolling, flow, speed_, energy) *
                           (1.0 + trim_rms * trim_.next(kept(trim_memory))));
 
-  const double cabin_requested =
+  const double cabin_equilibrium =
       std::max(air.pressure, std::min(0.7 * atmosphere.ground_pressure + 0.3 * air.pressure,
                                       air.pressure + aircraft_.cabin_differential));
-  if (!cabin_) cabin_ = cabin_requested;
-  follow(*cabin_, cabin_requested, cabin_time);
+  if (!cabin_) cabin_ = cabin_equilibrium;
+  follow(*cabin_, cabin_equilibrium, cabin_time);
   truth_.cabin_pressure.push_back(*cabin_);
-  const double bay_requested = 290.0 + 0.4 * (air.temperature - 290.0);  // heated from inside
-  if (!bay_) bay_ = bay_requested;
-  follow(*bay_, bay_requested, bay_time);
+  const double bay_equilibrium = 290.0 + 0.4 * (air.temperature - 290.0);  // heated from inside
+  if (!bay_) bay_ = bay_equilibrium;
+  follow(*bay_, bay_equilibrium, bay_time);
   truth_.bay_temperature.push_back(*bay_);
 
   // To the next step
