@@ -31,7 +31,7 @@ void write(const std::filesystem::path& path) {
   file.commit();
 }
 
-TEST(OutputTransaction, AppearAtOnce) {
+TEST(OutputTransaction, FilesAppearTogether) {
   const test::TemporaryDirectory directory;
   OutputTransaction together;
   write(directory / "model");
@@ -41,7 +41,7 @@ TEST(OutputTransaction, AppearAtOnce) {
   EXPECT_THAT(names_in(directory), UnorderedElementsAre("model", "report"));
 }
 
-TEST(OutputTransaction, DoNotAppearAfterAFailure) {
+TEST(OutputTransaction, FailureRemovesItsFiles) {
   const test::TemporaryDirectory directory;
   {
     const OutputTransaction together;
@@ -54,7 +54,7 @@ TEST(OutputTransaction, DoNotAppearAfterAFailure) {
   EXPECT_THAT(names_in(directory), UnorderedElementsAre("model"));
 }
 
-TEST(OutputTransaction, OneWithinAnotherIsAPartOfIt) {
+TEST(OutputTransaction, InnerTransactionJoinsOuterTransaction) {
   const test::TemporaryDirectory directory;
   OutputTransaction whole;
   {
@@ -68,7 +68,7 @@ TEST(OutputTransaction, OneWithinAnotherIsAPartOfIt) {
   EXPECT_THAT(names_in(directory), UnorderedElementsAre("figure", "model"));
 }
 
-TEST(OutputTransaction, FoldersThatWereMadeGoAgainAfterAFailure) {
+TEST(OutputTransaction, FailureRemovesCreatedFolders) {
   const test::TemporaryDirectory directory;
   std::filesystem::create_directory(directory / "old");
   {
@@ -85,7 +85,7 @@ TEST(OutputTransaction, FoldersThatWereMadeGoAgainAfterAFailure) {
   EXPECT_TRUE(std::filesystem::exists(directory / "new" / "of" / "figure"));
 }
 
-TEST(OutputTransaction, AFolderCannotBeWhereAFileIs) {
+TEST(OutputTransaction, FolderAtPathOfFileIsRejected) {
   const test::TemporaryDirectory directory;
   write(directory / "file");
   OutputTransaction together;
@@ -93,7 +93,7 @@ TEST(OutputTransaction, AFolderCannotBeWhereAFileIs) {
               test::IsError(Error::Code::output, (directory / "file").string()));
 }
 
-TEST(OutputTransaction, EarlierFilesGoWhenTheNewOnesAreThere) {
+TEST(OutputTransaction, OldFilesAreRemovedWhenNewFilesAppear) {
   const test::TemporaryDirectory directory;
   write(directory / "earlier");
   {

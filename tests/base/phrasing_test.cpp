@@ -6,7 +6,7 @@ using namespace pcor::internal;
 
 namespace {
 
-TEST(Phrasing, MakesSentences) {
+TEST(Phrasing, SentenceHasCapitalAndFullStop) {
   EXPECT_EQ(sentence("the fit is done"), "The fit is done.");
   EXPECT_EQ(sentence("Is it?"), "Is it?");
   EXPECT_EQ(sentence(""), "");
@@ -15,7 +15,7 @@ TEST(Phrasing, MakesSentences) {
   EXPECT_EQ(sentence("static-qp.a2 is held"), "static-qp.a2 is held.");
 }
 
-TEST(Phrasing, Lists) {
+TEST(Phrasing, JoinsListWithAnd) {
   EXPECT_EQ(join_list({}), "");
   EXPECT_EQ(join_list({"a"}), "a");
   EXPECT_EQ(join_list({"a", "b"}), "a and b");

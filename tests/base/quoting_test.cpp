@@ -7,7 +7,7 @@
 namespace pcor::internal {
 namespace {
 
-TEST(OneLine, ShowsWhatATerminalWouldObey) {
+TEST(OneLine, EscapesControlCharacters) {
   EXPECT_EQ(one_line("a\nb\x1b[31mc\x7f"), "a\\x0ab\\x1b[31mc\\x7f");
   EXPECT_EQ(one_line("\xc2\x9b"
                      "31m"),
@@ -19,7 +19,7 @@ TEST(OneLine, ShowsWhatATerminalWouldObey) {
   EXPECT_EQ(one_line("\u2013\u2026\u2032\u2070"), "\u2013\u2026\u2032\u2070");
 }
 
-TEST(OneLine, KeepsLettersWhole) {
+TEST(OneLine, KeepsValidUtf8AndEscapesInvalidBytes) {
   EXPECT_EQ(one_line("\u00b5m\u00b3 \u20ac \U0001f6e9"), "\u00b5m\u00b3 \u20ac \U0001f6e9");
   EXPECT_EQ(one_line("\xe2\x82"), "\\xe2\\x82") << "a truncated character";
   EXPECT_EQ(one_line("\xc0\x80\xff"), "\\xc0\\x80\\xff");

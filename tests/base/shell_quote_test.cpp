@@ -23,7 +23,7 @@ TEST(ShellWord, ShellRestoresTheOriginalText) {
     EXPECT_EQ(output_of("printf %s " + shell_quote(word)), word);
 }
 
-TEST(ShellWord, IsPlainWhereItCanBe) {
+TEST(ShellWord, SafeTextIsNotQuoted) {
   EXPECT_EQ(shell_quote("static-qp.a2=0.03,x:/y@%+_"), "static-qp.a2=0.03,x:/y@%+_");
 }
 

@@ -6,7 +6,7 @@ using pcor::suggest;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(Suggest, OffersTheVariablesOfTheFileThatLookAlike) {
+TEST(Suggest, OffersSimilarVariablesOfTheFile) {
   EXPECT_THAT(suggest("QCF", {"PSFD", "QCX", "TASX", "QCR", "QCFR", "GGALT"}),
               ElementsAre("QCFR", "QCR", "QCX"));
 }
@@ -17,11 +17,11 @@ TEST(Suggest, CountsASwapAsOneChange) {
   EXPECT_THAT(suggest("imrpove", {"refit", "improve", "compare"}), ElementsAre("improve"));
 }
 
-TEST(Suggest, OffersALongNameOfWhichTheBeginningWasGiven) {
+TEST(Suggest, PrefixSuggestsTheLongName) {
   EXPECT_THAT(suggest("temp", {"simulate", "temperature"}), ElementsAre("temperature"));
 }
 
-TEST(Suggest, PrefersTheSameBeginningAmongEquals) {
+TEST(Suggest, EquallyCloseNamesPreferCommonPrefix) {
   EXPECT_THAT(suggest("static-mach4", {"xtatic-mach4", "static-mach3"}),
               ElementsAre("static-mach3", "xtatic-mach4"));
 }
@@ -33,11 +33,11 @@ TEST(Suggest, OffersOnlyCloseNames) {
   EXPECT_THAT(suggest(std::string(257, 'A'), {std::string(256, 'A')}), IsEmpty());
 }
 
-TEST(Suggest, StopsAtTheNumberAskedFor) {
+TEST(Suggest, NumberOfSuggestionsIsLimited) {
   EXPECT_THAT(suggest("QC", {"QCA", "QCB", "QCC", "QCD"}, 2), ElementsAre("QCA", "QCB"));
 }
 
-TEST(DidYouMean, IsASentence) {
+TEST(DidYouMean, JoinsSuggestionsWithOr) {
   EXPECT_EQ(did_you_mean("QCF", {"QCFR"}), "did you mean QCFR?");
   EXPECT_EQ(did_you_mean("QCF", {"QCFR", "QCR"}), "did you mean QCFR or QCR?");
   EXPECT_EQ(did_you_mean("QCF", {"QCFR", "QCR", "QCX"}), "did you mean QCFR, QCR or QCX?");

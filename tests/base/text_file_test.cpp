@@ -17,7 +17,7 @@
 namespace pcor::internal {
 namespace {
 
-TEST(TextFile, IsReadToTheByte) {
+TEST(TextFile, ContentIsReadUnchanged) {
   const test::TemporaryDirectory directory;
   const std::string text{"a\r\nb\0c\n", 7};
   std::ofstream(directory / "text", std::ios::binary) << text;
@@ -33,7 +33,7 @@ TEST(TextFile, ErrorNamesAnAbsentFile) {
 }
 
 // A device may never end, and a pipe may have no writer.
-TEST(TextFile, IsARegularOneOfUsualSize) {
+TEST(TextFile, RejectsDevicesPipesAndLargeFiles) {
   const test::TemporaryDirectory directory;
   ASSERT_EQ(mkfifo((directory / "pipe").c_str(), 0600), 0);
   for (const std::filesystem::path& path : {std::filesystem::path("/dev/zero"), directory / "pipe"}) {

@@ -12,7 +12,7 @@
 namespace pcor::internal {
 namespace {
 
-TEST(MomentIn, TakesADateOfTheCalendar) {
+TEST(MomentIn, AcceptsOnlyAnIsoDate) {
   EXPECT_EQ(moment_in<toml::date>("2012-02-29"), (toml::date{2012, 2, 29}));
   for (const char* text :
        {"2011-02-29", "2011-13-01", "2011-11-00", "2011-11-2", " 2011-11-02", "2011-11-02 ",
@@ -21,7 +21,7 @@ TEST(MomentIn, TakesADateOfTheCalendar) {
   }
 }
 
-TEST(MomentIn, TakesATimeOfTheDay) {
+TEST(MomentIn, AcceptsOnlyAnIsoTime) {
   EXPECT_EQ(moment_in<toml::time>("20:10:00.5"), (toml::time{20, 10, 0, 500000000}));
   for (const char* text :
        {"24:00:00", "20:60:00", "20:10:61", "8:00:00", "20:10:00.", "2011-11-02", "20.10"}) {
@@ -49,7 +49,7 @@ TEST(TomlReader, NetcdfFileIsNamed) {
 }
 
 // Beyond, toml++ overflows the stack: at 20000 tables in each other.
-TEST(TomlReader, RefusesDeepKeys) {
+TEST(TomlReader, RefusesDeeplyNestedKeys) {
   EXPECT_NO_THROW(AnyReader().parse(repeated("a.", 16) + "a = 1"));
   for (const std::size_t dots : {17U, 100000U}) {
     for (const std::string& key :
@@ -63,14 +63,14 @@ TEST(TomlReader, RefusesDeepKeys) {
   }
 }
 
-TEST(TomlReader, TakesDotsThatAreInNoKey) {
+TEST(TomlReader, DotsOutsideKeysAreAccepted) {
   const std::string dots(100, '.');
   EXPECT_NO_THROW(AnyReader().parse("# isn't " + dots + "\na = \"\\\"" + dots + "\" # it's " + dots +
                                     "\nb = '" + dots + "'\nc = \"\"\"\"\n" + dots + "\"\"\"\nd = [" +
                                     repeated("1.5, ", 100) + "]"));
 }
 
-TEST(TomlReader, RefusesCrowds) {
+TEST(TomlReader, RefusesTooManyEntries) {
   EXPECT_NO_THROW(AnyReader().parse("a = [" + repeated("1, ", 10000) + "]"));
   EXPECT_THAT(test::error_of([&] { AnyReader().parse("\nb = [[" + repeated("1, ", 10001) + "]]"); }),
               test::IsError(Error::Code::definition, "some.toml:2:6", "10001", "10000"));
@@ -78,7 +78,7 @@ TEST(TomlReader, RefusesCrowds) {
               test::IsError(Error::Code::definition, "10001"));
 }
 
-TEST(Seconds, GoOnFromDayToDay) {
+TEST(Seconds, AreContinuousAcrossDays) {
   toml::date_time moment{toml::date{1970, 1, 1}, toml::time{0, 0, 0}};
   EXPECT_EQ(seconds_of(moment), 0.0);
   moment.date = {2000, 2, 29};

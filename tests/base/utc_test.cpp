@@ -8,7 +8,7 @@
 namespace pcor {
 namespace {
 
-TEST(UtcText, IsAMomentInWords) {
+TEST(UtcText, FormatsSecondsAsDateAndTime) {
   EXPECT_EQ(utc_text(1077114120.9), "2004-02-18 14:22:00");
   EXPECT_EQ(utc_text(-1.0), "1969-12-31 23:59:59");
   EXPECT_EQ(utc_text(253402300799.0, "%Y-%m-%d"), "9999-12-31");

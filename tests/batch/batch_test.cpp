@@ -191,9 +191,9 @@ std::vector<Quantity> with_lams(std::vector<Quantity> roles) {
   return roles;
 }
 
-TEST(Batch, IsTheLoopForALawWithTaper) { expect_as_in_loop(gv(), gv_roles); }
+TEST(Batch, EqualsLoopForLawWithTaper) { expect_as_in_loop(gv(), gv_roles); }
 
-TEST(Batch, IsTheLoopForRadomeAnglesDewPointAndAMinimum) {
+TEST(Batch, EqualsLoopForRadomeAnglesDewPointAndMinimum) {
   Model model;
   model.effects = {{"static-constant", {0.0041}}, {"static-alpha", {0.0213}}, {"static-qp", {0.0308}}};
   model.sideslip_radome = {0.1, 12.0, 0.5};
@@ -206,7 +206,7 @@ TEST(Batch, IsTheLoopForRadomeAnglesDewPointAndAMinimum) {
                      Quantity::recovery_temperature, Quantity::dew_point});
 }
 
-TEST(Batch, IsTheLoopForAFormulaWithAVariableOfTheUser) {
+TEST(Batch, EqualsLoopForFormulaWithUserVariable) {
   Model model = gv();
   ModelEffect effect;
   effect.id = "fairing";
@@ -219,13 +219,13 @@ TEST(Batch, IsTheLoopForAFormulaWithAVariableOfTheUser) {
   expect_as_in_loop(model, gv_roles);
 }
 
-TEST(Batch, IsTheLoopInDryAirWithoutAnyTemperature) {
+TEST(Batch, EqualsLoopInDryAirWithoutTemperature) {
   Model model = gv();
   model.moist = false;
   expect_as_in_loop(model, {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::attack});
 }
 
-TEST(Batch, IsTheLoopForEveryApproachOfLams) {
+TEST(Batch, EqualsLoopForEveryLamsApproach) {
   for (const LamsApproach approach : {LamsApproach::simultaneous, LamsApproach::iterated}) {
     Model model = gv();
     model.lams = {1.2, -0.4, approach};
@@ -243,7 +243,7 @@ TEST(Batch, IsTheLoopForEveryApproachOfLams) {
                             Quantity::sideslip, Quantity::ambient_temperature, Quantity::lams_airspeed});
 }
 
-TEST(Batch, TakesRatesOfChangeAsArrays) {
+TEST(Batch, RateOfChangeIsAnInputArray) {
   Model model = gv();
   model.effects.push_back({"static-lag", {0.1}});
   EXPECT_THAT(test::error_of([&] { Batch(model, gv_roles); }),
@@ -253,7 +253,7 @@ TEST(Batch, TakesRatesOfChangeAsArrays) {
   expect_as_in_loop(model, roles);
 }
 
-TEST(Batch, WritesEverySampleAndNotOneMore) {
+TEST(Batch, WritesExactlyTheRequestedSamples) {
   const Batch batch(gv(), gv_roles);
   constexpr std::size_t maximum = 40;
   const Arrays recorded = random_samples(maximum, gv_roles);
@@ -272,7 +272,7 @@ TEST(Batch, WritesEverySampleAndNotOneMore) {
   }
 }
 
-TEST(Batch, TakesOtherCoefficients) {
+TEST(Batch, CoefficientsCanBeReplaced) {
   Model other = gv();
   other.effects[1].parameters = {0.08};
   const Batch batch(gv(), gv_roles);
@@ -305,7 +305,7 @@ Arrays in_kernel(BatchKernel kernel, const Batch& batch, const Arrays& recorded,
   return found;
 }
 
-TEST(Batch, IsTheLoopInEveryKernelThatThisProcessorRuns) {
+TEST(Batch, EqualsLoopInEverySupportedKernel) {
   const std::vector<Quantity> roles = with_lams(gv_roles);
   const Batch batch(gv(), roles);
   constexpr std::size_t count = 1001;
@@ -363,7 +363,7 @@ TEST(Batch, MissingValuesAreReported) {
 
 // Each supported output has the same value alone and among all others; any other output is refused. No value
 // is missing because a stage was omitted.
-TEST(Batch, FindsEveryQuantityForItselfOrRefusesIt) {
+TEST(Batch, SingleOutputEqualsJointOutputOrIsRefused) {
   for (const CorrectWith with : {CorrectWith::model, CorrectWith::lams}) {
     const std::vector<Quantity> roles = with_lams(gv_roles);
     const Batch batch(gv(), roles, with);

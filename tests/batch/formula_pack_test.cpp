@@ -51,7 +51,7 @@ void expect_lanes_as_scalars(const char* text, double tolerance) {
   }
 }
 
-TEST(FormulaPack, IsTheSameInEveryLaneForArithmeticAndChoice) {
+TEST(FormulaPack, LanesEqualScalarsForArithmeticAndConditions) {
   for (const char* text : {"k * x / 100", "x - y/k + -x*m", "x^2 + y^3", "x^-2 - y^7", "sqrt(x) - y",
                            "abs(x)*m", "min(x, y)", "max(x, y)", "k + m*max(x, -0.31)", "if(x < y, x, k)",
                            "if(x <= y, 1, y)", "if(x > y, sqrt(x), y)", "if(x >= m, x/y, 0)"}) {
@@ -60,14 +60,14 @@ TEST(FormulaPack, IsTheSameInEveryLaneForArithmeticAndChoice) {
 }
 
 // The pack has its own series for these functions, which are a few last bits from those of the C library.
-TEST(FormulaPack, IsWithinRoundingInEveryLaneForFunctions) {
+TEST(FormulaPack, LanesAgreeWithScalarsWithinRoundingForFunctions) {
   for (const char* text : {"exp(x)", "log(x)", "log10(x)", "sin(x)", "cos(x)", "tan(x)", "tanh(x)", "x^1.5",
                            "x^-0.25", "pow(x, k)", "x^y"}) {
     expect_lanes_as_scalars(text, 4e-15);
   }
 }
 
-TEST(FormulaPack, TakesParametersThatArePacksToo) {
+TEST(FormulaPack, ParametersCanBePacks) {
   const auto formula = Formula::parse("k * x^2", {"k"});
   ASSERT_TRUE(formula);
   const Pack x(3.0), k(2.0);

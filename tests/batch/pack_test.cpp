@@ -55,7 +55,7 @@ TEST(Pack, LogarithmIsWithinTwoUnitsInTheLastPlace) {
   }
 }
 
-TEST(Pack, PowerLessOneKeepsTheDigitsOfSmallValues) {
+TEST(Pack, PowerLessOneIsAccurateForSmallValues) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> magnitude(-12.0, 0.3);
   for (int i = 0; i < 20000; ++i) {
@@ -70,7 +70,7 @@ TEST(Pack, PowerLessOneKeepsTheDigitsOfSmallValues) {
   EXPECT_EQ(value(power_less_one(pack(0.0), pack(500.0), pack(0.3))), 0.0);
 }
 
-TEST(Pack, HasTheLimitsOfTheScalarFunctions) {
+TEST(Pack, LimitsEqualThoseOfScalarFunctions) {
   EXPECT_EQ(value(exp(pack(0.0))), 1.0);
   EXPECT_EQ(value(exp(pack(-infinity))), 0.0);
   EXPECT_EQ(value(exp(pack(-800.0))), 0.0);
@@ -88,7 +88,7 @@ TEST(Pack, HasTheLimitsOfTheScalarFunctions) {
 }
 
 // One unusual lane sends all through the general case.
-TEST(Pack, KeepsLanesApart) {
+TEST(Pack, UnusualLaneDoesNotAffectOtherLanes) {
   Values x;
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = 0.1 * static_cast<double>(i);
   x.back() = nan;
@@ -102,7 +102,7 @@ TEST(Pack, KeepsLanesApart) {
   EXPECT_THAT(found.back(), IsNan());
 }
 
-TEST(Pack, ChoosesLaneByLane) {
+TEST(Pack, SelectsEachLaneSeparately) {
   Values x;
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<double>(i);
   x[1] = nan;

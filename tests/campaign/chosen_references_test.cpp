@@ -27,13 +27,13 @@ std::vector<std::string> names(const ChosenReferences& references) {
 
 }  // namespace
 
-TEST(ChosenReferences, AreThoseThatAreNamed) {
+TEST(ChosenReferences, RequestedReferencesAreUsed) {
   const ChosenReferences chosen = pcor::read_references({"height", "pressure:PS_A"}, laser_model(), {});
   EXPECT_THAT(names(chosen), ElementsAre("height", "pressure:PS_A"));
   EXPECT_THAT(chosen.not_used, IsEmpty());
 }
 
-TEST(ChosenReferences, WithoutANameAreAllThatModelAndFlightAllow) {
+TEST(ChosenReferences, DefaultIsEveryPossibleReference) {
   const ChosenReferences chosen = pcor::read_references({}, laser_model(), {short_flight()});
   EXPECT_THAT(names(chosen), ElementsAre("lams", "total:PSFRD+QCFR", "height", "wind"));
 }
@@ -48,7 +48,7 @@ TEST(ChosenReferences, ExcludedReferenceHasAReason) {
                                            HasSubstr("wind: the model names no temperature")));
 }
 
-TEST(ChosenReferences, WithoutALaserAreLeftToTheUser) {
+TEST(ChosenReferences, NoLaserAndNoNameIsAnError) {
   // The other references are sensitive to static-pressure changes, or insensitive.
   ModelDefinition model = laser_model();
   model.variables.erase(Quantity::lams_airspeed);

@@ -212,7 +212,7 @@ std::set<std::string> expect_differences(const Made& made,
 
 }  // namespace
 
-TEST(Columns, EqualDifferencesThroughTheWholeChain) {
+TEST(Columns, EqualFiniteDifferencesOfTheWholeChain) {
   const Made made;
   ASSERT_EQ(std::count(made.columns.mask.begin(), made.columns.mask.end(), pcor::Mask::none),
             static_cast<std::ptrdiff_t>(made.samples->time.size()));
@@ -222,7 +222,7 @@ TEST(Columns, EqualDifferencesThroughTheWholeChain) {
 }
 
 // The height holds a minute together, in which an effect is at each sample another.
-TEST(Columns, AgainstHeightsAreDifferencesOfSumsOverAMinute) {
+TEST(Columns, HeightColumnsEqualFiniteDifferencesOverOneMinute) {
   const Made made(0.3, pcor::height_reference(laser_model()));
   EXPECT_EQ(made.columns.window, 60.0);
   const std::set<std::string> without_trace = expect_differences(made, made.samples);
@@ -241,7 +241,7 @@ TEST(Columns, HeightColumnsSkipMinutesWithUnusedSamples) {
   for (const std::size_t i : {29U, 170U, 200U, 230U, 370U}) EXPECT_TRUE(std::isnan(columns.given[i])) << i;
 }
 
-TEST(Columns, OfTheBaseAreDifferencesToo) {
+TEST(Columns, BaseColumnsEqualFiniteDifferences) {
   const Made made;
   const std::shared_ptr<const FlightSamples> quiet = without_laser_noise(made);
   const std::vector<double> parameters = Residuals(made.samples, made.model, *made.reference).parameters();
@@ -263,7 +263,7 @@ TEST(Columns, OfTheBaseAreDifferencesToo) {
   }
 }
 
-TEST(Columns, OfFixedCoefficientsAreNotThere) {
+TEST(Columns, FixedCoefficientsHaveNoColumn) {
   Made made;
   made.model.fits.resize(3);
   for (pcor::EffectFit& fit : made.model.fits) fit.resize(1);
@@ -292,7 +292,7 @@ TEST(Columns, ExcludeLaserNoise) {
   EXPECT_TRUE(quiet.columns.base.isApprox(noisy.columns.base, 1e-6F));
 }
 
-TEST(Columns, ResidualsAreThoseOfTheModel) {
+TEST(Columns, ResidualsEqualThoseOfTheModel) {
   const Made made;
   const std::vector<double> expected = residual_of(
       made.samples, made.model, Residuals(made.samples, made.model, *made.reference).parameters());
@@ -305,7 +305,7 @@ TEST(Columns, ResidualsAreThoseOfTheModel) {
   EXPECT_TRUE(made.columns.quantity(Quantity::cabin_pressure).empty());
 }
 
-TEST(Columns, OfTheFirstPartEndWithIt) {
+TEST(Columns, SamplesAfterTheFirstPartAreMissing) {
   Made made;
   const FlightColumns half = pcor::internal::find_columns(made.samples, made.model, made.set, 0, {}, 0.5);
   for (std::size_t i = 0; i < half.given.size(); ++i) {
@@ -314,7 +314,7 @@ TEST(Columns, OfTheFirstPartEndWithIt) {
   EXPECT_TRUE(half.candidates.topRows(200).isApprox(made.columns.candidates.topRows(200), 1e-6F));
 }
 
-TEST(Columns, FewMissingValuesAreBridgedAndManyAreNot) {
+TEST(Columns, OnlyShortGapsAreBridged) {
   Made made;
   const auto with_gap = [&](std::size_t gap) {
     auto samples = std::make_shared<FlightSamples>(*made.samples);

@@ -47,7 +47,7 @@ class FlightSets : public testing::Test {
   test::TemporaryDirectory directory;
 };
 
-TEST_F(FlightSets, OpenEveryFlightOnceAndShareIt) {
+TEST_F(FlightSets, OpenFlightIsSharedBySubsets) {
   make(directory / "a.nc");
   make(directory / "b.nc");
   const FlightSet flights{directory / "a.nc", directory / "b.nc"};
@@ -62,7 +62,7 @@ TEST_F(FlightSets, OpenEveryFlightOnceAndShareIt) {
   EXPECT_EQ(open_files(), 2U);
 }
 
-TEST_F(FlightSets, HoldNoMoreThanSixteenFilesOpen) {
+TEST_F(FlightSets, AtMostSixteenFilesAreOpen) {
   std::vector<fs::path> paths;
   for (int i = 0; i < 20; ++i) {
     paths.push_back(directory / ("flight" + std::to_string(i) + ".nc"));
@@ -78,7 +78,7 @@ TEST_F(FlightSets, HoldNoMoreThanSixteenFilesOpen) {
   EXPECT_EQ(open_files(), 0U);
 }
 
-TEST_F(FlightSets, RefuseAFileThatWasReplacedChangedOrTaken) {
+TEST_F(FlightSets, RefuseAReplacedChangedOrRemovedFile) {
   const auto changes = {
       +[](const fs::path& path) {
         make(path.parent_path() / "other.nc");
@@ -98,7 +98,7 @@ TEST_F(FlightSets, RefuseAFileThatWasReplacedChangedOrTaken) {
   }
 }
 
-TEST_F(FlightSets, RefuseAFileThatWasReplacedWhileItWasClosed) {
+TEST_F(FlightSets, RefuseAFileReplacedWhileClosed) {
   std::vector<fs::path> paths;
   for (int i = 0; i < 17; ++i) {
     paths.push_back(directory / ("flight" + std::to_string(i) + ".nc"));

@@ -112,7 +112,7 @@ TEST(LinearRows, TwoSystemRowsAreOppositeAtCommonPressures) {
   EXPECT_TRUE(common.isApprox(recorded, 0.01));
 }
 
-TEST(LinearRows, MeansAreThoseOfTheSamplesInEachBin) {
+TEST(LinearRows, MeansEqualMeansOfSamplesInEachBin) {
   const ModelDefinition model = curved_model();
   const auto reference = pcor::lams_reference();
   const LinearRows rows =
@@ -163,7 +163,7 @@ TEST(LinearRows, EverySampleHasUseOrReason) {
             static_cast<std::size_t>(std::llround(share * static_cast<double>(both.size()))));
 }
 
-TEST(LinearRows, OfAStageAreInItsIntervals) {
+TEST(LinearRows, StageUsesOnlySamplesInItsIntervals) {
   const ModelDefinition model = laser_model();
   const auto reference = pcor::lams_reference();
   const auto samples = samples_of(model, *reference);
@@ -190,7 +190,7 @@ TEST(LinearRows, OfAStageAreInItsIntervals) {
 }
 
 // With masks that are known residuals and derivatives are the same.
-TEST(LinearRows, DoNotHangOnHowTheMasksAreKnown) {
+TEST(LinearRows, GivenMaskGivesTheSameRows) {
   const ModelDefinition model = curved_model();
   const auto reference = pcor::lams_reference();
   const auto samples = samples_of(model, *reference);

@@ -35,12 +35,12 @@ TEST(ReferenceDoubt, PressurePriorCoversZeroGainAndDrift) {
   }
 }
 
-TEST(ReferenceDoubt, OfATrustedReferenceIsEmpty) {
+TEST(ReferenceDoubt, TrustedReferenceHasNoUncertainty) {
   const pcor::ModelDefinition model = made::model({"static-constant"});
   EXPECT_THAT(ReferenceDoubt(model, *made::pressure_reference().front(), true).names(), IsEmpty());
 }
 
-TEST(ReferenceDoubt, OfASecondSystemHoldsWhatItsLawStates) {
+TEST(ReferenceDoubt, SecondSystemHasStatedAndDefaultUncertainties) {
   pcor::ModelDefinition second = made::model({"static-constant"});
   second.variables[pcor::Quantity::static_pressure] = "PSFRD";
   second.uncertainty.static_defect = 0.24;

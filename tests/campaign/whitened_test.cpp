@@ -78,7 +78,7 @@ struct Example {
 
 }  // namespace
 
-TEST(WhitenedSystem, AreThoseOfGeneralisedLeastSquares) {
+TEST(WhitenedSystem, EqualsGeneralisedLeastSquares) {
   const auto expected = [](const Example& example) {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(5, 5);
     for (std::size_t f = 0; f < 2; ++f) {
@@ -103,7 +103,7 @@ TEST(WhitenedSystem, AreThoseOfGeneralisedLeastSquares) {
   }
 }
 
-TEST(WhitenedSystem, OfBlocksAddUpToTheScore) {
+TEST(WhitenedSystem, BlockScoresSumToTotalScore) {
   Example example({300, 150}, 4, 2);
   example.noise.slow = {0.0, 0.5, 0.0, 0.0};
   const WhitenedSystem scores =
@@ -128,7 +128,7 @@ TEST(WhitenedSystem, OfBlocksAddUpToTheScore) {
 
 // Averaging over coefficients of unit variance adds the products of their columns to the covariance of the
 // noise.
-TEST(WhitenedSystem, MarginalizedColumnsAreNoise) {
+TEST(WhitenedSystem, MarginalizedColumnsAddToNoiseCovariance) {
   const Example example({200}, 5, 4);
   const auto system_of = [&](const Eigen::MatrixXd& columns) {
     return pcor::internal::find_scores(pcor::internal::FlightPartition(1), example.bins, {columns},
@@ -148,7 +148,7 @@ TEST(WhitenedSystem, MarginalizedColumnsAreNoise) {
 
 // Shapes of drift carry little information: a column that is a drift has little weight, a fast one keeps its
 // weight.
-TEST(WhitenedSystem, WithDriftSlowColumnsAreWorthLittle) {
+TEST(WhitenedSystem, DriftReducesInformationOfSlowColumns) {
   Example example({600}, 2, 3);
   for (Eigen::Index i = 0; i < example.columns[0].rows(); ++i)
     example.columns[0](i, 0) = std::cos(3.0 * M_PI * example.bins[0].time()[static_cast<std::size_t>(i)] /

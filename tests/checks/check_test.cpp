@@ -123,7 +123,7 @@ double true_airspeed_error(const fs::path& path, const ModelDefinition& model) {
   return sum / count;
 }
 
-TEST_F(CheckTest, HasTheNamesOfTheInterface) {
+TEST_F(CheckTest, EveryCheckHasItsDocumentedName) {
   const Checks checks = with_both({fly(head + aloft, 1)});
   std::vector<std::string> names;
   for (const CheckResult& result : checks.results) names.push_back(result.name);
@@ -147,7 +147,7 @@ TEST_F(CheckTest, AgreesWithoutErrors) {
   }
 }
 
-TEST_F(CheckTest, TotalPressureDoesNotSeeStaticDefects) {
+TEST_F(CheckTest, TotalPressureIsInsensitiveToStaticDefects) {
   const std::string defect = "[[effect]]\nid = \"static-constant\"\non = \"PSFRD\"\na0 = 0.005\n";
   const std::string noiseless = "noiseless = true\n";
   const std::string plain = head.substr(1);
@@ -166,7 +166,7 @@ TEST_F(CheckTest, TotalPressureDoesNotSeeStaticDefects) {
   EXPECT_EQ(named(after, "static-pressure").verdict, CheckVerdict::inconsistent);
 }
 
-TEST_F(CheckTest, TotalPressureSeesATransducer) {
+TEST_F(CheckTest, TotalPressureDetectsTransducerError) {
   const std::string bias = "[[effect]]\nid = \"qcf-zero\"\non = \"QCFR\"\noffset = 0.8\n";
   const CheckResult result = named(with_both({fly(head + bias + aloft + manoeuvres, 1)}), "total-pressure");
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
@@ -195,7 +195,7 @@ TEST_F(CheckTest, ExcludesClimbsForTheAvionics) {
   }
 }
 
-TEST_F(CheckTest, ReverseHeadingsFindAnErrorOfTheAirspeed) {
+TEST_F(CheckTest, ReverseHeadingsDetectAirspeedError) {
   // Between legs the wind changes as it did for the memo's 18 pairs, by 0.6 sqrt(2) m/s.
   const std::string text = head + "[atmosphere]\nwind_drift = 0.6\n" + gain_effect + aloft +
                            repeated(leg("reverse-heading", "speed = 118"), 2);
@@ -220,7 +220,7 @@ TEST_F(CheckTest, ReverseHeadingsFindAnErrorOfTheAirspeed) {
   EXPECT_GT(squares / count, 0.25);
 }
 
-TEST_F(CheckTest, CirclesFindAnErrorOfTheAirspeedAndTheWind) {
+TEST_F(CheckTest, CirclesDetectAirspeedError) {
   const std::string text = head + gain_effect + aloft +
                            repeated(leg("circle", "speed = 118") + leg("level", "duration = 60") +
                                         leg("circle", "angle = -360") + leg("level", "duration = 60"),
@@ -255,7 +255,7 @@ TEST_F(CheckTest, WrongThermometerIsRejected) {
   EXPECT_NEAR(number(named(checks, "layers"), "offset_k"), -0.5, 0.05);
 }
 
-TEST_F(CheckTest, LayersSeeALagOfTheStaticLine) {
+TEST_F(CheckTest, LayersDetectStaticLineLag) {
   const std::string there_and_back = aloft + leg("descent", "altitude = 800") + leg("level", "duration = 60");
   const std::string lag = "[[effect]]\nid = \"static-lag\"\ntau = 3.0\n";
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -270,7 +270,7 @@ TEST_F(CheckTest, LayersSeeALagOfTheStaticLine) {
   }
 }
 
-TEST_F(CheckTest, EighteenPairsReachTheErrorOfTheMemo) {
+TEST_F(CheckTest, EighteenPairsReachTheStandardErrorOfTheMemo) {
   // "18 pairs: +0.6 +- 0.2 m/s" (the memo's GV). Four flights with 18 pairs each determine the scatter of a
   // pair to 8 %.
   const std::string text = head + aloft + repeated(leg("reverse-heading", "speed = 118"), 18);
@@ -291,7 +291,7 @@ TEST_F(CheckTest, EighteenPairsReachTheErrorOfTheMemo) {
 
 // Manoeuvres
 
-TEST_F(CheckTest, PitchAndYawSeeATermThatIsWrong) {
+TEST_F(CheckTest, PitchAndYawDetectWrongTerms) {
   const std::string wrong =
       "[[effect]]\nid = \"static-attack\"\na3 = 4e-4\n[[effect]]\nid = \"static-beta-odd\"\nb1 = 0.02\n";
   const fs::path flight = fly(head + wrong + aloft + manoeuvres, 1);
@@ -353,7 +353,7 @@ TEST_F(CheckTest, NoteOfSeveralFlightsIsPrintedOnce) {
   EXPECT_THAT(checks.notes, testing::Contains(test::Says("flight1.nc, flight2.nc: no model is given")));
 }
 
-TEST_F(CheckTest, TakesNoSingleLeg) {
+TEST_F(CheckTest, SingleLegIsReported) {
   CheckOptions options;
   options.mask.intervals = read_intervals_text(
       "format = \"pcor-intervals/1\"\n[[add]]\nregime = \"reverse heading\"\npair = 1\nbegin = \"20:12:00\"\n"
@@ -365,7 +365,7 @@ TEST_F(CheckTest, TakesNoSingleLeg) {
   EXPECT_THAT(result.reason, HasSubstr("a single leg"));
 }
 
-TEST_F(CheckTest, TakesTheLegsOfTheUser) {
+TEST_F(CheckTest, VetoedLegsAreNotUsed) {
   CheckOptions options;
   const fs::path flight = fly(head + aloft + leg("reverse-heading", "speed = 118"), 1);
   const Checks found = check({flight}, first_model());
@@ -377,7 +377,7 @@ TEST_F(CheckTest, TakesTheLegsOfTheUser) {
   EXPECT_FALSE(named(check({flight}, first_model(), options), "reverse-heading").ran);
 }
 
-TEST_F(CheckTest, RefusesAFlightTwice) {
+TEST_F(CheckTest, RefusesDuplicateAndMissingFlights) {
   const fs::path flight = fly(head + aloft, 1);
   EXPECT_THROW(check({flight, flight}, first_model()), Error);
   EXPECT_THROW(check({}, first_model()), Error);
@@ -385,14 +385,14 @@ TEST_F(CheckTest, RefusesAFlightTwice) {
 
 // The report
 
-TEST_F(CheckTest, MakesAReport) {
+TEST_F(CheckTest, ReportHasASectionForEachCheck) {
   const Checks checks = with_both({fly(head + aloft + manoeuvres, 1)});
   const std::string html = report_html(check_report(checks));
   for (const char* word : {"Verdicts", "Total pressure", "Reverse headings", "Limitations", "Yaw"})
     EXPECT_THAT(html, HasSubstr(word));
 }
 
-TEST_F(CheckTest, MakesAReportOfAFlightThatCannotBeChecked) {
+TEST_F(CheckTest, ReportStatesThatChecksWereNotRun) {
   EXPECT_THAT(report_html(check_report(check({fly(head + aloft, 1)}, first_model()))), HasSubstr("not run"));
 }
 

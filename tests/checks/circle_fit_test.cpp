@@ -67,7 +67,7 @@ TEST(CircleFit, StatedErrorsCoverTheTruth) {
   EXPECT_LE(within, 299U);
 }
 
-TEST(CircleFit, NeedsATurn) {
+TEST(CircleFit, WithoutATurnResultIsMissing) {
   // Without a change of heading wind and airspeed are one.
   EXPECT_TRUE(std::isnan(fly(0.0, 0.0, 1).airspeed_error.value));
   const std::vector<double> nothing(100, std::nan(""));

@@ -185,7 +185,7 @@ LayerUncertainty height_noise_alone() {
 
 // The sums
 
-TEST(Layers, GiveTheMeanTemperatureOfTheStandardAtmosphere) {
+TEST(Layers, TemperatureEqualsMeanOfStandardAtmosphere) {
   const FlightLayers found = find_layers(made(climb(1000.0, 5000.0, 5.0)));
   ASSERT_THAT(found.layers, SizeIs(4));
   for (const Layer& layer : found.layers) {
@@ -212,7 +212,7 @@ TEST(Layers, PartsHaveEqualThicknessAndShareEnds) {
   }
 }
 
-TEST(Layers, AreTheSameUpAndDown) {
+TEST(Layers, ClimbAndDescentGiveTheSameDifference) {
   std::vector<double> heights = climb(1000.0, 3000.0, 5.0);
   const std::vector<double> down = climb(3000.0, 1000.0, -5.0);
   heights.insert(heights.end(), down.begin(), down.end());
@@ -222,7 +222,7 @@ TEST(Layers, AreTheSameUpAndDown) {
   EXPECT_LT(found.layers[3].s2, 0.0);
 }
 
-TEST(Layers, NeedAClimbThatIsFastAndThick) {
+TEST(Layers, RequireAMinimumClimbRateAndThickness) {
   EXPECT_THAT(find_layers(made(climb(1000.0, 3000.0, 1.5))).layers, IsEmpty());
   EXPECT_THAT(find_layers(made(climb(1000.0, 1400.0, 5.0))).layers, IsEmpty());
   EXPECT_THAT(find_layers(made(std::vector<double>(600, 2000.0))).layers, IsEmpty());
@@ -231,7 +231,7 @@ TEST(Layers, NeedAClimbThatIsFastAndThick) {
   EXPECT_THAT(find_layers(made(climb(1000.0, 3000.0, 1.5)), slow).layers, SizeIs(2));
 }
 
-TEST(Layers, EndAtGapsMissingValuesAndStepsOfTheHeight) {
+TEST(Layers, EndAtGapsMissingValuesAndHeightSteps) {
   const FlightAir whole = made(climb(1000.0, 3400.0, 5.0));
   const auto layers_of = [](const FlightAir& air) {
     LayerOptions options;
@@ -258,7 +258,7 @@ TEST(Layers, EndAtGapsMissingValuesAndStepsOfTheHeight) {
   EXPECT_THAT(layers_of(taxi), SizeIs(1));
 }
 
-TEST(Layers, RejectWhatCannotBe) {
+TEST(Layers, InvalidOptionsAndMissingInputsAreRejected) {
   const FlightAir air = made(climb(1000.0, 3000.0, 5.0));
   LayerOptions options;
   options.thickness = 0.0;
@@ -276,7 +276,7 @@ TEST(Layers, RejectWhatCannotBe) {
 
 // Errors
 
-TEST(LayerErrors, AreThoseOfTheMemo) {
+TEST(LayerErrors, EqualThoseOfTheMemo) {
   // The memo: 12 to 16 kft is 644 to 549 hPa; 0.1 hPa makes 0.3 K. The memo's value is for one end: both
   // ends together have sqrt(2) of it.
   LayerOptions options;
@@ -296,7 +296,7 @@ TEST(LayerErrors, AreThoseOfTheMemo) {
   EXPECT_NEAR(gradient.layers[0].errors.gradient / gradient.layers[0].measured_temperature(), 0.004, 1e-4);
 }
 
-TEST(LayerErrors, TelescopeAndDoNotFallWithTheNumberOfSamples) {
+TEST(LayerErrors, AreIndependentOfTheNumberOfSamples) {
   const FlightAir fast = made(climb(1000.0, 3000.0, 10.0));
   const FlightAir slow = made(climb(1000.0, 3000.0, 2.5));
   LayerOptions options;
@@ -310,7 +310,7 @@ TEST(LayerErrors, TelescopeAndDoNotFallWithTheNumberOfSamples) {
   EXPECT_NEAR(many.layers[0].errors.total() / few.layers[0].errors.total(), 1.0, 0.02);
 }
 
-TEST(LayerErrors, AreWhatAnErrorOfThatSizeDoes) {
+TEST(LayerErrors, EqualTheChangeByAnInjectedError) {
   // Each error is added to the air, and the temperature changes by the stated error: first order in the
   // error, and the ends meet samples, so to 1 %.
   const FlightAir air = made(climb(1000.0, 3000.0, 5.0));
@@ -339,7 +339,7 @@ TEST(LayerErrors, AreWhatAnErrorOfThatSizeDoes) {
   EXPECT_NEAR(moved(pressure) * at_both / layer.errors.pressure_noise, 1.0, 0.01);
 }
 
-TEST(LayerErrors, LearnTheNoiseOfTheHeightFromTheFlight) {
+TEST(LayerErrors, HeightNoiseIsEstimatedFromTheFlight) {
   // A wave of 2 m and 60 s on the GPS height: 1.41 m rms, of which the lines take next to nothing.
   const auto wave = [](FlightAir air) {
     for (std::size_t i = 0; i < air.size(); ++i)
@@ -355,7 +355,7 @@ TEST(LayerErrors, LearnTheNoiseOfTheHeightFromTheFlight) {
   EXPECT_EQ(find_layers(made(up, 2.0)).uncertainty.height_noise, 0.15);
 }
 
-TEST(LayerErrors, LearnTheGradientFromLevelLegs) {
+TEST(LayerErrors, PressureGradientIsEstimatedFromLevelLegs) {
   std::vector<double> heights(700, 1000.0);
   const std::vector<double> up = climb(1000.0, 3000.0, 5.0);
   heights.insert(heights.end(), up.begin(), up.end());
@@ -401,7 +401,7 @@ TEST(LayersOfSimulatedFlights, GiveTheOffsetWithinItsError) {
   EXPECT_GT(rms(scores), 0.1);
 }
 
-TEST(LayersOfSimulatedFlights, TogetherGiveOffsetAndSlope) {
+TEST(LayersOfSimulatedFlights, SeveralFlightsGiveOffsetAndSlope) {
   std::vector<FlightLayers> found;
   for (const FlightAir& air : flights()) found.push_back(find_layers(air, exact_law()));
   const LayerFit fit = fit_layers(found);
@@ -416,7 +416,7 @@ TEST(LayersOfSimulatedFlights, TogetherGiveOffsetAndSlope) {
 
 // A real flight
 
-TEST(LayersOfARealFlight, HaveErrorsForTheGpsOfItsTime) {
+TEST(LayersOfARealFlight, HaveErrorsOfTheGpsOf2004) {
   const char* folder = std::getenv("PCOR_FLIGHTS");
   if (folder == nullptr) GTEST_SKIP() << "PCOR_FLIGHTS does not name a folder of flights";
   const auto path = std::filesystem::path(folder) / "GOTEX-rf06-C130-2004.nc";
@@ -440,7 +440,7 @@ TEST(LayersOfARealFlight, HaveErrorsForTheGpsOfItsTime) {
 
 // The memo
 
-TEST(LayerFit, GivesTheMeanOfTheMemosTable) {
+TEST(LayerFit, ReproducesTheMeanOfTheTableInTheMemo) {
   // T_p and T_m, degC, of eight segments of IDEAS-4; the first of RF07 is the sum of the next two.
   const struct {
     double predicted, measured, printed;
@@ -470,7 +470,7 @@ TEST(LayerFit, GivesTheMeanOfTheMemosTable) {
   EXPECT_EQ(fit.layers, 7U);
 }
 
-TEST(LayerFit, FindsALineWithIndependentErrorsAtTheCentre) {
+TEST(LayerFit, FindsALineAndItsErrors) {
   FlightLayers flight;
   flight.uncertainty = height_noise_alone();
   for (std::size_t i = 0; i < 9; ++i) {
@@ -504,7 +504,7 @@ TEST(LayerFit, SharedEndsOfLayersAreCorrelated) {
   EXPECT_NEAR(fit_layers({cut}).offset_error / one.offset_error, 1.0, 0.1);
 }
 
-TEST(LayerFit, CannotAverageAwayWhatAllLayersShare) {
+TEST(LayerFit, CommonErrorsDoNotAverageOut) {
   // The same climb twenty times: noise averages, the slope of the isobars only the fifth of each climb.
   FlightLayers flight;
   flight.uncertainty.height_noise = 0.001;
@@ -526,7 +526,7 @@ TEST(LayerFit, CannotAverageAwayWhatAllLayersShare) {
   EXPECT_NEAR(fit_layers({flight}).offset_error, 0.54 * std::sqrt(0.2 / 20.0), 0.002);
 }
 
-TEST(LayerFit, GrowsItsErrorsWhereLayersDisagree) {
+TEST(LayerFit, InconsistentLayersIncreaseTheErrors) {
   FlightLayers flight;
   flight.uncertainty = height_noise_alone();
   for (std::size_t i = 0; i < 6; ++i)
@@ -544,7 +544,7 @@ TEST(LayerFit, EmptyFitIsUnknown) {
 }
 
 // Footnote 5 of the memo: T_a of every second, and a line through columns (1, T in K).
-TEST(LayerFit, WorksWhereTheMemosInversionIsSingular) {
+TEST(LayerFit, WorksWhereTheInversionOfTheMemoIsSingular) {
   const FlightAir& air = flights().front();
   std::vector<double> measured;
   std::vector<double> hydrostatic;

@@ -74,7 +74,7 @@ TEST(LamsTemperatureCheck, AgreesWithoutErrors) {
   EXPECT_THAT(result.cannot_see, HasSubstr("sample by sample"));
 }
 
-TEST(LamsTemperatureCheck, FindsAThermometerThatIsTooWarm) {
+TEST(LamsTemperatureCheck, DetectsAWarmThermometer) {
   const CheckResult result = check_lams_temperature(fly(too_warm));
   ASSERT_TRUE(result.ran);
   // 1.5 K of recovery temperature are 1.5/(1 + 0.2 r M^2) K of ambient, with M = 0.33.
@@ -83,7 +83,7 @@ TEST(LamsTemperatureCheck, FindsAThermometerThatIsTooWarm) {
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
 }
 
-TEST(LamsTemperatureCheck, KeepsCloudsApart) {
+TEST(LamsTemperatureCheck, CloudSamplesHaveASeparateOffset) {
   const CheckResult result = check_lams_temperature(fly(cloud));
   ASSERT_TRUE(result.ran);
   const auto numbers = numbers_of(result);
@@ -94,7 +94,7 @@ TEST(LamsTemperatureCheck, KeepsCloudsApart) {
   EXPECT_THAT(result.notes, Contains(test::Says("suspect")));
 }
 
-TEST(LamsTemperatureCheck, IsNoisierInTheBoundaryLayer) {
+TEST(LamsTemperatureCheck, NoiseIsLargerInTheBoundaryLayer) {
   const CheckResult result = check_lams_temperature(fly(""));
   for (const ReportTable& table : result.tables) {
     if (table.title != "Noise of the difference by period: numbers") continue;
@@ -107,7 +107,7 @@ TEST(LamsTemperatureCheck, IsNoisierInTheBoundaryLayer) {
   FAIL() << "no table by period";
 }
 
-TEST(LamsTemperatureCheck, NeedsALaser) {
+TEST(LamsTemperatureCheck, IsNotRunWithoutALaser) {
   const CheckResult result = check_lams_temperature(fly("", false));
   EXPECT_FALSE(result.ran);
   EXPECT_THAT(result.reason, HasSubstr("laser"));

@@ -105,7 +105,7 @@ TEST(LayersCheck, ReasonForNoResultIsReported) {
   EXPECT_THAT(check_layers({dropouts}).reason, HasSubstr("gap"));
 }
 
-TEST(LayersCheck, UsesTheFlightsWithLayers) {
+TEST(LayersCheck, FlightWithoutHeightIsSkippedAndReported) {
   CheckedFlight without = made(0.0);
   without.air.height.clear();
   const CheckResult result = check_layers({without, made(0.0)});

@@ -64,14 +64,14 @@ LegPair standard_pair(std::size_t first) {
 // Half of the last digit that the memo's text prints.
 constexpr double printed = 0.0051;
 
-TEST(LegPair, GivesTheSumsOfTheMemo) {
+TEST(LegPair, ReproducesTheSumsOfTheMemo) {
   EXPECT_NEAR(new_pair(0).sum.value, 0.48, 1e-12);
   EXPECT_NEAR(new_pair(2).sum.value, 2.97, printed);
   EXPECT_NEAR(standard_pair(0).sum.value, 1.42, 1e-12);
   EXPECT_NEAR(standard_pair(2).sum.value, 3.61, 1e-12);
 }
 
-TEST(LegPair, GivesTheChangeOfAirspeedAndPressureOfTheMemo) {
+TEST(LegPair, ReproducesAirspeedAndPressureChangesOfTheMemo) {
   // The new airspeed is higher by the error of the old one.
   const auto change = [](std::size_t first, Estimated LegPair::*number) {
     return (new_pair(first).*number).value - (standard_pair(first).*number).value;
@@ -83,7 +83,7 @@ TEST(LegPair, GivesTheChangeOfAirspeedAndPressureOfTheMemo) {
   EXPECT_NEAR(change(2, &LegPair::pressure_error), -0.34, 0.017);
 }
 
-TEST(LegPair, HasTheHeadingsOfTheMemo) {
+TEST(LegPair, ReproducesTheHeadingErrorsOfTheMemo) {
   EXPECT_NEAR(new_pair(0).heading_error, -3.0, 1e-9);
   EXPECT_NEAR(new_pair(2).heading_error, 0.0, 1e-9);
 }
@@ -105,7 +105,7 @@ bool are_apart(const std::string& begin) {
   return apart;
 }
 
-TEST(LegPair, NeedsTheCorrectedTimeOfTheFirstLeg) {
+TEST(LegPair, FirstLegOfTheMemoNeedsCorrectedTime) {
   EXPECT_TRUE(are_apart("23:00:00"));
   EXPECT_FALSE(are_apart("22:00:00"));
 }
@@ -125,7 +125,7 @@ LegMean flown(double heading, double east, double north, double too_high) {
   return leg;
 }
 
-TEST(LegPair, OfOppositeHeadingsSeesNoWind) {
+TEST(LegPair, WindCancelsOnOppositeHeadings) {
   for (const double heading : {0.0, 47.0, 180.0, 300.0}) {
     const LegPair pair = pair_of(flown(heading, 12.0, -7.0, 0.0), flown(heading + 180.0, 12.0, -7.0, 0.0));
     EXPECT_NEAR(pair.sum.value, 0.0, 1e-12);  // rounding of the sines
@@ -141,7 +141,7 @@ TEST(LegPair, FindsTheErrorOfTheAirspeed) {
               1e-12);  // difference of two means of 0.1 m/s
 }
 
-TEST(LegPair, TakesOutTheWindThatHeadingsLeave) {
+TEST(LegPair, HeadingErrorIsCorrectedForWind) {
   const LegPair pair = pair_of(flown(70.0, 12.0, -7.0, 0.8), flown(256.0, 12.0, -7.0, 0.8));
   EXPECT_NEAR(pair.heading_error, 6.0, 1e-9);
   EXPECT_GT(std::abs(pair.heading_share), 0.5);  // a cross wind of 10.7 m/s through 6 deg is 1.1 m/s
@@ -149,7 +149,7 @@ TEST(LegPair, TakesOutTheWindThatHeadingsLeave) {
   EXPECT_NEAR(pair.airspeed_error.value, 0.8, 0.8 * std::pow(6.0 * radians, 2));
 }
 
-TEST(LegPair, SensitivityIsThatOfTheAirDataEquations) {
+TEST(LegPair, SensitivityAgreesWithAirDataEquations) {
   // The Mach number from pressures, and the temperature from a total one, by the library's exact equations.
   const auto speed = [](double p, double total, double total_temperature) {
     const MoistAir<double> dry = dry_air<double>();

@@ -65,11 +65,11 @@ TEST(SpectrumCheck, FindsTheFloorOfWhiteNoise) {
   EXPECT_EQ(result.verdict, CheckVerdict::consistent);
 }
 
-TEST(SpectrumCheck, ObjectsToNoiseBeyondTheFits) {
+TEST(SpectrumCheck, ExcessNoiseIsInconsistent) {
   EXPECT_EQ(check_spectrum({made(white(4000, 0.6, 2))}).verdict, CheckVerdict::inconsistent);
 }
 
-TEST(SpectrumCheck, SeesThatTurbulenceStillFalls) {
+TEST(SpectrumCheck, FallingTurbulenceSpectrumIsReported) {
   // A random walk, smoothed over two samples: frequency to the -2 and steeper.
   const std::vector<double> steps = white(8000, 0.02, 3);
   std::vector<double> walk(steps.size());

@@ -10,7 +10,7 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
-TEST(Verdict, WeighsSizeAndError) {
+TEST(Verdict, DependsOnSizeAndError) {
   EXPECT_EQ(judge({0.05, 0.1}, 0.3), CheckVerdict::consistent);
   EXPECT_EQ(judge({0.2, 0.1}, 0.3), CheckVerdict::inconclusive);    // what matters is one error away
   EXPECT_EQ(judge({-0.29, 0.001}, 0.3), CheckVerdict::consistent);  // certain, but too small to matter
@@ -20,7 +20,7 @@ TEST(Verdict, WeighsSizeAndError) {
   EXPECT_EQ(judge({std::nan(""), 0.1}, 0.3), CheckVerdict::inconclusive);
 }
 
-TEST(Verdict, OneInconsistentNumberDecides) {
+TEST(Verdict, OneInconsistentNumberMakesTheWholeInconsistent) {
   EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
   EXPECT_EQ(together(CheckVerdict::inconclusive, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
   EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::inconclusive), CheckVerdict::inconclusive);

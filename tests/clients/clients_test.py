@@ -98,7 +98,7 @@ class Clients(unittest.TestCase):
                     self.assertEqual(int((flight.PCORFLAG & 1).sum()), 1)
                     self.assertEqual(flight.PSXC.dims, ("Time",) if name == "old" else ("Time", f"sps{RATE}"))
 
-    def test_the_correction_is_that_of_the_example(self):
+    def test_correction_reproduces_the_true_pressure(self):
         """The example's true static pressure falls evenly from 1000 to 700 hPa; its values have three decimals."""
         with netCDF4.Dataset(self.outputs["old"]) as flight:
             truth = 1000 - 300 * numpy.arange(600) / 599

@@ -71,7 +71,7 @@ TEST(Compare, ResidualOfTheTrueLawIsNoise) {
   EXPECT_GT(model.autocorrelation_time, 2.0) << "the air ahead is not the pitot's for seconds";
 }
 
-TEST(Compare, ShowsAShiftAsABias) {
+TEST(Compare, ShiftOfTheLawAppearsAsBias) {
   const Comparison result = pcor::compare({flight_file()}, {laser_contender(), laser_contender(1e-3)});
   ASSERT_EQ(result.models.size(), 2U);
   // Delta-p of the second is larger by a thousandth of the static pressure, 0.5 to 0.95 hPa.
@@ -137,7 +137,7 @@ TEST(Compare, ReportsBiasFromLaserCalibration) {
   EXPECT_EQ(comparison.models[1].reference_error, 0.0);  // the model states the error of its laser
 }
 
-TEST(Compare, FindsWhatTheScenarioFlew) {
+TEST(Compare, FindsEveryRegimeOfTheScenario) {
   const Comparison result = pcor::compare({flight_file()}, {laser_contender()});
   const std::vector<pcor::PartStatistics>& regimes = result.models.front().regimes;
   for (const char* name : {"take-off", "climb", "descent", "level", "turn", "pitch manoeuvre",
@@ -166,7 +166,7 @@ TEST(Compare, FindsBothSpeedRunsForEachSeed) {
   }
 }
 
-TEST(Compare, GivesEveryModelItsOwnReference) {
+TEST(Compare, EachModelHasItsOwnReference) {
   // Models of two systems side by side: each has the R2 that it has alone.
   ComparedModel other = laser_contender();
   other.model = pcor::read_model(data / "models" / "c130-psfrd-eq18.toml");
@@ -201,7 +201,7 @@ TEST(Compare, PairsReferencesByName) {
 }
 
 // The laws differ in pressure and Mach number, so that each would put samples into other bands.
-TEST(Compare, OrderOfModelsChangesNoFigure) {
+TEST(Compare, ResultIsIndependentOfModelOrder) {
   const std::vector<ComparedModel> given{laser_contender(), laser_contender(0.02), laser_contender(-0.01)};
   std::vector<ComparedModel> named = given;
   for (std::size_t i = 0; i < named.size(); ++i) named[i].name = std::string(1, static_cast<char>('c' - i));
@@ -225,7 +225,7 @@ TEST(Compare, OrderOfModelsChangesNoFigure) {
   }
 }
 
-TEST(Compare, SumsOfBandsAndFlightsAreThatOfTheWhole) {
+TEST(Compare, FlightStatisticsAddUpToTheTotal) {
   const Comparison result = pcor::compare({flight_file(), flight_file()}, {laser_contender()});
   const pcor::ModelComparison& model = result.models.front();
   ASSERT_EQ(model.flights.size(), 2U);
@@ -236,7 +236,7 @@ TEST(Compare, SumsOfBandsAndFlightsAreThatOfTheWhole) {
             2 * result.flights.front().mask.size());
 }
 
-TEST(Compare, PointsToTheWorstMinutes) {
+TEST(Compare, WorstMinutesAreReportedInOrder) {
   const Comparison result = pcor::compare({flight_file()}, {laser_contender()});
   const std::vector<pcor::WorstInterval>& worst = result.models.front().worst;
   ASSERT_EQ(worst.size(), 5U);
@@ -246,7 +246,7 @@ TEST(Compare, PointsToTheWorstMinutes) {
   EXPECT_GT(worst[0].statistics.rms, result.models.front().all.rms);
 }
 
-TEST(Compare, OfTwoSystemsGivesTheFiguresOfTheMemo) {
+TEST(Compare, TwoSystemsReproduceTheFiguresOfTheMemo) {
   const Comparison result = pcor::compare({flight_file()}, {pair_contender()});
   ASSERT_TRUE(result.total_pressure);
   // Figure 1 of the memo: slope 1.0000, offset 0.10 hPa, rms 0.04. The simulated systems have no offset.
@@ -313,7 +313,7 @@ TEST(Compare, KeepsRecordsOfChosenFlightsOnly) {
   testing::internal::GetCapturedStderr();
 }
 
-TEST(Compare, RefusesWhatCannotBeCompared) {
+TEST(Compare, ImpossibleComparisonIsRefused) {
   const auto refusal = [](const std::vector<fs::path>& flights, const ComparedModel& contender,
                           const CompareOptions& options = {}) {
     return pcor::test::error_of([&] { pcor::compare(flights, {contender}, options); });
@@ -328,7 +328,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   EXPECT_THAT(refusal({}, laser_contender()), IsError(Error::Code::usage));
 }
 
-TEST(ComparisonReport, HasTheFiguresAndStaysSmall) {
+TEST(ComparisonReport, HasTheFiguresAndIsSmall) {
   const std::string one =
       pcor::report_html(pcor::comparison_report(pcor::compare({flight_file()}, {laser_contender()})));
   EXPECT_THAT(one, HasSubstr("Residual in time"));

@@ -56,7 +56,7 @@ CandidateSet candidates_of_file(const ModelDefinition& model, const std::vector<
 
 }  // namespace
 
-TEST(Candidates, BaseIsTheFreeParametersWithoutThoseOfASurface) {
+TEST(Candidates, BaseExcludesSurfaceParameters) {
   ModelDefinition model = laser_model();
   const std::size_t terms = pcor::internal::free_parameters(model).size();
   model.model.effects.push_back(pcor::surface_effect(
@@ -71,7 +71,7 @@ TEST(Candidates, BaseIsTheFreeParametersWithoutThoseOfASurface) {
   EXPECT_EQ(static_cast<std::size_t>(columns.base.cols()), terms);
 }
 
-TEST(Candidates, AreTheCatalogueThatTheModelLacks) {
+TEST(Candidates, AreTheCatalogueEffectsMissingFromTheModel) {
   const CandidateSet set = candidates_of_file(laser_model());
   for (const char* own : {"static-constant", "static-alpha", "static-qp"}) {
     EXPECT_FALSE(has_candidate(set, own));
@@ -92,7 +92,7 @@ TEST(Candidates, AreTheCatalogueThatTheModelLacks) {
   }
 }
 
-TEST(Candidates, WithAShapeAreTriedInSeveral) {
+TEST(Candidates, EffectsWithAShapeAreTriedInSeveralShapes) {
   const CandidateSet set = candidates_of_file(laser_model());
   std::vector<double> onsets;
   for (const Candidate& candidate : set.candidates) {
@@ -108,7 +108,7 @@ TEST(Candidates, WithAShapeAreTriedInSeveral) {
   }
 }
 
-TEST(Candidates, ReadTheUsualVariables) {
+TEST(Candidates, UseTheUsualVariables) {
   const CandidateSet set = candidates_of_file(laser_model());
   const std::map<Quantity, std::string>& variables = set.extended.variables;
   EXPECT_EQ(variables.at(Quantity::cabin_pressure), "PCAB");
@@ -129,7 +129,7 @@ TEST(Candidates, WithoutTheirInputsAreNotTestable) {
   EXPECT_TRUE(has_candidate(candidates_of_file(named), "speedbrake-thrust"));
 }
 
-TEST(Candidates, OfHumidityFollowTheGasConstants) {
+TEST(Candidates, HumidityEffectsDependOnTheGasConstants) {
   const CandidateSet moist = candidates_of_file(laser_model());
   ASSERT_NE(reason_for(moist, "humidity-neglected"), nullptr);
   EXPECT_THAT(reason_for(moist, "humidity-neglected")->reason, HasSubstr("moist"));
@@ -142,7 +142,7 @@ TEST(Candidates, OfHumidityFollowTheGasConstants) {
   EXPECT_TRUE(has_candidate(dry, "humidity-neglected"));
 }
 
-TEST(Candidates, OnOtherSystemsAreOneForEachSystem) {
+TEST(Candidates, OtherSystemsHaveOneCandidateEach) {
   const pcor::FlightSet files{short_flight()};
   const auto number_of = [&files](const std::vector<std::string>& others, const std::string& id) {
     pcor::References references{pcor::lams_reference()};
@@ -173,7 +173,7 @@ TEST(Candidates, OnOtherSystemsAreOneForEachSystem) {
   EXPECT_TRUE(of_both[2]);
 }
 
-TEST(Candidates, OfFormulasNeedTheirVariables) {
+TEST(Candidates, FormulasNeedTheirVariables) {
   ModelEffect good = formula();
   ModelEffect bad = formula();
   bad.id = "try-2";

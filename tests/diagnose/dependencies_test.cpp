@@ -30,7 +30,7 @@ Flight flight_of(const TemporaryDirectory& directory,
   return Flight(path);
 }
 
-TEST(ComputedFrom, FollowsTheStepsOfAComputation) {
+TEST(ComputedFrom, FollowsChainsOfDependencies) {
   const TemporaryDirectory directory;
   // As in the files of NCAR: the temperature that is corrected by the pressures, and what is made of it.
   const Flight flight = flight_of(directory, {{"PSFD", ""},
@@ -48,13 +48,13 @@ TEST(ComputedFrom, FollowsTheStepsOfAComputation) {
 }
 
 // A residual against a corrected pressure is measured with the sensors of that pressure.
-TEST(ComputedFrom, KnowsWhatTheSensorsAreComputedFrom) {
+TEST(ComputedFrom, IncludesVariablesFromTheSameSensors) {
   const TemporaryDirectory directory;
   const Flight flight = flight_of(directory, {{"PSFD", ""}, {"PSXC", "1 PSFD"}, {"PALT", "1 PSFD"}});
   EXPECT_THAT(computed_from(flight, {"PSXC"}), ElementsAre("PALT"));
 }
 
-TEST(ComputedFrom, EndsWhereVariablesDependOnEachOther) {
+TEST(ComputedFrom, CircularDependenciesEnd) {
   const TemporaryDirectory directory;
   const Flight flight = flight_of(directory, {{"PSFD", ""}, {"LATC", "2 LONC PSFD"}, {"LONC", "1 LATC"}});
   EXPECT_THAT(computed_from(flight, {"PSFD"}), ElementsAre("LATC", "LONC"));

@@ -221,7 +221,7 @@ TEST(DiagnosisOfATeam, FindsSameEffectAndSeparationAdvice) {
   EXPECT_THAT(diagnosis.findings[0].advice.sentence, Not(IsEmpty()));
 }
 
-TEST(DiagnosisOfATeam, FindsTheSameOnSamplesWithFlapsOut) {
+TEST(DiagnosisOfATeam, FindsTheSameEffectWithFlapsExtended) {
   const std::string flaps = "id = \"flaps-gear\"\ndefect = 3.0\n";
   DiagnoseOptions options;
   options.whole_file = false;
@@ -230,7 +230,7 @@ TEST(DiagnosisOfATeam, FindsTheSameOnSamplesWithFlapsOut) {
   EXPECT_EQ(diagnosis.findings[0].effect.id, "flaps-gear");
 }
 
-TEST(WhatIfOfATeam, EqualsThatOfOneProcess) {
+TEST(WhatIfOfATeam, ResultEqualsThatOfOneProcess) {
   const Paths paths = flights(beta_odd, 10);
   const Diagnosis diagnosis = diagnose(paths, model(), {lams_reference()});
   const auto candidates = what_if_candidates(diagnosis, {});
@@ -280,7 +280,7 @@ TEST(DiagnosisOfATeam, FindsTheSameVariablesOfTheFiles) {
   EXPECT_THAT(diagnosis.held_out, Not(IsEmpty()));
 }
 
-TEST(DiagnosisOfATeam, HoldsTheRecordsThatAreAskedFor) {
+TEST(DiagnosisOfATeam, HoldsTheRequestedRecords) {
   DiagnoseOptions options;
   options.whole_file = false;
   for (const std::vector<std::size_t>& requested : {std::vector<std::size_t>{}, {1, 4}}) {

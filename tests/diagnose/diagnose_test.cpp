@@ -137,7 +137,7 @@ void expect_coefficient(const Finding& finding, double truth) {
 }  // namespace
 
 // A claim is allowed in 0.3 % of such flights, structure in 0.2 %: of four none.
-TEST(Diagnose, IsSilentWhereNothingIsMissing) {
+TEST(Diagnose, CompleteModelIsSilent) {
   for (unsigned seed = 301; seed <= 304; ++seed) {
     const Diagnosis diagnosis = diagnose({flight("c130-eq18", seed)});
     EXPECT_EQ(diagnosis.verdict, Verdict::silent) << seed;
@@ -150,7 +150,7 @@ TEST(Diagnose, IsSilentWhereNothingIsMissing) {
   }
 }
 
-TEST(Diagnose, IsSilentOnAShortFlight) {
+TEST(Diagnose, ShortFlightIsSilent) {
   EXPECT_EQ(diagnose({flight("c130-short", 311)}).verdict, Verdict::silent);
 }
 
@@ -176,7 +176,7 @@ TEST(Diagnose, FindsALagOfTheStaticLine) {
   EXPECT_GE(finding.events, 1.0);
 }
 
-TEST(Diagnose, FindsWhatSideslipDoesToThePorts) {
+TEST(Diagnose, FindsAnEffectOfSideslip) {
   const Diagnosis diagnosis = diagnose({flight("c130-eq18", 322, beta_odd)});
   ASSERT_THAT(names_of(diagnosis), testing::ElementsAre("static-beta-odd"));
   EXPECT_EQ(diagnosis.verdict, Verdict::identified);
@@ -186,7 +186,7 @@ TEST(Diagnose, FindsWhatSideslipDoesToThePorts) {
 }
 
 // The coefficients of a model are where the last fit left them, which may be far from these flights.
-TEST(Diagnose, FindsTheSameWhereTheModelIsNotFitted) {
+TEST(Diagnose, FindingIsIndependentOfStartCoefficients) {
   ModelDefinition off = model();
   off.model.effects[0].parameters[0] = 0.001;
   off.model.effects[2].parameters[0] = 0.07;
@@ -247,7 +247,7 @@ TEST(Diagnose, ExcludedSamplesAreNotUsed) {
     EXPECT_THAT(variable.formula, IsEmpty()) << variable.name;
 }
 
-TEST(Diagnose, DoesNotInventAnEffectForAHiddenWave) {
+TEST(Diagnose, HiddenWaveIsReportedAsUnexplained) {
   const Diagnosis diagnosis = diagnose({flight("c130-eq18", 351, hidden_wave)});
   EXPECT_EQ(diagnosis.verdict, Verdict::unexplained);
   EXPECT_THAT(diagnosis.findings, IsEmpty());
@@ -257,7 +257,7 @@ TEST(Diagnose, DoesNotInventAnEffectForAHiddenWave) {
   EXPECT_LT(diagnosis.unexplained.drift_rms, 0.8);
 }
 
-TEST(Diagnose, FindsAFormulaThatIsRight) {
+TEST(Diagnose, FindsACorrectFormula) {
   const Diagnosis diagnosis =
       diagnose({flight("c130-eq18", 18, engine_torque)}, with_formula("k * (ENGTRQ - 50) / 100"));
   ASSERT_THAT(names_of(diagnosis), testing::Contains("try-1"));
@@ -277,7 +277,7 @@ TEST(Diagnose, FormulaWithoutValuesStatesReason) {
   EXPECT_TRUE(is_listed);
 }
 
-TEST(Diagnose, AFormulaThatActsNowhereIsNotTested) {
+TEST(Diagnose, FormulaThatIsZeroEverywhereIsNotTested) {
   const Diagnosis diagnosis = diagnose({flight("c130-short", 311)}, with_formula("k * max(mach - 5, 0)"));
   bool is_listed = false;
   for (const pcor::NotTestable& each : diagnosis.not_testable)
@@ -285,7 +285,7 @@ TEST(Diagnose, AFormulaThatActsNowhereIsNotTested) {
   EXPECT_TRUE(is_listed);
 }
 
-TEST(Diagnose, UsesTheFirstPartOnly) {
+TEST(Diagnose, OnlyTheTrainingShareIsUsed) {
   const Paths flights{flight("c130-eq18", 321, static_lag)};
   DiagnoseOptions options;
   options.training_share = 0.6;
@@ -330,7 +330,7 @@ TEST(Diagnose, TwoFlightsConstrainMoreThanOne) {
   EXPECT_LT(ratio, 0.95);
 }
 
-TEST(Diagnose, IsTheSameTwice) {
+TEST(Diagnose, RepeatedRunsGiveTheSameResult) {
   const Paths flights{flight("c130-eq18", 322, beta_odd)};
   const Diagnosis first = diagnose(flights);
   const Diagnosis second = diagnose(flights);
@@ -342,7 +342,7 @@ TEST(Diagnose, IsTheSameTwice) {
   EXPECT_EQ(first.unexplained.shares_noise, second.unexplained.shares_noise);
 }
 
-TEST(Diagnose, AlongAFlightPartsAddUp) {
+TEST(Diagnose, EffectSeriesHasTheStatedRms) {
   const Diagnosis diagnosis = diagnose({flight("c130-eq18", 321, static_lag)});
   const pcor::FlightDiagnosis& along = diagnosis.flights.at(0);
   ASSERT_THAT(along.added, SizeIs(diagnosis.findings.size()));
@@ -359,7 +359,7 @@ TEST(Diagnose, AlongAFlightPartsAddUp) {
   EXPECT_GT(diagnosis.findings[0].rms, 0.9 * std::sqrt(squares / count));
 }
 
-TEST(Diagnose, AModelWithoutFreeCoefficientsIsDiagnosedToo) {
+TEST(Diagnose, ModelWithoutFreeCoefficientsIsDiagnosed) {
   ModelDefinition fixed = model();
   fixed.fits.assign(3, pcor::EffectFit(1));
   for (pcor::EffectFit& fit : fixed.fits) fit[0].fixed = true;
@@ -379,7 +379,7 @@ TEST(Diagnose, StaticSystemReferenceFindsUnsharedEffects) {
 }
 
 // A curve in attack of one of two systems: the difference names an effect of either, in any of its shapes.
-TEST(Diagnose, ADifferenceOfTwoSystemsNamesAnEffectOnEither) {
+TEST(Diagnose, SameEffectOfTheOtherSystemIsARival) {
   const auto reference = pcor::static_system_reference(
       pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml"));
   pcor::DiagnoseOptions trusted;
@@ -507,14 +507,14 @@ TEST(Diagnose, CompleteModelAgainstHeightsIsSilent) {
   }
 }
 
-TEST(Diagnose, WindIsAFurtherReference) {
+TEST(Diagnose, WindAndLaserAreUsedTogether) {
   const Diagnosis diagnosis =
       pcor::diagnose({climbs(394, 0.0)}, model(), {pcor::wind_reference(model()), pcor::lams_reference()});
   EXPECT_EQ(diagnosis.verdict, Verdict::silent);
   EXPECT_THAT(diagnosis.reference, testing::StartsWith("LAMS"));
 }
 
-TEST(Diagnose, NeedsFlightsAndSamples) {
+TEST(Diagnose, MissingFlightsOrSamplesAreErrors) {
   EXPECT_THROW(diagnose({}), pcor::Error);
   EXPECT_THROW(diagnose({"/nowhere/flight.nc"}), pcor::Error);
   DiagnoseOptions options;
@@ -551,7 +551,7 @@ void expect_advice(const Diagnosis& diagnosis) {
   }
 }
 
-TEST(Advice, IsToFlyAgainWhatWasFlown) {
+TEST(Advice, NamesRivalsAndAManoeuvre) {
   for (const auto& [scenario, effect] : std::vector<std::pair<std::string, std::string>>{
            {"c130-no-manoeuvres", "id = \"static-beta-odd\"\nb1 = -0.009\n"},
            {"c130-eq18", "id = \"load-factor\"\nper_g = 0.8\n"},
@@ -562,7 +562,7 @@ TEST(Advice, IsToFlyAgainWhatWasFlown) {
 
 // Level legs alone show the sideslip, and no flown regime separates ports from laser: the advice comes from
 // the catalogue.
-TEST(Advice, IsThatOfTheCatalogueWhereNothingFlownHelps) {
+TEST(Advice, ComesFromTheCatalogueIfNoFlownRegimeHelps) {
   const Diagnosis diagnosis =
       diagnose({flight("c130-no-manoeuvres", 371, "id = \"static-beta-odd\"\nb1 = -0.009\n")});
   expect_advice(diagnosis);
@@ -573,7 +573,7 @@ TEST(Advice, IsThatOfTheCatalogueWhereNothingFlownHelps) {
 
 // Four more yaw manoeuvres are predicted to separate the ports from the laser in about nine of ten flights,
 // and do.
-TEST(Advice, HoldsWhereItIsFollowed) {
+TEST(Advice, FollowedAdviceSeparatesTheEffects) {
   const std::string effect = "id = \"static-beta-odd\"\nb1 = -0.003\n";
   const std::string yaw = "[[leg]]\nkind = \"yaw\"\ncycles = 12\n\n";
   int followed = 0;

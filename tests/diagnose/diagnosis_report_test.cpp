@@ -280,7 +280,7 @@ TEST(DiagnosisReport, StatesFindingSizeAndSignificance) {
   split_words(report);
 }
 
-TEST(DiagnosisReport, HasAPageInWordsForEachFinding) {
+TEST(DiagnosisReport, EachFindingHasAPageOfText) {
   const Report report = diagnosis_report(partial(), model());
   const auto* page = item<ReportText>(report, "Finding 1: static-beta-odd");
   ASSERT_NE(page, nullptr);
@@ -318,7 +318,7 @@ TEST(DiagnosisReport, NamesIndistinguishableEffects) {
             "An effect is missing: static-port error with sideslip, ports not perfectly paired");
 }
 
-TEST(DiagnosisReport, DrawsEachFindingAgainstItsOwnInputsFirst) {
+TEST(DiagnosisReport, FirstPictureShowsFindingAgainstItsInputs) {
   const Report report = diagnosis_report(partial(), model());
   const auto* sideslip =
       item<BinnedPanel>(report, "Residual before and after, against the inputs of static-beta-odd");
@@ -375,7 +375,7 @@ TEST(DiagnosisReport, ReportsStructureWithoutExplanation) {
   split_words(report);
 }
 
-TEST(DiagnosisReport, SilenceComesWithItsLimits) {
+TEST(DiagnosisReport, SilentDiagnosisListsUpperLimits) {
   const Report report = diagnosis_report(silent(), model());
   EXPECT_EQ(report.title, "No missing effect is detectable on these flights");
   EXPECT_THAT(report.summary, Contains(HasSubstr("41")));
@@ -416,7 +416,7 @@ TEST(DiagnosisReport, NonFiniteValuesAreOmitted) {
   EXPECT_THAT(words, HasSubstr("b1 unknown and b2 = 1 hPa"));
 }
 
-TEST(DiagnosisReport, EscapesNames) {
+TEST(DiagnosisReport, NamesAreEscaped) {
   Diagnosis diagnosis = partial();
   auto samples = std::make_shared<FlightSamples>(*diagnosis.flights.front().samples);
   samples->name = "<i>rf&01</i>";
@@ -501,7 +501,7 @@ TEST(ImprovementReport, HeldOutPartDiffersFromHeldOutFlight) {
   EXPECT_GT(steps->rows[0].dots[0].error, 0.0);
 }
 
-TEST(ImprovementReport, HasAPageAndPicturesForEveryRung) {
+TEST(ImprovementReport, EachStepHasAPageAndPictures) {
   const Report report = improvement_report(improvement(), model());
   const auto* page = item<ReportText>(report, "Step 1: static-beta-odd");
   ASSERT_NE(page, nullptr);
@@ -519,7 +519,7 @@ TEST(ImprovementReport, HasAPageAndPicturesForEveryRung) {
   EXPECT_EQ(formula->x_choices.front(), "variable ENGTRQ");
 }
 
-TEST(ImprovementReport, MayHaveNothingToAdd) {
+TEST(ImprovementReport, ImprovementWithoutAnAddedEffectIsReported) {
   Improvement made = improvement();
   made.steps.resize(1);
   const Report report = improvement_report(made, model());

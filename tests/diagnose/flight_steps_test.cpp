@@ -54,7 +54,7 @@ TEST(MeanSteps, DifferingFlightIsFoundWithItsStep) {
   for (const std::size_t other : {0U, 1U, 3U}) EXPECT_GT(steps[other].chance, 0.05);
 }
 
-TEST(MeanSteps, CompareTwoFlights) {
+TEST(MeanSteps, TwoFlightsGiveOneStep) {
   const std::vector<MeanOffset> steps = Flights({0.1, -0.1}, 2).steps();
   EXPECT_NEAR(steps[1].size, -0.2, 4.0 * steps[1].error);
   EXPECT_LT(steps[1].chance, 1e-6);
@@ -98,7 +98,7 @@ TEST(MeanSteps, MatchLeastSquaresWithFlightConstants) {
   }
 }
 
-TEST(MeanSteps, OfAModelWithoutACoefficientAreThoseOfTheMeans) {
+TEST(MeanSteps, WithoutCoefficientsStepsAreDifferencesOfMeans) {
   Flights flights({0.0, 0.3}, 11);
   for (Eigen::MatrixXd& columns : flights.columns) columns.resize(rows, 0);
   EXPECT_NEAR(flights.steps()[1].size, flights.residuals[1].mean() - flights.residuals[0].mean(), 1e-12);

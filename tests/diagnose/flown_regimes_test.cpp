@@ -75,7 +75,7 @@ class Flights {
 const Interval ground = interval(Regime::ground, 0.0, 100.0);
 const Interval climb = interval(Regime::climb, 100.0, 900.0);
 
-TEST(FlownRegimes, AreTheMeansOfTheirIntervals) {
+TEST(FlownRegimes, DurationAndInformationAreMeansOverIntervals) {
   Flights flights;
   flights.fly("first.nc",
               {ground, interval(Regime::level, 100.0, 900.0), interval(Regime::yaw_manoeuvre, 200.0, 320.0)});
@@ -92,7 +92,7 @@ TEST(FlownRegimes, AreTheMeansOfTheirIntervals) {
   EXPECT_TRUE(yaw.information.isApprox(sum / 3.0));
 }
 
-TEST(FlownRegimes, DoNotCountATurnAsTheClimbThatItLiesIn) {
+TEST(FlownRegimes, TurnWithinAClimbIsCountedSeparately) {
   Flights flights;
   flights.fly("first.nc", {ground, climb, interval(Regime::turn, 200.0, 400.0)});
   const std::vector<FlownRegime> regimes = flights.regimes();
@@ -104,7 +104,7 @@ TEST(FlownRegimes, DoNotCountATurnAsTheClimbThatItLiesIn) {
       (regimes[0].information + regimes[1].information).isApprox(flights.information(0, 100.0, 900.0)));
 }
 
-TEST(FlownRegimes, AreOnlyThoseWithSamples) {
+TEST(FlownRegimes, RegimesWithoutSamplesAreOmitted) {
   Flights flights;
   flights.fly("first.nc", {ground, climb, interval(Regime::circle, 700.0, 850.0)}, 600.0);
   const std::vector<FlownRegime> regimes = flights.regimes();
@@ -112,7 +112,7 @@ TEST(FlownRegimes, AreOnlyThoseWithSamples) {
   EXPECT_EQ(regimes[0].regime, Regime::climb);
 }
 
-TEST(FlownRegimes, OfAFlightAgainstTwoReferencesAreFlownOnce) {
+TEST(FlownRegimes, FlightWithTwoReferencesCountsOnce) {
   Flights flights;
   flights.fly("first.nc", {climb});
   flights.fly("first.nc", {climb}, 1000.0, 1);

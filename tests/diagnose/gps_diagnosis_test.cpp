@@ -68,7 +68,7 @@ std::map<std::string, double> gains(const std::filesystem::path& path, bool with
 
 }  // namespace
 
-TEST(GpsDiagnosis, GainsWithoutEffectAreThoseOfChance) {
+TEST(GpsDiagnosis, GainsWithoutAnEffectAreInsignificant) {
   for (const bool with_height : {false, true}) {
     double sum = 0.0;
     double count = 0.0;
@@ -112,7 +112,7 @@ TEST(GpsDiagnosis, CompleteModelIsSilent) {
 
 // Columns of the height are without the fast part of climbs. In the residual this part of the error looked
 // like a load factor, and like a static transducer that is 5 hPa off.
-TEST(GpsDiagnosis, WarmThermometerNamesNoOtherEffect) {
+TEST(GpsDiagnosis, WarmThermometerIsTheOnlyFinding) {
   const std::string hot = "\n[noise]\nTTRR = { rms = 0.03, bias = 2.0 }\n";
   const pcor::Diagnosis diagnosis = pcor::diagnose({flight(5, hot)}, law(), {pcor::height_reference(law())});
   for (const pcor::Finding& finding : diagnosis.findings) EXPECT_EQ(finding.effect.id, "temp-offset");
@@ -129,7 +129,7 @@ TEST(GpsDiagnosis, FindsHiddenEffect) {
   EXPECT_GT(diagnosis.findings[0].gain, 2.0 * diagnosis.findings[0].gain_error);
 }
 
-TEST(GpsDiagnosis, NamesNoSecondEffectBesideALaser) {
+TEST(GpsDiagnosis, LaserAndWindFindOneEffectOnly) {
   const std::string effect = "\n[[effect]]\nid = \"static-beta-odd\"\nb1 = 0.01\n";
   const References references{pcor::lams_reference(), pcor::wind_reference(law())};
   const pcor::Diagnosis diagnosis = pcor::diagnose({flight(26, effect)}, law(), references);

@@ -147,7 +147,7 @@ TEST(Search, FindsAPair) {
 }
 
 // The third explains more than each of the two alone, and no more than both together.
-TEST(Search, FindsAPairWhereAThirdColumnIsNearlyTheirSum) {
+TEST(Search, FindsAPairDespiteAColumnNearTheirSum) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Problem problem(900, 12, seed);
     std::mt19937_64 engine(seed);
@@ -160,14 +160,14 @@ TEST(Search, FindsAPairWhereAThirdColumnIsNearlyTheirSum) {
   }
 }
 
-TEST(Search, TheStrongestIsFirst) {
+TEST(Search, StrongestEffectIsFirst) {
   Problem problem(900, 10, 3);
   problem.residual += 0.2 * problem.candidate(1) + 0.6 * problem.candidate(8);
   EXPECT_THAT(run(problem).chosen, ElementsAre(8U, 1U));
 }
 
 // One part in 40 is its own, 1/1600 of the variance: the base imitates it nearly, and yet it is seen.
-TEST(Search, NearImitationIsFoundByItsRemainder) {
+TEST(Search, ColumnNearlyInTheBaseIsFound) {
   Problem problem(600, 5, 4);
   problem.candidate(3) = 40.0 * problem.columns.col(1) + 0.577 * problem.candidate(3);
   problem.residual += 2.0 * problem.candidate(3);
@@ -218,7 +218,7 @@ TEST(Search, AnEstimateWithinTwoErrorsOfItsBoundIsPossible) {
 }
 
 // An effect of a usual size is more likely than a nearly equal one at a hundred times its usual size.
-TEST(Search, TypicalSizesAreMoreLikely) {
+TEST(Search, EffectOfTypicalSizeIsPreferred) {
   Problem problem(600, 6, 21);
   problem.candidate(2) = 0.99 * problem.candidate(1) + 0.14 * problem.candidate(2);
   problem.residual += 0.3 * problem.candidate(1);
@@ -259,7 +259,7 @@ TEST(Search, EvidenceOfOneColumnEqualsTheFormula) {
 }
 
 // A set of two is dearer than the one that does as much.
-TEST(Search, OneCauseIsPreferredToTwoThatMakeIt) {
+TEST(Search, OneEffectIsPreferredToAnEquivalentPair) {
   for (unsigned seed = 31; seed <= 40; ++seed) {
     Problem problem(900, 12, seed);
     problem.candidate(9) = problem.candidate(2) + problem.candidate(5);
@@ -305,7 +305,7 @@ TEST(Search, AGroupOfEqualColumnsHasOneDegreeOfFreedom) {
   EXPECT_NEAR(score.estimate[0] + 3.0 * score.estimate[1], 0.5, 0.1);
 }
 
-TEST(Search, ShapesOfOneEffectExcludeEachOther) {
+TEST(Search, OnlyOneShapeOfAnEffectIsChosen) {
   Problem problem(600, 6, 9);
   problem.residual += 0.4 * problem.candidate(0) + 0.4 * problem.candidate(1);
   problem.one_by_one();
@@ -313,7 +313,7 @@ TEST(Search, ShapesOfOneEffectExcludeEachOther) {
   EXPECT_THAT(run(problem).chosen, testing::AnyOf(ElementsAre(0U), ElementsAre(1U)));
 }
 
-TEST(Search, EstimatesAreThoseOfDenseLeastSquares) {
+TEST(Search, EstimatesEqualDenseLeastSquares) {
   Problem problem(300, 6, 10, 0.6, 1.0);
   // Units differ: hPa, degrees, per mille.
   problem.candidate(2) *= 1e4;
@@ -341,7 +341,7 @@ TEST(Search, EstimatesAreThoseOfDenseLeastSquares) {
 }
 
 // 0.3 % of flights without any effect may be claimed: 1.2 of 400, and more than 6 once in 4000 times.
-TEST(Search, ClaimsNothingInNoise) {
+TEST(Search, NoiseGivesNoFinding) {
   int claims = 0;
   double threshold = 0.0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
@@ -361,7 +361,7 @@ TEST(Search, ClaimsNothingInNoise) {
 
 // Without the sign flips, which only remove findings, chance has its nominal rate: 20 of 400 at 5 %,
 // deviation 4.4.
-TEST(Search, TheThresholdIsExceededAsOftenAsItSays) {
+TEST(Search, ThresholdHasTheStatedFalseAlarmRate) {
   int above = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
     Problem problem(300, 12, 5000 + seed, 0.7);
@@ -394,7 +394,7 @@ TEST(Search, NoiseWithHeavyTailsIsNotAnEffect) {
   EXPECT_LE(claims, 19);
 }
 
-TEST(Search, IsTheSameTwice) {
+TEST(Search, RepeatedRunsGiveTheSameResult) {
   Problem problem(300, 20, 11, 0.5);
   problem.residual += 0.3 * problem.candidate(6);
   const SearchResult first = run(problem);
@@ -404,7 +404,7 @@ TEST(Search, IsTheSameTwice) {
   EXPECT_EQ(first.p_values, second.p_values);
 }
 
-TEST(Search, AGivenThresholdAndAGreatestNumberHold) {
+TEST(Search, GivenThresholdAndMaximumNumberAreApplied) {
   Problem problem(600, 10, 12);
   for (Eigen::Index c = 0; c < 6; ++c) problem.residual += 0.5 * problem.candidate(c);
   SearchOptions options;
@@ -422,7 +422,7 @@ TEST(Search, EmptySearchFindsNoColumn) {
   EXPECT_NEAR(search.variance({}), 1.0, 0.4);
 }
 
-TEST(Correlation, HasTheSignOfTheColumns) {
+TEST(Correlation, SignIsThatOfTheColumns) {
   Problem problem(2000, 4, 14);
   problem.candidate(1) = 0.8 * problem.candidate(0) + 0.6 * problem.candidate(1);
   problem.candidate(2) = -0.8 * problem.candidate(0) + 0.6 * problem.candidate(2);
@@ -436,7 +436,7 @@ TEST(Correlation, HasTheSignOfTheColumns) {
   EXPECT_NEAR(search.correlation(1, 2, {0}), 0.0, 0.3);
 }
 
-TEST(Correlation, IsOfWhatTheBaseLeaves) {
+TEST(Correlation, UsesColumnsWithoutTheirPartInTheBase) {
   Problem problem(1000, 2, 15);
   Eigen::MatrixXd parts = problem.columns.rightCols(2);
   const Eigen::MatrixXd own = problem.columns.leftCols(2);
@@ -447,7 +447,7 @@ TEST(Correlation, IsOfWhatTheBaseLeaves) {
   EXPECT_NEAR(problem.search().correlation(0, 1, {}), expected, 1e-9);
 }
 
-TEST(LeftoverRows, AreAtRightAnglesToBaseAndOthers) {
+TEST(LeftoverRows, AreOrthogonalToBaseAndOtherFindings) {
   Problem problem(400, 6, 16, 0.7);
   problem.residual += 0.5 * problem.candidate(1) + 0.3 * problem.candidate(4);
   const Search search = problem.search();
@@ -461,7 +461,7 @@ TEST(LeftoverRows, AreAtRightAnglesToBaseAndOthers) {
   EXPECT_NEAR(evidence, score.chi2 * search.variance({4}), 1e-8 * evidence);
 }
 
-TEST(OneDegreeEquivalent, IsAsRare) {
+TEST(OneDegreeEquivalent, HasTheSameTailProbability) {
   for (const double freedom : {1.0, 2.0, 3.0, 6.0}) {
     double before = -1.0;
     for (double chi2 = 0.0; chi2 < 900.0; chi2 += 0.5) {
@@ -483,7 +483,7 @@ TEST(OneDegreeEquivalent, IsAsRare) {
 
 // An effect whose shape in nature differs from the formula leaves a rest; a second effect that resembles that
 // rest is not named where the uncertainty of the shape explains it, and another second effect is.
-TEST(Search, UncertainShapeIsNoSecondEffect) {
+TEST(Search, UncertainShapeIsNotASecondEffect) {
   Problem problem(600, 4, 31);
   const Eigen::VectorXd rest = problem.candidate(3);  // column of the uncertain shape of the first effect
   problem.candidate(1) = rest + 0.2 * problem.candidate(1);
@@ -502,7 +502,7 @@ TEST(Search, UncertainShapeIsNoSecondEffect) {
 }
 
 // An effect that resembles the uncertain shape of one finding is not a rival of another finding.
-TEST(Search, UncertainShapeOfOneFindingIsNoRivalOfAnother) {
+TEST(Search, UncertainShapeIsNotARivalOfAnotherFinding) {
   Problem problem(600, 4, 31);
   const Eigen::VectorXd rest = problem.candidate(3);
   problem.candidate(1) = rest + 0.2 * problem.candidate(1);
@@ -517,7 +517,7 @@ TEST(Search, UncertainShapeOfOneFindingIsNoRivalOfAnother) {
 }
 
 // The usual shape of an effect is preferred on its own system; another system is another finding.
-TEST(Search, UsualShapeIsOneOfTheSameSystem) {
+TEST(Search, UsualShapeIsPreferredOnlyOnTheSameSystem) {
   Problem problem(600, 2, 31);
   problem.candidate(1) = problem.candidate(0) + 0.03 * problem.candidate(1);
   problem.residual += 1.0 * problem.candidate(1);

@@ -49,7 +49,7 @@ double left_by(const Eigen::MatrixXd& rows, const std::vector<Eigen::Index>& fit
 }
 
 // A rival is separated where chi2 rises by more than 9 with it in the place of the effect.
-TEST(Separation, IsAsProbableAsItIsFrequent) {
+TEST(Separation, PredictedProbabilityEqualsSimulatedFrequency) {
   constexpr int draws = 2000;
   const Eigen::MatrixXd now = rows_of(200, 0.99, 1);
   const Eigen::MatrixXd more = rows_of(100, 0.95, 2);
@@ -73,7 +73,7 @@ TEST(Separation, IsAsProbableAsItIsFrequent) {
   }
 }
 
-TEST(Separation, GrowsWithRepeatsAsWithLongerIntervals) {
+TEST(Separation, RepeatsEqualLongerIntervals) {
   const SeparationProblem rivalry = rivalry_of(rows_of(100, 0.99), 0.5);
   double before = 0.0;
   for (const int length : {100, 200, 400, 800}) {
@@ -96,7 +96,7 @@ TEST(Separation, GrowsWithRepeatsAsWithLongerIntervals) {
   EXPECT_EQ(before, 0.95);
 }
 
-TEST(Separation, IsByTheRegimeThatGainsMostInTheSameTime) {
+TEST(Separation, PlanUsesTheRegimeWithMostInformationPerTime) {
   const SeparationProblem rivalry = rivalry_of(rows_of(100, 0.99), 1.0);
   const Eigen::MatrixXd rows = rows_of(200, 0.7, 5);
   std::vector<FlownRegime> regimes{regime_of(Regime::climb, rows_of(800, 0.9, 6), 1200.0),
@@ -110,7 +110,7 @@ TEST(Separation, IsByTheRegimeThatGainsMostInTheSameTime) {
   ASSERT_EQ(plan.regime, &regimes[0]);
 }
 
-TEST(Separation, IsOfTheRivalThatImitatesMost) {
+TEST(Separation, WorstRivalDeterminesThePlan) {
   const Eigen::MatrixXd rows = rows_of(100, 0.99);
   const std::vector<FlownRegime> regimes{regime_of(Regime::yaw_manoeuvre, rows_of(400, 0.9, 7))};
   SeparationProblem rivalry = rivalry_of(rows, 1.0);
@@ -125,7 +125,7 @@ TEST(Separation, IsOfTheRivalThatImitatesMost) {
   EXPECT_THAT(text, HasSubstr("static-lag from temp-lag and total-lag"));
 }
 
-TEST(Separation, IsWhatTheCatalogueSaysWhereNoRegimeHelps) {
+TEST(Separation, CatalogueAdvisesIfNoRegimeHelps) {
   const ModelEffect lag = neutral_effect("static-lag");
   const std::string manoeuvre(effect_info[effect_named("static-lag")].manoeuvre);
   const SeparationProblem rivalry = rivalry_of(rows_of(100, 1.0), 5.0);
@@ -146,7 +146,7 @@ TEST(Separation, IsWhatTheCatalogueSaysWhereNoRegimeHelps) {
 }
 
 // More of the same regimes is not advised if the flights already separate the effect nearly or fully.
-TEST(Separation, NeedsARegimeThatHalvesTheDoubt) {
+TEST(Separation, RegimeWithLittleInformationIsNotAdvised) {
   const Eigen::MatrixXd rows = rows_of(300, 0.9);
   const std::vector<FlownRegime> nothing{regime_of(Regime::turn, 1e-3 * rows_of(10, 0.5, 9))};
   for (const double size : {0.4, 0.5}) {

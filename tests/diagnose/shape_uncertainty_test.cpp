@@ -51,7 +51,7 @@ struct Example {
 
 }  // namespace
 
-TEST(ShapeUncertainty, IsTheDerivativeByThePowerOfTheDynamicPressure) {
+TEST(ShapeUncertainty, PressureColumnIsTheDerivativeByTheExponent) {
   const Example example;
   const Eigen::VectorXd found = example.uncertainty(2.0).col(0);
   const Eigen::VectorXd effect = 2.0 * example.column;
@@ -63,7 +63,7 @@ TEST(ShapeUncertainty, IsTheDerivativeByThePowerOfTheDynamicPressure) {
   EXPECT_TRUE(found.isApprox(0.3 * difference, 1e-5));
 }
 
-TEST(ShapeUncertainty, DoesNotChangeTheSize) {
+TEST(ShapeUncertainty, ColumnsAreOrthogonalToTheEffect) {
   const Example example;
   const Eigen::MatrixXd found = example.uncertainty(2.0);
   for (Eigen::Index k = 0; k < 4; ++k) {
@@ -85,19 +85,19 @@ TEST(ShapeUncertainty, TheSlopesOnEitherSideOfZeroDiffer) {
               1e-12);
 }
 
-TEST(ShapeUncertainty, AnEffectOfOneSignHasOneSlope) {
+TEST(ShapeUncertainty, EffectOfOneSignHasNoSecondSlope) {
   Example example;
   example.column.array() += 1.0;
   example.binned.columns.front() = example.column;
   EXPECT_NEAR(example.uncertainty(2.0).col(3).cwiseAbs().maxCoeff(), 0.0, 1e-12);
 }
 
-TEST(ShapeUncertainty, AConstantPressureGivesNothing) {
+TEST(ShapeUncertainty, ConstantPressureGivesAZeroColumn) {
   const Example example;
   EXPECT_NEAR(example.uncertainty(2.0).col(1).cwiseAbs().maxCoeff(), 0.0, 1e-12);
 }
 
-TEST(ShapeUncertainty, DelaysByTheRateOfChange) {
+TEST(ShapeUncertainty, DelayColumnIsProportionalToTheRateOfChange) {
   const Example example;
   const Eigen::VectorXd found = example.uncertainty(1.0).col(4);
   for (Eigen::Index i = 1; i + 1 < rows; ++i) {
@@ -111,7 +111,7 @@ TEST(ShapeUncertainty, ScalesWithTheEffect) {
   EXPECT_TRUE(example.uncertainty(6.0).isApprox(3.0 * example.uncertainty(2.0), 1e-12));
 }
 
-TEST(ShapeUncertainty, AnotherZeroOfTheDriverIsAConstantOfTheSizeOfTheEffect) {
+TEST(ShapeUncertainty, ZeroShiftColumnIsConstantAtTheEffectRms) {
   const Example example;
   const Eigen::VectorXd effect = 2.0 * example.column;
   const double rms = std::sqrt(effect.squaredNorm() / static_cast<double>(rows));

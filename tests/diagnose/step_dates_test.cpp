@@ -31,7 +31,7 @@ double nearest(const std::vector<double>& tried, double date) {
                            [date](double a, double b) { return std::abs(a - date) < std::abs(b - date); });
 }
 
-TEST(StepDates, OfFewFlightsAreAllButTheFirst) {
+TEST(StepDates, FewFlightsTryEveryDateButTheFirst) {
   StepDates dates(begins(4));
   EXPECT_THAT(dates.tried(), testing::ElementsAre(101.0, 102.0, 103.0));
   EXPECT_FALSE(dates.refine({step_on(102.0)}));
@@ -42,7 +42,7 @@ TEST(StepDates, OneFlightGivesNoDates) {
   EXPECT_THAT(StepDates(std::vector<double>{}).tried(), testing::IsEmpty());
 }
 
-TEST(StepDates, OfManyFlightsAreSomeUntilOneIsFound) {
+TEST(StepDates, ManyFlightsTrySomeDatesUntilAStepIsFound) {
   StepDates dates(begins(2000));
   EXPECT_LE(dates.tried().size(), 42U);
   EXPECT_FALSE(dates.refine({}));
@@ -53,7 +53,7 @@ TEST(StepDates, OfManyFlightsAreSomeUntilOneIsFound) {
 }
 
 // A step between two groups of flights is tried near enough to keep half of its evidence at least.
-TEST(StepDates, OfManyFlightsLieCloseAtBothEnds) {
+TEST(StepDates, TriedDatesAreDenserAtBothEnds) {
   const StepDates dates(begins(2000));
   for (int before = 1; before < 2000; ++before) {
     const double truth = 100.0 + before;
@@ -70,7 +70,7 @@ TEST(StepDates, OtherSystemFindingsDoNotRefineDates) {
 }
 
 // Steps at any flight, first and last included, are located to the flight in a few rounds.
-TEST(StepDates, LeadToTheFlight) {
+TEST(StepDates, RefinementLocatesTheFlight) {
   for (const double truth : {101.0, 350.0, 2099.0}) {
     StepDates dates(begins(2000));
     const auto found = [&] {

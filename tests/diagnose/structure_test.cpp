@@ -102,7 +102,7 @@ const Structure& strongest(const StructureTest& test) {
 
 }  // namespace
 
-TEST(Smooth, HasALineAndNoConstant) {
+TEST(Smooth, BasisHasALineAndNoConstant) {
   const std::vector<double> values = draws(500, 1);
   for (const std::size_t columns : {2U, 3U, 6U}) {
     const Smooth smooth = Smooth::with_knots_at_values(known(values), columns);
@@ -119,7 +119,7 @@ TEST(Smooth, HasALineAndNoConstant) {
   }
 }
 
-TEST(Smooth, HasNotMoreColumnsThanAllowed) {
+TEST(Smooth, NumberOfColumnsIsLimited) {
   const std::vector<double> values = draws(500, 2);
   for (std::size_t columns = 1; columns <= 8; ++columns)
     EXPECT_LE(Smooth::with_knots_at_values(known(values), columns).columns(), columns);
@@ -153,7 +153,7 @@ TEST(Smooth, FewLevelsAllowAnyFunctionOfThem) {
 }
 
 // A variable that is zero most of the time, as liquid water: quantiles fall together.
-TEST(Smooth, WithManyTiesIsFinite) {
+TEST(Smooth, ManyEqualValuesGiveFiniteColumns) {
   std::vector<double> values(500, 0.0);
   for (std::size_t i = 0; i < 40; ++i) values[12 * i] = 0.01 * static_cast<double>(i + 1);
   const Smooth smooth = Smooth::with_knots_at_values(known(values), 6);
@@ -164,7 +164,7 @@ TEST(Smooth, WithManyTiesIsFinite) {
   EXPECT_LT(left_of(rows, rows.col(0)), 1e-10);
 }
 
-TEST(Smooth, LeavesOutMissingValues) {
+TEST(Smooth, MissingValuesAreIgnored) {
   std::vector<double> values = draws(300, 3);
   const Smooth without = Smooth::with_knots_at_values(known(values), 4);
   values.insert(values.begin() + 50, 40, missing);
@@ -185,7 +185,7 @@ TEST(Smooth, ConstantVariableHasNoBasisFunctions) {
 }
 
 // As altitude: most samples in a few levels, and a wave of six periods in the climbs between them.
-TEST(Smooth, WithEvenKnotsFollowsAWaveWhereFewValuesAre) {
+TEST(Smooth, EvenKnotsFollowAWaveInSparseValues) {
   std::vector<double> values;
   for (const double level : {0.0, 2.5, 6.0}) values.insert(values.end(), 400, level);
   for (std::size_t i = 0; i < 300; ++i) values.push_back(6.0 * static_cast<double>(i) / 299.0);
@@ -224,7 +224,7 @@ TEST(StructureTest, FindsASineInOneOfFiftyVariables) {
   EXPECT_LT(strongest(test).share, 1.0);
 }
 
-TEST(StructureTest, KnowsTheSlopeOfALine) {
+TEST(StructureTest, EstimatesTheSlopeOfALine) {
   Flight flight(900, 10, 2);
   for (Eigen::Index i = 0; i < 900; ++i)
     flight.residuals[0][i] += 0.05 * (flight.variables[3][static_cast<std::size_t>(i)] - 20.0);
@@ -237,7 +237,7 @@ TEST(StructureTest, KnowsTheSlopeOfALine) {
   EXPECT_LE(found.line_gain, found.gain * (1.0 + 1e-9));
 }
 
-TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
+TEST(StructureTest, SlopeEqualsGeneralisedLeastSquares) {
   Flight flight(200, 1, 3);
   // The drift of the model is included in full: no variable is more likely with less of it.
   flight.noise.slow = {0.0, 0.4, 0.0, 0.0};
@@ -268,7 +268,7 @@ TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
 // More than 4 of 60 flights occur once in 2,500 times.
 class NoStructure : public testing::TestWithParam<const char*> {};
 
-TEST_P(NoStructure, IsFoundOnceInAHundredFlights) {
+TEST_P(NoStructure, HasAFalseAlarmRateOfOnePercent) {
   const std::string kind = GetParam();
   int claims = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
@@ -308,7 +308,7 @@ INSTANTIATE_TEST_SUITE_P(Noise, NoStructure, testing::Values("short memory", "1/
 
 // Structure that varies with a variable as slow as drift is absorbed by drift if the noise is estimated
 // without it.
-TEST(StructureTest, AVariableCompetesWithDriftOnEqualTerms) {
+TEST(StructureTest, SlowVariableIsNotAbsorbedByDrift) {
   Flight flight(1800, 8, 9);
   std::vector<double>& slow = flight.variables[5];
   for (std::size_t i = 0; i < slow.size(); ++i)
@@ -324,7 +324,7 @@ TEST(StructureTest, AVariableCompetesWithDriftOnEqualTerms) {
 
 // Strong structure does not count as noise, though it correlates with some variables by chance when it is
 // shifted.
-TEST(StructureTest, SetsStrongStructureAside) {
+TEST(StructureTest, StrongStructureIsExcludedFromTheNoise) {
   Flight flight(900, 12, 11);
   flight.residuals[0] += 1.0 * as_vector(flight.variables[7]);
   const StructureTest first = flight.test();
@@ -379,7 +379,7 @@ pcor::internal::ChangeSlope changes(const std::vector<double>& residual,
   return pcor::internal::slope_of_changes(pcor::internal::FlightPartition(1), {residual}, {variable.data()});
 }
 
-TEST(ChangeSlope, IsThatOfACause) {
+TEST(ChangeSlope, EqualsTheSlopeOfACause) {
   std::vector<double> residual = draws(3600, 20);
   const std::vector<double> cause = draws(3600, 21);
   for (std::size_t i = 0; i < cause.size(); ++i) residual[i] += 0.5 * cause[i];
@@ -429,7 +429,7 @@ TEST(ChangeSlope, EmptyInputIsNotCorrelated) {
 
 // In twenty minutes few unrelated variables are reported: two windows of 300 have a median whose deviation
 // is below 0.058, and the limit of 0.12 is two of them.
-TEST(ChangeSlope, IsRarelyCorrelatedByChance) {
+TEST(ChangeSlope, UnrelatedVariablesAreRarelyCorrelated) {
   int shared = 0;
   const std::vector<double> residual = draws(1200, 13);
   for (unsigned seed = 0; seed < 100; ++seed) {

@@ -48,7 +48,7 @@ class RecordedVariables : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(RecordedVariables, OfAHigherRateAreMeansOfRecords) {
+TEST_F(RecordedVariables, HigherRatesAreAveraged) {
   std::vector<double> values(5 * records);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
   const TestedVariable variable = read("percent", values, 5);
@@ -56,7 +56,7 @@ TEST_F(RecordedVariables, OfAHigherRateAreMeansOfRecords) {
   EXPECT_THAT(variable.sampling, HasSubstr("means of 5 samples"));
 }
 
-TEST_F(RecordedVariables, OfALowerRateAreInterpolated) {
+TEST_F(RecordedVariables, LowerRatesAreInterpolated) {
   std::vector<double> values(records, missing);
   for (std::size_t i = 0; i < records; i += 10) values[i] = static_cast<double>(i);
   const TestedVariable variable = read("percent", values);
@@ -65,7 +65,7 @@ TEST_F(RecordedVariables, OfALowerRateAreInterpolated) {
   EXPECT_THAT(variable.sampling, HasSubstr("one value in 10 records, interpolated"));
 }
 
-TEST_F(RecordedVariables, KeepTheirGaps) {
+TEST_F(RecordedVariables, GapsAreKept) {
   std::vector<double> values(records, 1.0);
   for (std::size_t i = 20; i < 55; ++i) values[i] = missing;
   const TestedVariable variable = read("percent", values);
@@ -73,7 +73,7 @@ TEST_F(RecordedVariables, KeepTheirGaps) {
   EXPECT_EQ(variable.sampling, "");
 }
 
-TEST_F(RecordedVariables, AreAnglesWhereTheyTakeAllDirections) {
+TEST_F(RecordedVariables, VariablesThatCoverTheCircleAreAngles) {
   std::vector<double> heading(records);
   std::vector<double> attack(records);
   for (std::size_t i = 0; i < records; ++i) {

@@ -117,7 +117,7 @@ TEST(Catalogue, IdsAreUniqueAndResolve) {
   EXPECT_EQ(effect_named(""), pcor::catalogue_size);
 }
 
-TEST(Catalogue, HoldsTheTermsOfTheMemoUnderTheirNames) {
+TEST(Catalogue, HasTheTermsOfTheMemo) {
   // Model files hold on to these ids and parameters.
   for (const auto& [id, parameter] : {std::pair{"static-constant", "a0"},
                                       {"static-alpha", "a1"},
@@ -136,7 +136,7 @@ TEST(Catalogue, HoldsTheTermsOfTheMemoUnderTheirNames) {
   }
 }
 
-TEST(Catalogue, HoldsZeroGainAndDriftAtEveryPlaceThatHasThem) {
+TEST(Catalogue, HasZeroGainAndDriftEffects) {
   // Findings name these ids, families and places, and scripts read them.
   struct Row {
     const char *id, *family, *place;
@@ -253,7 +253,7 @@ TEST(Catalogue, SumsToEquation18) {
   EXPECT_NEAR(sum, 0.24, 0.006);
 }
 
-TEST_P(EveryEffect, IsNamedInLowerCaseWithHyphens) {
+TEST_P(EveryEffect, IdIsLowerCaseWithHyphens) {
   EXPECT_THAT(std::string(GetParam().id), MatchesRegex("[a-z][a-z0-9]*(-[a-z0-9]+)*"));
 }
 
@@ -293,14 +293,14 @@ TEST_P(EveryEffect, ParametersHaveNameUnitAndBounds) {
   EXPECT_FALSE(info.parameters[0].shape) << "the first parameter is a size";
 }
 
-TEST_P(EveryEffect, NamesEffectsThatLookLikeIt) {
+TEST_P(EveryEffect, SimilarEffectsExist) {
   for (const std::string& id : listed(GetParam().look_alikes)) {
     EXPECT_TRUE(effect_named(id) != pcor::catalogue_size || is_without_trace(id)) << id;
     EXPECT_NE(id, GetParam().id);
   }
 }
 
-TEST_P(EveryEffect, HasTheUnitOfItsPlace) {
+TEST_P(EveryEffect, FormulaHasTheUnitOfItsPlace) {
   // In units half as large, every number of the unit doubles, the value included; or the formula has a
   // constant of that unit.
   const std::set<std::pair<std::string, std::string>> with_constant{
@@ -322,7 +322,7 @@ TEST_P(EveryEffect, HasTheUnitOfItsPlace) {
   }
 }
 
-TEST_P(EveryEffect, IsAbsentAtItsNeutralParameters) {
+TEST_P(EveryEffect, IsZeroAtNeutralParameters) {
   Draw draw;
   for (int i = 0; i < 100; ++i) {
     const Parameters neutral = neutral_but(GetParam(), draw.parameters(GetParam()), pcor::parameter_capacity);
@@ -370,7 +370,7 @@ TEST_P(EveryEffect, ReproducesItsWorkedExample) {
   EXPECT_NEAR(value(info, state, parameters) / info.example.value, 1.0, 1e-12);
 }
 
-TEST_P(EveryEffect, NeedsEveryInputThatItNames) {
+TEST_P(EveryEffect, EveryListedInputIsRequired) {
   const EffectInfo& info = GetParam();
   Draw draw;
   const Parameters parameters = draw.parameters(info);
@@ -382,7 +382,7 @@ TEST_P(EveryEffect, NeedsEveryInputThatItNames) {
   EXPECT_FALSE(std::isnan(value(info, draw.state(info), parameters))) << "and no other";
 }
 
-TEST_P(EveryEffect, IsTheFormulaThatItDocuments) {
+TEST_P(EveryEffect, FunctionEqualsDocumentedFormula) {
   const EffectInfo& info = GetParam();
   std::vector<std::string> names;
   for (std::size_t i = 0; i < info.parameter_count(); ++i) names.emplace_back(info.parameters[i].name);
@@ -411,7 +411,7 @@ TEST_P(EveryEffect, IsTheFormulaThatItDocuments) {
   }
 }
 
-TEST_P(EveryEffect, CompilesForAScalarThatIsNoDouble) {
+TEST_P(EveryEffect, CompilesForAnotherScalarType) {
   using archetype::Physics;
   const EffectInfo& info = GetParam();
   Draw draw;

@@ -81,14 +81,14 @@ double stated_by(const RefitResult& fit) {
 
 }  // namespace
 
-TEST(GpsFit, FindsTheLawByTheWind) {
+TEST(GpsFit, WindDeterminesTheLaw) {
   const RefitResult result = fit(flight("c130-eq18"), no_law(), {"wind"});
   EXPECT_LT(std::abs(error_of(result)), 0.4);
   EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
   EXPECT_LT(stated_by(result), 0.25);
 }
 
-TEST(GpsFit, FindsTheLawAndTheThermometerByWindAndHeight) {
+TEST(GpsFit, WindAndHeightDetermineLawAndThermometer) {
   const RefitResult result = fit(flight("c130-eq18", warm_thermometer), no_law(), {"wind", "height"});
   EXPECT_LT(std::abs(error_of(result)), 0.3);
   EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
@@ -96,7 +96,7 @@ TEST(GpsFit, FindsTheLawAndTheThermometerByWindAndHeight) {
 }
 
 // Shared with the nuisance, the offset was 0.3 K too small.
-TEST(GpsFit, ThermometerOfTheModelReplacesItsNuisance) {
+TEST(GpsFit, ThermometerOffsetOfTheModelReplacesTheNuisance) {
   const ModelDefinition model = pcor::add_effects(law(), {pcor::neutral_effect("temp-offset")});
   const std::string hot = "\n[noise]\nTTRR = { rms = 0.03, bias = 2.0 }\n";
   const RefitResult result = fit(flight("c130-eq18", hot), model, {"wind", "height"});
@@ -113,7 +113,7 @@ TEST(GpsFit, HoldsCoefficientsUndeterminedByOneHeading) {
   EXPECT_THAT(result.warnings, Contains(HasSubstr("circles")));
 }
 
-TEST(GpsFit, HeightDoesNotConstrainTheLevel) {
+TEST(GpsFit, HeightAloneDoesNotDetermineTheLevel) {
   const RefitResult result = fit(flight("c130-eq18", warm_thermometer), law(), {"height"});
   EXPECT_LT(std::abs(error_of(result)), 0.1) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);
@@ -136,7 +136,7 @@ TEST(GpsFit, RefusesStages) {
       pcor::refit({flight("c130-circles")}, model, pcor::read_references({"wind"}, model, {}).used, options));
 }
 
-TEST(GpsFit, RefusesAPriorAndALossByGpsAlone) {
+TEST(GpsFit, GpsAloneRefusesAPriorAndALoss) {
   const ModelDefinition model = law();
   const auto references = pcor::read_references({"wind"}, model, {}).used;
   pcor::RefitOptions with_prior;
@@ -147,7 +147,7 @@ TEST(GpsFit, RefusesAPriorAndALossByGpsAlone) {
   EXPECT_ANY_THROW(pcor::refit({flight("c130-circles")}, model, references, with_loss));
 }
 
-TEST(GpsFit, NamesACoefficientAtItsBound) {
+TEST(GpsFit, CoefficientAtItsBoundIsReported) {
   ModelDefinition model = no_law();
   // A third below what the flight wants.
   model.fits.resize(model.model.effects.size());
@@ -183,12 +183,12 @@ TEST(GpsFit, WarnsIfItDoesNotConverge) {
   }
 }
 
-TEST(GpsFit, UsesGusts) {
+TEST(GpsFit, GustsAreNotExcluded) {
   const RefitResult result = fit(flight("c130-eq18"), law(), {"wind"});
   EXPECT_EQ(result.masks[static_cast<std::size_t>(pcor::Mask::burst)], 0U);
 }
 
-TEST(GpsFit, JackknifeOfAJointFitIsThatOfAllReferences) {
+TEST(GpsFit, JackknifeUsesAllReferences) {
   const RefitResult laser = fit(flight("c130-circles"), no_law(), {"lams"});
   const RefitResult all = fit(flight("c130-circles"), no_law(), {"wind", "lams"});
   EXPECT_NE(all.parameters[0].jackknife_error, laser.parameters[0].jackknife_error);

@@ -86,7 +86,7 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
 using IntervalOffsetsOfLeastSquares = IntervalOffsets;
 using IntervalOffsetsOfAnyLoss = IntervalOffsets;
 
-TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
+TEST_P(IntervalOffsetsOfLeastSquares, EqualTheSolutionForAllUnknowns) {
   const Solution found = solution();
   std::vector<Eigen::MatrixXd> columns;  // derivatives of each flight by the slopes and by its offsets
   std::vector<Eigen::VectorXd> residuals;
@@ -137,7 +137,7 @@ TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
 
 INSTANTIATE_TEST_SUITE_P(Stage, IntervalOffsetsOfLeastSquares, testing::Values(Loss::none));
 
-TEST_P(IntervalOffsetsOfAnyLoss, LeaveTheDerivativesOfTheLeastLoss) {
+TEST_P(IntervalOffsetsOfAnyLoss, GradientEqualsDifferencesOfTheMinimumLoss) {
   const ScaledLoss loss(GetParam(), 1.0);
   Eigen::VectorXd values = task_.start + Eigen::Vector3d(0.0, 0.0005, 0.0005);
   const Reduction reduction = stage_->reduce(values, loss);

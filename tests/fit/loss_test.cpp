@@ -36,7 +36,7 @@ TEST(Loss, ReducesTheWeightOfOutliers) {
   EXPECT_LT(weight(Loss::huber, 4.1), 1.0);
 }
 
-TEST(Loss, IsLeastSquaresWhereThereIsNoDeviation) {
+TEST(Loss, ZeroDeviationGivesLeastSquares) {
   for (const Loss loss : losses) EXPECT_TRUE(internal::ScaledLoss(loss, 0.0).is_least_squares());
 }
 

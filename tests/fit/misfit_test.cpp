@@ -33,10 +33,10 @@ RefitResult fit(double (*defect)(double, double, double, double)) {
 
 }  // namespace
 
-TEST(Misfit, OfARightLawIsBelowItsNoise) { EXPECT_LT(fit(made::equation_18).left, 0.05); }
+TEST(Misfit, CorrectLawHasAMisfitBelowTheNoise) { EXPECT_LT(fit(made::equation_18).left, 0.05); }
 
 // A missing roll gave a load factor of 10.
-TEST(Misfit, HasNoLoadFactorWithoutRoll) {
+TEST(Misfit, MissingRollGivesNoLoadFactor) {
   made::Plan plan;
   plan.defect = made::equation_18;
   FlightSamples samples = made::flight(plan);
@@ -60,7 +60,7 @@ TEST(Misfit, HasNoLoadFactorWithoutRoll) {
   EXPECT_GT(bumps.bottomRows(without).norm(), 1.0);
 }
 
-TEST(Misfit, OfALawThatLacksAFunctionOfTheStateIsItsSize) {
+TEST(Misfit, MisfitEqualsTheSizeOfAMissingTerm) {
   const RefitResult right = fit(made::equation_18);
   const RefitResult wrong = fit(curved);
   // The part that the law cannot follow increases the residual: the squares add up.

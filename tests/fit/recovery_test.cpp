@@ -84,7 +84,7 @@ void expect_recovery(const Study& study) {
 
 }  // namespace
 
-TEST(Recovery, OfEquation18) {
+TEST(Recovery, RecoversEquation18) {
   const Study result = study("c130-eq18", "c130-psfd-eq18", {});
   expect_recovery(result);
   // The memo: rms 0.00045 of p. Simulated noise that is as large, within a fifth.
@@ -92,14 +92,14 @@ TEST(Recovery, OfEquation18) {
   EXPECT_GT(result.r_squared, 0.75);
 }
 
-TEST(Recovery, OfEquation19InStages) {
+TEST(Recovery, RecoversEquation19InStages) {
   pcor::RefitOptions options;
   options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-alpha"}},
                     {{pcor::Regime::yaw_manoeuvre}, {"static-beta-odd"}}};
   expect_recovery(study("c130-eq19", "c130-psfd-eq19", options));
 }
 
-TEST(Recovery, OfEquation20WithAnIndependentMachNumber) {
+TEST(Recovery, RecoversEquation20WithAnIndependentMachNumber) {
   const Study result = study("gv-eq20", "gv-psf-eq20", {});
   expect_recovery(result);
   // The memo: rms 0.00081 of p, r 0.97.
@@ -157,7 +157,7 @@ TEST(Recovery, EffectsBeforeTheLaserGiveNoFalseFinding) {
   }
 }
 
-TEST(Recovery, OfAFlightWithoutManoeuvresIsExplained) {
+TEST(Recovery, FlightWithoutManoeuvresIsReported) {
   const pcor::test::TemporaryDirectory directory;
   pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-no-manoeuvres.toml"), directory / "flight.nc");
   const pcor::RefitResult fit =

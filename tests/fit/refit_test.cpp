@@ -84,7 +84,7 @@ Eigen::Vector3d normal_equations(const FlightSamples& samples, double* rms = nul
 
 }  // namespace
 
-TEST(Refit, ReturnsTheTruthWithoutNoise) {
+TEST(Refit, RecoversTheTruthWithoutNoise) {
   made::Plan plan = plan_18(1);
   plan.noise = 0.0;
   const RefitResult result = fit({made::shared(plan)}, made::model(equation_18));
@@ -96,7 +96,7 @@ TEST(Refit, ReturnsTheTruthWithoutNoise) {
   EXPECT_NEAR(result.r_squared, 1.0, 1e-12);
 }
 
-TEST(Refit, OfALinearModelIsTheLeastSquares) {
+TEST(Refit, LinearModelGivesLeastSquares) {
   // With noise of one level in each five minutes the weights differ little, so the test uses noise-free
   // samples and a misfit. Without noise all weights are one.
   made::Plan plan = plan_18(2);
@@ -131,7 +131,7 @@ TEST(Refit, StatesItsErrors) {
   }
 }
 
-TEST(Refit, DoesNotMindOutliers) {
+TEST(Refit, IsRobustAgainstOutliers) {
   const ModelDefinition model = made::model(equation_18);
   made::Plan plan = plan_18(3);
   const auto clean = by_name(fit({made::shared(plan)}, model));
@@ -153,7 +153,7 @@ TEST(Refit, DoesNotMindOutliers) {
   EXPECT_LT(bursts, 900U);
 }
 
-TEST(Refit, AddsFlightsUp) {
+TEST(Refit, TwoFlightsEqualOneLongFlight) {
   // Two halves of a flight, and the whole flight, with equal weights: equal least squares.
   made::Plan plan = plan_18(4);
   plan.noise = 0.0;
@@ -174,7 +174,7 @@ TEST(Refit, AddsFlightsUp) {
   ASSERT_EQ(both.flights.size(), 2U);
 }
 
-TEST(Refit, DoesNotDependOnWhatIsKeptInMemory) {
+TEST(Refit, ResultIsIndependentOfTheMemoryLimit) {
   const Flights flights{made::shared(plan_18(6)), made::shared(plan_18(7))};
   const auto kept = by_name(fit(flights, made::model(equation_18)));
   const pcor::FlightSet without({flights[0], flights[1]}, {{}, &pcor::serial_communicator(), 0});
@@ -182,7 +182,7 @@ TEST(Refit, DoesNotDependOnWhatIsKeptInMemory) {
     EXPECT_NEAR(parameter.value, kept.at(name).value, 1e-12) << name;  // sums in another order: rounding
 }
 
-TEST(Refit, HoldsWhatIsFixed) {
+TEST(Refit, FixedCoefficientsAreUnchanged) {
   ModelDefinition model = made::model(equation_18);
   model.model.effects[1].parameters = {0.02};
   RefitOptions options;
@@ -275,7 +275,7 @@ TEST(Refit, FitsSlopesToManoeuvresFirst) {
   EXPECT_GT(std::abs(at_once.value - truth_18.at("static-alpha.a1")), 10.0 * at_once.standard_error);
 }
 
-TEST(Refit, CanFitEverythingInStages) {
+TEST(Refit, StagesFitAllCoefficients) {
   FlightSamples samples = made::flight(plan_18(17));
   pcor::Interval first;
   first.regime = pcor::Regime::pitch_manoeuvre;
@@ -303,7 +303,7 @@ TEST(Refit, CanFitEverythingInStages) {
               IsError(Error::Code::fit, "--stage", "static-constant.a0"));
 }
 
-TEST(Refit, DrawsToItsStartWhatTheFlightsLeaveOpen) {
+TEST(Refit, PriorDeterminesCollinearCoefficients) {
   // An hour of samples outweighs the prior; the prior decides nearly collinear terms.
   const auto samples = made::shared(plan_18(18));
   RefitOptions with_prior;
@@ -320,7 +320,7 @@ TEST(Refit, DrawsToItsStartWhatTheFlightsLeaveOpen) {
   }
 }
 
-TEST(Refit, AddedEffectsStayNearTheirTypicalSizeUnlessTheFlightsDetermineThem) {
+TEST(Refit, PriorLimitsUndeterminedAddedEffects) {
   const auto samples = made::shared(plan_18(18));
   RefitOptions options;
   options.added = {"static-alpha", "static-mach", "static-mach2", "static-mach3"};
@@ -374,7 +374,7 @@ TEST(Refit, GlobalSearchFindsOptimumThatTheStartMisses) {
   EXPECT_NEAR(by_name(with).at("wave.w").value, 0.031, 1e-4);
 }
 
-TEST(Refit, ComparesWithHeldOutSamples) {
+TEST(Refit, ReportsHeldOutStatistics) {
   RefitOptions options;
   options.training_share = 0.5;
   const RefitResult result = fit({made::shared(plan_18(14))}, made::model(equation_18), options);
@@ -387,7 +387,7 @@ TEST(Refit, ComparesWithHeldOutSamples) {
   EXPECT_EQ(result.worse, "");
 }
 
-TEST(Refit, TheStartDoesNotDecideWhichSamplesTakePart) {
+TEST(Refit, StartDoesNotDetermineWhichSamplesAreUsed) {
   // Gusts of ten seconds in the dynamic pressure: with a wrong a2 the residual jumps with it, as in a burst.
   FlightSamples samples = made::flight(plan_18(16));
   std::vector<double>& reference = made::reference_pressure(samples);
@@ -413,7 +413,7 @@ TEST(Refit, TheStartDoesNotDecideWhichSamplesTakePart) {
     EXPECT_NEAR(by_name(far).at(name).value, parameter.value, 0.02 * parameter.standard_error) << name;
 }
 
-TEST(Refit, RefusesAModelWhoseHeldOutPartIsOff) {
+TEST(Refit, BiasedHeldOutPartIsReported) {
   made::Plan plan = plan_18(14);
   FlightSamples samples = *made::shared(plan);
   std::vector<double>& reference = made::reference_pressure(samples);
@@ -430,7 +430,7 @@ TEST(Refit, RefusesAModelWhoseHeldOutPartIsOff) {
   EXPECT_EQ(result.worse, part->text());
 }
 
-TEST(Refit, RefusesWhatCannotBeDone) {
+TEST(Refit, ImpossibleFitsAreRefused) {
   const ModelDefinition model = made::model(equation_18);
   made::Plan plan = plan_18(15);
   EXPECT_THAT(refusal({}, model), IsError(Error::Code::usage));
@@ -455,7 +455,7 @@ TEST(Refit, RefusesWhatCannotBeDone) {
               IsError(Error::Code::usage, "static-alfa", "static-alpha"));
 }
 
-TEST(Refit, WritesWhatItFound) {
+TEST(Refit, WrittenModelHasTheFittedValues) {
   const RefitResult result = fit({made::shared(plan_18(16))}, made::model(equation_18));
   const ModelDefinition back = pcor::parse_model(pcor::write_model(result.model), "fitted");
   const auto found = by_name(result);

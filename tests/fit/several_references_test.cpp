@@ -92,7 +92,7 @@ TEST(SeveralReferences, CommonErrorsOfTwoSystemsStayUnresolved) {
   EXPECT_LT(of_one.standard_error, alone.standard_error) << "a lag of one system is seen there";
 }
 
-TEST(SeveralReferences, TellSingleFiguresOfTheFirst) {
+TEST(SeveralReferences, ReportStatisticsOfTheFirstReference) {
   const RefitResult alone = fit(law(), {"pressure:TRUE_PS"});
   const RefitResult both = fit(law(), {"pressure:TRUE_PS", "lams"});
   EXPECT_EQ(both.samples, alone.samples);

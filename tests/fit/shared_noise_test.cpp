@@ -45,7 +45,7 @@ std::vector<double> deviations(std::size_t memory) {
   });
 }
 
-TEST(SharedNoise, FitsALevelForEachFlight) {
+TEST(SharedNoise, EachFlightHasItsOwnNoiseLevel) {
   const std::vector<double> kept = deviations(std::size_t{512} << 20U);
   for (std::size_t f = 0; f < count; ++f) {
     // A level of ten times the common one is moved towards it by 15 % of its logarithm, 10^0.15 = 1.41; 900

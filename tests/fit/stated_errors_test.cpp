@@ -107,7 +107,7 @@ TEST(StatedErrors, HoldInStagesFromAWrongStart) {
   expect_right(scores_of({0.15, 900.0}, seeds, 1, options), seeds, "stages, 0.15 hPa, 900 s");
 }
 
-TEST(StatedErrors, CoverAnErrorOfTheReference) {
+TEST(StatedErrors, IncludeAReferenceError) {
   Nuisance nuisance;
   nuisance.is_off = true;
   expect_right(scores_of(nuisance, seeds, 1), seeds, "reference off");

@@ -109,7 +109,7 @@ TEST(SurfaceFit, FindsABumpThatTheLawLacks) {
   EXPECT_LT(true_error(surface, plan(12, with_bump)), 0.5 * true_error(law, plan(12, with_bump)));
 }
 
-TEST(SurfaceFit, StaysAwayWhereTheLawIsRight) {
+TEST(SurfaceFit, CorrectLawGivesASmallSurface) {
   const made::Plan first = plan(21, made::equation_18);
   const RefitResult surface = fit(law_with_surface(), first);
   // Autocorrelated noise of 0.3 hPa: an independent sample every 6 s, so each degree of freedom adds
@@ -143,7 +143,7 @@ TEST(SurfaceFit, StatesAnErrorThatCoversTheTruth) {
   EXPECT_GT(within / static_cast<double>(samples->time.size()), 0.8);
 }
 
-TEST(SurfaceFit, LoopGivesWhatTheFitWasMadeOf) {
+TEST(SurfaceFit, LoopReproducesTheFittedSurface) {
   const RefitResult found = fit(law_with_surface(), plan(41, with_bump));
   const auto samples = made::shared(plan(41, with_bump));
   const Residuals residuals(samples, found.model, *made::pressure_reference().front());
@@ -162,7 +162,7 @@ TEST(SurfaceFit, LoopGivesWhatTheFitWasMadeOf) {
 }
 
 /// The flight of PCOR_FLIGHTS whose law of 2011 lacks 0.1 hPa with attack.
-TEST(SurfaceFit, PredictsBlocksOfARealFlight) {
+TEST(SurfaceFit, PredictsHeldOutBlocksOfARealFlight) {
   const char* const folder = std::getenv("PCOR_FLIGHTS");
   if (folder == nullptr) GTEST_SKIP() << "PCOR_FLIGHTS does not name a folder of flights";
   const std::filesystem::path path = std::filesystem::path(folder) / "GOTEX-rf06-C130-2004.nc";

@@ -117,7 +117,7 @@ std::vector<std::size_t> bytes_of_exchanges(std::size_t count) {
   return bytes;
 }
 
-TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
+TEST(TeamFit, EachPassExchangesOneTrianglePerFlight) {
   constexpr std::size_t unknowns = 3;
   constexpr std::size_t few = 17;
   constexpr std::size_t many = 34;

@@ -97,7 +97,7 @@ pcor::RefitResult fit_both(const Pair& pair, const std::filesystem::path& flight
 
 // An earlier fit mistook the noise of the difference, which was in the derivatives too, for a signal:
 // started at the truth its error was 27.7 hPa (GV) and 40.2 hPa (C-130), with stated errors of 2e-5.
-TEST(TwoSystems, AtTheTruthStayThere) {
+TEST(TwoSystems, StartAtTheTruthStaysAtTheTruth) {
   const pcor::test::TemporaryDirectory directory;
   const std::size_t seeds = pcor::test::number_of_seeds() / 5;  // 20 in the long tests
   for (const Pair& pair : {c130(), gv()}) {

@@ -9,7 +9,7 @@
 namespace pcor::internal {
 namespace {
 
-TEST(FileState, StaysAsLongAsTheFileDoes) {
+TEST(FileState, IsEqualForAnUnchangedFile) {
   const test::TemporaryDirectory directory;
   const std::filesystem::path path = directory / "flight.nc";
   const FileState absent(path);

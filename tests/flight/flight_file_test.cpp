@@ -74,7 +74,7 @@ std::vector<double> values_of(const Flight& flight, const std::string& name) {
   return values;
 }
 
-TEST(FlightFile, OfAnyFormatIsAFlight) {
+TEST(FlightFile, AnyFormatIsReadAsAFlight) {
   const Flight flight(std::make_unique<MemoryFile>(), pcor::TimestampAlignment::begin);
   EXPECT_EQ(flight.records(), 3U);
   EXPECT_EQ(flight.time().first, 1077062460.0);
@@ -82,7 +82,7 @@ TEST(FlightFile, OfAnyFormatIsAFlight) {
   EXPECT_THAT(values_of(flight, "PSFD"), ElementsAre(700.0, 700.1, 700.2, IsNan(), 700.4, 700.5));
 }
 
-TEST(FlightFile, OfAnyFormatIsCopiedToNetcdf) {
+TEST(FlightFile, AnyFormatIsCopiedToNetcdf) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path output = directory.path() / "out.nc";
   const Flight flight(std::make_unique<MemoryFile>(), pcor::TimestampAlignment::begin);

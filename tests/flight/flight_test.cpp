@@ -170,7 +170,7 @@ TEST_F(FlightTest, DamagedHeaderUsesLittleTimeAndMemory) {
   EXPECT_LT(usage.ru_maxrss, 2 << 20) << "kB";
 }
 
-TEST_F(FlightTest, ACountThatTheFileHasNoRoomForIsDamage) {
+TEST_F(FlightTest, ImpossibleDimensionCountIsRefused) {
   for (const int mode : {0, NC_64BIT_DATA}) {
     { NetcdfMaker(path(), mode).time(sequence(100, 5)); }
     std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
@@ -214,12 +214,12 @@ TEST_F(FlightTest, TimeCountsFromMidnight) {
   EXPECT_THAT(times(), ElementsAre(midnight + 51720, midnight + 51721, midnight + 51722));
 }
 
-TEST_F(FlightTest, TimeMayCrossMidnightWithoutBeginningAgain) {
+TEST_F(FlightTest, TimeMayExceed86400Seconds) {
   make_with_times({86399, 86400, 86401});
   EXPECT_EQ(utc_text(Flight(path()).time().last), "2004-02-19 00:00:01");
 }
 
-TEST_F(FlightTest, TimeMayBeginAgainAtMidnight) {
+TEST_F(FlightTest, TimeMayWrapAtMidnight) {
   make_with_times({86398, 86399, 0, 1});
   EXPECT_THAT(Flight(path()).time().midnight_wraps, ElementsAre(2));
   EXPECT_THAT(times(), ElementsAre(midnight + 86398, midnight + 86399, midnight + 86400, midnight + 86401));
@@ -249,7 +249,7 @@ TEST_F(FlightTest, OldFilesHaveBaseTimeAndTimeOffset) {
   EXPECT_EQ(Flight(path()).time_variable(), "time_offset");
 }
 
-TEST_F(FlightTest, ImpossibleUnitsGiveWayToBaseTime) {
+TEST_F(FlightTest, InvalidTimeUnitsFallBackToBaseTime) {
   for (const char* units :
        {"seconds since 1141-01-00 00:00:00 +0000", "seconds since 1970-1-1 0:00:00 0:00", "s", ""}) {
     {
@@ -263,7 +263,7 @@ TEST_F(FlightTest, ImpossibleUnitsGiveWayToBaseTime) {
   }
 }
 
-TEST_F(FlightTest, SecondsSince1970AreTakenAsTheyAre) {
+TEST_F(FlightTest, SecondsSince1970AreNotShifted) {
   {
     NetcdfMaker maker(path());
     maker.time({midnight + 51720, midnight + 51721}, "seconds since 1970-1-1 0:00:00 0:00");
@@ -271,7 +271,7 @@ TEST_F(FlightTest, SecondsSince1970AreTakenAsTheyAre) {
   EXPECT_THAT(times(), ElementsAre(midnight + 51720, midnight + 51721));
 }
 
-TEST_F(FlightTest, WithoutBaseTimeTheFlightDateServes) {
+TEST_F(FlightTest, WithoutBaseTimeTheFlightDateIsUsed) {
   for (const double first : {51720., 0.}) {
     {
       NetcdfMaker maker(path());
@@ -297,7 +297,7 @@ TEST_F(FlightTest, AmbiguousTimeStatesHowToDefineIt) {
   EXPECT_THAT(refusal(), IsError(Error::Code::time, "1141-01-00", "ncatted -a units,Time"));
 }
 
-TEST_F(FlightTest, ACalendarWhoseYearsHaveOtherDaysIsRefused) {
+TEST_F(FlightTest, NonGregorianCalendarIsRefused) {
   const auto make = [this](const std::string& calendar, const std::string& units) {
     NetcdfMaker maker(path());
     const int time = maker.time({51720, 51721}, units, NC_DOUBLE);
@@ -318,7 +318,7 @@ TEST_F(FlightTest, ACalendarWhoseYearsHaveOtherDaysIsRefused) {
   EXPECT_THAT(refusal(), IsError(Error::Code::time, "1500"));
 }
 
-TEST_F(FlightTest, AZoneIsAnOffsetOrThatOfUtc) {
+TEST_F(FlightTest, TimeZoneMustBeUtcOrAnOffset) {
   for (const char* zone : {"", " UTC", " GMT", " Z", "Z", " +0000", " +00:00"}) {
     { NetcdfMaker(path()).time({51720, 51721}, std::string("seconds since 2004-02-18 00:00:00") + zone); }
     EXPECT_EQ(utc_text(Flight(path()).time().first), "2004-02-18 14:22:00") << zone;
@@ -335,7 +335,7 @@ TEST_F(FlightTest, AZoneIsAnOffsetOrThatOfUtc) {
   }
 }
 
-TEST_F(FlightTest, AnInvalidDateGivesNoTime) {
+TEST_F(FlightTest, InvalidDateIsRefused) {
   for (const char* date : {"2011-13-45", "2011-02-30", "2011-00-10", "2004-049", "0000-01-01"}) {
     { NetcdfMaker(path()).time({51720, 51721}, std::string("seconds since ") + date); }
     EXPECT_THAT(refusal(), IsError(Error::Code::time, "Time", date));
@@ -359,7 +359,7 @@ TEST_F(FlightTest, AYearBeforeOrAfterAllFlightsIsRefused) {
 }
 
 // 20:05:00 in 16 bits is 01:52:44, and the file gives no hint.
-TEST_F(FlightTest, ATimeInTooFewBitsForADayIsRefused) {
+TEST_F(FlightTest, TimeOfLessThan32BitsIsRefused) {
   for (const int type : {NC_SHORT, NC_USHORT, NC_BYTE}) {
     make_with_times({100, 101}, type);
     EXPECT_THAT(refusal(), IsError(Error::Code::time, "Time", "32-bit"));
@@ -398,7 +398,7 @@ TEST_F(FlightTest, RatesAbove1000HzAreRefusedOnRead) {
   EXPECT_THAT(refused(), IsError(Error::Code::variable, "FAST", "1"));
 }
 
-TEST_F(FlightTest, MoreRecordsThanAFlightCanHaveAreRefusedAtOnce) {
+TEST_F(FlightTest, TooManyRecordsAreRefused) {
   { NetcdfMaker(path(), NC_64BIT_DATA).time({100, 101}); }
   std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
   file.seekp(7);  // number of records: 2^35 more
@@ -414,12 +414,12 @@ TEST_F(FlightTest, BackwardTimeReportsRecordAndCount) {
                                  "2 backward", "0 repeated", "ncks -d Time,0,2"));
 }
 
-TEST_F(FlightTest, ARepeatedTimeNamesTheRecord) {
+TEST_F(FlightTest, RepeatedTimeReportsTheRecord) {
   make_with_times({100, 101, 101, 102});
   EXPECT_THAT(refusal(), IsError(Error::Code::time, "record 2", "0 backward", "1 repeated"));
 }
 
-TEST_F(FlightTest, AMissingTimeNamesTheRecord) {
+TEST_F(FlightTest, MissingTimeReportsTheRecord) {
   {
     NetcdfMaker maker(path());
     const int time = maker.time({}, "seconds since 2004-02-18 00:00:00 +0000");
@@ -440,7 +440,7 @@ TEST_F(FlightTest, GapsAreAllowedAndListed) {
   EXPECT_EQ(flight.time().gaps[1].record, 4);
 }
 
-TEST_F(FlightTest, StepsMayBeIrregularAndBrokenSeconds) {
+TEST_F(FlightTest, TimeStepsMayBeIrregularAndFractional) {
   make_with_times({100, 101.1, 101.9, 103}, NC_DOUBLE);
   const Flight flight(path());
   EXPECT_FALSE(flight.time().whole_seconds);
@@ -470,7 +470,7 @@ TEST_F(FlightTest, SamplesLieInTheMiddleOfTheirIntervals) {
 
 // Variables
 
-TEST_F(FlightTest, AMissingVariableSuggestsThoseThatLookLikeIt) {
+TEST_F(FlightTest, MissingVariableSuggestsSimilarNames) {
   {
     NetcdfMaker maker(path());
     maker.time({100});
@@ -515,7 +515,7 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
       << "no role, so no model to change";
 }
 
-TEST_F(FlightTest, NoMoreThanSixVariablesThatFitAreNamed) {
+TEST_F(FlightTest, AtMostSixMatchingVariablesAreListed) {
   {
     NetcdfMaker maker(path());
     maker.time({100});
@@ -553,7 +553,7 @@ TEST_F(FlightTest, ModelUnitOverridesFileUnit) {
                 IsError(Error::Code::unit, wrong, "BARE", "unit.static_pressure", "[units]"));
 }
 
-TEST_F(FlightTest, AttributesComeWithoutTrailingNul) {
+TEST_F(FlightTest, TrailingNulOfAttributesIsRemoved) {
   {
     NetcdfMaker maker(path());
     maker.time({100});
@@ -570,7 +570,7 @@ TEST_F(FlightTest, AttributesComeWithoutTrailingNul) {
   EXPECT_EQ(flight.flight_number(), "");
 }
 
-TEST_F(FlightTest, EveryMarkOfMissingValuesBecomesNan) {
+TEST_F(FlightTest, EveryMissingValueMarkerBecomesNan) {
   {
     NetcdfMaker maker(path(), 0);
     maker.time({100, 101, 102, 103, 104});
@@ -707,7 +707,7 @@ TEST_F(FlightTest, AircraftAttributeIsReadInEverySpelling) {
   EXPECT_EQ(Flight(path()).aircraft(), "N677F");
 }
 
-TEST_F(FlightTest, CapitalsAndACommaInTheUnitOfTimeAreRead) {
+TEST_F(FlightTest, TimeUnitsMayHaveCapitalsAndAComma) {
   {
     NetcdfMaker maker(path());
     maker.time({804988800, 804988801}, "Seconds since 1970-01-01, 00:00:00 UTC");
@@ -733,7 +733,7 @@ TEST_F(FlightTest, TimeIsFoundByDimensionOrStandardName) {
   }
 }
 
-TEST_F(FlightTest, AdviceOnTheTimeNamesTheDayIfKnown) {
+TEST_F(FlightTest, TimeErrorStatesTheDateIfKnown) {
   const auto refusal_with = [this](const char* date) {
     {
       NetcdfMaker maker(path());
@@ -891,7 +891,7 @@ TEST_F(FlightTest, RequiredVariableWithoutValuesIsAnError) {
   EXPECT_NO_THROW(flight.require_values("QCF"));
 }
 
-TEST_F(FlightTest, UnitsAreConvertedByTheFilesAttribute) {
+TEST_F(FlightTest, UnitsAreConvertedByTheUnitsAttribute) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101});
@@ -950,7 +950,7 @@ TEST_F(FlightTest, OtherVariablesAreListedAndRefused) {
 
 // netCDF cache settings apply to the variables being read, not to all files of the program that links the
 // library.
-TEST_F(FlightTest, KeepsTheChunkCacheOfTheProgram) {
+TEST_F(FlightTest, ChunkCacheOfTheProgramIsUnchanged) {
   make_with_times({0, 1, 2});
   const auto cache = [] {
     std::size_t bytes = 0, slots = 0;
@@ -974,7 +974,7 @@ TEST_F(FlightTest, ABlockBeyondTheEndIsRefused) {
 
 // Rates
 
-TEST_F(FlightTest, RatesSideBySideAreReadAtEither) {
+TEST_F(FlightTest, VariablesOfDifferentRatesAreRead) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101});
@@ -998,7 +998,7 @@ TEST_F(FlightTest, RatesSideBySideAreReadAtEither) {
   EXPECT_THAT(error_of([&] { at(6, "FAST"); }), IsError(Error::Code::samples, "FAST", "4", "6"));
 }
 
-TEST_F(FlightTest, AnglesAverageOnTheCircle) {
+TEST_F(FlightTest, AnglesAreAveragedOnTheCircle) {
   {
     NetcdfMaker maker(path());
     maker.time({100, 101, 102});
@@ -1065,7 +1065,7 @@ TEST_F(FlightTest, BlocksHoldEachRecordOnceAndReadContiguously) {
 
 // The real thing
 
-TEST(RealFlight, OfJuly2004IsRead) {
+TEST(RealFlight, FlightOfJuly2004IsRead) {
   const char* flights = std::getenv("PCOR_FLIGHTS");
   if (flights == nullptr) GTEST_SKIP() << "set PCOR_FLIGHTS to the directory of the reference flights";
   const Flight flight(std::filesystem::path(flights) / "GOTEX-rf06-C130-2004.nc");

@@ -306,7 +306,7 @@ TEST_F(FlightWriterTest, ValuesOutsideFloatRangeAreMissing) {
   EXPECT_THAT(Written(output).values("PSXC"), ElementsAre(-32767, -32767, -32767, 3));
 }
 
-TEST_F(FlightWriterTest, TimesThatAreNotWholeSecondsAreKept) {
+TEST_F(FlightWriterTest, FractionalTimesAreKept) {
   {
     NetcdfMaker maker(input);
     maker.time({100.5, 101.5}, "seconds since 2004-02-18 00:00:00 +0000", NC_DOUBLE);
@@ -344,7 +344,7 @@ TEST_F(FlightWriterTest, CopiesAreIdenticalForEveryFileKind) {
   }
 }
 
-TEST_F(FlightWriterTest, TextAttributesThatAreStringsAreCopied) {
+TEST_F(FlightWriterTest, StringAttributesAreCopied) {
   {
     NetcdfMaker maker(input);
     maker.time({100});
@@ -359,7 +359,7 @@ TEST_F(FlightWriterTest, TextAttributesThatAreStringsAreCopied) {
   EXPECT_EQ(Flight(output).variable("PSFD").long_name, "Static");
 }
 
-TEST_F(FlightWriterTest, BlocksMakeTheWhole) {
+TEST_F(FlightWriterTest, BlocksFormTheWholeFile) {
   constexpr std::size_t records = 2 * pcor::records_per_block + 3;
   for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
     NewFlight start{midnight};
@@ -394,7 +394,7 @@ TEST_F(FlightWriterTest, RefusesAnExistingName) {
   EXPECT_THAT(error_of([&] { writer.copy("PSFX"); }), IsError(Error::Code::variable, "PSFX", "PSFD"));
 }
 
-TEST_F(FlightWriterTest, AVariableThatWasNotWrittenInFullIsAnError) {
+TEST_F(FlightWriterTest, IncompleteVariableIsAnError) {
   make_input_of(NC_NETCDF4);
   const Flight flight(input);
   {
@@ -504,7 +504,7 @@ TEST_F(FlightWriterTest, TimesMustIncrease) {
 
 // Atomic output
 
-TEST_F(FlightWriterTest, OutputAppearsAtTheEnd) {
+TEST_F(FlightWriterTest, OutputExistsOnlyAfterFinish) {
   {
     FlightWriter writer(output, NewFlight{midnight}, {});
     writer.write_time_stamps({0, 1}, &midnight);
@@ -518,7 +518,7 @@ TEST_F(FlightWriterTest, OutputAppearsAtTheEnd) {
   EXPECT_EQ(directory.entries(), 1);
 }
 
-TEST_F(FlightWriterTest, AnExistingFileIsReplacedOnlyByAWholeOne) {
+TEST_F(FlightWriterTest, FailureKeepsTheExistingFile) {
   std::ofstream(output) << "old";
   std::filesystem::permissions(output,
                                std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
@@ -561,7 +561,7 @@ TEST_F(FlightWriterTest, UnfinishedOutputIsHiddenAndRemovedOnSignal) {
   }
 }
 
-TEST_F(FlightWriterTest, AFinishedFileStaysAtASignal) {
+TEST_F(FlightWriterTest, FinishedFileIsNotRemovedOnSignal) {
   FlightWriter writer(output, NewFlight{midnight}, {});
   writer.write_time_stamps({0, 1}, &midnight);
   writer.finish();
@@ -579,7 +579,7 @@ TEST_F(FlightWriterTest, UnfinishedFilesBeyondListLimitAreWritten) {
   EXPECT_EQ(directory.entries(), 20);
 }
 
-TEST_F(FlightWriterTest, ANewFileHasThePermissionsOfAnyNewFile) {
+TEST_F(FlightWriterTest, NewFileHasDefaultPermissions) {
   pcor::AtomicFile file(output);
   file.commit();
   const auto other = directory / "other";
@@ -587,13 +587,13 @@ TEST_F(FlightWriterTest, ANewFileHasThePermissionsOfAnyNewFile) {
   EXPECT_EQ(std::filesystem::status(output).permissions(), std::filesystem::status(other).permissions());
 }
 
-TEST_F(FlightWriterTest, AnOutputsNameMayBeAsLongAsTheDiskAllows) {
+TEST_F(FlightWriterTest, OutputNameMayHaveMaximumLength) {
   const auto longest = directory / std::string(255, 'n');
   pcor::AtomicFile(longest).commit();
   EXPECT_TRUE(std::filesystem::exists(longest));
 }
 
-TEST_F(FlightWriterTest, TheInputIsNeverTheOutputNotEvenByALink) {
+TEST_F(FlightWriterTest, InputOrLinkToItAsOutputIsRefused) {
   make_input_of(0);
   const std::string before = contents(input);
   const auto hard = directory / "hard.nc", soft = directory / "soft.nc";
@@ -679,7 +679,7 @@ TEST_F(FlightWriterTest, FileSizeLimitWritesNoOutput) {
   EXPECT_EQ(write_much(output, NetcdfFormat::netcdf4), std::nullopt) << "and the next file is whole";
 }
 
-TEST_F(FlightWriterTest, AFullDiskIsSaidToBeFull) {
+TEST_F(FlightWriterTest, FullDiskIsAnOutputError) {
   const auto disk = directory / "disk";
   std::filesystem::create_directory(disk);
   if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=300k") != 0)
@@ -693,7 +693,7 @@ TEST_F(FlightWriterTest, AFullDiskIsSaidToBeFull) {
 
 // The real thing
 
-TEST_F(FlightWriterTest, TheReferenceFlightIsCopiedWhole) {
+TEST_F(FlightWriterTest, ReferenceFlightIsCopiedCompletely) {
   const char* flights = std::getenv("PCOR_FLIGHTS");
   if (flights == nullptr) GTEST_SKIP() << "set PCOR_FLIGHTS to the directory of the reference flights";
   const Flight flight(std::filesystem::path(flights) / "GOTEX-rf06-C130-2004.nc");

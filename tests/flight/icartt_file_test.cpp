@@ -46,7 +46,7 @@ std::vector<double> values_of(const Flight& flight, const std::string& name) {
 
 const std::string values = "47076, 850, 300, 0.3\n47077,-9999,-8888, 0.31\r\n47078, 852.5, 310, -7777\n";
 
-TEST_F(Icartt, IsAFlight) {
+TEST_F(Icartt, IsReadAsAFlight) {
   const Flight flight(write(head + values));
   EXPECT_EQ(flight.records(), 3U);
   EXPECT_EQ(flight.time().first, 1541289600.0 + 47076.0) << "the midnight of 2018-11-04";
@@ -85,7 +85,7 @@ TEST_F(Icartt, ErrorNamesTheLine) {
   EXPECT_THAT(refusal("70 people"), test::IsError(Error::Code::file, "flight.ict"));
 }
 
-TEST_F(Icartt, RecordWithoutLineEndIsLeftOut) {
+TEST_F(Icartt, TruncatedLastRecordIsDroppedAndReported) {
   // 0.35 may be 0.359, and a record of two numbers has lost two.
   for (const char* const cut : {"47079, 850, 300, 0.35", "47079, 850"}) {
     const Flight flight(write(head + values + cut));
@@ -95,7 +95,7 @@ TEST_F(Icartt, RecordWithoutLineEndIsLeftOut) {
   EXPECT_TRUE(Flight(write(head + values)).file().notes().empty());
 }
 
-TEST_F(Icartt, RecordWithoutLineEndIsKeptWhereComplete) {
+TEST_F(Icartt, CompleteLastRecordWithoutLineEndIsKept) {
   // All last fields have two decimals, or are flags; a cut would leave fewer.
   const std::string fixed = "47076, 850, 300, 0.30\n47077, 850, 300, -9999\n47078, 851, 300, 0.31\n";
   const Flight whole(write(head + fixed + "47079, 850, 300, 0.35"));
@@ -112,7 +112,7 @@ TEST_F(Icartt, RecordWithoutLineEndIsKeptWhereComplete) {
   EXPECT_EQ(Flight(write(head + "47076, 1, 1, 31\n47077, 1, 1, 310\n47078, 1, 1, 31")).records(), 2U);
 }
 
-TEST_F(Icartt, ACompressedFileIsToUnpack) {
+TEST_F(Icartt, CompressedFileErrorSuggestsGunzip) {
   path_ = folder_.path() / "flight.ict.gz";
   write("\x1f\x8b");
   EXPECT_THAT(test::error_of([this] { Flight flight(path_); }),

@@ -41,7 +41,7 @@ class RecordsOfAClassicFile : public testing::TestWithParam<std::size_t> {};
 
 // Small ones are read through a large buffer, large ones are brought into memory and read in small pieces,
 // and the longest are not.
-TEST_P(RecordsOfAClassicFile, AreReadInAnyOrderOfBlocks) {
+TEST_P(RecordsOfAClassicFile, BlocksAreReadInAnyOrder) {
   constexpr std::size_t records = 7;
   const std::size_t wide = GetParam();
   const test::TemporaryDirectory directory;

@@ -49,7 +49,7 @@ class CountingReference final : public Reference {
   std::shared_ptr<Counts> counts_;
 };
 
-TEST(FlightReads, OfAnImprovementAreOneForEachSetOfRoles) {
+TEST(FlightReads, ImproveReadsFlightsOncePerSetOfRoles) {
   const test::TemporaryDirectory directory;
   std::vector<std::filesystem::path> paths;
   for (const std::uint64_t seed : {101U, 102U, 103U}) {

@@ -235,7 +235,7 @@ Diagnosis two_rivals(const std::string& one, const std::string& other, double pr
   return unclear;
 }
 
-TEST_F(Improve, TakesTheRivalOfTheLeastExpectedError) {
+TEST_F(Improve, ChoosesTheRivalOfMinimumExpectedError) {
   diagnoses_ = {two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.5};
   changes_ = {{"static-lag", 0.8}, {"total-lag", 1.2}};
@@ -253,7 +253,7 @@ TEST_F(Improve, TakesTheRivalOfTheLeastExpectedError) {
             write_model(improvement.model));
 }
 
-TEST_F(Improve, IrrelevantChoiceTakesTheNamedCandidate) {
+TEST_F(Improve, EqualRivalsKeepTheNamedEffect) {
   diagnoses_ = {two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.5};
   changes_ = {{"static-lag", 0.8}, {"total-lag", 0.81}};  // hPa, at a noise of 0.25
@@ -428,7 +428,7 @@ TEST_F(Improve, HeldOutBiasPreventsSilentVerdict) {
                                              HasSubstr("0.272 hPa"), HasSubstr("+- 0.030 hPa")));
 }
 
-TEST_F(Improve, WithoutHeldOutFlightsPartsInTurnCount) {
+TEST_F(Improve, WithoutHeldOutFlightsCrossValidationDecides) {
   loop_.has_holdout = false;
   Diagnosis first = diagnosis(Verdict::identified, {"static-lag"});
   Diagnosis second = diagnosis(Verdict::silent);

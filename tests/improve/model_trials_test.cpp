@@ -65,7 +65,7 @@ double rms_between(const std::vector<double>& a, const std::vector<double>& b,
 
 }  // namespace
 
-TEST(Union, HasTheEffectsOfAllOnce) {
+TEST(Union, HasEachEffectOfAllModelsOnce) {
   const ModelDefinition whole = union_of({with("static-mach", 0.01), with("static-beta-odd", 0.02)});
   EXPECT_EQ(whole.model.effects.size(), law().model.effects.size() + 2);
   EXPECT_EQ(coefficients_in(whole, whole).size(), coefficients_in(law(), whole).size());
@@ -87,7 +87,7 @@ TEST(Trials, AModelComparedWithItselfIsEqual) {
   EXPECT_TRUE(std::isnan(comparison_of(flights, 0, 1, true).rms_before)) << "nothing is held out";
 }
 
-TEST(Trials, TheTruthIsBetterAndTheRestWorseByTheSame) {
+TEST(Trials, TrueModelIsBetterAndWrongModelIsWorse) {
   const std::vector<TrialFlight> flights =
       tried({{law()}, {with("static-mach", 0.02)}}, {pcor::lams_reference()});
   const TrialComparison there = comparison_of(flights, 1, 0, false);
@@ -109,7 +109,7 @@ TEST(Trials, NoisyFurtherReferencesAreIgnored) {
   EXPECT_FALSE(comparison.is_better());
 }
 
-TEST(Trials, PartsAreFittedOrHeldOut) {
+TEST(Trials, EverySampleIsFittedOrHeldOut) {
   pcor::RefitOptions options;
   options.training_share = 0.6;
   options.holdout = {flight()};
@@ -121,7 +121,7 @@ TEST(Trials, PartsAreFittedOrHeldOut) {
   EXPECT_EQ(flights[1].held_out.size(), all);
 }
 
-TEST(Trials, StaticPressuresDifferByWhatAnEffectAdds) {
+TEST(Trials, StaticPressuresDifferByTheEffect) {
   // static-constant adds a0 * p to delta-p: 0.001 of it is 0.9 hPa at 900 hPa.
   ModelDefinition more = law();
   more.model.effects[0].parameters[0] += 0.001;

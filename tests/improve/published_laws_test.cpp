@@ -59,7 +59,7 @@ std::string to_string(const testing::TestParamInfo<std::filesystem::path>& info)
 
 }  // namespace
 
-TEST(PublishedLaws, AreTwentyFive) { EXPECT_THAT(laws(), SizeIs(25)); }
+TEST(PublishedLaws, ThereAreTwentyFive) { EXPECT_THAT(laws(), SizeIs(25)); }
 
 TEST_P(PublishedLaw, EveryCommandAcceptsAFlightWithAllVariables) {
   const ModelDefinition file = law(GetParam());
@@ -77,7 +77,7 @@ TEST_P(PublishedLaw, EveryCommandAcceptsAFlightWithAllVariables) {
   }
 }
 
-TEST(Laws, NeedNoThermometerAgainstAPressure) {
+TEST(Laws, PressureReferenceRequiresNoThermometer) {
   ModelDefinition file = law(data / "models" / "c130-psfd-eq18.toml");
   for (const Quantity role : {Quantity::recovery_temperature, Quantity::ambient_temperature,
                               Quantity::vapor_pressure, Quantity::dew_point, Quantity::lams_airspeed})

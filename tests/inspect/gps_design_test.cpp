@@ -62,7 +62,7 @@ class Flown {
 
 }  // namespace
 
-TEST(GpsDesign, CirclesDetermineTheLevelAndOneHeadingDoesNot) {
+TEST(GpsDesign, OnlyCirclesDetermineTheLevel) {
   const GpsDesign circles = Flown("c130-circles").design();
   const GpsDesign one_heading = Flown("c130-one-heading").design();
   // The error of the wind along a single heading is that of delta-p: 1 m/s is about 1 hPa at 100 m/s.
@@ -70,7 +70,7 @@ TEST(GpsDesign, CirclesDetermineTheLevelAndOneHeadingDoesNot) {
   EXPECT_THAT(one_heading.level, Gt(1.0));
 }
 
-TEST(GpsDesign, ErrorOfTheLevelIsThatOfTheRefit) {
+TEST(GpsDesign, LevelErrorAgreesWithRefit) {
   const Flown flown("c130-circles");
   const pcor::RefitResult fit =
       pcor::refit({flown.path()}, flown.model(),

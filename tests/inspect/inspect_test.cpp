@@ -83,7 +83,7 @@ TEST(Inspect, FlightWithoutPressuresHasNoModelAndTheReason) {
   EXPECT_THAT(inspection.intervals, IsEmpty());
 }
 
-TEST(Inspect, UnreadableModelFileIsNamedInANoteAndOthersAreUsed) {
+TEST(Inspect, UnreadableModelFileIsReportedAndOthersAreUsed) {
   const pcor::test::TemporaryDirectory folder;
   std::ofstream(folder / "broken.toml") << "not a model";
   const Inspection inspection = pcor::inspect_flight(

@@ -129,7 +129,7 @@ TEST(Plausibility, HeadingInRadiansLabelledDegreeIsFound) {
   EXPECT_THAT(problems, Contains(problem("THDG", "degree", 2.0 * std::acos(-1.0), 0.1)));
 }
 
-TEST(Plausibility, GroundSpeedInKnotsLabelledMetresASecondContradictsPositions) {
+TEST(Plausibility, GroundSpeedInKnotsLabelledMetresPerSecondIsFound) {
   constexpr double knot = 1852.0 / 3600.0;
   const std::vector<Problem> problems = problems_after([](Recording& recording) {
     for (double& speed : recording.series["GGSPD"]) speed /= knot;

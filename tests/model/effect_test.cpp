@@ -25,13 +25,13 @@ TEST(EffectLocation, NamesResolveToTheirPlace) {
   EXPECT_EQ(location_named("wing"), EffectLocation::count);
 }
 
-TEST(EffectLocation, StaticIsThePlaceOfDeltaP) {
+TEST(EffectLocation, StaticIsTheLocationOfDeltaP) {
   // The name that users' model files hold.
   EXPECT_EQ(location_named("static"), EffectLocation::static_defect);
   EXPECT_EQ(info_of(EffectLocation::static_defect).unit, "hPa");
 }
 
-TEST(EffectLocation, UnitsAreThoseOfWhatTheyAddTo) {
+TEST(EffectLocation, UnitsEqualThoseOfTheCorrectedQuantity) {
   for (const EffectLocation location :
        {EffectLocation::static_transducer, EffectLocation::dynamic_transducer, EffectLocation::static_line,
         EffectLocation::total_line, EffectLocation::static_defect, EffectLocation::pitot,
@@ -56,7 +56,7 @@ TEST(EffectInfo, ClockIsASeparatePlace) {
   EXPECT_EQ(place_of(info), "clock");
 }
 
-TEST(EffectInfo, CountsWhatIsNamed) {
+TEST(EffectInfo, CountsNamedParametersAndInputs) {
   EffectInfo info;
   EXPECT_EQ(info.parameter_count(), 0U);
   EXPECT_EQ(info.need_count(), 0U);

@@ -127,7 +127,7 @@ TEST(Formula, AcceptsEachFunction) {
   for (const auto& [text, value] : examples) EXPECT_DOUBLE_EQ(with_abc(text), value) << text;
 }
 
-TEST(Formula, RaisesToWholePowersByMultiplication) {
+TEST(Formula, IntegerPowersAreProducts) {
   for (const double x : {-3.7, -1.0, 0.1, 1.3, 12.7}) {
     EXPECT_EQ(evaluate("x^2", {{"x", x}}), x * x);
     EXPECT_EQ(evaluate("x^3", {{"x", x}}), x * x * x);
@@ -179,7 +179,7 @@ TEST(Formula, DomainErrorIsNanAndZeroDivisionIsInfinite) {
   EXPECT_EQ(evaluate("1/0"), infinity);
 }
 
-TEST(Formula, NeverChoosesANanAway) {
+TEST(Formula, NanInputGivesNan) {
   for (const char* text : {"min(x, y)", "max(x, y)", "if(x < y, 1, 2)", "if(x <= y, 1, 2)", "if(x > y, 1, 2)",
                            "if(x >= y, 1, 2)", "x^(y-1)", "x^y", "abs(x + y)", "max(x, -0.31) + y"}) {
     EXPECT_THAT(evaluate(text, {{"x", nan}, {"y", 1.0}}), IsNan()) << text;
@@ -201,7 +201,7 @@ TEST(Formula, SeparatesVariablesAndParameters) {
   EXPECT_EQ(formula->value(variables, parameters), 3.0 * 50.0 / 100.0 + 2.0 * 57.0 + 0.25);
 }
 
-TEST(Formula, NeedsNeitherVariablesNorParameters) {
+TEST(Formula, MayHaveNoVariablesOrParameters) {
   const auto formula = Formula::parse("2*pi", {});
   ASSERT_TRUE(formula);
   EXPECT_THAT(formula->variables(), IsEmpty());
@@ -209,7 +209,7 @@ TEST(Formula, NeedsNeitherVariablesNorParameters) {
   EXPECT_EQ(formula->value(none, none), 6.283185307179586);
 }
 
-TEST(Formula, OutlivesTheTextAndCopies) {
+TEST(Formula, CopyIsIndependentOfTextAndOriginal) {
   std::string text = "k*x + sqrt(x)*k";
   auto formula = Formula::parse(text, {"k"});
   ASSERT_TRUE(formula);
@@ -284,7 +284,7 @@ std::string repeated(const std::string& text, std::size_t times) {
   return result;
 }
 
-TEST(FormulaError, BoundsLengthDepthAndNesting) {
+TEST(FormulaError, LimitsLengthDepthAndNesting) {
   // n terms are 2 n - 1 instructions.
   const std::size_t terms = Formula::max_instructions / 2;
   EXPECT_EQ(evaluate("x" + repeated("+x", terms - 1), {{"x", 1.0}}), 128.0);
@@ -316,7 +316,7 @@ TEST(FormulaError, KeepsMessagesShortAndOnOneLine) {
   EXPECT_EQ(error_of("x", {"a\nb"}).find('\n'), std::string::npos);
 }
 
-TEST(FormulaError, MayBeIgnored) {
+TEST(FormulaError, IsOptionalAndUnchangedOnSuccess) {
   EXPECT_FALSE(Formula::parse("1 +", {}));
   FormulaError error{7, "unchanged"};
   EXPECT_TRUE(Formula::parse("1", {}, &error));
@@ -494,7 +494,7 @@ Tree random_tree(std::mt19937& random, int depth) {
 }
 
 // The two do the same operations on the same numbers, so they agree exactly.
-TEST(Formula, AgreesWithTheTreeThatItsTextWasPrintedFrom) {
+TEST(Formula, EqualsTheExpressionTreeOfItsText) {
   std::mt19937 random(20111102);
   int evaluated = 0, finite = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -528,7 +528,7 @@ TEST(Formula, AgreesWithTheTreeThatItsTextWasPrintedFrom) {
   EXPECT_GT(finite, 8000);
 }
 
-TEST(Formula, SurvivesAnyText) {
+TEST(Formula, ArbitraryTextIsParsedOrRejected) {
   const std::string pieces[] = {"x",    "k",   "1",   "2.5", "1e",   "(",    ")",  "+",  "-",
                                 "*",    "/",   "^",   ",",   "<",    "<=",   ">",  "=",  "sqrt(",
                                 "min(", "if(", "pow", "pi",  "\xc3", "\xff", "\n", " ",  ".",

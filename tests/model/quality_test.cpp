@@ -13,15 +13,15 @@ using pcor::QualityInfo;
 
 std::uint32_t bits_of(const QualityInfo& info) { return static_cast<std::uint32_t>(info.bit); }
 
-TEST(QualityInfo, HasOneBitForEachFromTheLowest) {
+TEST(QualityInfo, BitsAreConsecutiveFromTheLowest) {
   for (std::size_t i = 0; i < quality_info.size(); ++i) EXPECT_EQ(bits_of(quality_info[i]), 1U << i);
 }
 
 // A netCDF flag variable of type int, and a float of a host that has no integers, hold them all.
-TEST(QualityInfo, FitsAFloat) { EXPECT_LE(quality_info.size(), 24U); }
+TEST(QualityInfo, AllBitsFitIntoAFloat) { EXPECT_LE(quality_info.size(), 24U); }
 
 // The CF conventions, sec. 3.5: words of letters, digits and _ - . + @, separated by blanks.
-TEST(QualityInfo, HasNamesThatAreFlagMeanings) {
+TEST(QualityInfo, NamesAreValidFlagMeanings) {
   std::set<std::string> names;
   for (const QualityInfo& info : quality_info) {
     EXPECT_THAT(std::string(info.name), testing::MatchesRegex("[a-z][a-z0-9_]*"));
@@ -30,7 +30,7 @@ TEST(QualityInfo, HasNamesThatAreFlagMeanings) {
   }
 }
 
-TEST(QualityFlags, KeepsEachBitApart) {
+TEST(QualityFlags, BitsAreIndependent) {
   for (const QualityInfo& set : quality_info) {
     QualityFlags flags;
     flags.set(set.bit);
@@ -39,7 +39,7 @@ TEST(QualityFlags, KeepsEachBitApart) {
   }
 }
 
-TEST(QualityFlags, IsSetWhereTheConditionHoldsAndStaysSet) {
+TEST(QualityFlags, FalseConditionDoesNotClearABit) {
   const pcor::Quality bit = pcor::Quality::tapered;
   QualityFlags flags;
   flags.set(false, bit);

@@ -29,7 +29,7 @@ TEST(Quantity, NamesResolveToTheirQuantity) {
   EXPECT_EQ(quantity_named(""), Quantity::count);
 }
 
-TEST(Quantity, RolesAreThoseOfTheModelFile) {
+TEST(Quantity, RolesHaveTheNamesOfTheModelFile) {
   const char* roles[] = {"static_pressure",
                          "dynamic_pressure",
                          "recovery_temperature",
@@ -85,7 +85,7 @@ TEST(State, ValuesAreMissingInitially) {
     EXPECT_TRUE(std::isnan(state[static_cast<Quantity>(i)])) << i;
 }
 
-TEST(State, HoldsFurtherVariablesBehindTheQuantities) {
+TEST(State, FurtherVariablesFollowTheQuantities) {
   pcor::State<double> state;
   for (std::size_t i = 0; i < pcor::state_capacity; ++i)
     state[static_cast<Quantity>(i)] = static_cast<double>(i);
@@ -108,7 +108,7 @@ TEST(Quality, BitsAreDistinctAndExplained) {
   }
 }
 
-TEST(QualityFlags, HoldTheBitsThatWereSet) {
+TEST(QualityFlags, SetBitsRemainSet) {
   QualityFlags flags;
   EXPECT_EQ(flags.bits(), 0U);
   flags.set(Quality::tapered);

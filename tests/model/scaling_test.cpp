@@ -13,12 +13,12 @@ TEST(Scaling, IsOneAtReferencePressures) {
     EXPECT_NEAR(factor(scaling, 700.0, 70.0), 1.0, 1e-15);
 }
 
-TEST(Scaling, WithoutExponentIsOne) {
+TEST(Scaling, IsOneWithoutExponents) {
   EXPECT_TRUE(Scaling{}.is_none());
   EXPECT_EQ(factor(Scaling{}, 250.0, 121.0), 1.0);
 }
 
-TEST(Scaling, PutsThePressuresInPowers) {
+TEST(Scaling, IsAProductOfPressurePowers) {
   // 350 hPa is half of 700, 140 hPa twice 70.
   EXPECT_NEAR(factor(Scaling{1, 0}, 350.0, 70.0), 0.5, 1e-15);
   EXPECT_NEAR(factor(Scaling{-1, 0}, 350.0, 70.0), 2.0, 1e-15);
@@ -32,7 +32,7 @@ TEST(Scaling, RequiresItsPressure) {
   EXPECT_TRUE(std::isnan(factor(Scaling{0, -1}, 700.0, missing)));
 }
 
-TEST(Scaling, IsEqualByItsPowers) {
+TEST(Scaling, EqualityComparesExponents) {
   EXPECT_TRUE((Scaling{-1, 1} == Scaling{-1, 1}));
   EXPECT_FALSE((Scaling{-1, 1} == Scaling{1, -1}));
   EXPECT_FALSE((Scaling{0, 1} == Scaling{}));

@@ -23,7 +23,7 @@ ModelDefinition published() { return read_model(models / "c130-psfd-eq18.toml");
 
 std::string archived(const ModelDefinition& model) { return archived_model(model, CorrectWith::model); }
 
-TEST(ArchivedModel, IsTheSameForTheSamePressures) {
+TEST(ArchivedModel, IsEqualForModelsWithEqualPressures) {
   ModelDefinition model = with_calibration(published(), {0.5, -0.01, 1e-4}, {0.1, 0.1, 0.1},
                                            {{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}, {0.0, 0.0, 0.01}});
   model.model.name = "another";

@@ -83,7 +83,7 @@ TEST(Calibration, RemovalRestoresTheModel) {
   }
 }
 
-TEST(Calibration, TakesThePlaceOfTheOneBefore) {
+TEST(Calibration, ReplacesAnEarlierCalibration) {
   const ModelDefinition once = with_calibration(fitted_model(), {-0.3}, {0.01}, {{1e-4}});
   EXPECT_EQ(write_model(with_calibration(with_curve(fitted_model()), {-0.3}, {0.01}, {{1e-4}})),
             write_model(once));
@@ -102,7 +102,7 @@ TEST(Calibration, ReplacesACalibrationAmongOtherEffects) {
   EXPECT_EQ(write_model(with_curve(file)), write_model(with_curve(fitted_model())));
 }
 
-TEST(Calibration, KeepsAFormulaOfTheUser) {
+TEST(Calibration, RemovalKeepsAUserFormula) {
   ModelDefinition file = fitted_model();
   ModelEffect own;
   own.id = "own-thermometer";
@@ -116,7 +116,7 @@ TEST(Calibration, KeepsAFormulaOfTheUser) {
   EXPECT_NEAR(applied(with_curve(file), -40.0), 0.1 + 1.06, 1e-12);
 }
 
-TEST(Calibration, IsWhatAFileReadsBack) {
+TEST(Calibration, WriteAndReadRestoreIt) {
   std::mt19937_64 engine(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (std::size_t terms = 1; terms <= 3; ++terms) {
@@ -158,7 +158,7 @@ TEST(Calibration, IsWhatAFileReadsBack) {
   }
 }
 
-TEST(Calibration, AppliedIsThePolynomialInDegreesCelsius) {
+TEST(Calibration, AppliesThePolynomialInDegreesCelsius) {
   const ModelDefinition file = with_curve(fitted_model());
   // 0.5 - 0.01 t + 0.0001 t^2 by hand; temperatures of 200 to 300 K are rounded to 3e-14 K.
   EXPECT_NEAR(applied(file, -60.0), 1.46, 1e-12);
@@ -187,7 +187,7 @@ ModelDefinition model_with_thermometer() {
   return file;
 }
 
-TEST(Calibration, IsHeldByARefit) {
+TEST(Calibration, RefitKeepsItUnchanged) {
   const auto flight = flight_with_thermometer();
   const ModelDefinition bare = model_with_thermometer();
   const RefitResult without = refit({flight}, bare, made::pressure_reference());
@@ -215,7 +215,7 @@ TEST(Calibration, IsHeldByARefit) {
   }
 }
 
-TEST(Calibration, KeepsItsCovarianceInARefit) {
+TEST(Calibration, RefitKeepsItsCovariance) {
   const Covariance after =
       refit({flight_with_thermometer()}, with_curve(model_with_thermometer()), made::pressure_reference())
           .model.covariance;

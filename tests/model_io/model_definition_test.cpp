@@ -489,7 +489,7 @@ class ModelFileOnDisk : public testing::Test {
 
 }  // namespace
 
-TEST(ModelDefinition, MayLeaveItsVariablesToTheAircraft) {
+TEST(ModelDefinition, VariablesMayComeFromTheAircraftRoles) {
   const ModelDefinition file = parse_model("format = \"pcor-model/1\"\nroles = \"faam-core\"\n", "open.toml");
   EXPECT_TRUE(file.variables.empty());
   EXPECT_EQ(file.roles_from, "faam-core");
@@ -633,7 +633,7 @@ apple = { used = 12, share = 0.5, clean = true }
 }
 
 // Uncertainties of fitted parameters, of parameters that are only considered, and of samples.
-TEST(ModelDefinition, GathersItsUncertainty) {
+TEST(ModelDefinition, ReadsAllUncertainties) {
   const ModelDefinition file = parse_model(minimum + R"([[effect]]
 id = "static-constant"
 parameters = { a0 = 0.004 }
@@ -663,7 +663,7 @@ static_defect_ratio = 0.00045
   EXPECT_FALSE(uncertainty_of(parse_model(minimum, "m.toml")).has_systematic());
 }
 
-TEST(ModelDefinition, AnUncertaintyIsCalledLikeItsResult) {
+TEST(ModelDefinition, UncertaintyIsNamedAfterItsResult) {
   const ModelDefinition file = parse_model(
       minimum + "[output]\nPSXC = \"PSFDC\"\nQCXC = \"QCFC\"\nQCXC_uncertainty = \"U\"\n", "m.toml");
   EXPECT_EQ(file.output_name("PSXC_uncertainty"), "PSFDC_uncertainty");
@@ -671,20 +671,20 @@ TEST(ModelDefinition, AnUncertaintyIsCalledLikeItsResult) {
   EXPECT_EQ(file.output_name("ATX_uncertainty"), "ATX_uncertainty");
 }
 
-TEST(ModelDefinition, AnEffectWithoutBoundsHasThoseOfTheCatalogue) {
+TEST(ModelDefinition, DefaultBoundsAreThoseOfTheCatalogue) {
   const ModelDefinition file = parse_model(minimum + "[[effect]]\nid = \"recovery-factor\"\n", "m.toml");
   EXPECT_EQ(file.bounds(0, 0).lower, -0.2);
   EXPECT_EQ(file.bounds(0, 0).upper, 0.2);
 }
 
-TEST(ModelDefinition, TheThirdApproachOfLamsTakesBothTemperatures) {
+TEST(ModelDefinition, ThirdLamsApproachReadsBothTemperatures) {
   const std::string both = "recovery_temperature = \"RTF1\"\nambient_temperature = \"MTP\"\n";
   const ModelDefinition file = parse_model(minimum + both + "[lams]\napproach = 3\n", "m.toml");
   EXPECT_EQ(file.variables.count(Quantity::recovery_temperature), 1u);
   EXPECT_EQ(file.variables.count(Quantity::ambient_temperature), 1u);
 }
 
-TEST(ModelDefinition, LinesMayEndAsOnWindows) {
+TEST(ModelDefinition, WindowsLineEndsAreAccepted) {
   std::string text = published_example + published_formula;
   for (std::size_t i = text.find('\n'); i != std::string::npos; i = text.find('\n', i + 2)) {
     text.insert(i, "\r");
@@ -749,7 +749,7 @@ void PrintTo(const BadInput& input, std::ostream* stream) { *stream << input.tex
 
 class BadInputTest : public testing::TestWithParam<BadInput> {};
 
-TEST_P(BadInputTest, IsRefusedWithItsPlaceAndNames) {
+TEST_P(BadInputTest, ErrorStatesPositionAndNames) {
   const BadInput& input = GetParam();
   const bool whole = input.text[0] == '\n' || input.text.rfind("format", 0) == 0;
   const std::optional<Error> error = parse_error_of(whole ? input.text : minimum + input.text);
@@ -998,7 +998,7 @@ TEST(ModelDefinition, ChangedRecoveryFactorLosesPublishedName) {
   EXPECT_THAT(write_model(file), HasSubstr("recovery_factor = 0.96\n"));
 }
 
-TEST_F(ModelFileOnDisk, IsNamedInMessages) {
+TEST_F(ModelFileOnDisk, ErrorNamesTheFile) {
   const fs::path path = write("bad.toml", minimum + "[lams]\nelevation = nan\n");
   EXPECT_THAT(read_error_of(path), IsError(Error::Code::definition, path.string() + ":6:13"));
 }
@@ -1008,7 +1008,7 @@ TEST_F(ModelFileOnDisk, AbsentFileOrDirectoryIsRefused) {
   EXPECT_THAT(read_error_of(directory_), IsError(Error::Code::file, directory_.string()));
 }
 
-TEST_F(ModelFileOnDisk, IsSavedAndReplacesAnOlderOne) {
+TEST_F(ModelFileOnDisk, SavingReplacesAnExistingFile) {
   const ModelDefinition file = read_model(write("in.toml", published_example));
   const fs::path output = write("out.toml", "old");
   save_model(file, output, {directory_ / "in.toml"});
@@ -1016,7 +1016,7 @@ TEST_F(ModelFileOnDisk, IsSavedAndReplacesAnOlderOne) {
   EXPECT_EQ(Description::of(read_model(output)), Description::of(file));
 }
 
-TEST_F(ModelFileOnDisk, ThatWasReadIsNeverWrittenOver) {
+TEST_F(ModelFileOnDisk, InputOrLinkToItIsNotOverwritten) {
   const fs::path input = write("in.toml", published_example);
   const ModelDefinition file = read_model(input);
   fs::create_symlink(input, directory_ / "link.toml");
@@ -1040,6 +1040,6 @@ TEST_F(ModelFileOnDisk, UnwritableModelKeepsTheFile) {
   EXPECT_EQ(std::distance(fs::directory_iterator(directory_), fs::directory_iterator()), 1);
 }
 
-TEST_F(ModelFileOnDisk, CannotBeSavedWhereThereIsNoDirectory) {
+TEST_F(ModelFileOnDisk, SavingToAMissingDirectoryFails) {
   EXPECT_THROW(save_model(parse_model(minimum, "m.toml"), directory_ / "none" / "m.toml", {}), Error);
 }

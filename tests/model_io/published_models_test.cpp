@@ -113,7 +113,7 @@ class Law {
   Chain chain_;
 };
 
-TEST(PublishedModels, AreAllThere) {
+TEST(PublishedModels, AreComplete) {
   EXPECT_THAT(model_names(),
               testing::ElementsAre(
                   "c130-psfd-2014", "c130-psfd-2016", "c130-psfd-eq18", "c130-psfd-eq19", "c130-psfd-linear",
@@ -124,7 +124,7 @@ TEST(PublishedModels, AreAllThere) {
                   "gv-psf-friehe", "gv-qcf-avionics-decoded", "gv-qcf-avionics-printed", "gv-qcr-avionics"));
 }
 
-TEST(PublishedModels, TellWhatTheyAre) {
+TEST(PublishedModels, HaveNameAircraftSourceAndNote) {
   std::ifstream file(model_directory / "README.md");
   std::ostringstream text;
   text << file.rdbuf();
@@ -154,7 +154,7 @@ std::string validity(const LawInfo& law) {
   return law.valid_from + (law.valid_to.empty() ? " on" : " to " + law.valid_to);
 }
 
-TEST(PublishedModels, TheTablesSayWhatTheFilesSay) {
+TEST(PublishedModels, TablesAgreeWithTheFiles) {
   std::ifstream file(model_directory / "README.md");
   std::ostringstream text;
   text << file.rdbuf();
@@ -170,7 +170,7 @@ TEST(PublishedModels, TheTablesSayWhatTheFilesSay) {
   }
 }
 
-TEST(PublishedModels, CommentsDoNotBreakAFileName) {
+TEST(PublishedModels, CommentLinesDoNotEndWithAHyphen) {
   for (const std::string& name : model_names()) {
     std::ifstream file(model_directory / (name + ".toml"));
     for (std::string line; std::getline(file, line);) {
@@ -179,7 +179,7 @@ TEST(PublishedModels, CommentsDoNotBreakAFileName) {
   }
 }
 
-TEST(PublishedModels, GiveAValueAndKeepTheTotalPressure) {
+TEST(PublishedModels, GiveFiniteValuesAndKeepTheTotalPressure) {
   const Sample sample;
   for (const std::string& name : model_names()) {
     const Law law(name);
@@ -375,14 +375,14 @@ TEST(PublishedModels, ReproduceTheTableOfTheGv) {
   }
 }
 
-TEST(PublishedModels, TrailingConeAndAvionicsFormulaOfTheGvAreOne) {
+TEST(PublishedModels, DecodedConeAndAvionicsFormulasAreEqual) {
   Sample sample;
   const Law cone("gv-psf-cone-decoded"), avionics("gv-psf-avionics-decoded");
   for (sample.p = 150.0; sample.p < 1000.0; sample.p += 50.0) EXPECT_EQ(cone(sample), avionics(sample));
 }
 
 // As printed the avionics formula implies an error that no aircraft has.
-TEST(PublishedModels, AvionicsFormulaOfTheGvIsNoLawAsPrinted) {
+TEST(PublishedModels, PrintedAvionicsFormulaGivesImpossibleValues) {
   Sample sample;
   sample.p = 250.0;
   sample.q = 123.7;
@@ -474,7 +474,7 @@ TEST(PublishedModels, ReproduceAFlightOf2004) {
 
 // Uncertainties that the memo prints for its fits, and the abstract of the paper of 2014; other sources
 // print no uncertainty.
-TEST(PublishedModels, StateTheUncertaintyThatTheirSourcesPrint) {
+TEST(PublishedModels, StateTheUncertaintyOfTheirSources) {
   const std::map<std::string, double> ratios{{"c130-psfd-eq18", 0.00045}, {"gv-psf-eq20", 0.00081}};
   const std::set<std::string> of_2014{"c130-psfd-2014", "c130-psfrd-2014", "gv-psf-2014"};
   for (const auto& entry :

@@ -54,7 +54,7 @@ TEST(SurfaceFile, RestoresKnotsCoefficientsAndErrors) {
   EXPECT_EQ(write_model(read), write_model(written));
 }
 
-TEST(SurfaceFile, RefusesWhatIsNoSurface) {
+TEST(SurfaceFile, InvalidSurfaceIsRefused) {
   const auto parse = [](const std::string& effect) {
     return [effect] {
       parse_model(

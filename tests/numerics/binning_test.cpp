@@ -45,7 +45,7 @@ std::vector<double> without_outliers(const std::vector<double>& residual, std::s
 
 }  // namespace
 
-TEST(Binning, OfWholeCellsAreMeansOfFourSeconds) {
+TEST(Binning, BinsAreMeansOfFourSeconds) {
   std::vector<double> values(40);
   std::iota(values.begin(), values.end(), 0.0);
   const Binning bins(values, seconds(40), 1.0);
@@ -59,7 +59,7 @@ TEST(Binning, OfWholeCellsAreMeansOfFourSeconds) {
   }
 }
 
-TEST(Binning, EveryRecordOfABinCountsOnceSoSumsStay) {
+TEST(Binning, EachRecordCountsOnce) {
   std::mt19937_64 engine(3);
   std::uniform_real_distribution<double> uniform;
   std::vector<double> residual(997);
@@ -82,7 +82,7 @@ TEST(Binning, EveryRecordOfABinCountsOnceSoSumsStay) {
   EXPECT_LE(counts.maxCoeff(), 4.0);
 }
 
-TEST(Binning, CellsBelowHalfFullEndAStretch) {
+TEST(Binning, CellLessThanHalfFullEndsASegment) {
   std::vector<double> residual(20, 1.0);
   residual[4] = residual[5] = missing;                   // half of the second cell is there
   residual[12] = residual[13] = residual[15] = missing;  // a quarter of the fourth
@@ -96,7 +96,7 @@ TEST(Binning, CellsBelowHalfFullEndAStretch) {
   for (const std::size_t record : bins.records()) EXPECT_NE(record, 14U);
 }
 
-TEST(Binning, AGapInTimeEndsAStretch) {
+TEST(Binning, TimeGapEndsASegment) {
   std::vector<double> time = seconds(40);
   for (std::size_t i = 20; i < 40; ++i) time[i] += 600.0;
   const Binning bins(std::vector<double>(40, 0.0), time, 1.0);
@@ -106,7 +106,7 @@ TEST(Binning, AGapInTimeEndsAStretch) {
 }
 
 // The differences over a minute that begin in one telescope into a difference of means of minutes.
-TEST(Binning, HaveTheRequestedLength) {
+TEST(Binning, BinsHaveTheRequestedLength) {
   const Binning bins(std::vector<double>(300, 0.0), seconds(300), 1.0, 60.0);
   EXPECT_EQ(bins.size(), 5U);
   EXPECT_EQ(bins.time()[1] - bins.time()[0], 60.0);
@@ -118,7 +118,7 @@ TEST(Binning, IsEmptyForNoSamples) {
   EXPECT_EQ(Binning(std::vector<double>(30, missing), seconds(30), 1.0).size(), 0U);
 }
 
-TEST(Binning, OfSlowRecordsIsTheRecords) {
+TEST(Binning, SlowRecordsAreNotAveraged) {
   const std::vector<double> values{1.0, 5.0, 2.0};
   const Binning bins(values, seconds(3, 10.0), 10.0);
   ASSERT_EQ(bins.size(), 3U);
@@ -146,7 +146,7 @@ TEST(Outliers, OnlySpikesAreReplaced) {
   EXPECT_EQ(changed, count);
 }
 
-TEST(Outliers, ALargeSmoothEffectIsNotCut) {
+TEST(Outliers, LargeSmoothEffectIsNotAnOutlier) {
   std::vector<double> residual = noise(3600, 0.1, 2);
   // 4 hPa, forty times the noise, over a climb of five minutes and in pitch manoeuvres of 20 s.
   for (std::size_t i = 600; i < 900; ++i)
@@ -171,7 +171,7 @@ TEST(Outliers, OnlyTheEdgesOfAStepAreOutliers) {
 }
 
 // After a gap nothing is known: a value is not an outlier because it is not zero.
-TEST(Outliers, AStretchMayBeginAnywhere) {
+TEST(Outliers, FirstValueOfASegmentIsNotAnOutlier) {
   std::vector<double> residual = noise(3600, 0.1, 4);
   for (std::size_t i = 1000; i < 1100; ++i) residual[i] += 2.0;
   residual[999] = residual[1100] = missing;

@@ -37,7 +37,7 @@ double least_of_all_ways(const Eigen::MatrixXd& rows, const Eigen::VectorXd& rig
 
 }  // namespace
 
-TEST(BoundedLeastSquares, IsTheLeastOfAllWaysToHoldBounds) {
+TEST(BoundedLeastSquares, IsTheMinimumOverAllActiveSets) {
   std::mt19937_64 engine(7);
   std::normal_distribution<double> normal;
   for (int trial = 0; trial < 300; ++trial) {
@@ -63,7 +63,7 @@ TEST(BoundedLeastSquares, IsTheLeastOfAllWaysToHoldBounds) {
   }
 }
 
-TEST(BoundedLeastSquares, WithoutBoundsIsTheLeastSquares) {
+TEST(BoundedLeastSquares, WithoutBoundsEqualsLeastSquares) {
   const double infinity = std::numeric_limits<double>::infinity();
   Eigen::MatrixXd rows(3, 2);
   rows << 1.0, 0.0, 0.0, 2.0, 1.0, 1.0;

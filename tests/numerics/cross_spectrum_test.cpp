@@ -61,7 +61,7 @@ TEST(CrossSpectrum, FindsADelayAtAllPeriods) {
 }
 
 // y follows x by tau dy/dt + y = x, exactly for an x that is held over a sample.
-TEST(CrossSpectrum, ShowsALagByLessDelayAtShortPeriods) {
+TEST(CrossSpectrum, LagHasLessDelayAtShortPeriods) {
   constexpr std::size_t count = 40000;
   constexpr double tau = 4.0;
   const std::vector<double> source = red(count, 3);

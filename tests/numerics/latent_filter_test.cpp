@@ -8,7 +8,7 @@
 namespace pcor::internal {
 namespace {
 
-TEST(LatentFilter, IsTheCholeskyFactorOfTheCovariance) {
+TEST(LatentFilter, EqualsTheCholeskyFactorOfTheCovariance) {
   // An Ornstein-Uhlenbeck process and a random walk, coupled, at times with gaps.
   const std::vector<double> time{0.0, 1.0, 2.0, 5.0, 6.0, 12.0};
   constexpr double noise = 0.3, memory = 4.0, walk = 0.2, start = 9.0, coupling = 0.5;

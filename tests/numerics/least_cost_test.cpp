@@ -17,7 +17,7 @@ nlopt::opt search() {
   return search;
 }
 
-TEST(LeastCost, IsFound) {
+TEST(LeastCost, MinimumIsFound) {
   std::vector<double> x{2.0, 2.0};
   nlopt::opt bobyqa = search();
   minimize_objective(
@@ -26,7 +26,7 @@ TEST(LeastCost, IsFound) {
   EXPECT_NEAR(x[1], -1.0, 1e-4);
 }
 
-TEST(LeastCost, PassesOnExceptionsOfTheCost) {
+TEST(LeastCost, ExceptionOfTheCostIsRethrown) {
   std::vector<double> x{2.0, 2.0};
   int calls = 0;
   nlopt::opt bobyqa = search();

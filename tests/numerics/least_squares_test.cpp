@@ -35,7 +35,7 @@ Series made(unsigned seed) {
   return series;
 }
 
-TEST(LeastSquares, ErrorsKnowTheMemoryOfTheNoise) {
+TEST(LeastSquares, ErrorsIncludeAutocorrelation) {
   constexpr unsigned count = 300;
   unsigned slopes = 0;
   unsigned offsets = 0;
@@ -65,14 +65,14 @@ TEST(LeastSquares, IgnoresMissingValues) {
   EXPECT_NEAR(less.coefficients[0].value, all.coefficients[0].value, 0.02);  // two of 600 of at most 4
 }
 
-TEST(LeastSquares, OfTooLittleIsNoNumber) {
+TEST(LeastSquares, UndeterminedCoefficientsAreMissing) {
   const Series s = made(1);
   EXPECT_TRUE(std::isnan(least_squares({s.x, s.x}, s.y, s.time, 1.0).coefficients[0].value));
   EXPECT_TRUE(std::isnan(mean_of({1.0, 2.0}, {0.0, 1.0}, 1.0).coefficients[0].value));
   EXPECT_TRUE(std::isnan(mean_of({}, {}, 1.0).coefficients[0].value));
 }
 
-TEST(LeastSquares, IsCombinedByErrors) {
+TEST(LeastSquares, EstimatesAreCombinedByTheirErrors) {
   const Estimated two = combined({{1.0, 0.1}, {1.1, 0.1}});
   EXPECT_NEAR(two.value, 1.05, 1e-12);
   EXPECT_NEAR(two.error, 0.1 / std::sqrt(2.0), 1e-12);

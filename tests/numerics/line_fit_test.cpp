@@ -49,7 +49,7 @@ TEST(LineFit, EqualNoiseFitIsSymmetricInVariables) {
   EXPECT_NEAR(forth.offset, -back.offset / back.slope, 1e-8);
 }
 
-TEST(LineFit, WithNoiseInBothIsBiasedUnlessOrthogonal) {
+TEST(LineFit, OnlyOrthogonalFitIsUnbiasedWithNoiseInBoth) {
   // Noise of x flattens an ordinary fit by var(noise)/var(x) = 1600/13333 = 11 %.
   const Pairs pairs = noisy(20000, 40.0, 40.0, 3);
   const LineFit orthogonal = pcor::orthogonal_fit(pairs.x, pairs.y);
@@ -85,7 +85,7 @@ TEST(LineFit, IgnoresMissingValues) {
   EXPECT_TRUE(std::isnan(pcor::ordinary_fit({1.0, 1.0, 1.0}, {1.0, 2.0, 3.0}).slope));
 }
 
-TEST(LineFit, OfPartsIsThatOfTheWhole) {
+TEST(LineFit, FitOfPartsEqualsFitOfTheWhole) {
   const Pairs pairs = noisy(1000, 0.1, 0.1, 5);
   pcor::PairMoments parts[3];
   for (std::size_t i = 0; i < pairs.x.size(); ++i)

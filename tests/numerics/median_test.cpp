@@ -15,7 +15,7 @@ double by_order(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-TEST(Median, IsTheUpperOfTheMiddleTwo) {
+TEST(Median, IsTheUpperMiddleValue) {
   EXPECT_TRUE(std::isnan(median({})));
   EXPECT_EQ(median({3.0}), 3.0);
   EXPECT_EQ(median({3.0, 1.0}), 3.0);
@@ -23,7 +23,7 @@ TEST(Median, IsTheUpperOfTheMiddleTwo) {
   EXPECT_EQ(median({4.0, 1.0, 2.0, 3.0}), 3.0);
 }
 
-TEST(Median, OfManyValuesIsThatOfTheirOrder) {
+TEST(Median, AgreesWithSortingForManyValues) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   for (const std::size_t count : {99U, 100U, 101U, 10000U, 100001U}) {
@@ -47,7 +47,7 @@ TEST(Median, IgnoresMissingValues) {
 }
 
 /// The first bound is one of 31 values at even distances: here all of them lie beyond the others.
-TEST(Median, DoesNotDependOnTheValuesThatAreLookedAtFirst) {
+TEST(Median, ExtremeSampledValuesDoNotChangeTheResult) {
   constexpr std::size_t count = 16384;
   for (const double odd : {-1e9, 1e9}) {
     std::vector<double> values(count);

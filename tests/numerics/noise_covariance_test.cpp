@@ -31,7 +31,7 @@ NoiseModel noise_of(const Binning& bins) {
 }  // namespace
 
 // Whitening divides by the root of the same covariance, so U' C U of U = C^-1 V is V' C^-1 V.
-TEST(NoiseCovariance, IsTheInverseOfWhitening) {
+TEST(NoiseCovariance, IsInverseToWhitening) {
   const Binning bins = bins_with_a_gap();
   const NoiseModel noise = noise_of(bins);
   const Whitening whitening(bins, noise, 0);
@@ -47,7 +47,7 @@ TEST(NoiseCovariance, IsTheInverseOfWhitening) {
   EXPECT_LT((noise_covariance(u, bins, noise, 0) - expected).norm(), 1e-9 * expected.norm());
 }
 
-TEST(NoiseCovariance, OfWhiteNoiseIsTheSumOfSquares) {
+TEST(NoiseCovariance, WhiteNoiseGivesTheSumOfSquares) {
   const Binning bins = bins_with_a_gap();
   NoiseModel noise;
   noise.level = {Eigen::VectorXd::Constant(static_cast<Eigen::Index>(bins.size()), 0.5)};

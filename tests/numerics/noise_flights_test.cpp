@@ -16,12 +16,12 @@ std::vector<NoiseFlight> flights(std::size_t count) {
   return all;
 }
 
-TEST(NoiseFlights, AreAllOfFew) {
+TEST(NoiseFlights, FewFlightsAreAllUsed) {
   EXPECT_THAT(flights_for_noise(flights(3)), ::testing::ElementsAre(0, 1, 2));
   EXPECT_EQ(flights_for_noise(flights(16)).size(), 16U);
 }
 
-TEST(NoiseFlights, AreThoseOfManyThatTellSomething) {
+TEST(NoiseFlights, InformativeFlightsAreChosenFromMany) {
   for (const std::size_t count : {17U, 34U, 200U}) {
     const std::vector<NoiseFlight> all = flights(count);
     const std::vector<std::size_t> chosen = flights_for_noise(all);
@@ -31,7 +31,7 @@ TEST(NoiseFlights, AreThoseOfManyThatTellSomething) {
   }
 }
 
-TEST(NoiseFlights, AreTheSameInAnyOrder) {
+TEST(NoiseFlights, ChoiceIsIndependentOfFlightOrder) {
   std::vector<NoiseFlight> all = flights(50);
   std::mt19937 chance(1);
   std::vector<double> begins;

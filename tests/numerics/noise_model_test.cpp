@@ -66,7 +66,7 @@ double autocorrelation(const Eigen::VectorXd& series, Eigen::Index lag) {
 }  // namespace
 
 // W C W' = 1: whitening is the inverse root of the covariance, also in stretches shorter than the order.
-TEST(Whitening, TurnsTheCovarianceOfTheProcessIntoUnity) {
+TEST(Whitening, CovarianceBecomesTheIdentity) {
   std::vector<double> residual(23, 1.0);
   residual[2] = residual[5] = residual[14] = missing;  // stretches of 2, 2, 8 and 8
   const Binning bins = bins_of(residual);
@@ -98,7 +98,7 @@ TEST(Whitening, TurnsTheCovarianceOfTheProcessIntoUnity) {
   }
 }
 
-TEST(Whitening, OfEstimatedNoiseIsWhiteAndOfUnitVariance) {
+TEST(Whitening, EstimatedNoiseBecomesWhiteWithUnitVariance) {
   constexpr std::size_t count = 3600;
   const auto level = [](std::size_t i) { return i < count / 2 ? 0.2 : 0.4; };
   const Eigen::VectorXd residual = second_order(count, 11, level);
@@ -116,7 +116,7 @@ TEST(Whitening, OfEstimatedNoiseIsWhiteAndOfUnitVariance) {
   EXPECT_NEAR(white.tail(half).squaredNorm() / static_cast<double>(half), 1.0, 0.25);
 }
 
-TEST(NoiseModel, HasTheCoefficientsAndTheLevelsOfTheProcess) {
+TEST(NoiseModel, EstimatesCoefficientsAndLevels) {
   constexpr std::size_t count = 3600;
   const auto level = [](std::size_t i) { return i < count / 2 ? 0.2 : 0.4; };
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
@@ -132,7 +132,7 @@ TEST(NoiseModel, HasTheCoefficientsAndTheLevelsOfTheProcess) {
   EXPECT_NEAR(noise.level[0].tail(half).mean(), 0.4 / 1.055, 0.03);
 }
 
-TEST(NoiseModel, IsNotDisturbedBySlowDrift) {
+TEST(NoiseModel, SlowDriftDoesNotChangeTheEstimate) {
   constexpr std::size_t count = 1800;
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
   const auto level = [](std::size_t) { return 0.2; };
@@ -149,7 +149,7 @@ TEST(NoiseModel, IsNotDisturbedBySlowDrift) {
   EXPECT_NEAR(with.level[0].mean(), without.level[0].mean(), 0.01);
 }
 
-TEST(NoiseModel, OfSeveralFlightsHasALevelForEach) {
+TEST(NoiseModel, EachFlightHasItsOwnLevel) {
   const std::vector<Binning> bins{bins_of(std::vector<double>(600, 0.0)),
                                   bins_of(std::vector<double>(900, 0.0))};
   const NoiseModel noise =
@@ -163,7 +163,7 @@ TEST(NoiseModel, OfSeveralFlightsHasALevelForEach) {
   EXPECT_NEAR(noise.level[1].mean(), 0.29, 0.04);
 }
 
-TEST(NoiseModel, GivesAFlightItsLevelsFromWhatFlightsShare) {
+TEST(NoiseModel, LevelsOfAFlightFollowFromTheSharedModel) {
   const std::vector<Binning> bins{bins_of(std::vector<double>(600, 0.0)),
                                   bins_of(std::vector<double>(900, 0.0)),
                                   bins_of(std::vector<double>(450, 0.0))};

@@ -55,7 +55,7 @@ TEST(Segments, EndAtMissingValuesAndGaps) {
   EXPECT_EQ(segments[3].count, 1U);
 }
 
-TEST(Segments, EndWhereTimeDoesNotGoOn) {
+TEST(Segments, EndWhereTimeDoesNotIncrease) {
   // Two flights one after another, the earlier one last, and a constant time.
   const std::vector<Segment> segments =
       pcor::contiguous_segments({1, 2, 3, 4, 5, 6}, {100, 101, 20, 21, 22, 22}, 1.0);
@@ -65,7 +65,7 @@ TEST(Segments, EndWhereTimeDoesNotGoOn) {
   EXPECT_EQ(segments[2].first, 5U);
 }
 
-TEST(RobustDeviation, IsThatOfTheBulk) {
+TEST(RobustDeviation, IsRobustAgainstOutliers) {
   std::vector<double> values = first_order(20000, 0.0, 1);
   for (std::size_t i = 0; i < values.size(); i += 5) values[i] = 1000.0;
   // A fifth of outliers moves the median of |x| to the 0.625 quantile of the rest: 1.316 instead of 1.
@@ -75,7 +75,7 @@ TEST(RobustDeviation, IsThatOfTheBulk) {
 
 // Over 20,000 samples of white noise a robust level errs by about 1.6/sqrt(40,000) = 0.8 %; 4 % is five
 // times that. With memory there are fewer independent samples.
-TEST(NoiseFloor, IsThatOfWhiteNoise) {
+TEST(NoiseFloor, EqualsTheRmsOfWhiteNoise) {
   const std::vector<double> values = first_order(20000, 0.0, 2);
   const NoiseFloor floor = pcor::noise_floor(values, whole(values), 1.0);
   EXPECT_NEAR(floor.rms, 1.0, 0.04);
@@ -92,7 +92,7 @@ TEST(NoiseFloor, EstimatesTheAutocorrelationTime) {
   }
 }
 
-TEST(NoiseFloor, DoesNotCountWhatChangesSlowly) {
+TEST(NoiseFloor, ExcludesSlowChanges) {
   std::vector<double> values = first_order(7200, 0.5, 4);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] += 5.0 * std::sin(2.0 * M_PI * static_cast<double>(i) / 1200.0);
@@ -100,14 +100,14 @@ TEST(NoiseFloor, DoesNotCountWhatChangesSlowly) {
   EXPECT_NEAR(pcor::noise_floor(values, whole(values), 1.0).rms, 1.0, 0.1);
 }
 
-TEST(NoiseFloor, DoesNotCountOutliers) {
+TEST(NoiseFloor, ExcludesOutliers) {
   std::vector<double> values = first_order(7200, 0.5, 5);
   for (std::size_t i = 0; i < values.size(); i += 20) values[i] += 30.0;
   // A tenth of the differences has an outlier: the median of |x| moves to the 0.556 quantile, 1.13 times.
   EXPECT_NEAR(pcor::noise_floor(values, whole(values), 1.0).rms, 1.13, 0.1);
 }
 
-TEST(NoiseFloor, FollowsALevelThatChanges) {
+TEST(NoiseFloor, FollowsAChangingLevel) {
   std::vector<double> values = first_order(7200, 0.3, 6);
   for (std::size_t i = 3600; i < values.size(); ++i) values[i] *= 4.0;
   const NoiseFloor floor = pcor::noise_floor(values, whole(values), 1.0);
@@ -118,18 +118,18 @@ TEST(NoiseFloor, FollowsALevelThatChanges) {
   EXPECT_NEAR(std::accumulate(floor.local_rms.begin() + 3600, floor.local_rms.end(), 0.0) / 3600.0, 3.6, 0.5);
 }
 
-TEST(NoiseFloor, IsKnownFromShortStretches) {
+TEST(NoiseFloor, IsEstimatedFromShortSegments) {
   std::vector<double> values = first_order(7200, 0.0, 12);
   for (std::size_t i = 0; i < values.size(); i += 7) values[i] = missing;
   EXPECT_NEAR(pcor::noise_floor(values, whole(values), 1.0).rms, 1.0, 0.05);
 }
 
-TEST(NoiseFloor, IsNotKnownFromFewSamples) {
+TEST(NoiseFloor, TooFewSamplesGiveNan) {
   const std::vector<double> values = first_order(20, 0.0, 7);
   EXPECT_TRUE(std::isnan(pcor::noise_floor(values, whole(values), 1.0).rms));
 }
 
-TEST(Autoregression, FindsAProcessOfSecondOrder) {
+TEST(Autoregression, EstimatesASecondOrderProcess) {
   // Poles 0.5 +- 0.5i: stationary, and with a correlation that turns negative.
   std::mt19937_64 engine(8);
   std::normal_distribution<double> normal;
@@ -145,7 +145,7 @@ TEST(Autoregression, FindsAProcessOfSecondOrder) {
   EXPECT_NEAR(found.innovation_rms, 0.3, 0.01);
 }
 
-TEST(Autoregression, IsTheSameOverStretches) {
+TEST(Autoregression, GapsDoNotBiasTheEstimate) {
   std::vector<double> values = first_order(20000, 0.7, 9);
   for (std::size_t i = 100; i < values.size(); i += 101) values[i] = missing;
   const Autoregression found = pcor::autoregression(values, whole(values));
@@ -159,7 +159,7 @@ TEST(Autoregression, IsEmptyForNoSamples) {
   EXPECT_TRUE(pcor::autoregression(zeros, whole(zeros)).coefficients.empty());
 }
 
-TEST(CovarianceOfSums, IsTheDoubleSumOverTheAutocovariance) {
+TEST(CovarianceOfSums, EqualsTheDoubleSumOfTheAutocovariance) {
   // An independent computation: the autocovariance memory^|t-s| summed over all pairs.
   const double memory = 0.8;
   Autoregression noise;

@@ -30,7 +30,7 @@ std::vector<double> white(std::size_t count) {
   return values;
 }
 
-TEST(OctaveSpectrum, OfWhiteNoiseFallsByTheRootOfThePeriod) {
+TEST(OctaveSpectrum, WhiteNoiseFallsWithTheRootOfThePeriod) {
   const OctaveSpectrum spectrum = octave_spectrum(white(20000), times(20000), 1.0);
   ASSERT_GT(spectrum.period.size(), 10U);
   for (std::size_t i = 0; i < spectrum.period.size(); ++i) {
@@ -43,7 +43,7 @@ TEST(OctaveSpectrum, OfWhiteNoiseFallsByTheRootOfThePeriod) {
   }
 }
 
-TEST(OctaveSpectrum, FindsAWaveWhereItIs) {
+TEST(OctaveSpectrum, WaveAppearsAtItsPeriod) {
   std::vector<double> values(20000);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = 0.2 * std::sin(2.0 * pi * static_cast<double>(i) / 24.0);

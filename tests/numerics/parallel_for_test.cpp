@@ -9,7 +9,7 @@
 namespace pcor::internal {
 namespace {
 
-TEST(InParallel, EachIsCalledOnceForAnyNumberOfThreads) {
+TEST(InParallel, EachIndexIsCalledOnceForAnyNumberOfThreads) {
   for (const std::size_t threads : {std::size_t{0}, std::size_t{1}, std::size_t{3}, std::size_t{200}}) {
     std::vector<int> calls(100, 0);
     parallel_for(calls.size(), threads, [&](std::size_t i) { ++calls[i]; });
@@ -34,7 +34,7 @@ TEST(InParallel, ExceptionIsRethrownAfterAllThreadsEnd) {
   }
 }
 
-TEST(InParallel, AfterAFailureTheRestIsNotBegun) {
+TEST(InParallel, FailurePreventsFurtherCalls) {
   std::atomic<int> begun = 0;
   EXPECT_THROW(parallel_for(1000, 1,
                             [&](std::size_t) {

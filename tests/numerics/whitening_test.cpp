@@ -42,7 +42,7 @@ Eigen::VectorXd drifting(std::size_t count, unsigned seed, double white, double 
 
 }  // namespace
 
-TEST(Whitening, TurnsTheCovarianceOfSlowPartsIntoUnity) {
+TEST(Whitening, SlowNoiseCovarianceBecomesTheIdentity) {
   std::vector<double> residual(40, 1.0);
   residual[2] = residual[5] = missing;
   for (std::size_t i = 20; i < 30; ++i) residual[i] = missing;
@@ -113,7 +113,7 @@ TEST(Whitening, PureAutoregressionIsLimitOfVanishingDrift) {
 }
 
 // The error of a mean under drift: what generalised least squares states is what it does, over many flights.
-TEST(SlowNoise, GivesTheMeanOfAFlightItsError) {
+TEST(SlowNoise, ErrorOfAFlightMeanEqualsItsScatter) {
   constexpr std::size_t count = 1800;  // two hours
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
   const std::vector<Eigen::MatrixXd> columns{Eigen::MatrixXd::Ones(count, 1)};
@@ -142,7 +142,7 @@ TEST(SlowNoise, GivesTheMeanOfAFlightItsError) {
 
 // A flight of two hours holds some dozen pieces of a drift, and in some flights a long memory of the
 // autoregression describes it as well: it is the flight in the middle that has its size, to a factor of 1.5.
-TEST(SlowNoise, HasTheSizeOfTheDrift) {
+TEST(SlowNoise, EstimatesTheSizeOfTheDrift) {
   constexpr std::size_t count = 1800;
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
   const std::vector<Eigen::MatrixXd> columns{Eigen::MatrixXd::Ones(count, 1)};
@@ -162,7 +162,7 @@ TEST(SlowNoise, HasTheSizeOfTheDrift) {
 
 // Twice the gain by four parts that are at their bound is below a chi2 of four degrees, of which 13 is one
 // percent.
-TEST(SlowNoise, HasLittleGainWithoutSlowNoise) {
+TEST(SlowNoise, GainIsSmallWithoutSlowNoise) {
   constexpr std::size_t count = 900;
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
   const std::vector<Eigen::MatrixXd> columns{Eigen::MatrixXd::Ones(count, 1)};
@@ -176,7 +176,7 @@ TEST(SlowNoise, HasLittleGainWithoutSlowNoise) {
 }
 
 // A wave that a column explains is not a drift; without the column it is one, and less likely.
-TEST(SlowNoise, IsNotWhatAColumnExplains) {
+TEST(SlowNoise, ExcludesVariationExplainedByAColumn) {
   constexpr std::size_t count = 900;
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
   Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(count, 2);

@@ -59,7 +59,7 @@ TEST(Communicator, AllMembersFailWithTheEarliestError) {
   EXPECT_THAT(each_of(4, work), Each("file: flight 3"));
 }
 
-TEST(Communicator, MayGoOnAfterAnErrorThatAllKnowOf) {
+TEST(Communicator, ContinuesAfterACommonError) {
   const auto work = [](Communicator& comm) {
     try {
       if (comm.rank() == 1) comm.fail(Error(Error::Code::unit, "no unit"), 1);
@@ -98,7 +98,7 @@ TEST(Communicator, FinishedMembersExitSilently) {
   EXPECT_THAT(each_of(1, work), ElementsAre("done"));
 }
 
-TEST(Communicator, DifferentResultsOrPlacesAreAnError) {
+TEST(Communicator, DifferentExchangesAreAnError) {
   EXPECT_THAT(each_of(3, [](Communicator& comm) { return joined(comm.gather("", comm.rank() / 2)); }),
               Each(StartsWith("system: ")));
   const auto stops_early = [](Communicator& comm) {
@@ -109,7 +109,7 @@ TEST(Communicator, DifferentResultsOrPlacesAreAnError) {
   EXPECT_THAT(each_of(2, stops_early), Each(StartsWith("system")));
 }
 
-TEST(Communicator, WithOneMemberSendsNoMessage) {
+TEST(Communicator, OneMemberSendsNoMessage) {
   EXPECT_TRUE(run_with_communicator(1,
                                     [](Communicator& comm) {
                                       comm.gather("part");
@@ -123,7 +123,7 @@ TEST(Communicator, WithOneMemberSendsNoMessage) {
 
 /// Members that start, end and fail at random never wait for each other forever: otherwise
 /// `run_with_communicator` fails.
-TEST(Communicator, EndsForAllMembersTogether) {
+TEST(Communicator, RandomFailuresCauseNoDeadlock) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const std::vector<std::string> ends = each_of(4, [seed](Communicator& comm) {
       std::mt19937 chance(seed * 4 + static_cast<unsigned>(comm.rank()));

@@ -28,7 +28,7 @@ double of_team(std::size_t members, const std::vector<double>& values) {
   return found.front();
 }
 
-TEST(MedianOfAll, EqualsThatOfOneList) {
+TEST(MedianOfAll, EqualsTheMedianOfOneList) {
   std::mt19937 chance(3);
   std::normal_distribution<double> normal;
   std::vector<double> values{0.0,    -0.0,    nan,  -std::numeric_limits<double>::infinity(),
@@ -41,7 +41,7 @@ TEST(MedianOfAll, EqualsThatOfOneList) {
   }
 }
 
-TEST(MedianOfAll, IsTheUpperOfTheMiddleTwo) {
+TEST(MedianOfAll, IsTheUpperMiddleValue) {
   EXPECT_EQ(of_team(3, {-4.0, 1.0, 2.0, 3.0}), 3.0);
   EXPECT_EQ(of_team(3, {-4.0, 1.0, 2.0}), 2.0);
   EXPECT_EQ(of_team(4, {-0.25}), 0.25);

@@ -16,7 +16,7 @@ using test::run_with_communicator;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-TEST(OrderOfAll, EqualsThatOfOneListForEachPartition) {
+TEST(OrderOfAll, EqualsTheOrderOfOneListForEachPartition) {
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
   std::vector<double> values(1001);

@@ -57,7 +57,7 @@ TEST(FlightPartition, FlightsAreAssignedOnceWithBalancedLoad) {
   EXPECT_EQ(loads(5, {3, 4}).size(), 5U);  // more members than flights
 }
 
-TEST(FlightPartition, FailsWhereTheMembersHaveOtherFlights) {
+TEST(FlightPartition, DifferentFlightsOfMembersAreAnError) {
   std::vector<std::optional<Error>> errors(2);
   test::run_with_communicator(2, [&](Communicator& comm) {
     errors[comm.rank()] = test::error_of([&] {
@@ -107,7 +107,7 @@ TEST(FlightPartition, GatheredPartsKeepBitsAndFlightOrder) {
   }
 }
 
-TEST(FlightPartition, FailsWithTheErrorOfTheFirstFlightThatFails) {
+TEST(FlightPartition, ReportsTheErrorOfTheFirstFailedFlight) {
   std::vector<std::string> messages(3);
   run_with_communicator(3, [&](Communicator& comm) {
     const FlightPartition share(comm, std::vector<std::uint64_t>(9, 1));

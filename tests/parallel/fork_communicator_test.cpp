@@ -62,7 +62,7 @@ std::string joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-TEST(ForkCommunicator, GathersOnAllMembersWhatEachHas) {
+TEST(ForkCommunicator, AllMembersGatherAllParts) {
   const auto work = [](Communicator& comm) {
     const std::string own = joined(comm.gather(std::string(comm.rank(), 'x')));
     return joined(comm.gather(own + std::string("\0", 1)));
@@ -72,7 +72,7 @@ TEST(ForkCommunicator, GathersOnAllMembersWhatEachHas) {
   EXPECT_EQ(by_team(1, work), "<<>" + std::string("\0", 1) + ">");
 }
 
-TEST(ForkCommunicator, GathersMoreThanASocketHolds) {
+TEST(ForkCommunicator, PartsLargerThanTheSocketBufferAreGathered) {
   constexpr std::size_t count = 5'000'000;
   const auto work = [](Communicator& comm) {
     const std::string own(count + comm.rank(), static_cast<char>('a' + comm.rank()));
@@ -87,7 +87,7 @@ TEST(ForkCommunicator, GathersMoreThanASocketHolds) {
   EXPECT_EQ(by_team(4, work), found + found + found + found);
 }
 
-TEST(ForkCommunicator, FailsWhereAMemberIsKilled) {
+TEST(ForkCommunicator, KilledMemberIsAnError) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 2) ::raise(SIGKILL);
     return joined(comm.gather("part"));
@@ -107,7 +107,7 @@ TEST(ForkCommunicator, ReportedFailureIsNotRepeated) {
     EXPECT_THAT(ends_with(status), AllOf(StartsWith("system: "), HasSubstr("3 processes"))) << status;
 }
 
-TEST(ForkCommunicator, DoesNotWaitForTheOthersWhereOneIsLost) {
+TEST(ForkCommunicator, LostMemberEndsWaitingMembers) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 1)
       while (true) ::pause();
@@ -117,7 +117,7 @@ TEST(ForkCommunicator, DoesNotWaitForTheOthersWhereOneIsLost) {
   EXPECT_THAT(by_team(3, work), AllOf(StartsWith("system: "), HasSubstr("User defined signal 1")));
 }
 
-TEST(ForkCommunicator, FailsWhereAMemberHasNoMemoryForWhatItHears) {
+TEST(ForkCommunicator, OutOfMemoryMemberIsAnError) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 1) {
       const rlimit little{std::size_t{64} << 20U, std::size_t{64} << 20U};
@@ -129,7 +129,7 @@ TEST(ForkCommunicator, FailsWhereAMemberHasNoMemoryForWhatItHears) {
   EXPECT_THAT(by_team(3, work), AllOf(StartsWith("system: "), HasSubstr("3 processes")));
 }
 
-TEST(ForkCommunicator, EndsWithItsFirstMember) {
+TEST(ForkCommunicator, EndOfTheFirstMemberEndsAll) {
   const auto work = [](Communicator& comm) {
     comm.gather("");
     if (comm.rank() == 0) ::raise(SIGKILL);

@@ -92,63 +92,63 @@ class Processes(unittest.TestCase):
             for name, text in alone.items():
                 self.assertEqual(together[name], text, f"{name} on {count} processes")
 
-    def test_refit_is_the_same_bytes_on_any_number_of_processes(self):
+    def test_refit_is_identical_for_any_number_of_processes(self):
         self.assert_alike(
             ["refit", *self.flights[:4], "--holdout", self.flights[4], "-m", MODEL, "-o", "fitted.toml",
              "--json", "fitted.json", "--table", "fitted.csv", "--report", "fitted.html"],
             ["fitted.toml", "fitted.json", "fitted.csv", "fitted.html"], [1, 2, 3, 6])
 
-    def test_refit_that_reads_each_flight_again_in_every_pass_is_so_too(self):
+    def test_refit_without_cached_flights_is_identical(self):
         self.assert_alike(
             ["refit", *self.flights[:3], "-m", MODEL, "-o", "fitted.toml", "--json", "fitted.json", "--memory", "0"],
             ["fitted.toml", "fitted.json"], [2])
 
-    def test_refit_in_stages_and_with_two_references_is_so_too(self):
+    def test_refit_in_stages_and_with_two_references_is_identical(self):
         self.assert_alike(
             ["refit", *self.flights[:3], "-m", MODEL, "-o", "fitted.toml", "--json", "fitted.json",
              "--stage", "pitch manoeuvre, speed run: static-alpha", "--reference", "lams", "--reference", "height",
              "--training-share", "0.8", "--force"],
             ["fitted.toml", "fitted.json"], [2, 4])
 
-    def test_refit_compare_and_diagnose_by_wind_and_height_are_so_too(self):
+    def test_refit_compare_and_diagnose_by_wind_and_height_are_identical(self):
         by_gps = ["-m", MODEL, "--reference", "wind", "--reference", "height"]
         self.assert_alike(["refit", *self.flights[:3], *by_gps, "-o", "fitted.toml", "--json", "fitted.json"],
                           ["fitted.toml", "fitted.json"], [2, 3])
         self.assert_alike(["compare", *self.flights[:3], *by_gps, "--json", "compare.json"], ["compare.json"], [2])
         self.assert_alike(["diagnose", *self.flights[:3], *by_gps, "--json", "diagnose.json"], ["diagnose.json"], [2])
 
-    def test_compare_is_so_too(self):
+    def test_compare_is_identical(self):
         self.assert_alike(
             ["compare", *self.flights[:3], "-m", MODEL, "--report", "compare.html", "--json", "compare.json",
              "--table", "compare.csv"],
             ["compare.html", "compare.json", "compare.csv"], [2, 4])
 
-    def test_check_is_so_too(self):
+    def test_check_is_identical(self):
         self.assert_alike(
             ["check", *self.flights[:3], "-m", MODEL, "--report", "check.html", "--json", "check.json",
              "--table", "check.csv"],
             ["check.html", "check.json", "check.csv"], [2, 4])
 
-    def test_temperature_is_so_too(self):
+    def test_temperature_is_identical(self):
         self.assert_alike(
             ["temperature", *self.flights[:3], "-m", MODEL, "-o", "warm.toml", "--json", "temperature.json", "--report",
              "temperature.html", "--degree", "0", "--force"],
             ["warm.toml", "temperature.json", "temperature.html"], [2])
 
-    def test_diagnose_is_so_too(self):
+    def test_diagnose_is_identical(self):
         self.assert_alike(
             ["diagnose", *self.flights[:3], "-m", MODEL, "--report", "diagnose.html", "--json", "diagnose.json"],
             ["diagnose.html", "diagnose.json"], [2])
         self.assert_alike(
             ["diagnose", *self.flights[:3], "-m", MODEL, "--json", "diagnose.json"], ["diagnose.json"], [4])
 
-    def test_improve_is_so_too(self):
+    def test_improve_is_identical(self):
         self.assert_alike(
             ["improve", *self.flights[:2], "-m", MODEL, "--holdout", self.flights[2], "-o", "best.toml", "--report",
              "improve.html", "--json", "improve.json", "--force"],
             ["best.toml", "improve.html", "improve.json"], [2])
 
-    def test_flights_that_cannot_be_read_are_left_out_by_all(self):
+    def test_unreadable_flights_are_skipped_by_all_processes(self):
         self.damage(self.flights[1], "truncated")
         self.damage(self.flights[2], "missing")
         self.assert_alike(
@@ -168,7 +168,7 @@ class Processes(unittest.TestCase):
             with netCDF4.Dataset(path, "a") as file:
                 file["PSFD"].units = "furlong"
 
-    def test_a_flight_that_cannot_be_read_ends_all_with_the_message_of_one_process(self):
+    def test_unreadable_flight_gives_one_error_message(self):
         for how in ["missing", "truncated", "wrong unit"]:
             for bad in self.flights[:4]:
                 with self.subTest(how=how, flight=bad):
@@ -185,7 +185,7 @@ class Processes(unittest.TestCase):
                     self.assertFalse(list(self.path.glob("*fitted*")))
             shutil.copy(self.flights_folder / bad, self.path)
 
-    def test_one_line_tells_of_an_output_that_cannot_be_written_and_of_wrong_usage(self):
+    def test_unwritable_output_and_wrong_usage_give_one_message(self):
         for status, words in {
             1: ["refit", *self.flights[:2], "-m", MODEL, "-o", "nowhere/fitted.toml"],
             2: ["refit", *self.flights[:2], "-m", MODEL],
@@ -206,7 +206,7 @@ class Processes(unittest.TestCase):
         self.assertIn("different results", together.stderr)
         self.assertFalse((self.path / "fitted.toml").exists())
 
-    def test_what_is_for_one_process_is_refused(self):
+    def test_process_command_on_several_processes_is_refused(self):
         words = ["process", self.flights[0], "-m", MODEL, "-o", "corrected.nc"]
         if LAUNCHER:
             self.assertEqual(on_processes(1, *words, cwd=self.path).returncode, 0)
@@ -229,7 +229,7 @@ class Processes(unittest.TestCase):
                 pass
         return sorted(found)
 
-    def test_a_process_that_is_killed_ends_the_job(self):
+    def test_killed_process_ends_the_job(self):
         words = ["refit", *self.flights, "-m", MODEL, "-o", "fitted.toml", "--memory", "0"]
         killed = 0
         for trial in range(6):

@@ -22,7 +22,7 @@ FlightPartition share_of_many(Communicator& comm) {
   return {comm, sizes};
 }
 
-TEST(SumOfEachFlight, IsInTheOrderOfFlights) {
+TEST(SumOfEachFlight, AddsInTheOrderOfFlights) {
   // Of numbers whose sum depends on their order.
   const auto part = [](std::size_t flight) {
     return std::ldexp(1.0 + 1.0 / static_cast<double>(1 + flight), static_cast<int>(flight * 7 % 60));
@@ -53,7 +53,7 @@ TEST(SumOfEachFlight, FailsOnAllMembers) {
   EXPECT_THAT(failed, Each(1));
 }
 
-TEST(SumOfEachFlight, OfSymmetricMatricesEqualsThatOfOneMember) {
+TEST(SumOfEachFlight, SymmetricMatrixSumEqualsThatOfOneMember) {
   constexpr Eigen::Index width = 31;
   const auto part = [](std::size_t flight) {
     const Eigen::MatrixXd rows =
@@ -73,7 +73,7 @@ TEST(SumOfEachFlight, OfSymmetricMatricesEqualsThatOfOneMember) {
   EXPECT_LT(packed(part(0)).size(), 0.55 * sizeof(double) * width * width);
 }
 
-TEST(SharesOfEntries, AreOfTheOwnersOfTheirFlights) {
+TEST(SharesOfEntries, BelongToTheOwnersOfTheirFlights) {
   run_with_communicator(3, [](Communicator& comm) {
     const FlightPartition flights = share_of_many(comm);
     const std::vector<std::size_t> flight_of_each{4, 0, 4, 49, 7};

@@ -25,7 +25,7 @@ const MoistAir<double> dry = dry_air<double>();
 
 }  // namespace
 
-TEST(AirData, StaticOverTotalPressureIsThatOfNaca1135) {
+TEST(AirData, PressureRatioAgreesWithNaca1135) {
   // NACA Report 1135, table I, p/pt. Half a unit of the last printed digit.
   struct Row {
     double mach, ratio, digit;
@@ -39,13 +39,13 @@ TEST(AirData, StaticOverTotalPressureIsThatOfNaca1135) {
   }
 }
 
-TEST(AirData, StagnationTemperatureIsThatOfNaca1135) {
+TEST(AirData, StagnationTemperatureAgreesWithNaca1135) {
   // NACA Report 1135, table I, T/Tt.
   for (const auto& [mach, ratio] : {std::pair{0.3, 0.9823}, {0.5, 0.9524}, {0.8, 0.8865}, {1.0, 0.8333}})
     EXPECT_NEAR(1 / stagnation_temperature(1.0, mach, dry), ratio, 0.5e-4) << mach;
 }
 
-TEST(AirData, SoundPropagatesAsInTheStandardAtmosphere) {
+TEST(AirData, SpeedOfSoundAgreesWithTheStandardAtmosphere) {
   // ISO 2533: 340.294 m/s at 288.15 K, 295.070 m/s at 216.65 K, with R 287.05287; ours is 4.2e-5 higher, so
   // sound is 2.1e-5 faster: 0.0072 m/s.
   EXPECT_NEAR(speed_of_sound(288.15, dry), 340.294, 0.008);
@@ -96,7 +96,7 @@ TEST(AirData, SmallestPressuresKeepTheStatedAccuracy) {
   EXPECT_NEAR(mach_number(1.0, x, dry) / mach, 1.0, 1e-10);
 }
 
-TEST(AirData, BothWaysToTheDynamicPressureAgree) {
+TEST(AirData, DynamicPressureFromAirspeedAndMachNumberAgree) {
   // Eq. 8 knows the airspeed and temperature, eq. 6 the Mach number: energy and momentum are one flow.
   for (const auto& [p, v] : atmosphere::envelopes()) {
     for (const double h : {0.0, 0.02}) {
@@ -143,7 +143,7 @@ TEST(AirData, HeatingRelatesMachTemperatureAndAirspeed) {
   EXPECT_TRUE(std::isnan(pcor::dynamic_heating(0.0, 10.0, dry)));
 }
 
-TEST(AirData, MachNumberDependsOnTheRatioOfThePressuresOnly) {
+TEST(AirData, MachNumberDependsOnThePressureRatioOnly) {
   EXPECT_DOUBLE_EQ(mach_number(1000.0, 100.0, dry), mach_number(250.0, 25.0, dry));
 }
 
@@ -153,7 +153,7 @@ TEST(AirData, MachNumberRisesWithTheDynamicPressure) {
     EXPECT_LT(mach_number(700.0, q, dry), mach_number(700.0, q + 1, dry)) << q;
 }
 
-TEST(AirData, ImpossiblePressuresHaveNoMachNumber) {
+TEST(AirData, ImpossiblePressuresGiveNan) {
   EXPECT_TRUE(std::isnan(mach_number(700.0, -1.0, dry)));
   EXPECT_TRUE(std::isnan(mach_number(0.0, 10.0, dry)));
   EXPECT_TRUE(std::isnan(mach_number(0.0, 0.0, dry)));
@@ -161,14 +161,14 @@ TEST(AirData, ImpossiblePressuresHaveNoMachNumber) {
   EXPECT_TRUE(std::isnan(mach_number(-700.0, 60.0, dry)));
 }
 
-TEST(AirData, ImpossibleTemperaturesHaveNoAirspeed) {
+TEST(AirData, ImpossibleTemperaturesGiveNan) {
   EXPECT_TRUE(std::isnan(pressure_ratio_of_airspeed(100.0, 0.0, dry)));
   EXPECT_TRUE(std::isnan(pressure_ratio_of_airspeed(100.0, -280.0, dry)));
   EXPECT_TRUE(std::isnan(speed_of_sound(-1.0, dry)));
   EXPECT_EQ(speed_of_sound(0.0, dry), 0.0);
 }
 
-TEST(AirData, MissingInMissingOut) {
+TEST(AirData, MissingInputsGiveNan) {
   EXPECT_TRUE(std::isnan(mach_number(missing, 60.0, dry)));
   EXPECT_TRUE(std::isnan(mach_number(700.0, missing, dry)));
   EXPECT_TRUE(std::isnan(mach_number(700.0, 60.0, moist_air(missing))));

@@ -29,7 +29,7 @@ TEST(Constants, RatioOfTheMolarMasses) {
   EXPECT_NEAR(c::molar_mass_ratio, c::gas_constant_dry_air / c::gas_constant_water_vapor, 1e-15);
 }
 
-TEST(Constants, SpecificHeatsOfDryAirAreThoseOfADiatomicGas) {
+TEST(Constants, SpecificHeatsOfDryAirEqualADiatomicGas) {
   // Real air at 300 K: c_p = 1005.7 J/(kg K) and gamma = 1.4017 (NIST); vibration and real gas add 0.1 %.
   EXPECT_NEAR(c::specific_heat_pressure_dry_air, 1005.7, 1.1);
   EXPECT_NEAR(c::specific_heat_pressure_dry_air / c::specific_heat_volume_dry_air, 1.4, 1e-15);

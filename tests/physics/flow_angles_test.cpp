@@ -8,7 +8,7 @@ using pcor::RadomeCalibration;
 
 // The angles of attack of tables worked from the memo, to their digit of 0.1 deg.
 
-TEST(RadomeCalibration, OfTheC130) {
+TEST(RadomeCalibration, ReproducesTheC130Angles) {
   const RadomeCalibration radome{5.776, 15.031, 0.0};
   EXPECT_TRUE(radome.is_calibrated());
   EXPECT_FALSE(radome.needs_mach());
@@ -17,7 +17,7 @@ TEST(RadomeCalibration, OfTheC130) {
     EXPECT_NEAR(radome(ratio), attack, 0.06) << ratio;
 }
 
-TEST(RadomeCalibration, OfTheGvGrowsWithTheMachNumber) {
+TEST(RadomeCalibration, ReproducesTheGvAnglesWithMachNumber) {
   const RadomeCalibration radome{5.5156, 19.07, 2.08};
   EXPECT_TRUE(radome.needs_mach());
   // ADIFR and q of the tables at (p, M): (850, 0.45), (500, 0.60), (250, 0.78).
@@ -37,6 +37,6 @@ TEST(RadomeCalibration, BothFormsAgreeWithoutMachNumber) {
   EXPECT_EQ(radome(-0.2, 0.7), radome(-0.2));
 }
 
-TEST(RadomeCalibration, WithoutRatioThereIsNoAngle) {
+TEST(RadomeCalibration, MissingRatioGivesNan) {
   EXPECT_TRUE(std::isnan(RadomeCalibration{5.776, 15.031, 0.0}(std::numeric_limits<double>::quiet_NaN())));
 }

@@ -46,7 +46,7 @@ double exact_geopotential_height(double latitude, double height) {
 
 }  // namespace
 
-TEST(Geodesy, NormalGravityIsThePublishedOne) {
+TEST(Geodesy, NormalGravityEqualsPublishedValues) {
   // NIMA TR8350.2 table 3.4, with all its digits.
   EXPECT_NEAR(normal_gravity(0.0), 9.7803253359, 1e-10);
   EXPECT_NEAR(normal_gravity(90.0), 9.8321849378, 2e-10);
@@ -125,21 +125,21 @@ TEST(Geodesy, GravityIsTheDerivativeOfTheGeopotential) {
   }
 }
 
-TEST(Geodesy, GeometricHeightIsTheInverse) {
+TEST(Geodesy, GeometricHeightInvertsGeopotentialHeight) {
   for (const double latitude : {-90.0, -33.0, 0.0, 52.0}) {
     for (double height = -1000.0; height <= 30000.0; height += 1000.0)
       EXPECT_NEAR(geometric_height(latitude, geopotential_height(latitude, height)), height, 1e-6);
   }
 }
 
-TEST(Geodesy, CoriolisParameterIsThatOfTheTextbooks) {
+TEST(Geodesy, CoriolisParameterAgreesWithTextbook) {
   // Holton, An Introduction to Dynamic Meteorology: 1.031e-4 1/s at 45 degrees north.
   EXPECT_NEAR(pcor::coriolis_parameter(45.0), 1.031e-4, 5e-8);
   EXPECT_EQ(pcor::coriolis_parameter(-45.0), -pcor::coriolis_parameter(45.0));
   EXPECT_EQ(pcor::coriolis_parameter(0.0), 0.0);
 }
 
-TEST(Geodesy, UnknownGivesUnknown) {
+TEST(Geodesy, MissingInputsGiveNan) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isnan(normal_gravity(nan)));
   EXPECT_TRUE(std::isnan(gravity(40.0, nan)));
@@ -147,7 +147,7 @@ TEST(Geodesy, UnknownGivesUnknown) {
   EXPECT_TRUE(std::isnan(geometric_height(40.0, nan)));
 }
 
-TEST(Geodesy, CompilesForAScalarThatIsNoDouble) {
+TEST(Geodesy, CompilesForAnotherScalarType) {
   const Physics latitude(40.0), height(9000.0);
   EXPECT_EQ(normal_gravity(latitude).value(), normal_gravity(40.0));
   EXPECT_EQ(gravity(latitude, height).value(), gravity(40.0, 9000.0));

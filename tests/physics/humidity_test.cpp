@@ -26,7 +26,7 @@ double latent_heat(const VaporPressure& e, double T) {
 
 }  // namespace
 
-TEST(VaporPressure, IsThatOfTheTableOfMurphyAndKoop) {
+TEST(VaporPressure, AgreesWithTheTableOfMurphyAndKoop) {
   // Murphy and Koop (2005), the values for checking code, Pa. Half a unit of the last printed digit.
   struct Row {
     double temperature, ice, water, ice_digit, water_digit;
@@ -43,7 +43,7 @@ TEST(VaporPressure, IsThatOfTheTableOfMurphyAndKoop) {
   EXPECT_NEAR(100 * vapor_pressure_over_water(300.0), 3536.8, 0.05);
 }
 
-TEST(VaporPressure, OfWarmWaterIsThatOfTheSteamTables) {
+TEST(VaporPressure, AgreesWithSteamTablesForWarmWater) {
   // IAPWS-95 at 20 and 50 deg C. The source states 0.05 %.
   EXPECT_NEAR(vapor_pressure_over_water(293.15), 23.393, 0.0005 * 23.4);
   EXPECT_NEAR(vapor_pressure_over_water(323.15), 123.52, 0.0005 * 123.5);
@@ -82,14 +82,14 @@ TEST(VaporPressure, RisesWithTemperature) {
   }
 }
 
-TEST(VaporPressure, OfAMirrorChangesFromIceToWaterAtTheIcePoint) {
+TEST(VaporPressure, MirrorSaturationChangesFromIceToWaterAtIcePoint) {
   EXPECT_EQ(saturation_vapor_pressure(273.14), vapor_pressure_over_ice(273.14));
   EXPECT_EQ(saturation_vapor_pressure(273.15), vapor_pressure_over_water(273.15));
   // 0.01 K below the triple point the phases differ by 1e-4: that is the whole step.
   EXPECT_NEAR(vapor_pressure_over_ice(c::ice_point) / vapor_pressure_over_water(c::ice_point), 1.0, 1.1e-4);
 }
 
-TEST(VaporPressure, IsMissingWhereThereIsNoTemperature) {
+TEST(VaporPressure, MissingOrNegativeTemperatureGivesNan) {
   for (const double T : {missing, -10.0}) {
     EXPECT_TRUE(std::isnan(vapor_pressure_over_water(T))) << T;
     EXPECT_TRUE(std::isnan(vapor_pressure_over_ice(T))) << T;
@@ -99,7 +99,7 @@ TEST(VaporPressure, IsMissingWhereThereIsNoTemperature) {
   EXPECT_EQ(vapor_pressure_over_ice(0.0), 0.0) << "nothing evaporates from ice at 0 K";
 }
 
-TEST(VaporPressure, BelowSaturationIsBelowSaturation) {
+TEST(VaporPressure, LowerBoundIsBelowSaturation) {
   // The quick bound must never pass over saturated air, from the coldest to the warmest of the domain.
   for (double T = 100; T <= 400; T += 0.1)
     EXPECT_LE(pcor::vapor_pressure_below_saturation(T), vapor_pressure_over_water(T)) << T;
@@ -120,12 +120,12 @@ TEST(EnhancementFactor, IsFourPerMilleAtTheSurface) {
   EXPECT_NEAR(enhancement_factor(298.15, 1000.0), 1.0045, 4e-4);
 }
 
-TEST(EnhancementFactor, VanishesWithThePressure) {
+TEST(EnhancementFactor, IsOneAtZeroPressure) {
   EXPECT_EQ(enhancement_factor(250.0, 0.0), 1.0);
   EXPECT_NEAR(enhancement_factor(250.0, 600.0) - 1, 2 * (enhancement_factor(250.0, 300.0) - 1), 1e-15);
 }
 
-TEST(DewPoint, OfSaturatedAirIsItsTemperature) {
+TEST(DewPoint, EqualsTheTemperatureOfSaturatedAir) {
   const double T = 285.0, p = 900.0;
   EXPECT_DOUBLE_EQ(vapor_pressure_from_dew_point(T, p),
                    vapor_pressure_over_water(T) * enhancement_factor(T, p));

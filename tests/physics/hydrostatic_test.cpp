@@ -31,7 +31,7 @@ double climbed(double top, double gas_constant) {
 
 }  // namespace
 
-TEST(HydrostaticStep, ClosesInTheStandardAtmosphere) {
+TEST(HydrostaticStep, StepsSumToTheStandardHeight) {
   // 0.1 m is required. The mean of both ends errs by (step/scale height)^2 of a step: 1e-5 m in 20 km.
   EXPECT_NEAR(climbed(20000.0, standard_gas_constant), 20000.0, 1e-3);
   EXPECT_NEAR(climbed(11000.0, standard_gas_constant), 11000.0, 1e-3);
@@ -51,7 +51,7 @@ TEST(HydrostaticStep, IsExactInIsothermalAir) {
   EXPECT_NEAR(hydrostatic_step(std::exp(1.0), 1.0, 287.0) * 253.0, 7400.0, 10.0);
 }
 
-TEST(HydrostaticStep, FirstOrderFormOfTheMemoIsShort) {
+TEST(HydrostaticStep, FirstOrderFormUnderestimatesTheHeight) {
   // R_a dp/(g p) with the pressure at the end of the step: over one scale height H = R T/g0 in N steps in ln
   // p it is wrong by H/(2N). 2000 steps: 1.8 m for T = 250 K.
   constexpr int steps = 2000;
@@ -70,25 +70,25 @@ TEST(HydrostaticStep, FirstOrderFormOfTheMemoIsShort) {
   EXPECT_GT(std::abs(first_order - exact), 1.5);
 }
 
-TEST(HydrostaticStep, IsPositiveUpwardsAndTurnsRound) {
+TEST(HydrostaticStep, IsPositiveUpwardsAndAntisymmetric) {
   EXPECT_GT(hydrostatic_step(700.0, 699.0, 287.0), 0.0);
   // ln(1 - x) keeps the rounding of the ratio: 1e-16 times R_d/g0.
   EXPECT_NEAR(hydrostatic_step(700.0, 699.0, 287.0), -hydrostatic_step(699.0, 700.0, 287.0), 1e-14);
   EXPECT_EQ(hydrostatic_step(700.0, 700.0, 287.0), 0.0);
 }
 
-TEST(HydrostaticStep, DoesNotCareForTheUnitOfPressure) {
+TEST(HydrostaticStep, IsIndependentOfThePressureUnit) {
   EXPECT_NEAR(hydrostatic_step(70000.0, 69900.0, 287.0), hydrostatic_step(700.0, 699.0, 287.0), 1e-14);
 }
 
-TEST(HydrostaticStep, ImpossiblePressureGivesNoNumber) {
+TEST(HydrostaticStep, ImpossiblePressureGivesNoFiniteValue) {
   EXPECT_FALSE(std::isfinite(hydrostatic_step(0.0, 699.0, 287.0)));
   EXPECT_FALSE(std::isfinite(hydrostatic_step(700.0, 0.0, 287.0)));
   EXPECT_TRUE(std::isnan(hydrostatic_step(700.0, -1.0, 287.0)));
   EXPECT_TRUE(std::isnan(hydrostatic_step(std::numeric_limits<double>::quiet_NaN(), 699.0, 287.0)));
 }
 
-TEST(HydrostaticStep, CompilesForAScalarThatIsNoDouble) {
+TEST(HydrostaticStep, CompilesForAnotherScalarType) {
   EXPECT_EQ(hydrostatic_step(Physics(700.0), Physics(695.0), Physics(287.5)).value(),
             hydrostatic_step(700.0, 695.0, 287.5));
 }

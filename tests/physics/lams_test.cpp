@@ -92,14 +92,14 @@ TEST(BeamCosine, MatchesUnitVectorsWithOneNonzeroAngle) {
   }
 }
 
-TEST(BeamCosine, ErrsByTheDocumentedAmounts) {
+TEST(BeamCosine, HasTheDocumentedErrors) {
   // With the azimuth and the sideslip of equal sign their cosine is 1 and the error is largest. The printed
   // digits.
   EXPECT_NEAR(beam_cosine(3.0, 3.0, 3.0, 3.0) - exact_cosine(3, 3, 3, 3), -7.5e-6, 0.05e-6);
   EXPECT_NEAR(beam_cosine(5.0, 5.0, 5.0, 5.0) - exact_cosine(5, 5, 5, 5), -5.8e-5, 0.15e-5);
 }
 
-TEST(BeamCosine, HasItsSignsFromTheUnitVectors) {
+TEST(BeamCosine, SignsAgreeWithUnitVectors) {
   // A wrong sign of one angle changes the cosine by 5e-3 at 3 deg; the form itself errs by at most twice the
   // 7.5e-6 of equal signs.
   for (const double elevation : {-3.0, 3.0}) {
@@ -114,12 +114,12 @@ TEST(BeamCosine, HasItsSignsFromTheUnitVectors) {
   }
 }
 
-TEST(BeamCosine, SlowsTheAirAlongTheBeam) {
+TEST(BeamCosine, AirspeedExceedsBeamSpeed) {
   EXPECT_EQ(pcor::airspeed_from_beam(120.0, 1.0), 120.0);
   EXPECT_NEAR(pcor::airspeed_from_beam(120.0, beam_cosine(3.0, 0.0, 0.0, 0.0)), 120.0 * (1 + 0.00137), 2e-3);
 }
 
-TEST(StaticDefect, FromTheTrueAirspeedIsTheTrueDefect) {
+TEST(StaticDefect, TrueAirspeedGivesTheTrueDefect) {
   // Δp = pt/(1 + chi) - p_m takes the difference of two pressures of up to 1000 hPa: 1e-12 hPa of rounding.
   over_the_envelopes([](const Flight& f, const RecoveryFactor&) {
     const double chi = pressure_ratio_of_airspeed(f.v, f.T, f.air);
@@ -127,7 +127,7 @@ TEST(StaticDefect, FromTheTrueAirspeedIsTheTrueDefect) {
   });
 }
 
-TEST(StaticDefect, HasTheFormOfTheMemo) {
+TEST(StaticDefect, AgreesWithEquation11OfTheMemo) {
   // Eq. 11 as printed, (q_m - p_m chi)/(1 + chi).
   const double p = 700, q = 70, chi = 0.097;
   EXPECT_NEAR(static_defect_from_pressure_ratio(p, q, chi), (q - p * chi) / (1 + chi), 1e-12);
@@ -141,7 +141,7 @@ TEST(StaticDefect, KeepsTheTotalPressure) {
   });
 }
 
-TEST(Approach1, FindsTheAirThatWasMeasured) {
+TEST(Approach1, RecoversTheTrueAir) {
   // Stated: 1e-9 hPa.
   over_the_envelopes([](const Flight& f, const RecoveryFactor& recovery) {
     const auto found = simultaneous(f, recovery);
@@ -247,7 +247,7 @@ TEST(Approach4, ReturnsTheAssumedValue) {
   EXPECT_LT(largest, 1e-11) << "measured: 3.4e-13";
 }
 
-TEST(Approach4, IsRefusedWithItsReasonAndWhatToUseInstead) {
+TEST(Approach4, RefusalStatesReasonAndAlternatives) {
   const std::string refusal(pcor::approach_4_refusal);
   EXPECT_THAT(refusal, HasSubstr("identity"));
   EXPECT_THAT(refusal, HasSubstr("use approach 1"));
@@ -268,7 +268,7 @@ TEST(TwinIdentity, CorrectedPressuresGiveLaserAirspeed) {
   });
 }
 
-TEST(LamsTemperature, WithDefectOfTheSameSampleIsTheThermometersOwn) {
+TEST(LamsTemperature, SameSampleDefectReturnsThermometerTemperature) {
   // The 1e-9 hPa of approach 1 are up to 4e-9 K.
   over_the_envelopes([](const Flight& f, const RecoveryFactor& recovery) {
     Flight warm = f;
@@ -283,7 +283,7 @@ TEST(LamsTemperature, WithDefectOfTheSameSampleIsTheThermometersOwn) {
   });
 }
 
-TEST(LamsTemperature, IsTheAmbientTemperatureOfTheTrueMachNumber) {
+TEST(LamsTemperature, TrueMachNumberGivesTheAmbientTemperature) {
   over_the_envelopes([](const Flight& f, const RecoveryFactor&) {
     EXPECT_NEAR(
         lams_temperature(f.v, mach_number(f.p, dynamic_pressure_from_airspeed(f.p, f.v, f.T, f.air), f.air),
@@ -292,7 +292,7 @@ TEST(LamsTemperature, IsTheAmbientTemperatureOfTheTrueMachNumber) {
   });
 }
 
-TEST(LamsTemperature, OfAirAtRestIsMissing) {
+TEST(LamsTemperature, ZeroOrMissingMachNumberGivesNan) {
   EXPECT_TRUE(std::isnan(lams_temperature(100.0, 0.0, moist_air(0.0))));
   EXPECT_TRUE(std::isnan(lams_temperature(100.0, missing, moist_air(0.0))));
 }
@@ -310,7 +310,7 @@ TEST(BlindDirections, LamsCannotCalibrateATransducer) {
   });
 }
 
-TEST(Lams, MissingInMissingOut) {
+TEST(Lams, MissingInputsGiveNan) {
   const Flight f(700.0, 120.0, 0.01, 2.0, constant_recovery);
   const double inputs[] = {f.static_pressure, f.dynamic_pressure, f.v, f.thermometer, f.e};
   for (int i = 0; i < 5; ++i) {

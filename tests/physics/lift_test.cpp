@@ -9,7 +9,7 @@ namespace {
 // The numbers are exact except for rounding.
 constexpr double rounding = 1e-12;
 
-TEST(LoadFactor, IsOneInLevelFlightAndTwoInATurnOfSixtyDegrees) {
+TEST(LoadFactor, IsOneInLevelFlightAndTwoAtSixtyDegrees) {
   EXPECT_NEAR(load_factor(0.0, 0.0), 1.0, rounding);
   EXPECT_NEAR(load_factor(0.0, 60.0), 2.0, rounding);
   EXPECT_NEAR(load_factor(0.0, -60.0), 2.0, rounding) << "either side";

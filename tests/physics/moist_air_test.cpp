@@ -37,7 +37,7 @@ TEST(MoistAir, SpecificHeatsDifferByTheGasConstant) {
   }
 }
 
-TEST(MoistAir, IsTheMixtureOfItsMasses) {
+TEST(MoistAir, EqualsTheMixtureByMass) {
   // A few roundings on each side.
   for (double h = driest; h <= wettest; h += step) {
     const MoistAir<double> air = moist_air(h);
@@ -83,7 +83,7 @@ TEST(MoistAir, VapourLowersGammaAndRaisesTheGasConstant) {
   }
 }
 
-TEST(MoistAir, ItsGasConstantIsThatOfTheVirtualTemperature) {
+TEST(MoistAir, GasConstantAgreesWithVirtualTemperature) {
   // The meteorologist's R_a/R_d = (1 + r/eps)/(1 + r), with the mixing ratio r; rounding only.
   for (double h = driest; h <= wettest; h += step) {
     const double r = c::molar_mass_ratio * h / (1 - h);
@@ -92,7 +92,7 @@ TEST(MoistAir, ItsGasConstantIsThatOfTheVirtualTemperature) {
   }
 }
 
-TEST(MoistAir, UnknownHumidityGivesUnknownConstants) {
+TEST(MoistAir, MissingHumidityGivesNanConstants) {
   const MoistAir<double> air = moist_air(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(std::isnan(air.gas_constant));
   EXPECT_TRUE(std::isnan(air.specific_heat_volume));

@@ -37,7 +37,7 @@ TEST(RecoveryFactor, MachLawIsPolynomialOfLogarithm) {
   EXPECT_TRUE(std::isnan(law(-0.3)));
 }
 
-TEST(RecoveryFactor, IsTheSameBySquareOfTheMachNumber) {
+TEST(RecoveryFactor, SquareOfMachNumberGivesTheSameValue) {
   for (const auto& known : published_recovery_factors) {
     for (double mach = 0.05; mach <= 1.2; mach += 0.05)
       EXPECT_NEAR(known.law.at_square(mach * mach), known.law(mach), 1e-14) << known.name << " at " << mach;
@@ -58,7 +58,7 @@ TEST(RecoveryFactor, PublishedNamesAreUniqueWithSources) {
   }
 }
 
-TEST(RecoveryFactor, PublishedLawsFeelAlmostAllOfTheHeating) {
+TEST(RecoveryFactor, PublishedLawsAreBetween093And1) {
   for (const auto& known : published_recovery_factors) {
     for (double mach = 0.2; mach <= 0.9; mach += 0.05) {
       EXPECT_GT(known.law(mach), 0.93) << known.name << " at Mach " << mach;
@@ -75,14 +75,14 @@ TEST(RecoveryFactor, TheRevisionOf2022LoweredTheHarcoAsReported) {
   EXPECT_NEAR(before(0.78) - after(0.78), 0.008, 5e-4);
 }
 
-TEST(RecoveryFactor, TheElementsOfTheHarcoDifferByAConstant) {
+TEST(RecoveryFactor, HarcoElementsDifferByAConstant) {
   for (const double mach : {0.2, 0.5, 0.8}) {
     EXPECT_NEAR(published("harco-heated-2014").law(mach) - published("harco-heated-b-2014").law(mach), 0.015,
                 1e-15);
   }
 }
 
-TEST(AmbientTemperature, AndRecoveryTemperatureAreInverses) {
+TEST(AmbientTemperature, InvertsRecoveryTemperature) {
   // Two roundings.
   for (const double h : {0.0, 0.02}) {
     const MoistAir<double> air = moist_air(h);
@@ -95,14 +95,14 @@ TEST(AmbientTemperature, AndRecoveryTemperatureAreInverses) {
   }
 }
 
-TEST(AmbientTemperature, OfFullRecoveryIsThatOfTheFreeStream) {
+TEST(AmbientTemperature, FullRecoveryGivesTheStagnationTemperature) {
   const MoistAir<double> air = moist_air(0.01);
   for (const double mach : {0.0, 0.3, 0.8})
     EXPECT_NEAR(recovery_temperature(250.0, mach, 1.0, air), pcor::stagnation_temperature(250.0, mach, air),
                 1e-13);
 }
 
-TEST(AmbientTemperature, IsThatOfTheThermometerAtRest) {
+TEST(AmbientTemperature, EqualsTheThermometerAtRest) {
   EXPECT_EQ(ambient_temperature(273.0, 0.0, 0.97, pcor::dry_air<double>()), 273.0);
 }
 

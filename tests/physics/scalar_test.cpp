@@ -68,7 +68,7 @@ TEST(Scalar, PhysicsCompilesForNonDoubleScalar) {
   }
 }
 
-TEST(Scalar, ArchetypeTakesNoOtherDecisionThanDouble) {
+TEST(Scalar, ArchetypeAndDoubleTakeTheSameBranches) {
   // Both branches of every select: impossible pressures and temperatures.
   for (const auto& [p, q] : {std::pair{-1.0, 5.0}, {0.0, 5.0}, {700.0, -5.0}}) {
     EXPECT_TRUE(std::isnan(pcor::mach_number(Physics(p), Physics(q), pcor::dry_air<Physics>()).value()));
@@ -82,7 +82,7 @@ TEST(Scalar, ArchetypeTakesNoOtherDecisionThanDouble) {
               1e-13);
 }
 
-TEST(Scalar, PromotesToTheMoreGeneral) {
+TEST(Scalar, PromotesToTheMoreGeneralType) {
   static_assert(std::is_same_v<pcor::Promoted<double, double>, double>);
   static_assert(std::is_same_v<pcor::Promoted<Physics, Physics>, Physics>);
 }

@@ -67,7 +67,7 @@ double slope(const Function& f, double x, double h) {
 
 }  // namespace
 
-TEST(Sensitivity, FormulasAreTheSlopesOfTheRetrieval) {
+TEST(Sensitivity, FormulasEqualTheDerivativesOfTheRetrieval) {
   // S_v = -gamma M^2 p/((1+x) v) and S_T = gamma M^2 p/(2 (1+x) T). The central difference errs by h^2
   // f'''/6: 1e-8 relative with the steps of 1e-4 relative, and 1e-12/h of rounding.
   for (const auto& [p, v] : atmosphere::envelopes()) {
@@ -84,7 +84,7 @@ TEST(Sensitivity, FormulasAreTheSlopesOfTheRetrieval) {
   }
 }
 
-TEST(Sensitivity, StatesAreThoseOfTheTable) {
+TEST(Sensitivity, StatesAgreeWithTheTable) {
   for (const Row& row : table) {
     SCOPED_TRACE(row.name);
     const double mach = row.v / pcor::speed_of_sound(row.T(), dry);

@@ -14,7 +14,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-TEST(StandardAtmosphere, IsThatOfTheTableAtGeopotentialHeights) {
+TEST(StandardAtmosphere, AgreesWithTheTableAtGeopotentialHeights) {
   // US Standard Atmosphere 1976, table II; half of the fifth digit is at most 5e-5.
   const struct {
     double height, temperature, pressure;
@@ -27,7 +27,7 @@ TEST(StandardAtmosphere, IsThatOfTheTableAtGeopotentialHeights) {
   }
 }
 
-TEST(StandardAtmosphere, IsThatOfTheTableAtGeometricHeights) {
+TEST(StandardAtmosphere, AgreesWithTheTableAtGeometricHeights) {
   // US Standard Atmosphere 1976, table I; its geopotential height is r z/(r + z) with r = 6356.766 km.
   const struct {
     double height, temperature, pressure;
@@ -60,13 +60,13 @@ TEST(StandardAtmosphere, IsHydrostatic) {
   }
 }
 
-TEST(StandardAtmosphere, PressureAltitudeIsTheInverse) {
+TEST(StandardAtmosphere, PressureAltitudeInvertsThePressure) {
   // Rounding of ln p: 1e-15 of 8 km a few times over.
   for (double height = -5000.0; height <= 84800.0; height += 100.0)
     EXPECT_NEAR(pressure_altitude(standard_pressure(height)), height, 1e-7) << height;
 }
 
-TEST(StandardAtmosphere, PressureAltitudeIsThatOfFlightLevels) {
+TEST(StandardAtmosphere, PressureAltitudeAgreesWithFlightLevels) {
   // FL 100, 200 and 300: the pressures of ICAO Doc 7488, which is the same below 32 km.
   const struct {
     double feet, pressure;
@@ -75,7 +75,7 @@ TEST(StandardAtmosphere, PressureAltitudeIsThatOfFlightLevels) {
   for (const auto& row : rows) EXPECT_NEAR(pressure_altitude(row.pressure), row.feet * 0.3048, 0.015);
 }
 
-TEST(StandardAtmosphere, ItsHydrostaticConstantIsNearlyThatOfPcor) {
+TEST(StandardAtmosphere, HydrostaticConstantDiffersSlightlyFromThatOfPcor) {
   // M0/R* of 1976 against the molar mass with present carbon dioxide and the gas constant of 2018: 4e-5,
   // which is 0.3 m in 8 km. Heights of the standard need its own constants.
   EXPECT_NEAR(pcor::standard_hydrostatic_constant * pcor::constants::gas_constant_dry_air /

@@ -69,7 +69,7 @@ class RealFlight : public testing::Test {
 // coefficients.
 constexpr double pressure_tolerance = 2e-4;  // hPa
 
-TEST_F(RealFlight, CorrectsPressuresOfTheRadomePairAsNimbus) {
+TEST_F(RealFlight, RadomePairPressuresAgreeWithNimbus) {
   const Flight nimbus(path_);
   const Flight ours = process(read_model(model_path("c130-psfd-qcr-2003.toml")));
   EXPECT_LT(worst(ours, "PSXC", nimbus, "PSFDC", "hPa"), pressure_tolerance);
@@ -78,7 +78,7 @@ TEST_F(RealFlight, CorrectsPressuresOfTheRadomePairAsNimbus) {
   EXPECT_LT(worst(ours, "QCXC", nimbus, "QCXC", "hPa"), pressure_tolerance);
 }
 
-TEST_F(RealFlight, CorrectsPressuresOfThePitotPairAsNimbus) {
+TEST_F(RealFlight, PitotPairPressuresAgreeWithNimbus) {
   const Flight nimbus(path_);
   const Flight ours = process(read_model(model_path("c130-psfd-qcf-2003.toml")));
   EXPECT_LT(worst(ours, "PSXC", nimbus, "PSFDC", "hPa"), pressure_tolerance);
@@ -86,7 +86,7 @@ TEST_F(RealFlight, CorrectsPressuresOfThePitotPairAsNimbus) {
 }
 
 // In 2004 nimbus took the constants of dry air for Mach number and temperature.
-TEST_F(RealFlight, FindsMachNumberAndTemperatureOfDryAirAsNimbus) {
+TEST_F(RealFlight, DryMachNumberAndTemperatureAgreeWithNimbus) {
   const Flight nimbus(path_);
   ModelDefinition model = read_model(model_path("c130-psfd-qcr-2003.toml"));
   model.model.moist = false;
@@ -96,13 +96,13 @@ TEST_F(RealFlight, FindsMachNumberAndTemperatureOfDryAirAsNimbus) {
 }
 
 // Its airspeed was that of moist air.
-TEST_F(RealFlight, FindsAirspeedOfMoistAirAsNimbus) {
+TEST_F(RealFlight, MoistAirspeedAgreesWithNimbus) {
   const Flight nimbus(path_);
   const Flight ours = process(read_model(model_path("c130-psfd-qcr-2003.toml")));
   EXPECT_LT(worst(ours, "TASX", nimbus, "TASX", "m/s"), 0.01);
 }
 
-TEST_F(RealFlight, ReportsItsSteps) {
+TEST_F(RealFlight, SummaryHasCountsAndOutputs) {
   process(read_model(model_path("c130-psfd-qcr-2003.toml")));
   EXPECT_EQ(summary_.records, 3061U);
   EXPECT_EQ(summary_.rate, 1);

@@ -145,7 +145,7 @@ class Process : public testing::Test {
 };
 
 // Values are stored as 32-bit floats: one part in 1.7e7, on each of a few inputs.
-TEST_F(Process, FindsTheAirBehindTheReadings) {
+TEST_F(Process, RecoversTheTrueAir) {
   write_flight(input_, 200, 1);
   ProcessOptions options;
   options.correct_with = CorrectWith::lams;
@@ -160,7 +160,7 @@ TEST_F(Process, FindsTheAirBehindTheReadings) {
 }
 
 // Marks of missing values that the file does not name, and a thermometer that is not connected.
-TEST_F(Process, TakesWhatIsImpossibleAsMissing) {
+TEST_F(Process, ImpossibleValuesAreMissing) {
   write_flight(input_, 20, 1);
   const auto put = [this](const char* name, std::size_t record, float value) {
     int file = 0, number = 0;
@@ -217,7 +217,7 @@ TEST_F(Process, KeepsTheTotalPressure) {
   for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(p[i] + q[i], measured_p[i] + measured_q[i], 2e-4);
 }
 
-TEST_F(Process, RunsHighRateFlightsAtTheirRate) {
+TEST_F(Process, HighRateFlightsKeepTheirRate) {
   write_flight(input_, 40, 25, 86390.0);  // ten seconds before midnight
   const ProcessSummary summary = process_flight(input_, lams_model(), output_);
   EXPECT_EQ(summary.rate, 25);
@@ -229,7 +229,7 @@ TEST_F(Process, RunsHighRateFlightsAtTheirRate) {
 }
 
 // Blocks are an affair of the reader: a flight of many gives what its samples give one by one.
-TEST_F(Process, DoesNotDependOnBlocks) {
+TEST_F(Process, ResultIsIndependentOfBlocks) {
   write_flight(input_, 2 * records_per_block + 17, 1);
   process_flight(input_, lams_model(), output_, steady());
   EXPECT_THAT(read("PCOR_LAMS", "hPa"), testing::Each(testing::DoubleNear(2.0, 3e-4)));
@@ -244,7 +244,7 @@ TEST_F(Process, ReportsProgress) {
   EXPECT_THAT(done, testing::ElementsAre(records_per_block, records_per_block + 1));
 }
 
-TEST_F(Process, RenamesItsResults) {
+TEST_F(Process, OutputsAreRenamed) {
   write_flight(input_, 10, 1);
   ModelDefinition model = lams_model();
   model.output["PCOR"] = "PCORD";
@@ -275,7 +275,7 @@ TEST_F(Process, RefusesLamsWithoutALaser) {
   EXPECT_FALSE(std::filesystem::exists(output_));
 }
 
-TEST_F(Process, TakesFormulasOfVariablesInTheFile) {
+TEST_F(Process, FormulasUseVariablesOfTheFile) {
   write_flight(input_, 10, 1);
   ModelDefinition plain = lams_model();
   process_flight(input_, plain, output_);
@@ -446,7 +446,7 @@ TEST_F(FilteredTemperature, IsNotFilteredAcrossGaps) {
   }
 }
 
-TEST_F(FilteredTemperature, IsMissingWithItsSample) {
+TEST_F(FilteredTemperature, MissingSampleGivesAMissingResult) {
   write_swinging(test::sequence(50000.0, 60), 1, 60.0, {20, 40, 41, 42, 43, 44});
   const ProcessSummary summary = process_flight(input_, lams_model(), output_);
   const std::vector<double> filtered = read("ATLAMSF", "K"), flags = read("PCORFLAG", "");
@@ -639,7 +639,7 @@ TEST_F(Process, WritesTheRequestedUncertainties) {
               testing::Not(Contains("PSXC_uncertainty")));
 }
 
-TEST_F(Process, HasNoUncertaintyOfWhatTheLaserCorrects) {
+TEST_F(Process, LaserCorrectedResultsHaveNoUncertainty) {
   write_flight(input_, 20, 1);
   ProcessOptions options;
   options.correct_with = CorrectWith::lams;
@@ -662,7 +662,7 @@ TEST_F(Process, AdvisesIfTheModelStatesNoUncertainty) {
 }
 
 // In air of one temperature the hydrostatic equation has a closed form: H = R_a T/g0 ln(p_0/p).
-TEST_F(Process, WritesHydrostaticStepsThatAddUpToTheHeight) {
+TEST_F(Process, HydrostaticStepsSumToTheHeight) {
   const double nan = std::nan("");
   const std::vector<double> p{900, 850, 800, 700, 600, nan, 500, 400};
   {
@@ -701,7 +701,7 @@ vapor_pressure = "EDPC"
 }
 
 // Vapour makes air lighter: R_a grows by 0.378 e/p.
-TEST_F(Process, HydrostaticStepsKnowTheVapour) {
+TEST_F(Process, HydrostaticStepsIncludeVapour) {
   {
     test::NetcdfMaker maker(input_);
     maker.time({100, 101});
@@ -725,7 +725,7 @@ TEST_F(Process, HydrostaticStepsKnowTheVapour) {
 // In a descent at a constant rate a lagging line reads tau dp/dt too low.
 // A lag needs samples before and after; each gap ends a series, of which nothing is lost but a sample that is
 // alone.
-TEST_F(Process, GivesRatesToEffectsOnBothSidesOfAGap) {
+TEST_F(Process, RatesAreAvailableOnBothSidesOfAGap) {
   {
     test::NetcdfMaker maker(input_);
     maker.time({100, 101, 102, 103, 203, 204, 304});
@@ -800,7 +800,7 @@ double scatter(const std::vector<double>& values, std::size_t first, std::size_t
   return std::sqrt(0.5 * sum / static_cast<double>(count));
 }
 
-TEST_F(NoisyLag, IsUndoneWhereThereIsMoreSignalThanNoise) {
+TEST_F(NoisyLag, LagIsCorrectedIfSignalExceedsNoise) {
   constexpr double noise = 0.02;
   const ProcessSummary summary = run(-0.06, noise);
   EXPECT_THAT(summary.notes, Not(Contains(test::Says("not applied"))));

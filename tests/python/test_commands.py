@@ -52,7 +52,7 @@ def result_of(number):
 
 
 @pytest.mark.parametrize("number", range(len(commands())), ids=[words[0] for _, words in commands()])
-def test_json_is_that_of_the_tool_byte_for_byte(in_folder, number):
+def test_json_equals_that_of_the_tool(in_folder, number):
     result, words = result_of(number), commands()[number][1]
     expected = run_tool(*words, "--json", "-").stdout
     assert result.to_json() == expected
@@ -63,7 +63,7 @@ def test_json_is_that_of_the_tool_byte_for_byte(in_folder, number):
         assert key in dir(result) and key in described
 
 
-def test_text_is_that_of_the_tool(in_folder):
+def test_text_equals_that_of_the_tool(in_folder):
     words = ["compare", *FLIGHTS, "-m", "model.toml"]
     expected = run_tool(*words).stdout.rstrip("\n")
     result = pcor.compare(FLIGHTS, model="model.toml")
@@ -71,7 +71,7 @@ def test_text_is_that_of_the_tool(in_folder):
     assert html.escape(expected) in result._repr_html_()
 
 
-def test_options_of_the_tool_are_those_of_the_functions():
+def test_functions_have_the_options_of_the_tool():
     # The completion lists the same options from another source than the help; options with a value have a case of their own.
     script = run_tool("completion", "bash").stdout
     options = dict(re.findall(r"'(\w+) '\*' -'\*\) words='([^']*)'", script))
@@ -86,7 +86,7 @@ def test_options_of_the_tool_are_those_of_the_functions():
             assert f", {name}: " in stub and (f", {name}: Optional[bool]" in stub) == ((command, option) not in with_value)
 
 
-def test_types_of_results_are_those_of_the_fields(in_folder):
+def test_stub_types_match_the_results(in_folder):
     """Reads the classes of the stub, and compares them with the values of a result."""
     classes = {node.name: node for node in ast.parse(STUB).body if isinstance(node, ast.ClassDef)}
     types = {"str": str, "float": (int, float), "bool": bool}
@@ -117,7 +117,7 @@ def test_types_of_results_are_those_of_the_fields(in_folder):
     assert seen == {*types}
 
 
-def test_temperature_calibrates_by_climbs(in_folder):
+def test_temperature_calibrates_a_thermometer(in_folder):
     climbs = pcor.simulate("data/scenarios/c130-climbs.toml")
     result = pcor.temperature(climbs.output, model="data/scenarios/models/c130-psfd-eq18.toml")
     assert result.samples > 0 and "a0" in result.coefficients
@@ -131,14 +131,14 @@ def test_fields_are_attributes_and_items(in_folder):
         result.no_such_field
 
 
-def test_models_in_memory_serve_as_models(in_folder):
+def test_models_in_memory_are_accepted(in_folder):
     fit = pcor.refit(FLIGHTS, model=pcor.Model("model.toml").text)
     before, after = (pcor.compare(FLIGHTS, model=model).models[0].rms_hpa for model in ("model.toml", fit))
     assert after < before
     assert fit.fitted_model.parameters["static-qp.a2"] == fit.effects[2].parameters.a2
 
 
-def test_flights_in_memory_serve_as_flights(in_folder):
+def test_flights_in_memory_are_accepted(in_folder):
     flight = pcor.open("first.nc")
     from_memory = pcor.compare(flight, model="model.toml", reference="lams").models[0]
     from_file = pcor.compare("first.nc", model="model.toml", reference="lams").models[0]
@@ -168,7 +168,7 @@ def test_processed_flight_is_a_dataset(in_folder):
     assert dataset.PSXC.attrs["standard_name"] == "air_pressure"
 
 
-def test_report_is_written_and_leaves_the_output(in_folder):
+def test_writing_a_report_does_not_change_the_output(in_folder):
     fit = pcor.refit(FLIGHTS, model="model.toml", output="kept.toml")
     time_written = os.stat("kept.toml").st_mtime_ns
     fit.report("refit.html")
@@ -184,7 +184,7 @@ def test_several_flights_are_processed_into_a_folder(in_folder):
             result.dataset
 
 
-def test_processes_share_the_work(in_folder):
+def test_two_processes_give_the_same_result(in_folder):
     assert (pcor.refit(FLIGHTS, model="model.toml", processes=2).to_json()
             == pcor.refit(FLIGHTS, model="model.toml").to_json())
 
@@ -209,7 +209,7 @@ def test_tables_are_data_frames(in_folder):
         result.to_frame("no_table")
 
 
-def test_pictures_are_drawn(in_folder):
+def test_plots_show_the_results(in_folder):
     pytest.importorskip("matplotlib")
     comparison = pcor.compare(FLIGHTS, model="model.toml", reference="lams")
     assert len(comparison.plot().get_yticks()) == len([r for r in comparison.models[0].regimes if r.samples])

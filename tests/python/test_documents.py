@@ -19,14 +19,14 @@ def run_python_lines(page, count):
     return names
 
 
-def test_lines_of_the_documentation_run(tmp_path, monkeypatch):
+def test_code_of_the_documentation_runs(tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")
     monkeypatch.chdir(tmp_path)
     run_python_lines("docs/python.md", 3)
     assert (tmp_path / "compare.html").stat().st_size > 10_000
 
 
-def test_lines_of_the_readme_run(tmp_path, monkeypatch):
+def test_code_of_the_readme_runs(tmp_path, monkeypatch):
     real = Path(os.environ.get("PCOR_FLIGHTS", "")) / REAL_FLIGHT
     if not real.is_file():
         pytest.skip(f"{REAL_FLIGHT} is not in the folder PCOR_FLIGHTS")

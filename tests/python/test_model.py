@@ -26,7 +26,7 @@ def law(arrays):
     return p * (a["static-constant.a0"] + a["static-alpha.a1"] * ratio + a["static-qp.a2"] * q / p)
 
 
-def test_delta_p_is_that_of_equation_18():
+def test_delta_p_agrees_with_equation_18():
     arrays = recorded()
     delta_p = pcor.model("c130-psfd-eq18").delta_p(**arrays)
     np.testing.assert_allclose(delta_p, law(arrays), rtol=1e-12)  # rounding of a sum of three terms
@@ -80,7 +80,7 @@ def test_missing_values_stay_missing():
     ({"static_pressure": np.ones(3)}, "shape"),
     ({"static_presure": np.ones(SAMPLES)}, "static_presure"),
 ])
-def test_wrong_arrays_are_errors(change, message):
+def test_invalid_arrays_are_errors(change, message):
     arrays = {name: array for name, array in {**recorded(), **change}.items() if array is not None}
     with pytest.raises(pcor.Error, match=message):
         pcor.Model("c130-psfd-eq18").correct(**arrays)
@@ -117,7 +117,7 @@ def test_parameters_are_changed_in_a_copy():
         model.with_parameters({"static-constant.a9": 0.0})
 
 
-def test_flight_is_corrected_as_by_the_tool(in_folder):
+def test_corrected_flight_equals_that_of_the_tool(in_folder):
     flight = pcor.open("first.nc")
     result = pcor.Model("model.toml").correct(flight)
     processed = pcor.process("first.nc", model="model.toml", correct_with="model").dataset
@@ -131,7 +131,7 @@ def test_flight_is_corrected_as_by_the_tool(in_folder):
     assert result.corrected_static_pressure.dims == flight.PSFD.dims
 
 
-def test_units_and_roles_of_a_flight_count(in_folder):
+def test_units_and_roles_of_a_flight_are_used(in_folder):
     flight = pcor.open("first.nc")
     model = pcor.Model("model.toml")
     pascals = flight.assign(PSFD=(flight.PSFD.astype(float) * 100).assign_attrs(units="Pa")).rename(PSFD="P")
@@ -159,7 +159,7 @@ def test_loop_equals_arrays():
         loop.run(51.0, cabin_pressure=800.0)
 
 
-def test_arrays_are_computed_without_the_lock_and_a_copy():
+def test_correct_releases_the_gil_and_keeps_its_inputs():
     model, arrays = pcor.Model("c130-psfd-eq18"), recorded(2_000_000)
     frozen = {name: array.copy() for name, array in arrays.items()}
     ticks, done = [], threading.Event()

@@ -98,14 +98,14 @@ Model everything(pcor::LamsApproach approach) {
   return model;
 }
 
-TEST(Allocation, IsCountedByThisTest) {
+TEST(Allocation, TestCountsAllocations) {
   const std::size_t before = allocations;
   const auto value = std::make_unique<double>(1.0);
   EXPECT_EQ(*value, 1.0);
   EXPECT_GT(allocations, before);
 }
 
-TEST(Allocation, DoesNotHappenInTheLoop) {
+TEST(Allocation, LoopDoesNotAllocate) {
   for (const auto approach : {pcor::LamsApproach::simultaneous, pcor::LamsApproach::iterated}) {
     std::string error;
     const pcor::ModelUncertainty uncertainty = pcor::test::uncertain_in_everything(everything(approach));

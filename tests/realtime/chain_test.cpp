@@ -145,7 +145,7 @@ const Truth truth;
 
 }  // namespace
 
-TEST(Chain, FindsTheAirThatWasMeasured) {
+TEST(Chain, RecoversTheTrueAir) {
   // Two roundings of a pressure, 1e-13 of 700 hPa, are 1e-11 K and m/s; LAMS is exact to 1e-9 hPa.
   const Sample sample = fly(truth.model(), truth.recorded());
   EXPECT_EQ(sample.flags.bits(), 0U);
@@ -173,7 +173,7 @@ TEST(Chain, KeepsTheTotalPressure) {
   }
 }
 
-TEST(Chain, Equation18OfTheMemo) {
+TEST(Chain, ComputesEquation18OfTheMemo) {
   // 700 hPa, q 67.6 hPa, ADIFR/QCR -0.318: 0.24 hPa, worked by hand.
   Model model;
   model.effects = {catalogued("static-constant", {.004127875}), catalogued("static-alpha", {.021279816}),
@@ -187,7 +187,7 @@ TEST(Chain, Equation18OfTheMemo) {
   EXPECT_NEAR(s[Quantity::dynamic_ratio], 67.6 / 700, 1e-15);
 }
 
-TEST(Chain, DerivesTheMachNumberOfTheMeasuredPairInDryAir) {
+TEST(Chain, MachNumberOfTheMeasuredPairAssumesDryAir) {
   Model model;
   model.effects = {catalogued("static-mach", {0.01})};
   const Recorded recorded{{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67.6}};
@@ -323,7 +323,7 @@ TEST(Air, WithoutHumidityIsDry) {
   }
 }
 
-TEST(Air, OfAModelWithDryConstantsIgnoresTheVapour) {
+TEST(Air, DryConstantsIgnoreTheVapour) {
   Model model = truth.model();
   model.moist = false;
   const Sample s = fly(model, truth.recorded());
@@ -331,7 +331,7 @@ TEST(Air, OfAModelWithDryConstantsIgnoresTheVapour) {
   EXPECT_EQ(s.flags.bits(), 0U);
 }
 
-TEST(Air, TakesTheVapourFromTheDewPoint) {
+TEST(Air, VapourIsComputedFromTheDewPoint) {
   const double dew_point = 265;
   const Recorded recorded =
       with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::dew_point, dew_point);
@@ -341,7 +341,7 @@ TEST(Air, TakesTheVapourFromTheDewPoint) {
   EXPECT_NEAR(e, 3.31, 0.02) << "the saturation over water at -8 deg C and 0.3 %";
 }
 
-TEST(Air, TakesTheVapourFromTheFrostPoint) {
+TEST(Air, VapourIsComputedFromTheFrostPoint) {
   const double frost_point = 265;
   const Recorded recorded =
       with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::frost_point, frost_point);
@@ -352,7 +352,7 @@ TEST(Air, TakesTheVapourFromTheFrostPoint) {
   EXPECT_NEAR(e, 3.06, 0.02) << "the saturation over ice at -8 deg C and 0.3 %";
 }
 
-TEST(Air, TakesAnAmbientTemperatureAsItIs) {
+TEST(Air, RecordedAmbientTemperatureIsUnchanged) {
   Recorded recorded =
       with(without(truth.recorded(), Quantity::recovery_temperature), Quantity::ambient_temperature, truth.T);
   Model model = truth.model();
@@ -403,7 +403,7 @@ struct Miscalibrated : Truth {
 
 }  // namespace
 
-TEST(Calibration, FindsTheAirBehindAThermometerThatErrs) {
+TEST(Calibration, RecoversTheTrueTemperature) {
   const Miscalibrated air;
   ASSERT_GT(std::abs(air.T - air.uncalibrated), 0.4);
   for (const LamsApproach approach :
@@ -423,7 +423,7 @@ TEST(Calibration, FindsTheAirBehindAThermometerThatErrs) {
 }
 
 // A second solution, as where the humidity is limited, starts from the uncalibrated temperature again.
-TEST(Calibration, IsDoneOnce) {
+TEST(Calibration, IsAppliedOnce) {
   const Miscalibrated air;
   const Recorded wet = with(air.recorded(), Quantity::vapor_pressure, 20.0);
   const Sample plain = fly(air.Truth::model(), wet), s = fly(air.model(), wet);
@@ -439,7 +439,7 @@ TEST(Calibration, IsDoneOnce) {
 }
 
 // The vapour pressure lies between saturation at the thermometer's temperature and at the calibrated one.
-TEST(Calibration, MovesTheLimitOfSaturation) {
+TEST(Calibration, SaturationLimitUsesTheCalibratedTemperature) {
   const Miscalibrated air;
   const double e = pcor::vapor_pressure_over_water(air.uncalibrated + 0.2);
   ASSERT_LT(e, pcor::vapor_pressure_over_water(air.T));
@@ -448,7 +448,7 @@ TEST(Calibration, MovesTheLimitOfSaturation) {
   EXPECT_FALSE(fly(air.model(), humid).has(Quality::humidity_limited));
 }
 
-TEST(Calibration, ByAFormulaIsFoundFromTheTemperatureBeforeIt) {
+TEST(Calibration, FormulaUsesTheUncalibratedTemperature) {
   const Miscalibrated air;
   const Model model = with(air.Truth::model(), written(EffectLocation::ambient_temperature,
                                                        "a + b * (ambient_temperature - 273.15) - 2e-4 * "
@@ -462,7 +462,7 @@ TEST(Calibration, ByAFormulaIsFoundFromTheTemperatureBeforeIt) {
   EXPECT_THAT(error_of(early, air.recorded()), HasSubstr("'ambient_temperature'"));
 }
 
-TEST(Calibration, WithoutItsInputTakesTheTemperatureAway) {
+TEST(Calibration, MissingInputGivesAMissingTemperature) {
   const Miscalibrated air;
   const Model model =
       with(air.Truth::model(), written(EffectLocation::ambient_temperature, "k * altitude", {"k"}, {1e-4}));
@@ -479,14 +479,14 @@ TEST(Calibration, WithoutItsInputTakesTheTemperatureAway) {
   }
 }
 
-TEST(Calibration, WantsATemperature) {
+TEST(Calibration, RequiresATemperature) {
   Recorded cold = without(without(truth.recorded(), Quantity::recovery_temperature), Quantity::lams_airspeed);
   EXPECT_THAT(error_of(with(truth.model(), catalogued("temp-calibration", {0.5, 0.0, 0.0})), cold),
               AllOf(HasSubstr("temp-calibration"), HasSubstr("'recovery_temperature'"),
                     HasSubstr("'ambient_temperature'")));
 }
 
-TEST(Air, WithoutThermometerHasAMachNumberStill) {
+TEST(Air, MachNumberNeedsNoThermometer) {
   Recorded recorded = without(truth.recorded(), Quantity::lams_airspeed);
   recorded = without(recorded, Quantity::recovery_temperature);
   const Sample s = fly(truth.model(), recorded);
@@ -494,7 +494,7 @@ TEST(Air, WithoutThermometerHasAMachNumberStill) {
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
 }
 
-TEST(FlowAngles, ComeFromTheRadomeWhereTheyAreNotRecorded) {
+TEST(FlowAngles, UnrecordedAnglesComeFromTheRadome) {
   Model model = truth.model();
   model.attack_radome = {5.776, 15.031, 0.0};
   model.sideslip_radome = {-0.5, 20.0, 0.0};
@@ -508,7 +508,7 @@ TEST(FlowAngles, ComeFromTheRadomeWhereTheyAreNotRecorded) {
   EXPECT_NEAR(s[Quantity::lams_static_defect], truth.defect(), 1e-9);
 }
 
-TEST(FlowAngles, OfTheGvNeedTheMachNumber) {
+TEST(FlowAngles, GvAttackDependsOnTheMachNumber) {
   Model model = truth.model();
   model.attack_radome = {5.5156, 19.07, 2.08};
   Recorded recorded = without(truth.recorded(), Quantity::attack);
@@ -628,7 +628,7 @@ TEST(Upstream, RadomeRatioMovesEffectsAndAttackAngle) {
     EXPECT_EQ(s[other], still[other]) << info_of(other).name;
 }
 
-TEST(Upstream, TheRadomePressureMovesBothRatios) {
+TEST(Upstream, RadomePressureChangesBothRatios) {
   const Model with_loss = with(radome_model(), written(EffectLocation::radome, "k", {"k"}, {2}));
   const Sample s = fly(with_loss, radome_record()), still = fly(radome_model(), radome_record());
   EXPECT_NEAR(s[Quantity::radome_dynamic_pressure], 70, 1e-12);
@@ -639,7 +639,7 @@ TEST(Upstream, TheRadomePressureMovesBothRatios) {
   EXPECT_EQ(s[Quantity::port_static_pressure], still[Quantity::port_static_pressure]);
 }
 
-TEST(Upstream, TheLossOfTheRadomeFollowsTheAnglesWithoutIt) {
+TEST(Upstream, RadomeLossUsesTheUncorrectedAngles) {
   const Model model = with(radome_model(), catalogued("qcr-angle", {0.0273, 0.0562}));
   const Sample s = fly(model, radome_record()), still = fly(radome_model(), radome_record());
   const double alpha = still[Quantity::attack], beta = still[Quantity::sideslip];
@@ -647,7 +647,7 @@ TEST(Upstream, TheLossOfTheRadomeFollowsTheAnglesWithoutIt) {
               1e-12);
 }
 
-TEST(Upstream, ARecordedAngleIsNotOfTheRadomeRatio) {
+TEST(Upstream, RadomeRatioDoesNotChangeARecordedAngle) {
   const Recorded recorded = with(radome_record(), Quantity::attack, 2.5);
   const Model drifting = with(radome_model(), written(EffectLocation::attack_ratio, "k", {"k"}, {0.1}));
   EXPECT_EQ(fly(drifting, recorded)[Quantity::attack], 2.5);
@@ -692,13 +692,13 @@ TEST(Upstream, DryConstantsGiveALowDeltaP) {
   EXPECT_NEAR(dry - moist, expected, 0.08 * std::abs(expected));
 }
 
-TEST(Upstream, AnErrorOfTheHumidityIsTakenOut) {
+TEST(Upstream, HumidityErrorIsCorrected) {
   const Recorded high = with(truth.recorded(), Quantity::vapor_pressure, truth.e / 0.9);
   const Sample s = fly(with(truth.model(), catalogued("humidity-error", {0.1})), high);
   EXPECT_NEAR(s[Quantity::humidity], truth.e / truth.p, 1e-14);
 }
 
-TEST(Upstream, VapourPressureIsKnownToFormulasFromADewPoint) {
+TEST(Upstream, FormulasCanUseVapourPressureFromDewPoint) {
   const Recorded recorded =
       with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::dew_point, 265);
   const Model model =
@@ -709,7 +709,7 @@ TEST(Upstream, VapourPressureIsKnownToFormulasFromADewPoint) {
   EXPECT_THAT(error_of(model, without(recorded, Quantity::dew_point)), HasSubstr("'vapor_pressure'"));
 }
 
-TEST(Upstream, ALateLaserIsBroughtForward) {
+TEST(Upstream, ClockSkewShiftsTheLaser) {
   const Model model = with(truth.model(), catalogued("clock-skew", {0.5}));
   Recorded recorded = truth.recorded();
   recorded[Quantity::airspeed_rate] = 0.4;
@@ -743,7 +743,7 @@ TEST(Upstream, EffectsOnTheRadomeNeedItsPressures) {
   }
 }
 
-TEST(Formula, ActsAtEveryPlace) {
+TEST(Formula, ActsAtEveryLocation) {
   const auto change = [](EffectLocation location, double amount, Quantity of) {
     const Model model = with(truth.model(), written(location, "k", {"k"}, {amount}));
     EXPECT_TRUE(build(model, truth.recorded()).acts(location));
@@ -780,7 +780,7 @@ TEST(Formula, ActsAtEveryPlace) {
               change(EffectLocation::sideslip, -0.5, Quantity::lams_static_defect), 1e-12);
 }
 
-TEST(Formula, ReadsVariablesOfTheFileAndRoles) {
+TEST(Formula, ReadsFileVariablesAndRoles) {
   Model model = truth.model();
   model.effects.push_back(written(EffectLocation::static_defect,
                                   "k * ENGTRQ / 100 + c * static_pressure * FLAP2", {"k", "c"},
@@ -826,9 +826,9 @@ Recorded full_record() {
 
 }  // namespace
 
-TEST(QualityBits, NoBitForAGoodSample) { EXPECT_EQ(fly(full_model(), full_record()).flags.bits(), 0U); }
+TEST(QualityBits, GoodSampleSetsNoBit) { EXPECT_EQ(fly(full_model(), full_record()).flags.bits(), 0U); }
 
-TEST(QualityBits, EachBitHasItsCauseAndRemovesItsResults) {
+TEST(QualityBits, EachCauseSetsItsBitAndRemovesResults) {
   struct Case {
     Quality bit;
     Quantity changed;
@@ -881,7 +881,7 @@ TEST(QualityBits, EachBitHasItsCauseAndRemovesItsResults) {
   EXPECT_TRUE(fly(negative, full_record()).has(Quality::minimum_applied));
 }
 
-TEST(QualityBits, NotSetByOtherCauses) {
+TEST(QualityBits, OtherCausesDoNotSetABit) {
   const Quality never[] = {Quality::after_gap, Quality::corrected_with_lams};  // the loop's own
   for (const double q : {missing, -1.0, 0.0, 10.0, 66.0, 200.0}) {
     const Sample s = fly(full_model(), with(full_record(), Quantity::dynamic_pressure, q));
@@ -898,7 +898,7 @@ TEST(QualityBits, NotSetByOtherCauses) {
       << "the pressure is at fault, not an input";
 }
 
-TEST(QualityBits, ADefectLargerThanTheDynamicPressureSetsABit) {
+TEST(QualityBits, DefectAboveDynamicPressureSetsABit) {
   Model model = truth.model();
   model.effects = {catalogued("static-constant", {0.02})};
   const Sample s = fly(model, with(truth.recorded(), Quantity::dynamic_pressure, 10.0));
@@ -910,7 +910,7 @@ TEST(QualityBits, ADefectLargerThanTheDynamicPressureSetsABit) {
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
 }
 
-TEST(QualityBits, ADefectBelowTheNegativeDynamicPressureSetsABit) {
+TEST(QualityBits, DefectBelowNegativeDynamicPressureSetsABit) {
   Model model = truth.model();
   const Recorded slow = with(truth.recorded(), Quantity::dynamic_pressure, 10.0);
   const double p = slow.at(Quantity::static_pressure);
@@ -937,7 +937,7 @@ TEST(QualityBits, LaserDefectAboveDynamicPressureIsRejected) {
 
 // Half an hour on the ramp at 25 Hz: all dynamic pressures are noise of 0.2 hPa, and so the angles of the
 // radome are anything, in laws with and without a taper and a minimum.
-TEST(Ramp, NoAirspeedAndNoWrongPressureComeOutOfNoise) {
+TEST(Ramp, NoiseGivesNoAirspeedAndNoWrongPressure) {
   std::mt19937_64 engine(1);
   std::normal_distribution<double> noise(0.0, 0.2);
   for (const bool tapers : {false, true}) {
@@ -967,7 +967,7 @@ TEST(Ramp, NoAirspeedAndNoWrongPressureComeOutOfNoise) {
   }
 }
 
-TEST(Ramp, AirspeedBeginsAtTheLeastDynamicPressure) {
+TEST(Ramp, AirspeedNeedsAMinimumDynamicPressure) {
   Model model = truth.model();
   model.effects = {};
   const auto at = [&](double q) { return fly(model, with(truth.recorded(), Quantity::dynamic_pressure, q)); };
@@ -984,21 +984,21 @@ TEST(Ramp, AirspeedBeginsAtTheLeastDynamicPressure) {
 
 // Models that Chain::build refuses, and its messages.
 
-TEST(Build, WantsBothPressures) {
+TEST(Build, RequiresBothPressures) {
   EXPECT_EQ(error_of({}, {{Quantity::dynamic_pressure, 0}}),
             "the chain needs the role 'static_pressure': name its variable in the table [variables]");
   EXPECT_EQ(error_of({}, {{Quantity::static_pressure, 0}}),
             "the chain needs the role 'dynamic_pressure': name its variable in the table [variables]");
 }
 
-TEST(Build, WantsEffectsThatExist) {
+TEST(Build, UnknownEffectIsRefused) {
   EXPECT_EQ(error_of(with(truth.model(), catalogued("static-beauty", {1})), truth.recorded()),
             "there is no effect 'static-beauty'");
   EXPECT_EQ(error_of(with(truth.model(), catalogued("static-qp", {1, 2})), truth.recorded()),
             "effect 'static-qp' takes 1 parameter(s), not 2");
 }
 
-TEST(Build, WantsTheInputsOfEffects) {
+TEST(Build, MissingEffectInputIsRefused) {
   EXPECT_EQ(
       error_of(with(truth.model(), catalogued("static-alpha", {1})), truth.recorded()),
       "effect 'static-alpha' needs the role 'attack_differential_pressure': name its variable in the table "
@@ -1013,7 +1013,7 @@ TEST(Build, WantsTheInputsOfEffects) {
   EXPECT_THAT(error_of(radome, no_attack), HasSubstr("'attack_differential_pressure'"));
 }
 
-TEST(Build, WantsFormulasThatParse) {
+TEST(Build, InvalidFormulaIsRefused) {
   EXPECT_THAT(error_of(with(truth.model(), written(EffectLocation::static_defect, "k *", {"k"}, {1})),
                        truth.recorded()),
               AllOf(HasSubstr("formula of effect 'of-the-user': "), HasSubstr("column 4")));
@@ -1028,7 +1028,7 @@ TEST(Build, WantsFormulasThatParse) {
             "the formula of effect 'of-the-user' needs 'corrected_mach', which is known only after delta-p");
 }
 
-TEST(Build, WantsFormulasThatFit) {
+TEST(Build, TooManyFormulaVariablesAreRefused) {
   const auto formula_of = [](int count, int first = 0) {
     std::string text = "0";
     for (int i = 0; i < count; ++i) text += " + V" + std::to_string(first + i);
@@ -1043,7 +1043,7 @@ TEST(Build, WantsFormulasThatFit) {
             "the formulas of the model use more than 24 further variables");
 }
 
-TEST(Build, WantsADomainOfKnownQuantities) {
+TEST(Build, UnknownDomainQuantityIsRefused) {
   Model model = truth.model();
   model.domain = {{"speed", 0, 1}};
   EXPECT_EQ(error_of(model, truth.recorded()), "there is no quantity 'speed'");
@@ -1054,7 +1054,7 @@ TEST(Build, WantsADomainOfKnownQuantities) {
   EXPECT_THAT(error_of(model, truth.recorded()), HasSubstr("known only after delta-p"));
 }
 
-TEST(Build, WantsWhatLamsNeeds) {
+TEST(Build, MissingLamsInputIsRefused) {
   EXPECT_THAT(error_of(truth.model(), without(truth.recorded(), Quantity::attack)),
               HasSubstr("LAMS, for the angle between its beam and the wind, needs the role 'attack'"));
   EXPECT_EQ(error_of(truth.model(), without(truth.recorded(), Quantity::recovery_temperature)),
@@ -1089,7 +1089,7 @@ TEST(Build, ErrorListsMissingRoles) {
 
 TEST(Build, WorksWithoutAnErrorString) { EXPECT_FALSE(Chain::build({}, {}, nullptr).has_value()); }
 
-TEST(Chain, IsSharedByThreads) {
+TEST(Chain, ThreadsCanShareIt) {
   // It stores no state of a sample, so that loops of several rates and threads of a batch share one.
   const Chain chain = build(full_model(), full_record());
   const Sample alone = fly(chain, full_record());
@@ -1106,7 +1106,7 @@ TEST(Chain, IsSharedByThreads) {
   for (const double airspeed : found) EXPECT_EQ(airspeed, alone[Quantity::corrected_airspeed]);
 }
 
-TEST(Chain, CompilesForAScalarThatIsNoDouble) {
+TEST(Chain, CompilesForAnotherScalarType) {
   using archetype::Formulas;
   for (const LamsApproach approach : {LamsApproach::simultaneous, LamsApproach::iterated}) {
     Model model = full_model();
@@ -1141,7 +1141,7 @@ TEST(Chain, CompilesForAScalarThatIsNoDouble) {
 
 // Sum at a place, and the contribution of a single effect.
 
-TEST(Additions, DoWhatAnEffectThereDoes) {
+TEST(Additions, EqualAConstantEffectAtTheSameLocation) {
   // At every place: the chain with a formula of constant value is the chain with that amount added.
   Model model = Truth().model();
   const Recorded recorded = full_record();
@@ -1169,7 +1169,7 @@ TEST(Additions, DoWhatAnEffectThereDoes) {
   }
 }
 
-TEST(Additions, UnusedPlacesNeedAndChangeNoData) {
+TEST(Additions, UnusedLocationsNeedAndChangeNoData) {
   // A model whose angle of attack is recorded reads no radome; one without a laser has no beam.
   const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);
   Model model = with({}, catalogued("static-attack", {0.001}));
@@ -1183,7 +1183,7 @@ TEST(Additions, UnusedPlacesNeedAndChangeNoData) {
             before[Quantity::corrected_static_pressure]);
 }
 
-TEST(EffectValue, IsWhatTheEffectGivesAtItsPlace) {
+TEST(EffectValue, EffectValuesSumToTheDefect) {
   const Recorded recorded = Truth().recorded();
   Model model = with({}, catalogued("static-qp", {0.03}));
   model = with(model, written(EffectLocation::static_defect, "k * static_pressure", {"k"}, {0.004}));
@@ -1202,7 +1202,7 @@ TEST(EffectValue, IsZeroWithoutABeam) {
   EXPECT_EQ(chain.effect_value(0, fly(chain, recorded).state, chain.parameters().data()), 0.0);
 }
 
-TEST(WithEffect, IsTheChainOfTheLongerModel) {
+TEST(WithEffect, EqualsTheChainWithTheAddedEffect) {
   const Recorded recorded = with(full_record(), Quantity::roll, 20.0);
   const Chain shorter = build(Truth().model(), recorded);
   for (const ModelEffect& effect : {catalogued("static-lag", {0.2}), catalogued("psfd-bias", {0.3}),

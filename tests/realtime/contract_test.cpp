@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Roles, Contract, testing::ValuesIn(all_roles()),
 
 // The result equals the result of a good sample if it does not depend on the role; otherwise it is missing,
 // or another, and a bit is set: dry air is assumed if the humidity is missing, the model if the laser is.
-TEST_P(Contract, AMissingInputChangesNoResultOrSetsABit) {
+TEST_P(Contract, MissingInputSetsABitIfResultsChange) {
   for (const double none : {missing, infinity, -infinity}) {
     judge_each(none, [](double value, double expected, std::uint32_t bits) {
       const bool is_unhurt = value == expected || (std::isnan(value) && std::isnan(expected));
@@ -166,7 +166,7 @@ TEST_P(Contract, AMissingInputChangesNoResultOrSetsABit) {
 
 // Numbers that no flight has, at the limits of the role and beyond: no result is infinite, and NaN only with
 // a bit.
-TEST_P(Contract, AnyNumberGivesAValueOrABit) {
+TEST_P(Contract, MissingResultSetsABitForAnyNumber) {
   const pcor::QuantityInfo& info = pcor::info_of(GetParam().role);
   for (const double number :
        {0.0, -0.0, -GetParam().good, info.minimum, info.maximum, 2.0 * info.minimum, 2.0 * info.maximum,

@@ -145,7 +145,7 @@ void expect_same(const Loop& loop, const Loop& expected) {
   EXPECT_EQ(own_bits(loop), own_bits(expected));
 }
 
-TEST(LoopOrder, DoesNotDependOnTheOrderOfAdding) {
+TEST(LoopOrder, IsIndependentOfTheOrderOfAddition) {
   std::vector<std::size_t> order{0, 1, 2, 3, 4};
   do {
     Loop loop(1.0);
@@ -167,7 +167,7 @@ TEST(LoopOrder, DoesNotDependOnTheOrderOfAdding) {
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
-TEST(LoopOrder, MayHaveMoreFunctorsThanQuantities) {
+TEST(LoopOrder, AcceptsMoreFunctorsThanQuantities) {
   Loop loop(1.0);
   int seen = 0;
   const Quantity late = *loop.add_variable("late");
@@ -181,7 +181,7 @@ TEST(LoopOrder, MayHaveMoreFunctorsThanQuantities) {
   EXPECT_EQ(seen, 100);
 }
 
-TEST(LoopOrder, CompletesInPlaceBeforeAnyoneElseReads) {
+TEST(LoopOrder, InPlaceFunctorsRunBeforeReaders) {
   for (const bool reader_first : {false, true}) {
     Loop loop(1.0);
     const Quantity x = *loop.add_variable("x");
@@ -196,7 +196,7 @@ TEST(LoopOrder, CompletesInPlaceBeforeAnyoneElseReads) {
   }
 }
 
-TEST(LoopOrder, RefusesTwoWritersOfAQuantity) {
+TEST(LoopOrder, TwoWritersOfAQuantityAreRefused) {
   Loop loop(1.0);
   const Quantity x = *loop.add_variable("THRUST");
   loop.add(sum({}, x));
@@ -212,7 +212,7 @@ TEST(LoopOrder, RefusesTwoWritersOfAQuantity) {
   EXPECT_EQ(error, "two functors write 'static_defect'");
 }
 
-TEST(LoopOrder, RefusesACircleAndShowsIt) {
+TEST(LoopOrder, CircularDependencyIsRefusedAndReported) {
   Loop loop(1.0);
   const Quantity a = *loop.add_variable("a");
   const Quantity b = *loop.add_variable("b");
@@ -233,7 +233,7 @@ TEST(LoopOrder, RefusesACircleAndShowsIt) {
   loop.run(0.0);  // still whole
 }
 
-TEST(Loop, ComputesEquation18ByHand) {
+TEST(Loop, ReproducesEquation18) {
   Loop loop = build(c130(), level, 1.0);
   run(loop, level, 0.0);
   const State<double>& s = loop.state();
@@ -248,7 +248,7 @@ TEST(Loop, ComputesEquation18ByHand) {
   for (const Quantity result : results) EXPECT_TRUE(std::isfinite(s[result])) << pcor::info_of(result).name;
 }
 
-TEST(Loop, AgreesAtAnyRateOnAConstantFlight) {
+TEST(Loop, ConstantFlightGivesTheSameAtAnyRate) {
   Model model = c130();
   model.effects.push_back({"static-lag", {0.15}});
   Loop slow = build(model, level, 1.0);
@@ -262,7 +262,7 @@ TEST(Loop, AgreesAtAnyRateOnAConstantFlight) {
   }
 }
 
-TEST(Loop, KeepsItsStateFromOtherLoops) {
+TEST(Loop, LoopsHaveIndependentStates) {
   Model model = c130();
   model.effects.push_back({"static-lag", {0.15}});
   const auto climb = [](double time, double rate) {
@@ -280,7 +280,7 @@ TEST(Loop, KeepsItsStateFromOtherLoops) {
   expect_same(fast, alone_fast);
 }
 
-TEST(Loop, FindsTheRatesThatEffectsNeed) {
+TEST(Loop, ComputesRatesForEffects) {
   Model model = c130();
   model.effects.push_back({"temp-lag", {2.0}});
   model.effects.push_back({"clock-skew", {0.5}});
@@ -327,7 +327,7 @@ TEST(Loop, FindsTheRatesThatEffectsNeed) {
   }
 }
 
-TEST(Loop, RefusesAClockThatNoLaserHas) {
+TEST(Loop, ImpossibleClockSkewIsRefused) {
   for (const double seconds : {missing, infinity, 61.0, -1e300}) {
     Model model = c130();
     model.effects.push_back({"clock-skew", {seconds}});
@@ -339,7 +339,7 @@ TEST(Loop, RefusesAClockThatNoLaserHas) {
   }
 }
 
-TEST(Loop, DriesAThermometerAfterACloud) {
+TEST(Loop, WetThermometerDriesAfterACloud) {
   Model model = c130();
   model.effects.push_back({"temp-wetting", {-2.0, 10.0}});
   for (const double rate : {1.0, 25.0}) {
@@ -373,7 +373,7 @@ TEST(Loop, DriesAThermometerAfterACloud) {
 }
 
 // A lag of 0.3 s in both lines, undone at each rate: its remainder at periods of 2 s and more.
-TEST(Loop, UndoesLagsAtEveryRate) {
+TEST(Loop, CorrectsLagsAtEveryRate) {
   constexpr double tau = 0.3;
   Model lagging;
   lagging.effects = {{"static-lag", {tau}}, {"total-lag", {tau}}};
@@ -505,7 +505,7 @@ TEST(LoopInterval, ChangedIntervalGivesCorrectResultOrBit) {
   expect_right_or_told(run_lagged(1.0, jitter));
 }
 
-TEST(LoopInterval, IntervalOfTheRateSetsNoBit) {
+TEST(LoopInterval, NominalIntervalSetsNoBit) {
   for (const double off : {1.0, 1.01, 0.99}) {
     const Lagged lagged = run_lagged(25.0, steps({{3000, off / 25.0}}));
     EXPECT_EQ(expect_right_or_told(lagged), 3001U - 75U);
@@ -556,7 +556,7 @@ std::vector<bool> told_frozen(Quantity role, double noise, double resolution, st
   return told;
 }
 
-TEST(LoopFrozen, AConstantSensorSetsABit) {
+TEST(LoopFrozen, ConstantSensorSetsABit) {
   for (const Quantity role :
        {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature,
         Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed}) {
@@ -566,7 +566,7 @@ TEST(LoopFrozen, AConstantSensorSetsABit) {
   }
 }
 
-TEST(LoopFrozen, ACoarseSensorIsLeftFiveMinutes) {
+TEST(LoopFrozen, CoarseSensorIsFlaggedAfterFiveMinutes) {
   const std::vector<bool> told = told_frozen(Quantity::static_pressure, 0.05, 0.5, 5000, 15000);
   for (std::size_t i = 0; i < told.size(); ++i) {
     if (i < 10000 || i >= 15000) {
@@ -576,7 +576,7 @@ TEST(LoopFrozen, ACoarseSensorIsLeftFiveMinutes) {
   EXPECT_TRUE(told[14000]);
 }
 
-TEST(LoopFrozen, NoBitOnTheGround) {
+TEST(LoopFrozen, GroundSamplesSetNoBit) {
   const Sample parked{{Quantity::static_pressure, 1000.0}, {Quantity::dynamic_pressure, 0.0}};
   Model model;
   model.effects = {{"static-constant", {0.004}}};
@@ -587,7 +587,7 @@ TEST(LoopFrozen, NoBitOnTheGround) {
   }
 }
 
-TEST(Loop, CompilesWithArithmeticThatKeepsNan) { EXPECT_TRUE(pcor::arithmetic_keeps_nan()); }
+TEST(Loop, CompilerKeepsNan) { EXPECT_TRUE(pcor::arithmetic_keeps_nan()); }
 
 TEST(LoopGap, ResetRestartsTheState) {
   Model model;
@@ -616,14 +616,14 @@ TEST(LoopGap, FlagsAnIsolatedSample) {
   EXPECT_THAT(loop.state()[Quantity::corrected_static_pressure], IsNan());
 }
 
-TEST(LoopGap, NoFlagWithoutMemory) {
+TEST(LoopGap, GapSetsNoFlagWithoutRates) {
   Loop loop = build(c130(), level, 1.0);
   run(loop, level, 0.0);
   run(loop, level, 50.0);
   EXPECT_FALSE(loop.quality().has(Quality::after_gap)) << "no rate of change is in use";
 }
 
-TEST(LoopVariables, HaveOnePlaceForEachName) {
+TEST(LoopVariables, EachNameHasOneIndex) {
   Loop loop(1.0);
   const auto first = loop.add_variable("N1");
   const auto second = loop.add_variable("N2");
@@ -639,7 +639,7 @@ TEST(LoopVariables, HaveOnePlaceForEachName) {
   EXPECT_EQ(loop.add_variable("N2"), second);
 }
 
-TEST(LoopVariables, OfFormulasAreSetByName) {
+TEST(LoopVariables, FormulaVariablesAreListedAndUsed) {
   Model model;
   model.effects = {formula(EffectLocation::static_defect, "k * ENGTRQ / 100 + SPLR", {"k"}, {2.0})};
   const Sample recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 67.6}};
@@ -656,7 +656,7 @@ TEST(LoopVariables, OfFormulasAreSetByName) {
 }
 
 // Results of a user's functor are available before the stage that reads them, for any stage.
-TEST(LoopFunctors, MayStandBetweenTheStagesOfTheModel) {
+TEST(LoopFunctors, CanRunBetweenModelStages) {
   Model model = c130();
   model.effects.push_back(formula(EffectLocation::static_defect, "THRUST"));
   Sample recorded = level;
@@ -714,7 +714,7 @@ TEST(LoopLams, CorrectsAndFlagsValidSamples) {
   EXPECT_EQ(own_bits(with_lams), bits({Quality::lams_missing}));
 }
 
-TEST(Loop, ExcludesTheFilterOfTheLaser) {
+TEST(Loop, LaserFilterCanBeOmitted) {
   std::vector<Quantity> recorded;
   for (const auto& each : level) recorded.push_back(each.first);
   std::string error;
@@ -735,7 +735,7 @@ TEST(Loop, ExcludesTheFilterOfTheLaser) {
 }
 
 // Delta-p from LAMS needs the humidity, so a humidity may not wait for the pressures that it corrects.
-TEST(LoopFunctors, MayNotWaitForWhatWaitsForThem) {
+TEST(LoopFunctors, CircularDependencyIsRefused) {
   const auto add_inlet = [](Loop loop, std::string* error) {
     loop.add(own({Quantity::corrected_static_pressure}, {Quantity::vapor_pressure}, [](State<double>&) {}));
     return loop.order(error);
@@ -746,7 +746,7 @@ TEST(LoopFunctors, MayNotWaitForWhatWaitsForThem) {
   EXPECT_THAT(error, HasSubstr("'vapor_pressure'"));
 }
 
-TEST(LoopLams, IsRefusedWithoutItsAirspeed) {
+TEST(LoopLams, IsRefusedWithoutLaserAirspeed) {
   Sample recorded = level;
   recorded.erase(Quantity::lams_airspeed);
   std::string error;
@@ -770,7 +770,7 @@ TEST(LoopLams, RecordedAmbientIsUsedWithRecovery) {
 }
 
 // At an absurd airspeed all of the total pressure would be dynamic, and the static pressure zero.
-TEST(LoopLams, RefusesADefectBelowVacuum) {
+TEST(LoopLams, DefectBelowVacuumIsMissing) {
   Model model = c130();
   model.lams.approach = pcor::LamsApproach::with_temperature;
   const Sample radiometer = with(level, {{Quantity::ambient_temperature, 274.0}});
@@ -790,7 +790,7 @@ struct QualityCase {
 const std::vector<Quantity> everything = results;
 
 // Each way in which a sample can be bad, one at a time, in a loop where every stage is at work.
-TEST(LoopQuality, FlagsTheCauseAndLosesOnlyDependentResults) {
+TEST(LoopQuality, BadInputIsFlaggedAndRemovesOnlyDependentResults) {
   using Q = Quality;
   const std::vector<Quantity> with_temperature{Quantity::ambient_temperature, Quantity::corrected_airspeed,
                                                Quantity::lams_dynamic_pressure};
@@ -1136,7 +1136,7 @@ TEST(LoopGarbage, DoesNotAffectTheNextSample) {
 }
 
 // With rates of change only the bad sample is lost.
-TEST(LoopGarbage, CostsALagNoFurtherSample) {
+TEST(LoopGarbage, LagLosesOnlyTheBadSample) {
   Model model = c130();
   model.effects.push_back({"static-lag", {0.15}});
   for (const double garbage : {missing, infinity, -infinity}) {

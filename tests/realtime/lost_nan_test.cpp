@@ -10,7 +10,7 @@
 
 namespace {
 
-TEST(LostNan, NoLoopIsBuilt) {
+TEST(LostNan, LoopIsRefused) {
 #ifndef PCOR_LOSES_NAN
   GTEST_SKIP() << "this compiler has no such pragma";
 #endif

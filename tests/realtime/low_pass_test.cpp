@@ -85,7 +85,7 @@ Response response(double rate, double period) {
   return sum;
 }
 
-TEST(LowPass, IsMissingWhereItOvershootsBeyondAllFlights) {
+TEST(LowPass, ImpossibleOvershootIsMissing) {
   LowPass filter(Quantity::lams_temperature, Quantity::filtered_lams_temperature, 25.0);
   std::size_t missing_values = 0;
   for (std::size_t i = 0; i < 1000; ++i) {
@@ -104,13 +104,13 @@ TEST(LowPass, IsMissingWhereItOvershootsBeyondAllFlights) {
 
 }  // namespace
 
-TEST(LowPass, DeclaresWhatItReadsAndWrites) {
+TEST(LowPass, DeclaresInputsAndOutputs) {
   const LowPass filter(Quantity::lams_temperature, filtered_quantity, 1.0);
   EXPECT_THAT(filter.inputs(), ElementsAre(Quantity::lams_temperature));
   EXPECT_THAT(filter.outputs(), ElementsAre(filtered_quantity));
 }
 
-TEST(LowPass, IsLateByItsDelay) {
+TEST(LowPass, ResultIsDelayed) {
   EXPECT_EQ(LowPass::delay(1.0), 6U);
   EXPECT_EQ(LowPass::delay(25.0), 150U);
   for (const double rate : rates) {
@@ -128,7 +128,7 @@ TEST(LowPass, IsLateByItsDelay) {
   }
 }
 
-TEST(LowPass, PassesAConstantToTheLastBit) {
+TEST(LowPass, PassesConstantsExactly) {
   for (const double rate : rates) {
     for (const double constant : {271.3, -5.0, 0.0, 1e-3}) {
       std::vector<double> series(700, constant);
@@ -224,7 +224,7 @@ TEST(LowPass, InfinityCountsAsMissing) {
   }
 }
 
-TEST(LowPass, ForgetsWhatWasBeforeAReset) {
+TEST(LowPass, ResetRestartsTheState) {
   for (const double rate : rates) {
     Filter fresh(rate), used(rate);
     for (int i = 0; i < 777; ++i) used(1000.0 * std::sin(i));
@@ -252,7 +252,7 @@ TEST(LowPass, FlagsTheInitialDelay) {
   }
 }
 
-TEST(LowPass, DoesNotFilterLowRates) {
+TEST(LowPass, LowRatesAreNotFiltered) {
   for (const double rate : {0.1, 0.5, 2.0 / 3.0}) {
     EXPECT_EQ(LowPass::delay(rate), 0U);
     Filter filter(rate);

@@ -49,7 +49,7 @@ Air air_at(std::size_t row, double e_over_p, const RecoveryFactor& recovery) {
   return air;
 }
 
-TEST(NimbusReference, HasAllItsRows) { EXPECT_EQ(reference().rows(), 2000U); }
+TEST(NimbusReference, HasAllRows) { EXPECT_EQ(reference().rows(), 2000U); }
 
 TEST(NimbusReference, MachNumber) {
   for (std::size_t row = 0; row < reference().rows(); ++row) {

@@ -314,7 +314,7 @@ TEST(NimbusSystem, TwoSystemsMatchPlainLoopsAtBothRates) {
   expect_plain_loops(seconds(36000.0, 36040.0), raw_value);
 }
 
-TEST(NimbusSystem, RecoversAfterMissingSamplesAsPlainLoopsDo) {
+TEST(NimbusSystem, MissingSamplesGiveTheSameAsPlainLoops) {
   expect_plain_loops(seconds(0.0, 20.0), [](const std::string& name, double time) {
     const bool lost = (name == "RTF1" && std::fmod(time, 7.0) < 1.3) ||
                       (name == "PSFRD" && std::fmod(time, 5.0) < 0.5) ||
@@ -329,7 +329,7 @@ TEST(NimbusSystem, RestartsTheStateOfEachRateAfterAGap) {
   expect_plain_loops(with_gap, raw_value);
 }
 
-TEST(NimbusSystem, GivesEachRateItsOwnRateOfChange) {
+TEST(NimbusSystem, EachSampleRateHasItsOwnRateOfChange) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());
   // The pressure falls 1 hPa a second, and by steps: the effect of the radome pair's lag of 0.15 s shows the
@@ -366,7 +366,7 @@ TEST(NimbusSystem, GivesEachRateItsOwnRateOfChange) {
   }
 }
 
-TEST(NimbusSystem, TakesAndGivesTemperaturesInCelsius) {
+TEST(NimbusSystem, TemperaturesAreInCelsius) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());
   table.compute(0.0, [](const std::string& name, double) {
@@ -401,7 +401,7 @@ TEST(NimbusSystem, WritesNoValueBeforeTheFirstRun) {
   EXPECT_THAT(table.low("PCORFLAG"), IsNan());
 }
 
-TEST(NimbusSystem, NeverPassesOffAnEarlierSampleAsThisOne) {
+TEST(NimbusSystem, EarlierSampleIsNotReturned) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());
   table.compute(0.0, raw_value);
@@ -414,7 +414,7 @@ TEST(NimbusSystem, NeverPassesOffAnEarlierSampleAsThisOne) {
   }
 }
 
-TEST(NimbusSystem, WritesNoValueBeforeTheLeader) {
+TEST(NimbusSystem, EntryBeforeTheLeaderHasNoValue) {
   // Its values would be those of the sample before, at every sample but the first.
   ASSERT_TRUE(install_both());
   Table table(raw_names, {{"PSXC", {}, Fuselage::fetch<Quantity::corrected_static_pressure>},
@@ -431,7 +431,7 @@ TEST(NimbusSystem, WritesNoValueBeforeTheLeader) {
   }
 }
 
-TEST(NimbusSystem, GivesAResultToSeveralEntries) {
+TEST(NimbusSystem, SeveralEntriesCanHaveTheSameResult) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, {{"PCOR", fuselage_inputs, Fuselage::compute},
                           {"PSXC", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>},
@@ -469,7 +469,7 @@ struct Timeless {
   static bool high_rate() { return Host::high_rate(); }
 };
 
-TEST(NimbusSystem, CountsTheSamplesOfAHostWithoutTime) {
+TEST(NimbusSystem, HostWithoutTimeIsTimedBySampleCount) {
   using System = NimbusSystem<Timeless, struct TimelessTag>;
   std::string error;
   ASSERT_TRUE(System::install(radome_model(), radome_roles, 1.0, 25.0, &error)) << error;
@@ -537,7 +537,7 @@ TEST(NimbusSystem, GivesNanWithoutAnInstalledModel) {
   }
 }
 
-TEST(NimbusSystem, TakesVariablesOfFormulasByName) {
+TEST(NimbusSystem, FormulaVariablesAreSetByName) {
   struct Tag;
   using Thrust = NimbusSystem<Host, Tag>;
   Model model;
@@ -558,7 +558,7 @@ TEST(NimbusSystem, TakesVariablesOfFormulasByName) {
   EXPECT_EQ(table.high("PCOR", 24), static_cast<float>(2.0 * static_cast<double>(50.96F) / 100.0));
 }
 
-TEST(NimbusSystem, RefusesWhatItCannotRunAndKeepsWhatItHas) {
+TEST(NimbusSystem, FailedInstallationKeepsTheInstalledModel) {
   ASSERT_TRUE(install_both());
   const auto error_of = [](const Model& model, const std::vector<std::string>& inputs,
                            pcor::CorrectWith with = pcor::CorrectWith::model) {
@@ -609,7 +609,7 @@ TEST(NimbusDefaults, ReplaceCoefficientsByName) {
   EXPECT_THAT(radome.effects[1].parameters, ElementsAre(0.15));
 }
 
-TEST(NimbusDefaults, AreFoundInCapitalsAsNimbusKeepsThem) {
+TEST(NimbusDefaults, UpperCaseNamesAreFound) {
   const Defaults defaults(
       "PCOR.STATIC-CONSTANT.A0 1 0.005\n"
       "PCOR.STATIC-QP.A2 1 -0.25\n"
@@ -622,7 +622,7 @@ TEST(NimbusDefaults, AreFoundInCapitalsAsNimbusKeepsThem) {
   EXPECT_THAT(pcor::unread_defaults(fuselage, "PCOR", defaults.names()), ElementsAre("PCOR.STATIC-QP.A9"));
 }
 
-TEST(NimbusDefaults, NameEveryCoefficientOnce) {
+TEST(NimbusDefaults, EachCoefficientHasOneName) {
   Model model = radome_model();
   pcor::ModelEffect formula;
   formula.id = "my-thrust";

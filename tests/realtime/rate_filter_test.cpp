@@ -59,7 +59,7 @@ TEST(RateFilter, PassesConstantsAndStraightLines) {
   }
 }
 
-TEST(RateFilter, PassesLinesBesideEveryEnd) {
+TEST(RateFilter, PassesStraightLinesNearTheEnds) {
   for (const double rate : rates) {
     RateFilter filter(rate, 0.3);
     const std::vector<double> line = around(filter, rate, [](double t) { return 3.0 + 2.0 * t; });
@@ -74,7 +74,7 @@ TEST(RateFilter, PassesLinesBesideEveryEnd) {
   }
 }
 
-TEST(RateFilter, IsTheIdealResponseAtThePeriodsThatAreLeft) {
+TEST(RateFilter, ResponseIsIdealAboveTheCutOffPeriod) {
   // Half a zero's width of the Hann window from the cut-off: 1 % of ripple.
   for (const double rate : rates) {
     const double shortest = rate == 1.0 ? 3.0 : 1.5;
@@ -89,7 +89,7 @@ TEST(RateFilter, IsTheIdealResponseAtThePeriodsThatAreLeft) {
   }
 }
 
-TEST(RateFilter, TakesShortPeriodsAway) {
+TEST(RateFilter, RemovesShortPeriods) {
   for (const double rate : {5.0, 25.0, 50.0}) {
     RateFilter filter(rate);
     const double half = std::abs(response(filter, rate, 1.0)) / std::abs(ideal(0.0, 1.0));
@@ -99,7 +99,7 @@ TEST(RateFilter, TakesShortPeriodsAway) {
   }
 }
 
-TEST(RateFilter, UndoesALagOfTheFirstOrder) {
+TEST(RateFilter, CorrectsAFirstOrderLag) {
   // Known response of a lag tau to a sine: y = Re(H exp(i w t)), H = 1/(1 + i w tau).
   for (const double rate : {5.0, 25.0}) {
     for (const double tau : {0.05, 0.3, 1.0, 8.0}) {
@@ -116,7 +116,7 @@ TEST(RateFilter, UndoesALagOfTheFirstOrder) {
   }
 }
 
-TEST(RateFilter, UndoesALagOfARamp) {
+TEST(RateFilter, CorrectsALagOfARamp) {
   // A ramp from -1 s on, through a lag of tau: t + 1 - tau (1 - exp(-(t + 1)/tau)). Periods under 1 s of its
   // corner are not restored: 3 % of tau a second later.
   constexpr double tau = 0.3;
@@ -128,7 +128,7 @@ TEST(RateFilter, UndoesALagOfARamp) {
   EXPECT_NEAR(lagged(0.0) + tau * rate_of(filter, 25.0, lagged), 1.0, 0.03 * tau);
 }
 
-TEST(RateFilter, IsTheSameBackwards) {
+TEST(RateFilter, TimeReversalChangesOnlyTheSign) {
   // The samples in the other order have the opposite rate, and a delay is then one of the other sign.
   std::mt19937_64 engine(7);
   std::normal_distribution<double> normal;
@@ -159,7 +159,7 @@ TEST(RateFilter, ReducesNoise) {
   EXPECT_NEAR(squares / draws / filter.gain(), 1.0, 0.16);  // five deviations of chi-squared
 }
 
-TEST(RateFilter, DrawsLinesOverAFewMissingSamples) {
+TEST(RateFilter, InterpolatesShortGaps) {
   for (const double rate : rates) {
     RateFilter filter(rate);
     std::vector<double> line = around(filter, rate, [](double t) { return 5.0 - t; });
@@ -172,7 +172,7 @@ TEST(RateFilter, DrawsLinesOverAFewMissingSamples) {
   }
 }
 
-TEST(RateFilter, LosesLittleByAMissingSample) {
+TEST(RateFilter, MissingSampleCausesASmallError) {
   // A sine of 4 s at 25 Hz, of which one sample of 40 ms is missing: the line over it errs by 0.2 %.
   RateFilter filter(25.0);
   std::vector<double> sine = around(filter, 25.0, [](double t) { return std::sin(0.5 * pi * t); });
@@ -194,7 +194,7 @@ TEST(RateFilter, IgnoresSamplesBeyondALongGap) {
   EXPECT_EQ(rate_of(filter, samples), rate);
 }
 
-TEST(RateFilter, IsAsGoodForDelaysOfHalfASample) {
+TEST(RateFilter, HalfSampleDelayIsAccurate) {
   RateFilter filter(1.0, 0.5);
   for (const double period : {10.0, 20.0, 40.0})
     EXPECT_LT(std::abs(response(filter, 1.0, period) - ideal(0.5, period)),
@@ -213,7 +213,7 @@ TEST(RateFilter, GivesNanInAGapWithinTheDelay) {
   EXPECT_TRUE(std::isnan(rate_of(filter, holed)));
 }
 
-TEST(RateFilter, CutOffMatchesTheRequest) {
+TEST(RateFilter, CutOffHasTheRequestedPeriod) {
   RateFilter filter(1.0, 0.0, 10.0);
   EXPECT_NEAR(std::abs(response(filter, 1.0, 10.0)) / std::abs(ideal(0.0, 10.0)), 0.5, 0.02);
   EXPECT_NEAR(std::abs(response(filter, 1.0, 20.0)) / std::abs(ideal(0.0, 20.0)), 1.0, 0.01);

@@ -134,7 +134,7 @@ void expect_stated(const State<double>& stated, const State<double>& above, cons
 
 class OfEveryEffect : public testing::TestWithParam<EffectInfo> {};
 
-TEST_P(OfEveryEffect, IsTheDifferenceThatItsCoefficientMakes) {
+TEST_P(OfEveryEffect, EqualsTheFiniteDifferenceByItsCoefficient) {
   const EffectInfo& info = GetParam();
   const Recorded all = everything_recorded();
   for (const Recorded& recorded :
@@ -168,7 +168,7 @@ std::string name_of_test(const testing::TestParamInfo<EffectInfo>& effect) {
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, OfEveryEffect, testing::ValuesIn(effect_info), name_of_test);
 
-TEST(ResultUncertainty, OfARoleIsTheDifferenceThatItsValueMakes) {
+TEST(ResultUncertainty, RoleUncertaintyEqualsTheFiniteDifference) {
   Model model = law();
   model.effects.push_back({"pitot-angle", {0.0001, 0.0}});
   for (const auto& [role, size] : std::map<Quantity, double>{{Quantity::static_pressure, 0.1},
@@ -191,7 +191,7 @@ TEST(ResultUncertainty, OfARoleIsTheDifferenceThatItsValueMakes) {
   }
 }
 
-TEST(ResultUncertainty, OfADewPointAndOfARecordedTemperature) {
+TEST(ResultUncertainty, DewPointAndAmbientTemperatureUncertaintiesPropagate) {
   Recorded recorded =
       without(everything_recorded(), {Quantity::vapor_pressure, Quantity::recovery_temperature,
                                       Quantity::recovery_temperature_rate, Quantity::lams_airspeed});
@@ -229,7 +229,7 @@ TEST(ResultUncertainty, TaperAndMinimumKeepLawUncertainty) {
   EXPECT_NEAR(of_constant(model), 1e-4 * 700.0, 1e-12) << "the limit is not known better than the law";
 }
 
-TEST(ResultUncertainty, OfATemperatureIsThatOfItsThermometerOnTheRamp) {
+TEST(ResultUncertainty, TemperatureUncertaintyOnRampIsThatOfTheThermometer) {
   Model model = law();
   model.policy.taper_below = 40.0;
   Recorded recorded = everything_recorded();
@@ -242,7 +242,7 @@ TEST(ResultUncertainty, OfATemperatureIsThatOfItsThermometerOnTheRamp) {
 }
 
 // Two errors of delta-p that are the same one add up, or cancel.
-TEST(ResultUncertainty, CountsCorrelations) {
+TEST(ResultUncertainty, IncludesCorrelations) {
   Model model;
   model.effects = {{"static-constant", {0.004}}, {"psfd-bias", {0.0}}};
   const Recorded recorded = everything_recorded();
@@ -279,7 +279,7 @@ TEST(ResultUncertainty, CovarianceRootScalesUncertainty) {
   EXPECT_EQ(c[Quantity::corrected_static_pressure_uncertainty], 0.0);
 }
 
-TEST(ResultUncertainty, HasARandomAndASystematicPartThatMakeTheWhole) {
+TEST(ResultUncertainty, RandomAndSystematicPartsGiveTheTotal) {
   const Model model = law();
   ModelUncertainty whole = of_parameter(model, 1, 0.001);
   whole.random[index(Quantity::recovery_temperature)] = 0.2;
@@ -319,7 +319,7 @@ class InALoop : public testing::Test {
   double time_ = 0.0;
 };
 
-TEST_F(InALoop, IsMissingWhereItsResultIsAndBackWithIt) {
+TEST_F(InALoop, IsMissingExactlyWhereItsResultIsMissing) {
   build(CorrectWith::model);
   for (int second = 0; second < 3; ++second) {
     for (const auto& [quantity, to] : {std::pair{Quantity::static_pressure, nan},
@@ -347,7 +347,7 @@ TEST_F(InALoop, UncertaintyIsUpdatedWithPressures) {
   EXPECT_NEAR(run(Quantity::static_pressure, 600.0)[Quantity::static_defect_uncertainty], 0.06, 1e-12);
 }
 
-TEST_F(InALoop, IsNotThatOfTheLaser) {
+TEST_F(InALoop, LaserCorrectedResultsHaveNoUncertainty) {
   build(CorrectWith::lams);
   run();
   ASSERT_TRUE(loop_->quality().has(Quality::corrected_with_lams));
@@ -358,7 +358,7 @@ TEST_F(InALoop, IsNotThatOfTheLaser) {
   for (const UncertainResult& each : uncertain_results) EXPECT_GT(loop_->state()[each.uncertainty], 0.0);
 }
 
-TEST(ResultUncertainty, RefusesACovarianceThatIsNotOfTheModel) {
+TEST(ResultUncertainty, CovarianceOfWrongSizeIsRefused) {
   const auto error_of = [](const std::vector<double>& covariance) {
     Model model;
     model.effects = {{"static-constant", {0.004}}, {"static-qp", {0.03}}};

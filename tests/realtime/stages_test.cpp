@@ -106,7 +106,7 @@ void expect_true_words(const Model& model, const Quantities& roles, CorrectWith 
   expect_true_words({*chain, with});
 }
 
-TEST(Stages, ReadAndWriteWhatTheySay) {
+TEST(Stages, ReadAndWriteOnlyDeclaredQuantities) {
   for (const CorrectWith with : {CorrectWith::model, CorrectWith::lams}) {
     for (const LamsApproach approach : {LamsApproach::iterated, LamsApproach::simultaneous}) {
       const Model model = every_effect(approach);
@@ -120,7 +120,7 @@ TEST(Stages, ReadAndWriteWhatTheySay) {
 }
 
 // A quantity depends only on its declared sources.
-TEST(Stages, KnowTheSourcesOfWhatIsDerived) {
+TEST(Stages, DerivedQuantitiesDependOnDeclaredSourcesOnly) {
   Model model;
   model.effects = {{"static-alpha", {0.02}}, {"static-qp", {0.03}}, {"static-beta-odd", {0.01}},
                    {"static-mach2", {0.01}}, {"clock-skew", {0.1}}, {"humidity-error", {0.1}}};
@@ -154,7 +154,7 @@ TEST(Stages, KnowTheSourcesOfWhatIsDerived) {
   }
 }
 
-TEST(Stages, StatedAccessHoldsWithoutLaserAndTemperature) {
+TEST(Stages, DeclarationsHoldWithoutLaserAndTemperature) {
   Model model;
   model.effects = {{"static-qp", {0.03}}, {"static-mach2", {0.01}}};
   expect_true_words(model, {Quantity::static_pressure, Quantity::dynamic_pressure}, CorrectWith::model);

@@ -76,7 +76,7 @@ TEST(Surface, SplinesSumToOneEverywhere) {
   }
 }
 
-TEST(Surface, LinearCoefficientsMakeAPlane) {
+TEST(Surface, LinearCoefficientsGiveAPlane) {
   std::vector<double> plane;
   for (int i = 0; i < 5; ++i) {
     for (int j = 0; j < 4; ++j) plane.push_back(1.0 + 0.2 * (i - 1) + 0.3 * (j - 1));
@@ -108,7 +108,7 @@ TEST(Surface, IsFlatOutsideItsEnvelope) {
   EXPECT_EQ(value(coefficients, std::numeric_limits<double>::infinity(), 0.3), value(coefficients, 0.3, 0.3));
 }
 
-TEST(Surface, MissingInputsLeaveNoValue) {
+TEST(Surface, MissingInputsGiveNan) {
   const std::vector<double> coefficients = uneven();
   EXPECT_TRUE(std::isnan(value(coefficients, nan, 0.3)));
   EXPECT_TRUE(std::isnan(value(coefficients, 0.1, nan)));
@@ -132,7 +132,7 @@ TEST(Surface, SamplesOutsideAreFlaggedAndFinite) {
   EXPECT_TRUE(flown(model, 0.1, 10.0).quality().has(Quality::outside_domain));
 }
 
-TEST(Surface, StatedErrorGrowsOutside) {
+TEST(Surface, StatedErrorGrowsWithTheDistanceOutside) {
   const Model model = model_with(uneven());
   const ModelUncertainty uncertainty = independent(model, 0.0005);
   const auto error = [&](double ratio) {
@@ -170,7 +170,7 @@ TEST(Surface, ErrorGrowsOutsideTheEnvelope) {
   EXPECT_DOUBLE_EQ(errors[2], errors[0]);
 }
 
-TEST(Surface, RefusesAnotherNumberOfCoefficients) {
+TEST(Surface, WrongNumberOfCoefficientsIsRefused) {
   Model model = model_with(uneven());
   model.effects.back().parameters.pop_back();
   BindingError error;

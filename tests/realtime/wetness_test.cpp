@@ -28,7 +28,7 @@ std::vector<double> pass(int rate, double drying) {
 // The integral of exp(-t/tau) over a second that begins at t.
 double mean_of_decay(double t, double tau) { return tau * (std::exp(-t / tau) - std::exp(-(t + 1.0) / tau)); }
 
-TEST(Wetness, FollowsTheLawOfAFirstOrderAnswer) {
+TEST(Wetness, HasAFirstOrderResponse) {
   constexpr double drying = 12.0;
   const std::vector<double> means = pass(1, drying);
   EXPECT_EQ(means[9], 0.0);
@@ -40,7 +40,7 @@ TEST(Wetness, FollowsTheLawOfAFirstOrderAnswer) {
     EXPECT_NEAR(means[static_cast<std::size_t>(second)], wet * mean_of_decay(second - 30, drying), 1e-14);
 }
 
-TEST(Wetness, IsTheSameAtEveryRate) {
+TEST(Wetness, IsIndependentOfTheSampleRate) {
   for (const double drying : {0.01, 1.0, 20.0}) {
     const std::vector<double> slow = pass(1, drying);
     for (const int rate : {5, 25, 50}) {
@@ -50,13 +50,13 @@ TEST(Wetness, IsTheSameAtEveryRate) {
   }
 }
 
-TEST(Wetness, DriesAtOnceInNoTime) {
+TEST(Wetness, ZeroDryingTimeDriesAtOnce) {
   const std::vector<double> means = pass(1, 0.0);
   EXPECT_GT(means[29], 0.99);
   EXPECT_EQ(means[30], 0.0);
 }
 
-TEST(Wetness, BeginsAsItIsOutsideOrInside) {
+TEST(Wetness, StartsWetInCloudAndDryOutside) {
   Wetness wetness(1.0, 10.0);
   EXPECT_EQ(wetness(cloud), 1.0) << "long in cloud";
   EXPECT_GT(wetness(0.0), 0.9);
@@ -64,7 +64,7 @@ TEST(Wetness, BeginsAsItIsOutsideOrInside) {
   EXPECT_EQ(wetness(0.0), 0.0) << "nothing is known of the cloud before";
 }
 
-TEST(Wetness, IsMissingWhereTheLiquidWaterIs) {
+TEST(Wetness, MissingLiquidWaterGivesNan) {
   Wetness wetness(1.0, 10.0);
   EXPECT_TRUE(std::isnan(wetness(missing)));
   wetness(cloud);

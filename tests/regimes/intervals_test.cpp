@@ -133,7 +133,7 @@ end = 2000-02-29T12:00:00Z
   EXPECT_EQ(utc_text(user.veto[1].end), "2000-02-29 12:00:00");
 }
 
-TEST(IntervalsFile, IsForOneFlightOrAny) {
+TEST(IntervalsFile, MayNameOneFlightOrNone) {
   UserIntervals user;
   EXPECT_TRUE(user.is_for("flights/rf01.nc"));
   user.flight = "rf01.nc";
@@ -141,7 +141,7 @@ TEST(IntervalsFile, IsForOneFlightOrAny) {
   EXPECT_FALSE(user.is_for("flights/rf02.nc"));
 }
 
-TEST(IntervalsFile, IsReadFromDisk) {
+TEST(IntervalsFile, FileIsReadFromDisk) {
   const test::TemporaryDirectory directory;
   const auto path = directory / "own.toml";
   std::ofstream(path) << format << "[[exclude]]\nbegin = \"10:00\"\nend = \"10:01\"\nreason = \"ice\"\n";
@@ -150,7 +150,7 @@ TEST(IntervalsFile, IsReadFromDisk) {
   EXPECT_THROW(read_intervals(directory.path()), Error);
 }
 
-TEST(IntervalsFile, IsRefusedWithThePlaceAndWhatToDo) {
+TEST(IntervalsFile, ErrorStatesPositionAndRemedy) {
   EXPECT_THAT(refusal_of_whole("[[add]]\n"), IsRefusal("1:1"));
   EXPECT_THAT(refusal_of_whole("format = \"pcor-model/1\"\n"), IsRefusal("1:10"));
   EXPECT_THAT(refusal_of_whole("format = 1\n"), IsRefusal("1:10"));
@@ -193,7 +193,7 @@ TEST(IntervalsFile, RefusesWrongTimes) {
   EXPECT_THAT(times("1969-11-17T20:10:00Z", "2011-11-17T20:10:00Z"), IsRefusal("3:9", "1970"));
 }
 
-TEST(TimesOfTheDay, AreThoseOfTheFlight) {
+TEST(TimesOfTheDay, ArePlacedOnTheDateOfTheFlight) {
   UserIntervals user;
   user.exclude = {
       {20 * hour, 20 * hour + 60, "a"}, {23.9 * hour, 0.1 * hour, "b"}, {1 * hour, 2 * hour, "c"}};
@@ -206,7 +206,7 @@ TEST(TimesOfTheDay, AreThoseOfTheFlight) {
   EXPECT_EQ(moments.exclude[2].end, midnight + day + 2 * hour);
 }
 
-TEST(TimesOfTheDay, OutsideTheFlightAreTheNearest) {
+TEST(TimesOfTheDay, AreNearestIfOutsideTheFlight) {
   UserIntervals user;
   user.exclude = {{13.9 * hour, 14.1 * hour, "before"}, {19.1 * hour, 19.2 * hour, "after"}};
   const UserIntervals moments = placed(user, midnight + 14 * hour, midnight + 19 * hour);
@@ -214,13 +214,13 @@ TEST(TimesOfTheDay, OutsideTheFlightAreTheNearest) {
   EXPECT_EQ(moments.exclude[1].begin, midnight + 19.1 * hour);
 }
 
-TEST(Applied, NothingChangesNothing) {
+TEST(Applied, EmptyIntervalsChangeNoRegime) {
   const std::vector<Interval> regimes{found(Regime::level, 0, 100), found(Regime::turn, 20, 30)};
   EXPECT_THAT(in_words(apply({}, regimes, midnight, midnight + 99)),
               ElementsAre("level 0-100", "turn 20-30"));
 }
 
-TEST(Applied, AVetoCutsWhatItOverlaps) {
+TEST(Applied, VetoRemovesOnlyTheOverlap) {
   const std::vector<Interval> regimes{found(Regime::level, 0, 100), found(Regime::turn, 20, 40)};
   EXPECT_THAT(in_words(apply(veto(Regime::turn, 30, 50), regimes, midnight, midnight + 99)),
               ElementsAre("level 0-100", "turn 20-30"));
@@ -231,7 +231,7 @@ TEST(Applied, AVetoCutsWhatItOverlaps) {
   EXPECT_THAT(in_words(apply(veto(Regime::turn, 40, 50), regimes, midnight, midnight + 99)), SizeIs(2));
 }
 
-TEST(Applied, AVetoTakesAllOfAManoeuvreAndBothLegsOfAPair) {
+TEST(Applied, VetoRemovesWholeManoeuvresAndBothLegs) {
   const std::vector<Interval> regimes{
       found(Regime::pitch_manoeuvre, 0, 100), found(Regime::reverse_heading, 200, 300, 1),
       found(Regime::reverse_heading, 400, 500, 1), found(Regime::reverse_heading, 600, 700, 2)};
@@ -252,7 +252,7 @@ TEST(Applied, AdditionReplacesDetectedInterval) {
               ElementsAre("level 0-90", "yaw manoeuvre 20-40", "descent 90-120", "climb 120-200"));
 }
 
-TEST(Applied, AnAdditionIsCutToTheFlight) {
+TEST(Applied, AdditionIsLimitedToTheFlight) {
   const std::vector<Interval> regimes{found(Regime::level, 0, 100)};
   EXPECT_THAT(in_words(apply(add(Regime::climb, -50, 500), regimes, midnight, midnight + 99)),
               ElementsAre("climb 0-100"));
@@ -260,7 +260,7 @@ TEST(Applied, AnAdditionIsCutToTheFlight) {
               ElementsAre("level 0-100"));
 }
 
-TEST(Applied, PairsOfTheUserGetNumbersOfTheirOwn) {
+TEST(Applied, AddedPairsGetNewNumbers) {
   const std::vector<Interval> regimes{found(Regime::reverse_heading, 200, 300, 1),
                                       found(Regime::reverse_heading, 400, 500, 1)};
   UserIntervals user = add(Regime::reverse_heading, 600, 700, 1);
@@ -272,7 +272,7 @@ TEST(Applied, PairsOfTheUserGetNumbersOfTheirOwn) {
   EXPECT_EQ(all[3].pair, 2);
 }
 
-TEST(Applied, TimesOfTheDayWork) {
+TEST(Applied, VetoByTimeOfDayIsApplied) {
   UserIntervals user;
   user.veto.push_back({Regime::turn, 20.0, 30.0});
   const std::vector<Interval> regimes{found(Regime::turn, 0, 100)};

@@ -320,14 +320,14 @@ TEST(Regimes, HaveNames) {
   EXPECT_EQ(regime_named("loop"), Regime::count);
 }
 
-TEST(Regimes, HaveCriteriaByTheRegistrationOfTheAircraft) {
+TEST(Regimes, CriteriaDependOnTheAircraftRegistration) {
   EXPECT_GT(pcor::RegimeCriteria::of("N677F")->acceleration,
             pcor::RegimeCriteria::of("N130AR")->acceleration);
   for (const char* unknown : {"", "N677", "G-LUXE", "Boeing 677"})
     EXPECT_FALSE(pcor::RegimeCriteria::of(unknown)) << unknown;
 }
 
-TEST(Regimes, AreFoundAsTheirWordsSay) {
+TEST(Regimes, CriterionTextHasTheLimits) {
   EXPECT_THAT(pcor::criterion_of(Regime::turn), HasSubstr("roll beyond 10 deg to one side for 10 s"));
   EXPECT_THAT(pcor::criterion_of(Regime::descent), HasSubstr("vertical speed below -1.5 m/s"));
   EXPECT_THAT(pcor::criterion_of(Regime::reverse_heading), HasSubstr("2 to 5 min"));
@@ -372,7 +372,7 @@ TEST(Regimes, AreFoundAtOtherRates) {
   }
 }
 
-TEST(Regimes, DoNotDependOnTheHeading) {
+TEST(Regimes, AreIndependentOfTheHeading) {
   const std::vector<Interval> reference = find_regimes(tell().motion);
   for (const double heading : {0.0, 90.0, 177.0, 359.9}) {
     SCOPED_TRACE(heading);
@@ -386,7 +386,7 @@ TEST(Regimes, DoNotDependOnTheHeading) {
   }
 }
 
-TEST(Regimes, MoveWithTheTime) {
+TEST(Regimes, ShiftWithTheTimeAxis) {
   const std::vector<Interval> reference = find_regimes(tell().motion);
   const std::vector<Interval> found = find_regimes(tell(1.0, {}, 355.0, 4321.0).motion);
   ASSERT_EQ(found.size(), reference.size());
@@ -397,7 +397,7 @@ TEST(Regimes, MoveWithTheTime) {
   }
 }
 
-TEST(Regimes, AreFoundThoughValuesAndSamplesAreMissing) {
+TEST(Regimes, AreFoundDespiteMissingValuesAndSamples) {
   Story story = tell();
   std::mt19937 random(7);
   std::uniform_real_distribution<double> chance(0.0, 1.0);
@@ -411,7 +411,7 @@ TEST(Regimes, AreFoundThoughValuesAndSamplesAreMissing) {
   expect_told(story, find_regimes(all));
 }
 
-TEST(Regimes, OfAFlightWithLongGapsCoverIt) {
+TEST(Regimes, PhasesCoverAFlightWithLongGaps) {
   Story story = tell();
   FlightMotion& all = story.motion;
   for (std::size_t i = 0; i < all.time.size(); ++i) {
@@ -424,13 +424,13 @@ TEST(Regimes, OfAFlightWithLongGapsCoverIt) {
   expect_phases_cover(all, find_regimes(all));
 }
 
-TEST(Regimes, NeedOnlyTheHeight) {
+TEST(Regimes, VerticalSpeedIsNotRequired) {
   Story story = tell();
   story.motion.vertical_speed.clear();
   expect_told(story, find_regimes(story.motion));
 }
 
-TEST(Regimes, CanDoWithoutRoll) {
+TEST(Regimes, RollIsNotRequired) {
   Story story = tell();
   story.motion.roll.clear();
   const std::vector<Interval> found = find_regimes(story.motion);
@@ -460,7 +460,7 @@ TEST(Regimes, UndeterminedRegimesAreAbsent) {
   EXPECT_NO_THROW(find_regimes(motion));
 }
 
-TEST(Regimes, OfALevelFlightInTurbulenceAreNoManoeuvres) {
+TEST(Regimes, TurbulentLevelFlightHasNoManoeuvres) {
   for (const double turbulence : {0.1, 0.5, 1.0, 1.5}) {
     for (const unsigned seed : {11U, 12U, 13U, 14U, 15U}) {
       SCOPED_TRACE(testing::Message() << turbulence << " m/s, seed " << seed);
@@ -474,7 +474,7 @@ TEST(Regimes, OfALevelFlightInTurbulenceAreNoManoeuvres) {
   }
 }
 
-TEST(Regimes, OfOrdinaryFlightsAreNoManoeuvres) {
+TEST(Regimes, OrdinaryFlightsHaveNoManoeuvres) {
   for (unsigned seed = 0; seed < 25; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -493,7 +493,7 @@ TEST(Regimes, OfOrdinaryFlightsAreNoManoeuvres) {
   }
 }
 
-TEST(Regimes, OfArbitraryNumbersAreOrderly) {
+TEST(Regimes, ArbitraryDataGiveOrderedRegimes) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -530,7 +530,7 @@ TEST(Regimes, OfArbitraryNumbersAreOrderly) {
   }
 }
 
-TEST(Regimes, OfAClimbAreNoManoeuvres) {
+TEST(Regimes, ClimbHasNoManoeuvres) {
   Pilot pilot;
   pilot.climb(6.0, 600);
   pilot.level(300);
@@ -557,7 +557,7 @@ TEST(Regimes, QuarterTurnIsNotReverseHeading) {
   EXPECT_THAT(of(Regime::reverse_heading, find_regimes(pilot.motion())), IsEmpty());
 }
 
-TEST(Regimes, PitchManoeuvreSaysItsPeriod) {
+TEST(Regimes, PitchManoeuvreReportsItsPeriod) {
   for (const double period : {20.0, 24.0, 30.0}) {
     Pilot pilot;
     pilot.level(300);
@@ -586,7 +586,7 @@ TEST(Regimes, YawManoeuvreIsFoundAtItsPeriods) {
   }
 }
 
-TEST(Regimes, OfTheGvAskForMoreAcceleration) {
+TEST(Regimes, GvCriteriaRequireMoreAcceleration) {
   Pilot::Start start;
   start.airspeed = 200.0;
   start.altitude = 12000.0;
@@ -620,7 +620,7 @@ TEST(Regimes, SampleRegimesUseHalfOpenIntervals) {
   EXPECT_FALSE(has(3, Regime::level));
 }
 
-TEST(Regimes, OfALongFlightTakeLittleTime) {
+TEST(Regimes, LongFlightTakesLittleTime) {
   Pilot pilot(25.0);
   pilot.level(5 * 3600);
   const auto before = std::chrono::steady_clock::now();
@@ -636,7 +636,7 @@ std::vector<double> read_all(const Flight& flight, const std::string& name, cons
   return values;
 }
 
-TEST(Regimes, OfTheFlightOf2004ArePlausible) {
+TEST(Regimes, FlightOf2004HasPlausibleRegimes) {
   const char* folder = std::getenv("PCOR_FLIGHTS");
   if (folder == nullptr) GTEST_SKIP() << "PCOR_FLIGHTS does not name a folder of flights";
   const auto path = std::filesystem::path(folder) / "GOTEX-rf06-C130-2004.nc";

@@ -56,7 +56,7 @@ class EveryReport(unittest.TestCase):
                     self.assertGreater(result["panels"], 1)
                     self.assertEqual(self.browser.errors, [])
 
-    def test_every_report_wide_and_narrow(self):
+    def test_every_report_has_readable_text_and_complete_pictures(self):
         """No text is clipped or overlaps, each picture has its numbers, and the first screen is useful."""
         faults_of = (SOURCE / "tests/report/text_boxes.js").read_text()
         for command in COMMANDS:
@@ -97,7 +97,7 @@ class EveryReport(unittest.TestCase):
         for fault in ("page: .* overlap", "page: .* is clipped", "picture 'Residual on the map': .* is clipped"):
             self.assertRegex(faults, fault)
 
-    def test_an_uncertainty_is_a_band(self):
+    def test_uncertainty_is_drawn_as_a_band(self):
         self.browser.open(page("process"))
         self.assertIn('stroke-opacity="0.25"', self.browser.value("pcorReport.svg(0)"))
 

@@ -18,7 +18,7 @@ from reports import CHROMIUM, COMMANDS, FITTED, FOLDER, TOOL, run, skip_without 
 
 
 class Figures(unittest.TestCase):
-    def test_a_command_writes_them(self):
+    def test_command_writes_figures(self):
         result = run(TOOL, "compare", *COMMANDS["compare"], "--figures", "figures", "--figures-for", "column")
         self.assertIn("wrote figures\n", result.stdout)
         names = sorted(each.name for each in (FOLDER / "figures").iterdir())
@@ -53,7 +53,7 @@ class Figures(unittest.TestCase):
         self.assertEqual({each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}, before)
         self.assertFalse((FOLDER / "new").exists())
 
-    def test_the_folder_of_temporary_files_may_be_called_anything(self):
+    def test_temporary_folder_may_have_any_name(self):
         # Chromium makes a socket, whose path may have at most 107 characters, in the folder of temporary files.
         temporary = FOLDER / ("it's my $HOME" + 120 * "x")
         beside = FOLDER / "it's"

@@ -37,7 +37,7 @@ class InFirefox(unittest.TestCase):
                 result = json.loads(self.browser.value("document.getElementById('selftest').textContent"))
                 self.assertEqual(result["wrong"], [])
 
-    def test_a_drag_selects(self):
+    def test_drag_selects_a_range(self):
         self.browser.open(page("compare"))
         left, top, width, height = self.browser.value("""(() => {
           const {canvas, drawn: {plot}} = pcorReport.panels[0];

@@ -83,7 +83,7 @@ class Looks(unittest.TestCase):
         clip = {"x": 0, "y": 0, "width": width, "height": height, "scale": part}
         return self.browser.screenshot(captureBeyondViewport=True, clip=clip)
 
-    def test_looks_as_accepted(self):
+    def test_pages_match_the_accepted_pictures(self):
         for name, width, wish, is_print, part in LOOKS:
             with self.subTest(look=name):
                 found = Path(self.directory.name) / f"{name}.png"

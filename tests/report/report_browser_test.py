@@ -69,15 +69,15 @@ class ReportInBrowser(unittest.TestCase):
         self.assertEqual(result["panels"], PANELS)
         return result
 
-    def test_page_tests_itself(self):
+    def test_self_test_of_the_page(self):
         result = self.self_test(self.report, "light")
         self.assertEqual(result["points"][1], 7080)
         self.assertFalse(result["dark"])
 
-    def test_dark_page_tests_itself(self):
+    def test_self_test_of_the_dark_page(self):
         self.assertTrue(self.self_test(self.report, "dark")["dark"])
 
-    def test_narrow_page_tests_itself(self):
+    def test_self_test_of_the_narrow_page(self):
         self.self_test(self.report, width=600)
 
     def test_long_flight(self):
@@ -222,7 +222,7 @@ class ReportUnderTheHand(unittest.TestCase):
     def button(self, words):
         return self.middle(f"[...document.querySelectorAll('button')].find((each) => each.textContent.trim() === {json.dumps(words)})")
 
-    def test_pointing_reads_the_values_of_that_sample_in_every_picture(self):
+    def test_pointing_shows_the_sample_in_every_picture(self):
         time, other = self.panels("time"), self.panels("binned", "plane", "pair")
         self.browser.point(*self.place(time[0], 0.3))
         sample = self.value("pcorReport.cursor")
@@ -253,7 +253,7 @@ class ReportUnderTheHand(unittest.TestCase):
         self.assertLess(max(abs(found[axis] - dot[axis]) for axis in "xy"), 2)  # pixels; others may lie on it
         self.assertFalse(self.value(f"pcorReport.panels[{self.panels('time')[0]}].cross.hidden"))
 
-    def test_dragging_selects_keys_move_and_undo_restores(self):
+    def test_drag_selects_and_keys_move_and_undo(self):
         panel = self.panels("time")[0]
         lasts = "(pcorReport.samples.view[1] - pcorReport.samples.view[0]) / pcorReport.samples.length"
         self.browser.drag(*self.place(panel, 0.25), *self.place(panel, 0.75))
@@ -316,7 +316,7 @@ class ReportUnderTheHand(unittest.TestCase):
         self.browser.wait(f"scrollY !== {before}")
         self.assertAlmostEqual(self.value("(pcorReport.samples.view[1] - pcorReport.samples.view[0]) / pcorReport.samples.length"), 0.8, delta=0.01)
 
-    def test_curves_are_switched_but_the_last_one_remains(self):
+    def test_last_curve_cannot_be_switched_off(self):
         panel = self.panels("time")[0]
         names = self.value(f"pcorReport.panels[{panel}].item.columns")
         points = self.value("pcorReport.points")[panel]
@@ -359,7 +359,7 @@ class ReportUnderTheHand(unittest.TestCase):
         self.browser.click(*self.button("Show all"))
         self.assertEqual(self.selection["count"], self.count)
 
-    def test_an_address_shows_a_colleague_the_same(self):
+    def test_address_restores_the_view(self):
         panel = self.panels("time")[0]
         self.browser.drag(*self.place(panel, 0.2), *self.place(panel, 0.6))
         self.browser.click(*self.button(self.value("[...pcorReport.samples.regimes.keys()][0]")))
@@ -373,7 +373,7 @@ class ReportUnderTheHand(unittest.TestCase):
             self.browser.open(f"{self.report.as_uri()}#{nonsense}")
             self.assertEqual(self.selection["count"], self.count, nonsense)
 
-    def test_a_regime_has_one_mark_everywhere_and_no_other_has_it(self):
+    def test_each_regime_has_its_own_mark(self):
         marks = self.value("""['climb', 'descent', 'level', 'turn', 'take-off', 'ground', 'circle', 'cloud',
           'pitch manoeuvre', 'yaw manoeuvre', 'speed run', 'reverse heading', 'one more', 'another'].map((name, i, all) =>
             JSON.stringify([regimeMark(name, all, palettes.light), regimeMark(name, ['one more', 'another', name], palettes.light)]))""")

@@ -106,7 +106,7 @@ TEST(Report, NeedsNoNetwork) {
     EXPECT_THAT(html, Not(HasSubstr(fetch)));
 }
 
-TEST(Report, KeepsTheValuesToHalfAStep) {
+TEST(Report, ValuesAreAccurateToHalfAStep) {
   Report report = report_of(1000, 1);
   report.columns[0].values[17] = nan;
   report.columns[0].values[18] = std::numeric_limits<double>::infinity();
@@ -181,7 +181,7 @@ TEST(Report, LongTableIsFolded) {
   }
 }
 
-TEST(Report, UncertaintiesInTextHaveTheSignOfPrint) {
+TEST(Report, UncertaintiesUseThePlusMinusSign) {
   Report report = report_of(3, 1);
   report.summary = {"1.0 +- 0.1 hPa"};
   report.next = "To apply it: pcor add --formula 'k +-1'";
@@ -200,7 +200,7 @@ TEST(Report, RefusesAnUnknownColumn) {
   EXPECT_THAT(refusal(report), test::IsError(Error::Code::usage, "'absent'"));
 }
 
-TEST(Report, RefusesAColumnOfAnotherLength) {
+TEST(Report, ColumnOfWrongLengthIsRefused) {
   Report report = report_of(3, 1);
   report.columns[0].values.pop_back();
   EXPECT_THAT(refusal(report), test::IsError(Error::Code::usage, "'c0'", "2", "3"));
@@ -273,7 +273,7 @@ WhatIfPanel what_if_of(std::size_t samples) {
   return panel;
 }
 
-TEST(Report, KeepsTheSumsOfAWhatIfToTheLastBit) {
+TEST(Report, WhatIfSumsAreStoredExactly) {
   Report report = report_of(100, 1);
   report.items = {what_if_of(100)};
   const auto item = data_of(report_html(report))["items"][0];
@@ -286,7 +286,7 @@ TEST(Report, KeepsTheSumsOfAWhatIfToTheLastBit) {
   EXPECT_THAT(values_of(item["columns"][1]), testing::ElementsAre(0.0, testing::DoubleNear(49.5, 1e-9)));
 }
 
-TEST(Report, RefusesAWhatIfThatCannotBeComputed) {
+TEST(Report, ImpossibleWhatIfIsRefused) {
   Report report = report_of(100, 1);
   const auto refusal_of = [&report](const auto& change) {
     WhatIfPanel panel = what_if_of(100);
@@ -330,7 +330,7 @@ TEST(Report, RefusesTimeThatDoesNotIncrease) {
   EXPECT_THAT(refusal(report), test::IsError(Error::Code::usage, "1", "2"));
 }
 
-TEST(Report, MayHaveNoSamples) {
+TEST(Report, ReportWithoutSamplesIsWritten) {
   Report report;
   report.title = "Bars only";
   report.items = {BarPanel{"Bars", "", {{"a", 1.0, 0.1}}, "rms", "hPa"}};

@@ -22,12 +22,12 @@ std::vector<FlightToShow> flights(std::size_t count) {
   return all;
 }
 
-TEST(ShownFlights, AreAllOfFew) {
+TEST(ShownFlights, FewFlightsAreAllShown) {
   EXPECT_THAT(flights_to_show(flights(3)), ElementsAre(0, 1, 2));
   EXPECT_EQ(flights_to_show(flights(max_flights_shown)).size(), max_flights_shown);
 }
 
-TEST(ShownFlights, OfManyAreTheWorstAndOthersOverAllOfTheTime) {
+TEST(ShownFlights, IncludeTheWorstAndOthersSpreadInTime) {
   std::vector<FlightToShow> all = flights(200);
   all[40].failure = 3.0;
   all[41].failure = 2.0;
@@ -44,13 +44,13 @@ TEST(ShownFlights, OfManyAreTheWorstAndOthersOverAllOfTheTime) {
   EXPECT_EQ(parts.size(), 8U);
 }
 
-TEST(ShownFlights, AreThoseWithAResidual) {
+TEST(ShownFlights, FlightsWithoutAResidualAreOmitted) {
   std::vector<FlightToShow> all = flights(40);
   for (std::size_t f = 3; f < all.size(); ++f) all[f].failure = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(flights_to_show(all), ElementsAre(0, 1, 2));
 }
 
-TEST(ShownFlights, OverTimeAreSpread) {
+TEST(ShownFlights, ChoiceIsEvenInTime) {
   std::vector<double> begins;
   for (int f = 0; f < 90; ++f) begins.push_back(static_cast<double>((f * 37) % 90));
   std::vector<double> shown;
@@ -60,7 +60,7 @@ TEST(ShownFlights, OverTimeAreSpread) {
   EXPECT_THAT(flights_over_time({3.0, 1.0, 2.0}), ElementsAre(0, 1, 2));
 }
 
-TEST(ShownFlights, OfAReportKeepTheirRecordsAndIntervals) {
+TEST(ShownFlights, ShownFlightsKeepTheirRecordsAndIntervals) {
   Report report;
   report.time = {0, 1, 100, 101, 102, 200, 201};
   report.flight_starts = {0, 2, 5};

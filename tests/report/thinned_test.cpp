@@ -30,7 +30,7 @@ TEST(Thinned, KeepsTheCornersOnly) {
   EXPECT_THAT(thinned(time, {0}, {{&corner, 1.0}}, 100, 1e-9), ElementsAre(0U, 10U, 30U, 39U));
 }
 
-TEST(Thinned, DoesNotReachFromOneFlightIntoTheNext) {
+TEST(Thinned, FlightsAreThinnedSeparately) {
   const std::vector<double> time{0.0, 1.0, 2.0, 0.0, 1.0, 2.0};
   const std::vector<double> series{0.0, 0.0, 0.0, 5.0, 5.0, 5.0};
   EXPECT_THAT(thinned(time, {0, 3}, {{&series, 1.0}}, 100, 1e-9), ElementsAre(0U, 2U, 3U, 5U));
@@ -42,7 +42,7 @@ TEST(Thinned, OmitsMissingValues) {
   EXPECT_THAT(thinned(time, {0}, {{&series, 1.0}}, 100, 1e-9), ElementsAre(1U, 3U, 4U));
 }
 
-TEST(Thinned, KeepsWhatCountsMostWhereItMayNotKeepAll) {
+TEST(Thinned, LimitedCountKeepsTheHighestWeight) {
   const std::vector<double> time = seconds(30);
   std::vector<double> small(30, 0.0);
   std::vector<double> large(30, 0.0);

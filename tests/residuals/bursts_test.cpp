@@ -47,12 +47,12 @@ struct Flight {
   std::vector<std::size_t> bursts() const { return find_bursts(residual, {&pressure}, time, 1.0); }
 };
 
-TEST(Bursts, AreNotWhatTheAirAndManoeuvresDo) {
+TEST(Bursts, GustsAndManoeuvresAreNotBursts) {
   // The gusts begin and end within seconds: the residual shows no part of them.
   EXPECT_THAT(Flight().bursts(), IsEmpty());
 }
 
-TEST(Bursts, AreFoundFromFirstToLast) {
+TEST(Bursts, WholeBurstIsMasked) {
   for (const std::size_t length : {1U, 5U, 15U}) {
     Flight flight;
     flight.disturb(1000, length, 8.0, 0.0);
@@ -62,7 +62,7 @@ TEST(Bursts, AreFoundFromFirstToLast) {
   }
 }
 
-TEST(Bursts, MayBeNoise) {
+TEST(Bursts, ShortNoiseIsABurst) {
   Flight flight;
   flight.disturb(1000, 18, 0.0, 6.0);
   const std::vector<std::size_t> bursts = flight.bursts();
@@ -70,13 +70,13 @@ TEST(Bursts, MayBeNoise) {
   for (std::size_t i = 1000; i < 1018; ++i) EXPECT_THAT(bursts, Contains(i));
 }
 
-TEST(Bursts, AreNotAnEffectThatAppears) {
+TEST(Bursts, StepOfTheResidualAloneIsNotABurst) {
   Flight flight;
   for (std::size_t i = 1000; i < 1015; ++i) flight.residual[i] += 8.0;
   EXPECT_THAT(flight.bursts(), IsEmpty()) << "the pressure returns to its old level";
 }
 
-TEST(Bursts, AreShort) {
+TEST(Bursts, LongNoiseIsNotABurst) {
   Flight flight;
   flight.disturb(1000, 120, 0.0, 6.0);
   EXPECT_THAT(flight.bursts(), IsEmpty()) << "a sensor that has become noisy is not a burst";

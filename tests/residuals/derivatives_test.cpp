@@ -72,7 +72,7 @@ class EveryEffect : public testing::TestWithParam<std::size_t> {
 
 }  // namespace
 
-TEST_P(EveryEffect, HasItsDerivativeByEachParameter) {
+TEST_P(EveryEffect, DerivativeByEachParameterIsCorrect) {
   Draw draw;
   for (int n = 0; n < 20; ++n) {
     const State<double> state = draw_state(info(), draw);
@@ -96,7 +96,7 @@ TEST_P(EveryEffect, HasItsDerivativeByEachParameter) {
   }
 }
 
-TEST_P(EveryEffect, HasItsDerivativeByEachInput) {
+TEST_P(EveryEffect, DerivativeByEachInputIsCorrect) {
   Draw draw;
   for (int n = 0; n < 20; ++n) {
     const State<double> state = draw_state(info(), draw);
@@ -228,7 +228,7 @@ TEST(Chain, StaticDefectSeparatesStateFromParameters) {
   EXPECT_NEAR(defect.v[2], 70, 1e-12);
 }
 
-TEST(Chain, StaticDefectHasItsDerivativeUnderThePolicy) {
+TEST(Chain, StaticDefectDerivativeIncludesThePolicy) {
   Model model = memo_model(false);
   model.policy.taper_below = 140;  // the sample is at half of it
   Chain chain = build(model);
@@ -246,7 +246,7 @@ TEST(Chain, StaticDefectHasItsDerivativeUnderThePolicy) {
   EXPECT_EQ(defect.v[0], 0) << "no change at the lower limit";
 }
 
-TEST(Chain, EveryStageHasItsDerivative) {
+TEST(Chain, EveryStageHasCorrectDerivatives) {
   // The whole chain with every number dual: 1e-6 relative, from the central difference.
   for (const bool upstream : {false, true}) {
     const Chain chain = build(memo_model(upstream));
@@ -272,7 +272,7 @@ TEST(Chain, EveryStageHasItsDerivative) {
   }
 }
 
-TEST(Chain, LineLagMovesLamsByPressureRate) {
+TEST(Chain, LineLagChangesLamsDefectByPressureRate) {
   // An error of the line leaves pt, so delta-p from LAMS loses the whole of it: d/dtau = -dp/dt.
   const Chain chain = build(memo_model(true));
   const State<Jet> state = run(chain, dual(chain.parameters()));
@@ -290,7 +290,7 @@ S residual(const Chain& chain, const std::vector<S>& parameters) {
 
 }  // namespace
 
-TEST_P(EveryEffect, MovesTheResidualByItsDerivative) {
+TEST_P(EveryEffect, ResidualDerivativeIsCorrect) {
   // Each in the law of the memo with its typical coefficients; the shape of one that does not act here, below
   // the onset of the transonic pocket, alone moves nothing.
   Model model = memo_model(false);

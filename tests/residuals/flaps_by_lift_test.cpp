@@ -54,7 +54,7 @@ struct Flight {
   std::optional<FlapsByLift> found() const { return find_flaps_by_lift(samples, attack, min_airspeed); }
 };
 
-TEST(FlapsByLift, AreOutWhereTheAngleIsTooSmallForTheLift) {
+TEST(FlapsByLift, LowAngleForTheLiftMeansExtendedFlaps) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Flight flight(seed, 50.0);
     const std::optional<FlapsByLift> found = flight.found();
@@ -68,7 +68,7 @@ TEST(FlapsByLift, AreOutWhereTheAngleIsTooSmallForTheLift) {
   }
 }
 
-TEST(FlapsByLift, AreNotOutInAFlightThatFliesSlowlyWithoutThem) {
+TEST(FlapsByLift, SlowCleanFlightHasNoExtendedFlaps) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const std::optional<FlapsByLift> found = Flight(seed, 0.0).found();
     ASSERT_TRUE(found);
@@ -77,7 +77,7 @@ TEST(FlapsByLift, AreNotOutInAFlightThatFliesSlowlyWithoutThem) {
   }
 }
 
-TEST(FlapsByLift, AreNotOutBecauseAnAngleIsAstrayForAMinute) {
+TEST(FlapsByLift, BriefAngleErrorIsNotExtendedFlaps) {
   Flight flight(1, 0.0);
   for (std::size_t i = 3000; i < 3060; ++i) flight.attack[i] -= 2.0;
   const std::optional<FlapsByLift> found = flight.found();
@@ -85,7 +85,7 @@ TEST(FlapsByLift, AreNotOutBecauseAnAngleIsAstrayForAMinute) {
   EXPECT_EQ(std::count(found->out.begin(), found->out.end(), true), 0);
 }
 
-TEST(FlapsByLift, AreUnknownWhereTheCleanWingIsNotFlown) {
+TEST(FlapsByLift, AreUnknownWithoutCleanWingData) {
   EXPECT_FALSE(Flight(1, 50.0, 40.0).found()) << "always slower than flaps may be flown";
   Flight flight(1, 50.0);
   for (double& each : flight.attack) each = 3.0;

@@ -106,7 +106,7 @@ TEST(FormulaJet, ParameterDerivativesStayFiniteAtSingularity) {
   EXPECT_EQ(value.v[2], 0.0);
 }
 
-TEST(FormulaJet, HasNoDerivativesByParametersWithoutParameters) {
+TEST(FormulaJet, WithoutParametersDerivativesAreZero) {
   const auto formula = Formula::parse("sqrt(x) + 1", {});
   ASSERT_TRUE(formula);
   const double x = 0.0;
@@ -116,7 +116,7 @@ TEST(FormulaJet, HasNoDerivativesByParametersWithoutParameters) {
   EXPECT_EQ(value.v[0], 0.0);
 }
 
-TEST(FormulaJet, TakesTheDerivativeOfTheBranchTaken) {
+TEST(FormulaJet, DifferentiatesTheSelectedBranch) {
   const auto formula = Formula::parse("if(x > 0, k*x, m*sqrt(x))", {"k", "m"});
   ASSERT_TRUE(formula);
   for (const double at : {4.0, -4.0}) {

@@ -46,7 +46,7 @@ std::vector<std::pair<std::size_t, std::size_t>> found(const Series& values) {
 
 using Spans = std::vector<std::pair<std::size_t, std::size_t>>;
 
-TEST(Frozen, IsASensorConstantForAMinute) {
+TEST(Frozen, ConstantMinuteIsFrozen) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Series values = recorded({}, seed);
     EXPECT_THAT(found(values), IsEmpty());
@@ -55,14 +55,14 @@ TEST(Frozen, IsASensorConstantForAMinute) {
   }
 }
 
-TEST(Frozen, IsFoundAsOftenAndAsLongAsItHappens) {
+TEST(Frozen, EverySpanIsFoundWithItsLength) {
   Series values = recorded({}, 1);
   const Spans spans{{1000, 30}, {1100, 600}, {1705, 25}, {4000, 3000}};
   for (const auto& [first, count] : spans) freeze(values, first, count);
   EXPECT_EQ(found(values), spans);
 }
 
-TEST(Frozen, IsFoundThoughTheNumbersAreCoarse) {
+TEST(Frozen, IsFoundInCoarseValues) {
   // Steps of a third of the noise: one value in seven repeats itself.
   Series values = recorded({0.3, 0.1}, 1);
   freeze(values, 5000, 60);
@@ -76,7 +76,7 @@ TEST(Frozen, IsFoundThoughTheNumbersAreCoarse) {
   EXPECT_NEAR(static_cast<double>(found(values)[0].second), 300.0, 10.0);
 }
 
-TEST(Frozen, IsNotWhatIsCoarseOrSlowOrAtRest) {
+TEST(Frozen, CoarseSlowOrRestingSeriesAreNotFrozen) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     EXPECT_THAT(found(recorded({0.5, 1.0}, seed)), IsEmpty()) << "whole numbers";
     EXPECT_THAT(found(recorded({0.05, 1.0}, seed)), IsEmpty()) << "whole numbers without noise";
@@ -97,7 +97,7 @@ TEST(Frozen, IsNotWhatIsCoarseOrSlowOrAtRest) {
   }
 }
 
-TEST(Frozen, IsNotSearchedInExcludedSamples) {
+TEST(Frozen, ExcludedAndMissingSamplesAreNotFrozen) {
   Series values = recorded({}, 1);
   freeze(values, 0, 900);
   std::vector<bool> flying(values.size(), true);
@@ -109,7 +109,7 @@ TEST(Frozen, IsNotSearchedInExcludedSamples) {
 
 }  // namespace
 
-TEST(Frozen, OverAWholeFlightCountsForVaryingSensorsOnly) {
+TEST(Frozen, ConstantFlightIsFrozenOnlyForVaryingSensors) {
   const Series still(10800, 131.0);
   const std::vector<bool> all(still.size(), true);
   EXPECT_EQ(find_frozen(still, all, true).size(), 1U);

@@ -39,7 +39,7 @@ TEST(Height, ResidualOfTheHydrostaticEquationIsZero) {
   EXPECT_TRUE(std::isnan(left[29])) << "half a minute is needed on either side";
 }
 
-TEST(Height, SeesAThermometerThatIsOffInEveryClimb) {
+TEST(Height, DetectsThermometerBiasInEveryClimb) {
   // 300 m in a minute: the warm model takes them for 300 m (1 + 1/260).
   pcor::FlightSamples flight = climb();
   for (double& temperature : flight.model.columns[2].second) temperature += 1.0;
@@ -51,14 +51,14 @@ TEST(Height, SeesAThermometerThatIsOffInEveryClimb) {
   }
 }
 
-TEST(Height, ProportionalPressureDefectIsInvisible) {
+TEST(Height, IsInsensitiveToAProportionalPressureDefect) {
   for (const double value : residuals(climb(), made::air_model({{"static-constant", 0.01}}))) {
     if (std::isnan(value)) continue;
     ASSERT_NEAR(value, 0.0, 1e-9);
   }
 }
 
-TEST(Height, SeesAZeroOfTheStaticPressureGrowWithHeight) {
+TEST(Height, StaticPressureOffsetGrowsWithHeight) {
   // Subtracting one hPa from every reading makes a climb larger, by p d(1/p) in a minute: rho g 300 m / p.
   const pcor::FlightSamples flight = climb();
   const std::vector<double> left = residuals(flight, made::air_model({{"psfd-bias", 1.0}}));
@@ -67,14 +67,14 @@ TEST(Height, SeesAZeroOfTheStaticPressureGrowWithHeight) {
     EXPECT_NEAR(left[i], pressure_of_height(p[i]) * 300.0 / p[i], 5e-4) << "second order; " << i;
 }
 
-TEST(Height, HasTheDerivativesOfItsResiduals) {
+TEST(Height, ResidualDerivativesAreCorrect) {
   const pcor::ModelDefinition model = made::air_model({{"psfd-bias", 0.3}});
   // Centred differences of a step of 1e-3 hPa are right to 1e-9 / 1e-3.
   EXPECT_LT(made::derivative_error(climb(), model, *pcor::height_reference(model), 1e-3), 1e-5);
 }
 
 // Otherwise a fit would shrink the residual by a coefficient to which the heights are insensitive.
-TEST(Height, HasDerivativesWithoutTheNoiseOfTheHeights) {
+TEST(Height, DerivativesExcludeHeightNoise) {
   auto flight = std::make_shared<pcor::FlightSamples>(climb());
   for (std::size_t i = 0; i < flight->time.size(); ++i)
     flight->reference.columns[0].second[i] += 3.0 * std::sin(0.7 * static_cast<double>(i));
@@ -88,7 +88,7 @@ TEST(Height, HasDerivativesWithoutTheNoiseOfTheHeights) {
   EXPECT_NEAR(derivative, 0.0, 1e-9);
 }
 
-TEST(Height, DoesNotReachOverGapsAndMissingValues) {
+TEST(Height, GapsAndMissingValuesInterruptTheResidual) {
   pcor::FlightSamples flight = climb();
   flight.model.columns[2].second[900] = std::nan("");
   for (std::size_t i = 1200; i < flight.time.size(); ++i) flight.time[i] += 100.0;

@@ -49,7 +49,7 @@ struct Flight {
   }
 };
 
-TEST(LaserLock, IsNotDoubtedBecauseThePressuresAreWrong) {
+TEST(LaserLock, WrongPressuresKeepTheLock) {
   for (const double defect : {-0.03, -0.01, 0.0, 0.01, 0.03}) {
     const Flight flight(defect);
     double maximum = 0.0;
@@ -62,7 +62,7 @@ TEST(LaserLock, IsNotDoubtedBecauseThePressuresAreWrong) {
   }
 }
 
-TEST(LaserLock, IsLostWhereTheBeamShowsAnything) {
+TEST(LaserLock, RandomBeamSpeedIsUnlocked) {
   Flight flight(0.02);
   std::mt19937_64 engine(2);
   std::uniform_real_distribution<double> anything(50.0, 400.0);
@@ -72,7 +72,7 @@ TEST(LaserLock, IsLostWhereTheBeamShowsAnything) {
   EXPECT_THAT(unlocked, SizeIs(testing::Le(302U)));
 }
 
-TEST(LaserLock, IsLostWhereTheBeamLocksOnSomethingElse) {
+TEST(LaserLock, ShiftedBeamSpeedIsUnlocked) {
   Flight flight(0.02);
   for (std::size_t i = 2000; i < 3000; ++i) flight.beam[i] += 12.0;
   EXPECT_THAT(flight.unlocked(), SizeIs(1000U));
@@ -90,7 +90,7 @@ TEST(LaserLock, IsNotLostInGusts) {
   EXPECT_THAT(flight.unlocked(), IsEmpty());
 }
 
-TEST(LaserLock, IsNotJudgedByAFewSamples) {
+TEST(LaserLock, TooFewSamplesAreNotTested) {
   Flight flight(0.02);
   flight.samples.resize(20);
   flight.beam[5] += 100.0;

@@ -61,7 +61,7 @@ std::filesystem::path late_flight(const pcor::test::TemporaryDirectory& director
       noise);
 }
 
-TEST(MovingColumns, ChangeByTheirSlope) {
+TEST(MovingColumns, SlopeEqualsTheFiniteDifference) {
   const ModelDefinition model = with_clock(0.5);
   const auto samples = samples_of(pcor::test::short_flight(), model);
   ASSERT_EQ(samples->model.moving.size(), 1U);
@@ -83,7 +83,7 @@ TEST(MovingColumns, ChangeByTheirSlope) {
   EXPECT_GT(largest, 0.1);
 }
 
-TEST(MovingColumns, HaveTheSameSamplesAtEveryDelay) {
+TEST(MovingColumns, MissingSamplesAreIndependentOfTheDelay) {
   const ModelDefinition model = with_clock(0.0);
   const auto samples = samples_of(pcor::test::short_flight(), model);
   const std::vector<double> at_zero = *samples->model.find(Quantity::airspeed_rate);
@@ -96,7 +96,7 @@ TEST(MovingColumns, HaveTheSameSamplesAtEveryDelay) {
   }
 }
 
-TEST(MovingColumns, LetAFormulaReadTheRateOfTheAirspeed) {
+TEST(MovingColumns, FormulaCanReadTheAirspeedRate) {
   ModelDefinition model = pcor::test::laser_model();
   pcor::ModelEffect formula;
   formula.id = "mine";
@@ -149,7 +149,7 @@ TEST(MovingColumns, DependOnTheDryingTime) {
   EXPECT_GT(largest, 0.01) << "the longer it dries the wetter it is";
 }
 
-TEST(MovingColumns, FindHowLongAThermometerDries) {
+TEST(MovingColumns, RefitFindsTheDryingTime) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path flight = wet_flight(directory, 15.0);
   for (const double start : {2.0, 40.0}) {
@@ -161,7 +161,7 @@ TEST(MovingColumns, FindHowLongAThermometerDries) {
   }
 }
 
-TEST(MovingColumns, FindADelayThatIsNoDerivative) {
+TEST(MovingColumns, RefitFindsALargeDelay) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path flight = late_flight(directory, 1.0, false);
   const pcor::RefitResult fit = pcor::refit({flight}, with_clock(0.0), {pcor::lams_reference()});
@@ -169,7 +169,7 @@ TEST(MovingColumns, FindADelayThatIsNoDerivative) {
   EXPECT_NEAR(fit.parameters.back().value, 1.0, 0.01);
 }
 
-TEST(MovingColumns, GiveTheSameDelayFromAnyStart) {
+TEST(MovingColumns, RefitFindsTheSameDelayFromAnyStart) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path flight = late_flight(directory, 1.0, true);
   const pcor::FittedParameter first =

@@ -43,7 +43,7 @@ struct Radome {
   }
 };
 
-TEST(RadomePrediction, ReproducesAPressureThatTheRadomeDetermines) {
+TEST(RadomePrediction, ReproducesAPressureDeterminedByTheRadome) {
   const Radome flight(1000);
   const Series predicted = predicted_by_radome(flight.dynamic_pressure, flight.samples);
   for (std::size_t i = 0; i < predicted.size(); ++i)
@@ -103,7 +103,7 @@ TEST(HeightPrediction, ReproducesTheStandardAtmosphere) {
   for (std::size_t i = 0; i < predicted.size(); ++i) EXPECT_NEAR(predicted[i], flight.pressure[i], 0.005);
 }
 
-TEST(HeightPrediction, KeepsASlowDifferenceFromTheHeight) {
+TEST(HeightPrediction, KeepsASlowDifferenceFromHeight) {
   Climbs flight(8000);
   for (std::size_t i = 0; i < flight.pressure.size(); ++i)
     flight.pressure[i] *= 1.0 + 0.003 * std::sin(static_cast<double>(i) / 1500.0);
@@ -142,7 +142,7 @@ TEST(HeightPrediction, KeepsTheValuesWithoutHeight) {
   EXPECT_EQ(predicted_by_height(flight.pressure, flight.altitude, 1.0)[500], 700.0);
 }
 
-TEST(HeightPrediction, KeepsTheValuesWithTheHeightOfAnotherFlight) {
+TEST(HeightPrediction, WrongHeightKeepsTheValues) {
   const Climbs flight(4000);
   Series other = flight.altitude;
   std::rotate(other.begin(), other.begin() + 700, other.end());

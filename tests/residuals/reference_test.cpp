@@ -32,7 +32,7 @@ TEST(Reference, IsReadFromItsName) {
             read_model(file).model.name);
 }
 
-TEST(Reference, OfAnotherTextIsRefusedWithThoseThatThereAre) {
+TEST(Reference, UnknownTextIsRefusedWithTheValidForms) {
   for (const char* form : {"lams (", ", static:OTHER.toml (", ", pressure:VARIABLE (", ", total:OTHER.toml (",
                            ", height (", " or wind ("})
     EXPECT_THAT(reference_forms(), HasSubstr(form));
@@ -42,12 +42,12 @@ TEST(Reference, OfAnotherTextIsRefusedWithThoseThatThereAre) {
   EXPECT_THAT(refusal("static:absent.toml", with_laser()), test::IsError(Error::Code::file, "absent.toml"));
 }
 
-TEST(Reference, OfALaserThatTheModelDoesNotNameIsRefused) {
+TEST(Reference, LaserMissingFromTheModelIsRefused) {
   EXPECT_THAT(refusal("lams", without_laser()),
               test::IsError(Error::Code::model, "lams_airspeed", "static:OTHER.toml"));
 }
 
-TEST(Reference, ListsItsRoles) {
+TEST(Reference, ListsItsVariables) {
   EXPECT_TRUE(lams_reference()->reads_laser());
   EXPECT_TRUE(lams_reference()->variables().empty());
   EXPECT_EQ(lams_reference()->model(), nullptr);

@@ -80,7 +80,7 @@ void expect_derivatives(const Residuals& tested) {
 
 }  // namespace
 
-TEST(Residuals, AgainstTheTruePressureAreThoseOfTheSensors) {
+TEST(Residuals, TrueReferenceLeavesSensorNoise) {
   const Residuals tested = residuals(laser_model(), *pcor::pressure_reference("TRUE_PS"));
   // The model has the law of the truth: the remainder is the noise of PSFD, 0.01 to 0.02 hPa, and a little
   // from the other sensors of the law.
@@ -100,7 +100,7 @@ TEST(Residuals, LamsResidualIsLaserMinusModelDefect) {
   }
 }
 
-TEST(Residuals, OfTwoSystemsAreOppositeWhenTheyChangePlaces) {
+TEST(Residuals, ExchangedSystemsGiveOppositeResiduals) {
   const Residuals forth = residuals(laser_model(), *pcor::static_system_reference(other_system()));
   const Residuals back = residuals(other_system(), *pcor::static_system_reference(laser_model()));
   const std::vector<double> a = forth.values(forth.parameters().data());
@@ -108,7 +108,7 @@ TEST(Residuals, OfTwoSystemsAreOppositeWhenTheyChangePlaces) {
   for (const std::size_t i : used(forth)) EXPECT_NEAR(a[i], -b[i], 1e-11);
 }
 
-TEST(Residuals, HaveTheDerivativesOfTheWholeChain) {
+TEST(Residuals, DerivativesIncludeTheWholeChain) {
   ModelDefinition model = laser_model();
   for (const char* id : {"static-mach2", "lams-elevation", "recovery-factor", "static-lag"})
     model.model.effects.push_back(pcor::neutral_effect(id));
@@ -124,7 +124,7 @@ TEST(Residuals, HaveTheDerivativesOfTheWholeChain) {
   expect_derivatives(tested);
 }
 
-TEST(Residuals, HaveTheDerivativesOfTheReferenceToo) {
+TEST(Residuals, DerivativesIncludeTheReferenceParameters) {
   const Residuals tested = residuals(laser_model(), *pcor::static_system_reference(other_system()));
   ASSERT_EQ(tested.parameters().size(), 6U);
   expect_derivatives(tested);
@@ -132,7 +132,7 @@ TEST(Residuals, HaveTheDerivativesOfTheReferenceToo) {
             "reference:static-alpha.a1");
 }
 
-TEST(Residuals, AtTheSensorAreThoseOfThePressureToFirstOrder) {
+TEST(Residuals, SensorResidualsEqualPressureResidualsToFirstOrder) {
   // With a recovery thermometer the temperature varies with the Mach number, with an ambient one it does
   // not.
   for (const bool with_recovery : {true, false}) {
@@ -167,7 +167,7 @@ TEST(Residuals, AtTheSensorAreThoseOfThePressureToFirstOrder) {
   }
 }
 
-TEST(Masks, SayWhyEverySampleIsNotUsed) {
+TEST(Masks, EveryUnusedSampleHasAReason) {
   MaskOptions options;
   options.exclude = {pcor::Regime::climb};
   const Residuals tested = residuals(laser_model(), *pcor::lams_reference(), options);
@@ -185,7 +185,7 @@ TEST(Masks, SayWhyEverySampleIsNotUsed) {
   }
 }
 
-TEST(Masks, ExcludeALaserThatIsOffOrWrong) {
+TEST(Masks, MissingOrWrongLaserIsExcluded) {
   const ModelDefinition model = laser_model();
   pcor::FlightSamples samples =
       pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
@@ -202,7 +202,7 @@ TEST(Masks, ExcludeALaserThatIsOffOrWrong) {
   EXPECT_EQ(tested.mask()[places[102]], Mask::none);
 }
 
-TEST(Masks, CountAMissingInputAsMissing) {
+TEST(Masks, MissingInputsAreMasked) {
   const ModelDefinition model = laser_model();
   pcor::FlightSamples samples =
       pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());

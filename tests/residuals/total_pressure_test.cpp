@@ -48,7 +48,7 @@ TEST(TotalPressure, IsIndependentOfStaticDefects) {
   }
 }
 
-TEST(TotalPressure, SeesTheZeroOfEachTransducer) {
+TEST(TotalPressure, DetectsTheOffsetOfEachTransducer) {
   // The effects take the zero off the reading.
   for (const std::string zero : {"psfd-bias", "qcf-zero"}) {
     for (const double value : residuals({{zero, 0.5}}, {})) ASSERT_NEAR(value, 0.5, 1e-9) << zero;
@@ -56,14 +56,14 @@ TEST(TotalPressure, SeesTheZeroOfEachTransducer) {
   }
 }
 
-TEST(TotalPressure, HasTheDerivativesOfItsResiduals) {
+TEST(TotalPressure, ResidualDerivativesAreCorrect) {
   // Linear: differences are exact to rounding, 1e-13 of 1000 hPa over the step.
   EXPECT_LT(made::derivative_error(flight(), made::air_model({{"qcf-gain", 0.01}}),
                                    *pcor::total_pressure_reference(other()), 1e-3),
             1e-6);
 }
 
-TEST(TotalPressure, HasAModelThatCanBeFittedAndExchanged) {
+TEST(TotalPressure, ModelCanBeFittedAndReplaced) {
   const auto reference = pcor::total_pressure_reference(other({{"qcf-zero", 0.1}}));
   EXPECT_FALSE(reference->is_static_pressure());
   EXPECT_EQ(pcor::residual_parameter_names(made::air_model(), *reference).size(), 1U);
@@ -72,7 +72,7 @@ TEST(TotalPressure, HasAModelThatCanBeFittedAndExchanged) {
   EXPECT_FALSE(exchanged->is_static_pressure());
 }
 
-TEST(TotalPressure, OfTwoVariablesHasNoLaw) {
+TEST(TotalPressure, TwoVariableReferenceHasNoLaw) {
   const auto reference = pcor::read_reference("total:PSFRD+QCFR", made::air_model());
   EXPECT_EQ(reference->name(), "total:PSFRD+QCFR");
   EXPECT_THAT(reference->variables(), testing::UnorderedElementsAre("PSFRD", "QCFR"));

@@ -11,7 +11,7 @@ namespace pcor {
 namespace {
 
 // On a circle with the wind from 250 degrees at 12 m/s, and 3 degrees of sideslip.
-TEST(WindOfFlight, IsThatInWhichItFlew) {
+TEST(WindOfFlight, RecoversTheTrueWind) {
   const double east = 12.0 * std::sin(70.0 * constants::radians_per_degree);
   const double north = 12.0 * std::cos(70.0 * constants::radians_per_degree);
   FlightSamples flight;

@@ -74,13 +74,13 @@ TEST(Wind, SingleHeadingGivesNoEstimate) {
   for (const double value : residuals(flight(straight), model)) ASSERT_NEAR(value, 0.0, 0.03);
 }
 
-TEST(Wind, HasTheDerivativesOfItsResiduals) {
+TEST(Wind, ResidualDerivativesAreCorrect) {
   const pcor::ModelDefinition model = made::air_model({{"static-constant", 0.001}});
   // Centred differences of a step of 1e-6 of p, some 7e-4 hPa, are right to 1e-5.
   EXPECT_LT(made::derivative_error(flight(circles), model, *pcor::wind_reference(model), 1e-6), 1e-4);
 }
 
-TEST(Wind, UsesSamplesInTheAirOnly) {
+TEST(Wind, GroundSamplesAreNotUsed) {
   pcor::FlightSamples parked = flight(legs);
   std::fill_n(parked.motion.airspeed.begin(), 300, 5.0);
   const std::vector<double> left = residuals(parked, made::air_model());
@@ -106,7 +106,7 @@ TEST(Wind, FrozenSensorIsRejected) {
   }
 }
 
-TEST(Wind, SeesWhichSensorsOfAFlightAreFrozen) {
+TEST(Wind, FrozenSensorsOfAFlightAreIdentified) {
   const pcor::test::TemporaryDirectory directory;
   const pcor::ModelDefinition model = pcor::test::laser_model();
   const auto reference = pcor::wind_reference(model);

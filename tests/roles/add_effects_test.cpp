@@ -75,7 +75,7 @@ std::optional<Error> refusal(const std::vector<ModelEffect>& effects,
 
 }  // namespace
 
-TEST(WithEffects, StartsNeutral) {
+TEST(WithEffects, AddedEffectsAreNeutral) {
   const ModelDefinition file = add_effects(model(), {of_catalogue("static-qp"), of_catalogue("static-lag")});
   ASSERT_EQ(file.model.effects.size(), 3U);
   EXPECT_EQ(file.model.effects[1].id, "static-qp");
@@ -83,13 +83,13 @@ TEST(WithEffects, StartsNeutral) {
   EXPECT_THAT(file.model.effects[2].parameters, ElementsAre(0.0));
 }
 
-TEST(WithEffects, KeepsTheParametersThatAnEffectBrings) {
+TEST(WithEffects, GivenParametersAreKept) {
   ModelEffect effect = of_catalogue("static-lag");
   effect.parameters = {0.2};
   EXPECT_THAT(add_effects(model(), {effect}).model.effects.back().parameters, ElementsAre(0.2));
 }
 
-TEST(WithEffects, KeepsEverythingElse) {
+TEST(WithEffects, RestOfTheModelIsUnchanged) {
   const std::string text = write_model(add_effects(model(), {of_catalogue("static-qp")}));
   const std::string added = "\n[[effect]]\nid = \"static-qp\"\nparameters = { a2 = 0.0 }\n";
   std::string expected = write_model(model());
@@ -97,7 +97,7 @@ TEST(WithEffects, KeepsEverythingElse) {
   EXPECT_EQ(text, expected);
 }
 
-TEST(WithEffects, NamesTheVariablesThatAreNeeded) {
+TEST(WithEffects, RequiredVariablesAreAdded) {
   const ModelDefinition file =
       add_effects(model(), {of_catalogue("static-attack"), of_catalogue("static-beta-odd")});
   EXPECT_EQ(file.variables.at(Quantity::attack), "ATTACK");
@@ -106,7 +106,7 @@ TEST(WithEffects, NamesTheVariablesThatAreNeeded) {
   EXPECT_EQ(file.variables.count(Quantity::attack_differential_pressure), 0U);
 }
 
-TEST(WithEffects, NamesNothingThatTheModelDerives) {
+TEST(WithEffects, DerivedQuantitiesNeedNoVariable) {
   ModelDefinition file = model();
   file.variables[Quantity::radome_dynamic_pressure] = "QCR_B";
   file.variables[Quantity::attack_differential_pressure] = "ADIFR_B";
@@ -115,7 +115,7 @@ TEST(WithEffects, NamesNothingThatTheModelDerives) {
   EXPECT_EQ(extended.variables, file.variables);
 }
 
-TEST(WithEffects, ChoosesAmongTheVariablesOfAFlight) {
+TEST(WithEffects, ChoosesVariablesOfTheFlight) {
   const ModelDefinition file = add_effects(model(), {of_catalogue("static-attack")}, {"PSFD", "AKRD", "QCF"});
   EXPECT_EQ(file.variables.at(Quantity::attack), "AKRD");
   const ModelDefinition suffixed =
@@ -133,7 +133,7 @@ TEST(WithEffects, AmbiguousRoleIsReported) {
               IsError(Error::Code::model, "'my-thrust'", "'lams_airspeed'", "lams_airspeed = \"...\""));
 }
 
-TEST(WithEffects, TakesAFormula) {
+TEST(WithEffects, AcceptsAFormula) {
   const ModelDefinition file = add_effects(model(), {thrust("k * ENGTRQ * roll")}, {"ENGTRQ", "ROLL"});
   EXPECT_EQ(file.model.effects.back().formula, "k * ENGTRQ * roll");
   EXPECT_EQ(file.variables.at(Quantity::roll), "ROLL");
@@ -141,7 +141,7 @@ TEST(WithEffects, TakesAFormula) {
   EXPECT_EQ(write_model(pcor::parse_model(write_model(file), "it")), write_model(file));
 }
 
-TEST(WithEffects, RefusesWhatHasNoMeaning) {
+TEST(WithEffects, InvalidEffectsAreRefused) {
   EXPECT_THAT(refusal({of_catalogue("static-constant")}), IsError(Error::Code::usage, "'static-constant'"));
   EXPECT_THAT(refusal({of_catalogue("static-qp"), of_catalogue("static-qp")}),
               IsError(Error::Code::usage, "'static-qp'"));
@@ -155,7 +155,7 @@ TEST(WithEffects, RefusesWhatHasNoMeaning) {
   EXPECT_THAT(refusal({wrong}), IsError(Error::Code::usage, "'static-lag'", "1", "2"));
 }
 
-TEST(WithEffects, HoldsWhatOnlyShapesAnEffect) {
+TEST(WithEffects, ShapeParametersAreFixed) {
   for (const pcor::EffectInfo& info : pcor::effect_info) {
     ModelDefinition file = made::model({});
     for (std::size_t i = 0; i < pcor::role_count; ++i) {

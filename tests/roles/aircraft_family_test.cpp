@@ -23,7 +23,7 @@ std::optional<Error> refusal_of(const std::string& text) {
 
 const std::string head = "format = \"pcor-aircraft/1\"\nname = \"mine\"\ntitle = \"my aircraft\"\n";
 
-TEST(VariableNaming, DataAreWhole) {
+TEST(VariableNaming, DataAreComplete) {
   std::set<std::string> names;
   for (const VariableNaming& family : aircraft_families()) {
     SCOPED_TRACE(family.name);
@@ -53,7 +53,7 @@ TEST(VariableNaming, DataAreWhole) {
       << "whose names are used for a file of an unknown family";
 }
 
-TEST(VariableNaming, RefusesWhatHasNoMeaning) {
+TEST(VariableNaming, InvalidFilesAreRefused) {
   EXPECT_THAT(refusal_of("name = \"mine\""), test::IsError(Error::Code::definition, "mine.toml:1"));
   EXPECT_THAT(refusal_of("format = \"pcor-aircraft/1\"\nname = \"mine\""),
               test::IsError(Error::Code::definition, "title"));
@@ -72,7 +72,7 @@ TEST(VariableNaming, RefusesWhatHasNoMeaning) {
               test::IsError(Error::Code::definition, "mine.toml:6"));
 }
 
-TEST(VariableNaming, IsNamed) {
+TEST(VariableNaming, IsFoundByName) {
   EXPECT_EQ(family_named("faam-core").unit_of("VELD_GIN"), "-1 m s-1");
   EXPECT_EQ(family_named("faam-core").unit_of("ALT_GIN"), "") << "unit of the file";
   EXPECT_THAT(test::error_of([] { family_named("fam-core"); }),

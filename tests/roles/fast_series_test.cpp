@@ -79,24 +79,24 @@ TEST(RateOf, UnevenRecordsGiveTheRightRateOrNoRate) {
   }
 }
 
-TEST(ShortestPeriod, IsTheWholeBandOfWhatHasNoNoise) {
+TEST(ShortestPeriod, NoiselessSeriesKeepsTheWholeBand) {
   EXPECT_EQ(signal_band_of(wandering(4000), seconds(4000), 1.0).min_period, 2.0);
 }
 
-TEST(ShortestPeriod, CutsNoiseOff) {
+TEST(ShortestPeriod, ExcludesNoisyPeriods) {
   // All of the wave is at 40 s; shorter periods are noise. Half an octave to either side is excluded.
   const double period = signal_band_of(wave(4000, 1, 0.3), seconds(4000), 1.0).min_period;
   EXPECT_GT(period, 8.0);
   EXPECT_LT(period, 40.0);
 }
 
-TEST(ShortestPeriod, FindsNoiseThatIsKnownAtAHighRateOnly) {
+TEST(ShortestPeriod, FindsNoiseSeenOnlyAtHighRate) {
   const double period = signal_band_of(wave(2000, 25, 1.5), seconds(2000), 1.0).min_period;
   EXPECT_GT(period, 8.0);
   EXPECT_LT(period, 40.0);
 }
 
-TEST(ShortestPeriod, IsThatOfTwoSamplesWhereTheyAreFarApart) {
+TEST(ShortestPeriod, WideSamplingGivesTwoSampleIntervals) {
   const FastSeries series = wave(50, 1, 0.1);
   for (const double step : {16.0, 20.0, 60.0}) {
     std::vector<double> time = seconds(50);
@@ -105,7 +105,7 @@ TEST(ShortestPeriod, IsThatOfTwoSamplesWhereTheyAreFarApart) {
   }
 }
 
-TEST(RateOfSeries, IsTheDerivativeInTheMeanOverARecord) {
+TEST(RateOfSeries, EqualsTheMeanDerivativeOverARecord) {
   for (const std::size_t in_record : {std::size_t{1}, std::size_t{5}, std::size_t{25}}) {
     const std::vector<double> rate = rate_of(wave(400, in_record, 0.0), seconds(400), 1.0, 2.0);
     // The mean of a cosine of 40 s over a second is 0.1 % less than its middle.
@@ -113,7 +113,7 @@ TEST(RateOfSeries, IsTheDerivativeInTheMeanOverARecord) {
   }
 }
 
-TEST(RateOfSeries, IsTheMeanOverTheSecondsBefore) {
+TEST(RateOfSeries, DelayGivesTheMeanOverEarlierSeconds) {
   for (const double delay : {0.3, 1.0, 2.5, -1.5}) {
     const std::vector<double> rate = rate_of(wave(400, 1, 0.0), seconds(400), 1.0, 2.0, delay);
     // (sin(wt) - sin(w(t - s)))/s = 2 sin(ws/2)/s cos(w(t - s/2))
@@ -123,7 +123,7 @@ TEST(RateOfSeries, IsTheMeanOverTheSecondsBefore) {
   }
 }
 
-TEST(RateOfSeries, HasLessNoiseWithTheNoisesOwnCutOff) {
+TEST(RateOfSeries, EstimatedCutOffReducesNoise) {
   const FastSeries noisy = wave(4000, 1, 0.1);
   const std::vector<double> time = seconds(4000);
   const double whole = rms_of_difference(rate_of(noisy, time, 1.0, 2.0), 0.0, 2.0 * pi / 40.0);
@@ -132,7 +132,7 @@ TEST(RateOfSeries, HasLessNoiseWithTheNoisesOwnCutOff) {
   EXPECT_LT(cut, 0.1 * whole);
 }
 
-TEST(RateOfSeries, BridgesNoGap) {
+TEST(RateOfSeries, GapsAreNotBridged) {
   FastSeries series;
   std::vector<double> time = seconds(60);
   for (std::size_t i = 0; i < 60; ++i) {

@@ -17,7 +17,7 @@ std::vector<double> climb() {
   return height;
 }
 
-TEST(Jumps, AreFoundWhereAHeightLeavesItsPathAndComesBack) {
+TEST(Jumps, TemporaryHeightExcursionIsFound) {
   std::vector<double> height = climb();
   for (const int i : {300, 301, 302}) height[static_cast<std::size_t>(i)] += 160.0 * (i - 299);
   const std::vector<double> time = test::sequence(1.4e9, height.size());
@@ -32,7 +32,7 @@ TEST(Jumps, AreFoundWhereAHeightLeavesItsPathAndComesBack) {
   EXPECT_TRUE(std::isfinite(height[303]));
 }
 
-TEST(Jumps, VelocityHasItsOwnLeastRate) {
+TEST(Jumps, VelocityHasItsOwnMinimumRate) {
   std::vector<double> east(600, 80.0);
   east[300] += 15.0;
   const std::vector<double> time = test::sequence(1.4e9, east.size());

@@ -68,18 +68,18 @@ TEST_F(PlausiblePressure, HectopascalsLabelledPascalsAreRefused) {
   EXPECT_FALSE(impossible_pressure(wrong, stated)) << "a unit stated in the model is not checked";
 }
 
-TEST_F(PlausiblePressure, WeatherIsNoError) {
+TEST_F(PlausiblePressure, WeatherIsNotAnError) {
   for (const double pressure : {660.0, 700.0, 740.0})
     EXPECT_FALSE(impossible_pressure(flight("hPa", pressure, "GGALT", 3000.0), model())) << pressure;
 }
 
-TEST_F(PlausiblePressure, AnotherSystemContradictsAboveFivePercent) {
+TEST_F(PlausiblePressure, SystemsDifferingByMoreThanFivePercentAreInconsistent) {
   EXPECT_TRUE(impossible_pressure(flight("hPa", 700.0, "PSFRD", 760.0), model()));
   EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0, "PSFRD", 710.0), model()));
   EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0), model())) << "no variable for a comparison";
 }
 
-TEST_F(PlausiblePressure, OtherSystemThatHeightContradictsIsNoError) {
+TEST_F(PlausiblePressure, WrongOtherSystemIsNotAnError) {
   EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {7.0, 60.0}}), model_of_pair())) << "Pa";
   EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {910.0, 60.0}}), model_of_pair())) << "a gain";
   EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {701.0, 60.0}}, 0.0), model_of_pair()))
@@ -95,7 +95,7 @@ TEST_F(PlausiblePressure, UnitWrongInAllSystemsIsFoundByHeight) {
   EXPECT_EQ(pascals->unit, "Pa");
 }
 
-TEST_F(PlausiblePressure, UnitsOfAviationAreNamed) {
+TEST_F(PlausiblePressure, AviationUnitsAreIdentified) {
   for (const auto& [unit, hectopascals] :
        {std::pair{"mmHg", 1.333224}, {"inHg", 33.8639}, {"psi", 68.9476}}) {
     const auto wrong = impossible_pressure(flight_of({{700.0 / hectopascals, 60.0}}), model());
@@ -104,7 +104,7 @@ TEST_F(PlausiblePressure, UnitsOfAviationAreNamed) {
   }
 }
 
-TEST_F(PlausiblePressure, DynamicPressureIsHeldAgainstTotalPressures) {
+TEST_F(PlausiblePressure, DynamicPressureIsCheckedByTotalPressures) {
   const auto wrong = impossible_pressure(flight_of({{700.0, 45.0}, {698.0, 62.0}}), model_of_pair());
   ASSERT_TRUE(wrong);
   EXPECT_EQ(wrong->role, Quantity::dynamic_pressure);

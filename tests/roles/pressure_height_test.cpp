@@ -19,7 +19,7 @@ std::vector<double> pressures() {
   return all;
 }
 
-TEST(PressureHeight, HeightOfThePressureIsFound) {
+TEST(PressureHeight, PressureAltitudeIsDetected) {
   std::vector<double> height;
   for (const double pressure : pressures()) height.push_back(pressure_altitude(pressure));
   EXPECT_EQ(compare_height(height, pressures()).kind, Kind::pressure_altitude);
@@ -28,7 +28,7 @@ TEST(PressureHeight, HeightOfThePressureIsFound) {
   EXPECT_EQ(compare_height(height, pressures()).kind, Kind::pressure_altitude);
 }
 
-TEST(PressureHeight, HeightInOtherWeatherIsOfGps) {
+TEST(PressureHeight, NonstandardWeatherIndicatesGpsHeight) {
   std::vector<double> height;
   // A high of 5 hPa adds 45 m, and air 3 % warmer than the standard adds 30 to 60 m: 7 to 10 hPa together.
   for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure - 5.0));
@@ -42,7 +42,7 @@ TEST(PressureHeight, CancellingPressureAndTemperatureAreUndecided) {
   EXPECT_EQ(compare_height(height, pressures()).kind, Kind::undecided);
 }
 
-TEST(PressureHeight, HeightOfOtherPressureIsUndecided) {
+TEST(PressureHeight, HeightFromAnotherPressureIsUndecided) {
   std::vector<double> height;
   // A correction of 1.5 hPa, which changes by 1 hPa.
   for (const double pressure : pressures())
@@ -50,7 +50,7 @@ TEST(PressureHeight, HeightOfOtherPressureIsUndecided) {
   EXPECT_EQ(compare_height(height, pressures()).kind, Kind::undecided);
 }
 
-TEST(PressureHeight, TooFewValuesSayNothing) {
+TEST(PressureHeight, TooFewValuesDefaultToGps) {
   EXPECT_EQ(compare_height({100.0}, {1000.0}).kind, Kind::gps);
   EXPECT_EQ(compare_height({}, {}).kind, Kind::gps);
 }

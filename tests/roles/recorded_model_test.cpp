@@ -40,7 +40,7 @@ std::vector<Recorded> with(std::vector<Recorded> variables, const Recorded& anot
   return variables;
 }
 
-TEST(RecordedModel, PrefersWhatTheProcessingCorrected) {
+TEST(RecordedModel, PrefersCorrectedPressures) {
   const auto model = model_with({{"PSF", "hPa"}, {"QCF", "hPa"}, {"PSXC", "hPa"}, {"QCXC", "hPa"}});
   ASSERT_TRUE(model);
   EXPECT_EQ(model->variables.at(Quantity::static_pressure), "PSXC");
@@ -48,7 +48,7 @@ TEST(RecordedModel, PrefersWhatTheProcessingCorrected) {
   EXPECT_FALSE(model_with({{"PSF", "hPa"}, {"QCF", "m/s"}}));
 }
 
-TEST(RecordedModel, TakesTheRecoveryFactorOfItsThermometer) {
+TEST(RecordedModel, UsesTheRecoveryFactorOfTheThermometer) {
   // The bounds are those of the elements of the heated HARCO, and what NCAR's processing had for the others.
   const auto factor = [](const char* thermometer) {
     return model_with(with(pressures, {thermometer, "deg_C"}))->model.recovery(0.8);

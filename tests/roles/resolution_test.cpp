@@ -18,12 +18,12 @@ std::vector<double> rounded_to(double step) {
   return values;
 }
 
-TEST(Resolution, IsTheStepOfAllValues) {
+TEST(Resolution, EqualsTheRoundingStep) {
   EXPECT_NEAR(resolution_of(rounded_to(1.0)), 1.0, 1e-6);
   EXPECT_NEAR(resolution_of(rounded_to(0.1)), 0.1, 2e-3);
 }
 
-TEST(Resolution, OfFloatsOrTooFewValuesIsZero) {
+TEST(Resolution, IsZeroForFloatsOrTooFewValues) {
   EXPECT_LT(resolution_of(rounded_to(0.0)), 0.01);
   EXPECT_EQ(resolution_of({}), 0.0);
   EXPECT_EQ(resolution_of({1, 1, 1, 2}), 0.0) << "too few values";

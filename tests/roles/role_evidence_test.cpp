@@ -36,7 +36,7 @@ class RoleEvidence : public testing::Test {
   test::TemporaryDirectory folder_;
 };
 
-TEST(PlainWords, AreWrittenOut) {
+TEST(PlainWords, AbbreviationsAreExpanded) {
   EXPECT_THAT(plain_words("wgs_alt"), ElementsAre("wgs", "altitude"));
   EXPECT_THAT(plain_words("trueAirspeed"), ElementsAre("true", "airspeed"));
   EXPECT_THAT(plain_words("dewpoint_temperature"), ElementsAre("dew", "point", "temperature"));
@@ -57,7 +57,7 @@ TEST_F(RoleEvidence, FindsRolesByNamesAndLongNames) {
   EXPECT_EQ(found["ambient_temperature"].front().variable, "ambient_temp");
 }
 
-TEST_F(RoleEvidence, NeedsAUnitAndValuesThatFit) {
+TEST_F(RoleEvidence, RequiresAMatchingUnitAndPlausibleValues) {
   auto found = candidates(
       {{"static_pressure", "m/s", "", 850}, {"dynamic_pressure", "hPa", "", -300}, {"roll", "", "", 3}});
   EXPECT_TRUE(found["static_pressure"].empty()) << "another dimension";
@@ -66,7 +66,7 @@ TEST_F(RoleEvidence, NeedsAUnitAndValuesThatFit) {
   EXPECT_FALSE(is_sure(found["roll"])) << "no unit";
 }
 
-TEST_F(RoleEvidence, TheTruthOfASimulationIsNoCandidate) {
+TEST_F(RoleEvidence, SimulatedTruthIsNotACandidate) {
   const auto path = folder_.path() / "flight.nc";
   {
     test::NetcdfMaker maker(path);
@@ -77,7 +77,7 @@ TEST_F(RoleEvidence, TheTruthOfASimulationIsNoCandidate) {
   EXPECT_TRUE(role_candidates(Flight(path)).empty());
 }
 
-TEST_F(RoleEvidence, TwoThatAreAlikeLeaveDoubt) {
+TEST_F(RoleEvidence, TwoEqualCandidatesAreUncertain) {
   auto found = candidates(
       {{"heading_1", "degree", "true heading", 100}, {"heading_2", "degree", "true heading", 101}});
   ASSERT_EQ(found["heading"].size(), 2U);

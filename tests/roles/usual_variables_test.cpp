@@ -10,7 +10,7 @@ using testing::ElementsAre;
 using testing::IsSupersetOf;
 using testing::Not;
 
-TEST(UsualVariables, BelongToRolesThatAModelNeedNotName) {
+TEST(UsualVariables, ExistForOptionalRolesOnly) {
   const VariableNaming& ncar = family_named("ncar");
   EXPECT_THAT(usual_variables(ncar, Quantity::attack), ElementsAre("ATTACK", "AKRD"));
   EXPECT_THAT(usual_variables(ncar, Quantity::cabin_pressure), ElementsAre("PCAB"));
@@ -22,7 +22,7 @@ TEST(UsualVariables, BelongToRolesThatAModelNeedNotName) {
     EXPECT_TRUE(usual_variables(role).empty()) << info_of(role).name;
 }
 
-TEST(UsualVariables, OfTheAltitudeAreHeightsByGps) {
+TEST(UsualVariables, UsualAltitudesAreGpsHeights) {
   // Against the height that a pressure makes, no pressure could be tested.
   const VariableNaming& ncar = family_named("ncar");
   EXPECT_THAT(usual_variables(ncar, Quantity::altitude), Not(Contains("PALT")));
@@ -30,7 +30,7 @@ TEST(UsualVariables, OfTheAltitudeAreHeightsByGps) {
   EXPECT_EQ(usual_heights(ncar).back(), "PALT");
 }
 
-TEST(UsualVariables, KnowsSeriesThatNoModelReads) {
+TEST(UsualVariables, SeriesOutsideModelsHaveUnits) {
   ASSERT_NE(series_named("longitude"), nullptr);
   EXPECT_EQ(series_named("longitude")->unit, "deg");
   EXPECT_EQ(series_named("roll"), &info_of(Quantity::roll));

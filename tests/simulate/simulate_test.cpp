@@ -154,7 +154,7 @@ TEST(Simulate, GivesOtherDataForAnotherSeed) {
   EXPECT_FALSE(same_bits(values, Simulated(text).raw("PSFD")));
 }
 
-TEST(Simulate, MarksTheTruthThatADiagnosisMustNotSee) {
+TEST(Simulate, TrueVariablesAreMarked) {
   const Simulated flight(head + systems + aloft + leg("level", "duration = 60"));
   for (const std::string& name : flight.flight().variables()) {
     const auto& attributes = flight.flight().variable(name).attributes;
@@ -165,13 +165,13 @@ TEST(Simulate, MarksTheTruthThatADiagnosisMustNotSee) {
   }
 }
 
-TEST(Simulate, NoiseOfASensorChangesNoOtherSensor) {
+TEST(Simulate, SensorNoiseChangesOnlyThatSensor) {
   const std::string text = head + systems + aloft + leg("level", "duration = 60");
   EXPECT_THAT(differences(Simulated(text), Simulated(text + "[noise]\nQCFR = 0.5\n")),
               testing::ElementsAre("QCFR"));
 }
 
-TEST(Random, IsTheSameEverywhere) {
+TEST(Random, IsReproducible) {
   // The first number of std::mt19937_64 for the seed of this stream, found once; integers alone decide it.
   simulate::Random a(1, "QCF");
   simulate::Random b(1, "QCF");
@@ -181,7 +181,7 @@ TEST(Random, IsTheSameEverywhere) {
   EXPECT_NE(first, c.uniform());
 }
 
-TEST(Random, IsNormal) {
+TEST(Random, IsNormallyDistributed) {
   simulate::Random random(3, "normal");
   constexpr int count = 200000;
   double sum = 0.0, square = 0.0, fourth = 0.0;
@@ -235,7 +235,7 @@ TEST(Simulate, AirIsInHydrostaticBalance) {
   EXPECT_LT(integral, -0.4);
 }
 
-TEST(Simulate, GroundVelocityIsThatThroughTheAirPlusWind) {
+TEST(Simulate, GroundVelocityIsAirVelocityPlusWind) {
   const Simulated flight(head + noiseless + systems + aloft + leg("turn") + leg("yaw"));
   const auto speed = flight("GGSPD", "m/s"), track = flight("GGTRK", "degree"),
              heading = flight("THDG", "degree"), airspeed = flight("TASX", "m/s"),
@@ -263,7 +263,7 @@ TEST(Simulate, TotalPressureOfTwoSystemsIsOne) {
   }
 }
 
-TEST(Simulate, DefectFollowsTheLawInMeasuredQuantities) {
+TEST(Simulate, DefectFollowsTheLawOfMeasuredQuantities) {
   const Simulated flight(head + "rate = 25\n" + noiseless + systems + aloft + leg("pitch"));
   const auto p = flight("PSFD", "hPa"), q = flight("QCF", "hPa"), qr = flight("QCR", "hPa"),
              a = flight("ADIFR", "hPa"), truth = flight("TRUE_PS", "hPa"),
@@ -280,7 +280,7 @@ TEST(Simulate, DefectFollowsTheLawInMeasuredQuantities) {
   EXPECT_GT(compared, 5000U);
 }
 
-TEST(Simulate, LamsFindsTheDefect) {
+TEST(Simulate, LamsRecoversTheDefect) {
   const std::string text = head + noiseless + "[lams]\nelevation = 1.5\nazimuth = -0.8\n" + systems + aloft +
                            leg("pitch") + leg("speed-run", "low = 95\nhigh = 125") + leg("yaw");
   const Simulated flight(text);
@@ -332,7 +332,7 @@ recovery_factor = 0.95
   }
 }
 
-TEST(Simulate, AvionicsMachNumberMakesItsLawTrue) {
+TEST(Simulate, AvionicsMachNumberFulfilsEquation20) {
   const Simulated flight(R"(
 format = "pcor-scenario/1"
 name = "equation 20"
@@ -431,7 +431,7 @@ TEST(Simulate, FliesCircles) {
 
 // Effects
 
-TEST(Simulate, StaticLagFollowsTheClimb) {
+TEST(Simulate, StaticLagIsProportionalToThePressureRate) {
   constexpr double tau = 0.5;
   const Simulated flight(head + noiseless + calm + "[[system]]\nstatic = \"PSFD\"\ndynamic = \"QCF\"\n" +
                          aloft + leg("climb", "altitude = 4000") +
@@ -457,7 +457,7 @@ void PrintTo(const Change& change, std::ostream* stream) { *stream << change.eff
 
 class EffectOfScenario : public testing::TestWithParam<Change> {};
 
-TEST_P(EffectOfScenario, ChangesWhatItActsOn) {
+TEST_P(EffectOfScenario, ChangesOnlyTheAffectedVariables) {
   const std::string text = head + noiseless + R"(
 [atmosphere]
 cloud = [{ base = 1000, top = 2000, cover = 0.4 }]
@@ -515,7 +515,7 @@ INSTANTIATE_TEST_SUITE_P(
                {"TTRR", "RTF1"}}),
     [](const auto& change) { return test::test_name(change.param.effect); });
 
-TEST(Simulate, PitotLosesPressureAtAnAngle) {
+TEST(Simulate, PitotLossIncreasesWithFlowAngle) {
   const std::string text = head + noiseless + calm + systems + aloft + leg("yaw");
   const Simulated flight(text + "[[effect]]\nid = \"pitot-angle\"\non = \"QCF\"\nk = 1e-4\n");
   const auto p = flight("PSFD", "hPa"), q = flight("QCF", "hPa"), total = flight("TRUE_PT", "hPa"),
@@ -530,7 +530,7 @@ TEST(Simulate, PitotLosesPressureAtAnAngle) {
   }
 }
 
-TEST(Simulate, NearTheGroundTheImageOfTheWingActs) {
+TEST(Simulate, GroundEffectActsNearTheGround) {
   const std::string text = head + noiseless + systems + aloft + leg("descent", "altitude = 120\nrate = 8") +
                            leg("level", "duration = 30\nspeed = 90");
   const Simulated without(text);
@@ -549,7 +549,7 @@ TEST(Simulate, NearTheGroundTheImageOfTheWingActs) {
   EXPECT_LT(std::abs(d1[high] - d0[high]), 1e-4);
 }
 
-TEST(Simulate, AirInTheLineHasWeight) {
+TEST(Simulate, LineHeadDependsOnTheWeightOfAir) {
   const std::string text = head + noiseless + calm + systems + aloft + leg("level", "duration = 60") +
                            leg("pitch", "cycles = 2") + leg("speed-run", "low = 100\nhigh = 130\nrate = 0.5");
   const Simulated without(text);
@@ -587,7 +587,7 @@ TEST(Simulate, ForwardAccelerationMatchesSpeedAndGravity) {
   EXPECT_LT(std::sqrt(square / static_cast<double>(last - first)), 0.02);
 }
 
-TEST(Simulate, DeicingHeatsTheMoreTheLessAirPasses) {
+TEST(Simulate, DeicingHeatIncreasesWithLessAirflow) {
   const std::string text =
       head + noiseless + calm + systems + aloft + leg("speed-run", "low = 90\nhigh = 130\nrate = 0.5");
   const Simulated cold(text);
@@ -599,7 +599,7 @@ TEST(Simulate, DeicingHeatsTheMoreTheLessAirPasses) {
     EXPECT_NEAR(b[i] - a[i], 0.5 * 0.3 / (0.269589 * p[i] * m[i] / t[i]), 2e-4);
 }
 
-TEST(Simulate, DewPointErrsInEveryHumidity) {
+TEST(Simulate, DewPointErrorChangesAllHumidityVariables) {
   const std::string text = head + noiseless + calm + systems + aloft + leg("level", "duration = 60");
   const Simulated right(text);
   const Simulated wrong(text + "[[effect]]\nid = \"humidity-error\"\ndew_point = -2.0\n");
@@ -632,7 +632,7 @@ TEST(Simulate, HiddenCauseIsInTheDefect) {
   EXPECT_TRUE(same_bits(without.raw("PSFRD"), with.raw("PSFRD")));
 }
 
-TEST(Simulate, ClockOfOneSensorIsLate) {
+TEST(Simulate, ClockSkewDelaysOneSensor) {
   const std::string text = head + noiseless + systems + aloft + leg("speed-run", "low = 95\nhigh = 125");
   const Simulated on_time(text);
   const Simulated late(text + "[[effect]]\nid = \"clock-skew\"\non = \"VLAMS\"\nseconds = 2.0\n");
@@ -688,7 +688,7 @@ size = 5.0
   EXPECT_LT(spikes, 25U);  // 10 expected, five standard deviations
 }
 
-TEST(Simulate, RefusesToStall) {
+TEST(Simulate, StallIsRefused) {
   const Scenario scenario =
       parse_scenario(head + systems + aloft + leg("climb", "altitude = 8000\nspeed = 76"), "test.toml");
   const test::TemporaryDirectory directory;
@@ -701,7 +701,7 @@ TEST(Simulate, RefusesToStall) {
 
 class DataScenario : public testing::TestWithParam<std::string> {};
 
-TEST_P(DataScenario, IsFlown) {
+TEST_P(DataScenario, IsSimulated) {
   const test::TemporaryDirectory directory;
   const Scenario scenario =
       read_scenario(std::filesystem::path(PCOR_SOURCE_DIR) / "data/scenarios" / GetParam());
@@ -727,7 +727,7 @@ void PrintTo(const Refusal& refusal, std::ostream* stream) { *stream << refusal.
 
 class ScenarioRefusal : public testing::TestWithParam<Refusal> {};
 
-TEST_P(ScenarioRefusal, HasTheCodeAndNames) {
+TEST_P(ScenarioRefusal, ErrorHasCodeAndNames) {
   const std::optional<Error> error = test::error_of([] { parse_scenario(GetParam().text, "test.toml"); });
   EXPECT_THAT(error, test::IsError(Error::Code::definition, "test.toml"));
   for (const std::string& name : GetParam().names)

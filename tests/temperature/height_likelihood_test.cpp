@@ -84,7 +84,7 @@ Eigen::MatrixXd dense_covariance(const HeightRecord& record, const HeightNoise& 
   return covariance;
 }
 
-TEST(HeightLikelihood, FilterIsGeneralisedLeastSquaresWrittenOut) {
+TEST(HeightLikelihood, FilterEqualsDenseGeneralisedLeastSquares) {
   const HeightRecord record = short_record();
   HeightNoise noise;
   noise.white = 0.8;
@@ -126,7 +126,7 @@ TEST(HeightLikelihood, FilterIsGeneralisedLeastSquaresWrittenOut) {
   EXPECT_NEAR(found.log_determinant, determinant, 1e-4);
 }
 
-TEST(HeightLikelihood, BestCoefficientsMakeTheDevianceLeast) {
+TEST(HeightLikelihood, BestCoefficientsMinimiseTheDeviance) {
   const HeightEquations equations = height_equations(short_record(), {}, {});
   const Eigen::VectorXd best = equations.best(2);
   const double minimum = equations.deviance(2);
@@ -161,7 +161,7 @@ TEST(HeightLikelihood, SumIsIndependentOfTheThreads) {
   EXPECT_NEAR(sum.deviance(2), one.deviance(2), 1e-6);
 }
 
-TEST(HeightLikelihood, FindsTheNoiseThatThereIs) {
+TEST(HeightLikelihood, EstimatesTheTrueNoise) {
   std::vector<HeightRecord> records;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     made::AirPlan plan;
@@ -250,7 +250,7 @@ Eigen::MatrixXd sampled_covariance(const std::vector<HeightRecord>& records, Eig
   return (covariances + squares - sum * sum.transpose() / samples) / samples;
 }
 
-TEST(HeightLikelihood, ErrorsKnowThatTheNoiseIsFoundToo) {
+TEST(HeightLikelihood, ErrorsIncludeNoiseUncertainty) {
   constexpr std::size_t flights = 4;
   std::array<double, 2> apart{};
   for (const HeightRecord& record : noisy_records(flights, 7200)) {
@@ -273,7 +273,7 @@ TEST(HeightLikelihood, ErrorsKnowThatTheNoiseIsFoundToo) {
   for (const double part : apart) EXPECT_NEAR(part, 0.0, 0.03);
 }
 
-TEST(HeightLikelihood, TheLessTheBetterTheNoiseIsKnown) {
+TEST(HeightLikelihood, NoiseUncertaintyDecreasesWithMoreFlights) {
   double before = std::numeric_limits<double>::infinity();
   for (const std::size_t flights : {1U, 4U, 16U}) {
     const std::vector<HeightRecord> records = noisy_records(flights, 3600);
@@ -291,7 +291,7 @@ TEST(HeightLikelihood, TheLessTheBetterTheNoiseIsKnown) {
   }
 }
 
-TEST(HeightLikelihood, AnUnknownSlopeOfIsobarsIsFound) {
+TEST(HeightLikelihood, EstimatesAnUnknownIsobarSlope) {
   made::AirPlan plan;
   plan.seconds = 7200;
   plan.turning = 7200.0;  // a wide circle: the way varies with the climbs
@@ -311,7 +311,7 @@ TEST(HeightLikelihood, AnUnknownSlopeOfIsobarsIsFound) {
   EXPECT_GT(std::abs(level.best(1)[0] + 0.5), 5.0 * std::sqrt(level.covariance(1)(0, 0)));
 }
 
-TEST(HeightLeastSquares, IsTheLineThroughHeights) {
+TEST(HeightLeastSquares, RecoversTheLineWithoutNoise) {
   made::AirPlan plan;
   plan.offset = 0.5;
   plan.gain = 0.01;

@@ -53,7 +53,7 @@ TEST(HeightRecord, IntegralEqualsTheClosedForm) {
   EXPECT_LT(range_of_excess(record), 1e-3);
 }
 
-TEST(HeightRecord, ErrorOfTheThermometerIsWhatTheColumnsSay) {
+TEST(HeightRecord, ThermometerErrorMatchesTheColumns) {
   made::AirPlan plan;
   const HeightRecord truth = record_of(made::air(plan));
   plan.offset = 0.5;
@@ -70,7 +70,7 @@ TEST(HeightRecord, ErrorOfTheThermometerIsWhatTheColumnsSay) {
   }
 }
 
-TEST(HeightRecord, StatedErrorOfTheStaticPressureIsTrue) {
+TEST(HeightRecord, StaticPressureErrorMatchesTheFiniteDifference) {
   pcor::internal::FlightAir air = made::air({});
   const HeightRecord truth = record_of(air);
   for (double& p : air.pressure) p += 0.1;
@@ -82,7 +82,7 @@ TEST(HeightRecord, StatedErrorOfTheStaticPressureIsTrue) {
   }
 }
 
-TEST(HeightRecord, StatedErrorOfTheHumidityIsTrue) {
+TEST(HeightRecord, HumidityErrorMatchesTheFiniteDifference) {
   pcor::internal::FlightAir air = made::air({});
   const double dry = pcor::dry_air<double>().gas_constant;
   // Vapour that falls with the pressure, 0.5 % of R_a at the ground, and 20 % more of it.
@@ -103,7 +103,7 @@ TEST(HeightRecord, StatedErrorOfTheHumidityIsTrue) {
   EXPECT_GT(largest, 1.0);  // m: 0.1 % of 2 km
 }
 
-TEST(HeightRecord, ErrorsOfTheLawAreWhatTheySay) {
+TEST(HeightRecord, LawErrorsMatchTheFiniteDifferences) {
   using pcor::internal::FlightAir;
   const FlightAir right = made::air({});
   HeightRecordOptions options;
@@ -169,7 +169,7 @@ TEST(HeightRecord, ExcludesSpikesAndRestartsAtSteps) {
   EXPECT_EQ(record.segments, 2U);
 }
 
-TEST(HeightRecord, KeepsOnlyWhatClimbsFastEnough) {
+TEST(HeightRecord, MinimumClimbRateSelectsBlocks) {
   const HeightRecord all = record_of(made::air({}));
   const HeightRecord climbs = record_of(made::air({}), 2.0);
   EXPECT_LT(climbs.blocks.size(), all.blocks.size());
@@ -189,7 +189,7 @@ TEST(HeightRecord, ArchivedStepsReplacePressureAndHumidity) {
     EXPECT_NEAR(direct.blocks[i].excess, archived.blocks[i].excess, 1e-6);  // rounding
 }
 
-TEST(HeightRecord, SlopeOfTheGeostrophicWindHasItsSign) {
+TEST(HeightRecord, GeostrophicSlopeHasTheCorrectSign) {
   pcor::internal::FlightAir air = made::air({});
   // A wind from the west of 10 m/s: in the north, high pressure lies to its right, in the south.
   for (double& speed : air.east_speed) speed += 10.0;
@@ -223,7 +223,7 @@ TEST(HeightRecord, UsesAirspeedWithoutGroundSpeed) {
   expect_same_way(through_air, over_ground);
 }
 
-TEST(HeightRecord, WayThroughTheAirFillsGapsOfThatOverTheGround) {
+TEST(HeightRecord, AirPathFillsGapsOfTheGroundPath) {
   pcor::internal::FlightAir air = made::air({});
   const HeightRecord whole = record_of(air);
   EXPECT_EQ(whole.unknown_ways, 0U);
@@ -234,7 +234,7 @@ TEST(HeightRecord, WayThroughTheAirFillsGapsOfThatOverTheGround) {
   expect_same_way(gap, whole);
 }
 
-TEST(HeightRecord, WithoutHeadingTheWayIsOneDirection) {
+TEST(HeightRecord, WithoutHeadingThePathIsStraight) {
   pcor::internal::FlightAir air = made::air({});
   air.east_speed.clear();
   air.north_speed.clear();
@@ -291,7 +291,7 @@ TEST(HeightRecord, ReportsErrorsOfTheHeight) {
   EXPECT_THAT(refusal(cold), IsError(Error::Code::model, "recovery_temperature"));
 }
 
-TEST(HeightRecord, ThermometerWithoutValuesIsAnErrorOfAVariable) {
+TEST(HeightRecord, EmptyThermometerIsAVariableError) {
   pcor::internal::FlightAir air = made::air({});
   std::fill(air.temperature.begin(), air.temperature.end(), std::numeric_limits<double>::quiet_NaN());
   try {

@@ -40,7 +40,7 @@ double range_of_excess(const HeightRecord& record) {
   return maximum->excess - minimum->excess;
 }
 
-TEST(IsobarSlope, ClimbsAndDescentsAndTheWholeFlightFindIt) {
+TEST(IsobarSlope, ClimbDescentAndWholeFlightEstimateTheSlope) {
   for (const IsobarSlope option : {IsobarSlope::climb_descent, IsobarSlope::whole_flight}) {
     const pcor::internal::IsobarSlopeEstimate slope = estimate_isobar_slope(record_of(sloping()), option);
     // Surfaces are crossed again within a few tens of km: the usual slope shifts the estimate by a few per
@@ -51,7 +51,7 @@ TEST(IsobarSlope, ClimbsAndDescentsAndTheWholeFlightFindIt) {
   }
 }
 
-TEST(IsobarSlope, LevelLegsFindIt) {
+TEST(IsobarSlope, LevelLegsEstimateTheSlope) {
   made::AirPlan plan = sloping();
   plan.low = 3000.0;
   plan.high = 3310.0;
@@ -78,7 +78,7 @@ TEST(IsobarSlope, ModesNoneAndFittedSubtractNoSlope) {
   }
 }
 
-TEST(IsobarSlope, GeostrophicWindOfTheSlopeTakesItOff) {
+TEST(IsobarSlope, GeostrophicWindRemovesTheSlope) {
   made::AirPlan plan = sloping();
   pcor::internal::FlightAir air = made::air(plan);
   // The wind that belongs to the slope: v = (g/f) dz/dx, u = -(g/f) dz/dy.
@@ -102,7 +102,7 @@ TEST(IsobarSlope, GeostrophicWindOfTheSlopeTakesItOff) {
   EXPECT_LT(range_of_excess(record), 0.02 * before);
 }
 
-TEST(IsobarSlope, EstimatesLeaveAPartForTheLikelihood) {
+TEST(IsobarSlope, EveryEstimateLeavesARemainder) {
   for (const IsobarSlope option : {IsobarSlope::level_legs, IsobarSlope::climb_descent,
                                    IsobarSlope::whole_flight, IsobarSlope::geostrophic}) {
     HeightRecord record = record_of(sloping());
@@ -115,7 +115,7 @@ TEST(IsobarSlope, EstimatesLeaveAPartForTheLikelihood) {
   EXPECT_EQ(record.slope_left, 1.0);
 }
 
-TEST(IsobarSlope, UndeterminedSlopeIsPassedToTheLikelihood) {
+TEST(IsobarSlope, UndeterminedSlopeIsLeftToTheLikelihood) {
   pcor::internal::FlightAir air = made::air(sloping());
   air.east_speed.clear();
   air.north_speed.clear();

@@ -29,7 +29,7 @@ double mean(const FlightAir& air, const Value& value) {
   return sum / count;
 }
 
-TEST(LawDoubt, IsTheMeanOfWhatTheModelStatesInEverySample) {
+TEST(LawDoubt, EqualsTheMeanOfTheStatedUncertainty) {
   const pcor::test::TemporaryDirectory directory;
   pcor::Scenario scenario = pcor::read_scenario(scenarios / "c130-climbs.toml");
   scenario.legs.resize(5);

@@ -196,7 +196,7 @@ struct WhitenedSystem {
 
 class TemperatureRecovery : public Temperature {};
 
-TEST_F(TemperatureRecovery, OfOffsetAndSlopeOverIsobarsThatSlope) {
+TEST_F(TemperatureRecovery, RecoversOffsetAndSlopeOverSlopingIsobars) {
   std::array<WhitenedSystem, 2> likelihood;
   std::array<WhitenedSystem, 2> least_squares;
   for (std::uint64_t seed = 6000; seed < 6000 + seeds; ++seed) {
@@ -250,7 +250,7 @@ Scenario::Effect effect(const std::string& id, const std::map<std::string, doubl
 
 /// The default errors include the usual errors of pressures and humidity: flights on which each has an error
 /// drawn from its prior, the law by 0.3 hPa in each of its terms.
-TEST_F(TemperatureRecovery, WithUsualErrorsOfAllSensors) {
+TEST_F(TemperatureRecovery, StatedErrorsHoldWithUsualSensorErrors) {
   WhitenedSystem scores;
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
@@ -363,7 +363,7 @@ TEST_F(Temperature, ModelFileMatchesTheResult) {
     EXPECT_NEAR(effect.parameters[0] + effect.parameters[1] * at.temperature, at.correction, 1e-12);
 }
 
-TEST_F(Temperature, ACorrectionThatTheModelHasIsReplaced) {
+TEST_F(Temperature, ExistingCorrectionIsReplaced) {
   const fs::path flight = fly(one_climb(), 1);
   const TemperatureResult bare = fit_temperature({flight}, model(), of_degree(1));
   const ModelDefinition wrong = with_calibration(model(), {2.0, -0.03, 0.0005}, {0.1, 0.1, 0.1},
@@ -375,7 +375,7 @@ TEST_F(Temperature, ACorrectionThatTheModelHasIsReplaced) {
   }
 }
 
-TEST_F(Temperature, ArchivedFlightsGiveTheSame) {
+TEST_F(Temperature, ArchivedFlightsGiveTheSameResult) {
   // Archived steps are floats of 0.02 m/K, to 1e-9, and temperatures to 4e-6 K. At higher rates steps are of
   // the samples, where raw flights have means over a record: alike to the turbulence within a second.
   const ModelDefinition curved = with_calibration(model(), {0.5, -0.02, 0.0003}, {0.1, 0.1, 0.1},
@@ -399,7 +399,7 @@ TEST_F(Temperature, ArchivedFlightsGiveTheSame) {
   }
 }
 
-TEST_F(Temperature, SecondsWithoutPressureAreCrossed) {
+TEST_F(Temperature, ShortPressureGapsChangeLittle) {
   const fs::path flight = fly(one_climb(), 1);
   const TemperatureResult whole = fit_temperature({flight}, model(), of_degree(1));
   fs::path gaps = flight;
@@ -423,7 +423,7 @@ TEST_F(Temperature, SecondsWithoutPressureAreCrossed) {
   }
 }
 
-TEST_F(Temperature, AFlightCutInTwoGivesNearlyTheSame) {
+TEST_F(Temperature, FlightCutInTwoGivesNearlyTheSameResult) {
   const fs::path flight = fly(climbs(), 1);
   const std::size_t records = Flight(flight).records();
   const std::size_t middle = records / 2;
@@ -442,7 +442,7 @@ TEST_F(Temperature, AFlightCutInTwoGivesNearlyTheSame) {
 
 // Many flights
 
-TEST_F(Temperature, TwiceTheDataHalveTheVariance) {
+TEST_F(Temperature, DoubledDataHalveTheVariance) {
   const std::vector<fs::path> flights = fly_several(one_climb(), 1, 2);
   std::vector<fs::path> twice = flights;
   twice.push_back(copy(flights[0], "again0.nc"));
@@ -466,7 +466,7 @@ TEST_F(Temperature, TwiceTheDataHalveTheVariance) {
   EXPECT_LT(apart(once.likelihood, all.likelihood), search_stops + 0.15);
 }
 
-TEST_F(Temperature, TheNumberOfThreadsDoesNotMatter) {
+TEST_F(Temperature, ResultIsIndependentOfTheNumberOfThreads) {
   const std::vector<fs::path> flights = fly_several(one_climb(), 1, 3);
   TemperatureOptions options;
   options.threads = 1;
@@ -481,7 +481,7 @@ TEST_F(Temperature, TheNumberOfThreadsDoesNotMatter) {
   }
 }
 
-TEST_F(Temperature, TheOrderOfFlightsDoesNotMatter) {
+TEST_F(Temperature, ResultIsIndependentOfTheOrderOfFlights) {
   std::vector<fs::path> flights = fly_several(one_climb(), 1, 3);
   const TemperatureResult forward = fit_temperature(flights, model(), of_degree(1));
   std::reverse(flights.begin(), flights.end());
@@ -496,7 +496,7 @@ TEST_F(Temperature, TheOrderOfFlightsDoesNotMatter) {
   }
 }
 
-TEST_F(Temperature, HeldOutFlightsChooseTheDegree) {
+TEST_F(Temperature, HeldOutFlightsSelectTheDegree) {
   const TemperatureResult without_slope =
       fit_temperature(fly_several(one_climb_without_slope(), 11, 4), model());
   EXPECT_THAT(without_slope.likelihood.coefficients, SizeIs(1));
@@ -515,7 +515,7 @@ TEST_F(Temperature, HeldOutFlightsChooseTheDegree) {
   }
 }
 
-TEST_F(Temperature, ASmallGainIsNoReasonForACoefficient) {
+TEST_F(Temperature, SmallGainAddsNoCoefficient) {
   // Three flights each in which one more coefficient gains by chance, over flights held out, more than its
   // standard error: 0.1 of -2 ln L for a curve, 4.0 for a slope. One of 12 sets of three exceeds each limit.
   EXPECT_THAT(fit_temperature(fly_several(one_climb(), 921, 3), model()).likelihood.coefficients, SizeIs(2));
@@ -633,7 +633,7 @@ const Item* item(const Report& report, const std::string& title) {
   return nullptr;
 }
 
-TEST_F(Temperature, MakesAReport) {
+TEST_F(Temperature, ReportHasOnlyTheUsedFlights) {
   const std::vector<fs::path> flights{fly(one_climb(), 1), fly(no_climb(), 2), fly(one_climb(), 3)};
   const TemperatureResult result = fit_temperature(flights, model(), of_degree(1));
   ASSERT_THAT(result.flights[1].excluded, HasSubstr("climbs by"));
@@ -695,7 +695,7 @@ TEST_F(Temperature, UninformativeFlightsAreRefused) {
               IsError(Error::Code::usage, "flight1.nc"));
 }
 
-TEST_F(Temperature, RefusesADegreeThatThereIsNot) {
+TEST_F(Temperature, InvalidDegreeIsRefused) {
   const fs::path flight = fly(one_climb(), 1);
   for (const int degree : {-1, 3, 100}) {
     EXPECT_THAT(error_of([&] { fit_temperature({flight}, model(), of_degree(degree)); }),

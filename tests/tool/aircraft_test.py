@@ -124,7 +124,7 @@ class OtherAircraft(unittest.TestCase):
         self.run_tool(*arguments, "--quiet", "--json", "result.json")
         return json.loads((self.path / "result.json").read_text())
 
-    def test_each_is_known_by_its_attributes(self):
+    def test_aircraft_is_identified_by_file_attributes(self):
         for family in FAMILIES:
             flight = self.json("inspect", f"{family}.nc")["flights"][0]
             self.assertEqual(flight["alike"], [family])
@@ -136,7 +136,7 @@ class OtherAircraft(unittest.TestCase):
                 self.assertIn(role, roles, family)
             self.assertIn("lams_airspeed", [missing["role"] for missing in flight["missing"]])
 
-    def test_three_commands_lead_to_a_correction(self):
+    def test_inspect_refit_and_process_correct_every_aircraft(self):
         """inspect, refit, process: without a word of the user on variables, units, signs or rates."""
         for family, (*_, reference, _) in FAMILIES.items():
             self.run_tool("inspect", f"{family}.nc", "--write-model", f"{family}.toml")
@@ -170,7 +170,7 @@ class OtherAircraft(unittest.TestCase):
         self.assertIn("roles by faam-core: static_pressure = P10_STAT, dynamic_pressure = P0_S10", result.stderr)
         self.assertIn("VELD_GIN: the vertical speed is positive downward", result.stderr)
 
-    def test_turns_a_sign(self):
+    def test_downward_vertical_speed_is_inverted(self):
         """A climb is a climb where the vertical speed is positive downward."""
         flight = self.json("inspect", "faam-core.nc")["flights"][0]
         self.assertEqual(flight["roles"]["vertical_speed"]["sign"], "-")
@@ -206,7 +206,7 @@ class OtherAircraft(unittest.TestCase):
                 short = self.run_tool("compare", turned, "-m", "c130-psfd-eq18", "--reference", "pressure:TRUE_PS").stdout
                 self.assertRegex(short, r"(?m)^note 1: .*warning: ")
 
-    def test_names_that_differ_by_case_are_two(self):
+    def test_variable_names_are_case_sensitive(self):
         """The exact name is used; another case is not a variable, and the message lists the existing names."""
         flight = self.path / "case.nc"
         flight.write_bytes((self.path / "ncar.nc").read_bytes())
@@ -231,7 +231,7 @@ class OtherAircraft(unittest.TestCase):
         self.assertIn("PSFD", result.stderr)
         self.assertIn("psfd", result.stderr)
 
-    def test_roles_may_be_named(self):
+    def test_model_can_name_the_aircraft_roles(self):
         model = (self.path / "bare.toml").read_text().replace('name = "bare"', 'name = "bare"\nroles = "{}"')
         (self.path / "named.toml").write_text(model.format("halo-bahamas"))
         result = self.run_tool("compare", "faam-core.nc", "-m", "named.toml", "--reference", "pressure:PS_RVSM", status=1)
@@ -240,7 +240,7 @@ class OtherAircraft(unittest.TestCase):
         result = self.run_tool("compare", "faam-core.nc", "-m", "named.toml", "--reference", "pressure:PS_RVSM", status=1)
         self.assertIn("there are no roles 'faam-cor'; did you mean", result.stderr)
 
-    def test_inspect_looks_for_the_names_of_another_aircraft(self):
+    def test_inspect_uses_the_requested_aircraft_names(self):
         flight = self.json("inspect", "faam-core.nc", "--roles", "ncar")["flights"][0]
         self.assertEqual(flight["names_of"], "ncar")
         self.assertNotIn("static_pressure", flight["roles"])
@@ -260,7 +260,7 @@ class OtherAircraft(unittest.TestCase):
         self.assertTrue(any("VELD_GIN" in choice for choice in result["choices"]), result["choices"])
         self.assertTrue("VELD_GIN: the vertical speed is positive downward" in (self.path / "choices.html").read_text())
 
-    def test_an_aircraft_of_the_user(self):
+    def test_user_defined_aircraft_names_are_used(self):
         """A file of names next to the model."""
         (self.path / "mine.toml").write_text('format = "pcor-aircraft/1"\nname = "mine"\ntitle = "my aircraft"\n'
                                              '[pressures]\nmeasured = [["PS", "QC"]]\n'
@@ -283,7 +283,7 @@ class OtherAircraft(unittest.TestCase):
         result = self.run_tool("compare", "both.nc", "-m", "bare.toml", "--reference", "pressure:PS_TRUE", status=1)
         self.assertRegex(result.stderr, r"both\.nc: .*halo-bahamas.*noaa-wp-3d.*roles = ")
 
-    def test_a_stated_unit_wins(self):
+    def test_unit_of_the_model_overrides_the_file(self):
         """The model corrects a wrong attribute of a file, with a note."""
         write(self.path / "wrong.nc", "ncar", self.simulated)
         with netCDF4.Dataset(self.path / "wrong.nc", "a") as file:
@@ -299,7 +299,7 @@ class OtherAircraft(unittest.TestCase):
                       " ".join(note["text"] for note in stated.get("notes", [])) +
                       self.run_tool("process", "wrong.nc", "-m", "stated.toml", "-o", "w.nc").stdout)
 
-    def test_a_flight_without_pressures(self):
+    def test_flight_without_pressures_is_reported(self):
         with netCDF4.Dataset(self.path / "empty.nc", "w") as file:
             file.createDimension("Time", None)
             time = file.createVariable("Time", "f8", ("Time",))

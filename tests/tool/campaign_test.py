@@ -99,7 +99,7 @@ class CampaignTest(unittest.TestCase):
 
 @unittest.skipUnless(shutil.which("parallel"), "GNU parallel is not installed")
 class OneMachine(CampaignTest):
-    def test_a_bad_flight_is_named_and_done_when_it_is_mended(self):
+    def test_failed_flight_is_reported_and_processed_after_repair(self):
         result = self.run_script("./one_machine")
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn(BAD, result.stdout)
@@ -115,7 +115,7 @@ class OneMachine(CampaignTest):
                 self.assertLessEqual(before[1].items(), self.made("checks").items())
                 (self.path / "corrected" / BAD).unlink()
 
-    def test_a_missing_gnu_parallel_marks_no_flight_as_done(self):
+    def test_missing_gnu_parallel_marks_no_flight_as_done(self):
         (self.path / "parallel").write_text("#!/bin/sh\nexit 127\n")
         (self.path / "parallel").chmod(0o755)
         result = self.run_script("./one_machine", PATH=f"{self.path}:{os.environ['PATH']}")
@@ -124,11 +124,11 @@ class OneMachine(CampaignTest):
 
 
 class JobArrays(CampaignTest):
-    def test_they_are_scripts(self):
+    def test_job_arrays_are_valid_scripts(self):
         for file in ARRAYS:
             self.assertEqual(self.run_script(f"bash -n {file}").returncode, 0, file)
 
-    def test_every_flight_is_of_one_task(self):
+    def test_every_flight_belongs_to_one_task(self):
         (self.path / "one_flight").write_text('#!/bin/sh\necho "$1"\n')
         for file in ARRAYS:
             original = (self.path / file).read_text()
@@ -138,7 +138,7 @@ class JobArrays(CampaignTest):
                     self.assertEqual(sorted(done.splitlines()), sorted(NAMES))
                     (self.path / file).write_text(original)
 
-    def test_the_task_of_the_bad_flight_fails_alone(self):
+    def test_only_the_task_of_the_bad_flight_fails(self):
         for file in ARRAYS:
             with self.subTest(file=file):
                 statuses = [result.returncode for result in self.array(file, 5)]
@@ -156,7 +156,7 @@ class JobArrays(CampaignTest):
         self.assert_all()
         self.assertLessEqual(before.items(), self.made().items())
 
-    def test_without_the_list_a_task_fails(self):
+    def test_missing_flight_list_is_an_error(self):
         (self.path / "flights.txt").unlink()
         for file in ARRAYS:
             self.assertNotEqual(self.array(file, 1)[0].returncode, 0)
@@ -164,7 +164,7 @@ class JobArrays(CampaignTest):
 
 
 class OneFlight(CampaignTest):
-    def test_the_checks_of_all_flights_are_one_table(self):
+    def test_checks_of_all_flights_form_one_table(self):
         for name in NAMES[:2]:
             self.assertEqual(self.run_script(f"./one_flight '{name}'").returncode, 0)
         self.run_script(command_of_the_page("find checks"))
@@ -191,19 +191,19 @@ class OneFlight(CampaignTest):
         run.wait()
         self.assertIn(f"{NAMES[0]}: interrupted\n", self.run_script("./unfinished").stdout)
 
-    def test_a_tool_that_is_killed_has_failed(self):
+    def test_killed_tool_is_reported_as_failed(self):
         """As by a system that has no memory left."""
         result = self.run_script(f"./one_flight '{NAMES[0]}'", **self.tool_that("kill -9 $$"))
         self.assertEqual((result.returncode, result.stderr), (1, f"{NAMES[0]}: killed, status 137\n"))
 
-    def test_the_last_line_of_the_list_may_lack_its_end(self):
+    def test_last_line_may_lack_a_newline(self):
         (self.path / "flights.txt").write_text(NAMES[0])
         self.assertEqual(self.run_script("./unfinished").stdout, f"{NAMES[0]}: not begun\n")
 
 
 @unittest.skipUnless(shutil.which("make"), "make is not installed")
 class Make(CampaignTest):
-    def test_a_bad_flight_is_named_and_done_when_it_is_mended(self):
+    def test_failed_flight_is_reported_and_processed_after_repair(self):
         plain = self.path / "flights"  # make knows no names with blanks
         for name in NAMES:
             (plain / name.replace(" ", "_")).parent.mkdir(parents=True, exist_ok=True)
@@ -220,11 +220,11 @@ class Make(CampaignTest):
 
 
 class Page(unittest.TestCase):
-    def test_it_names_each_file(self):
+    def test_page_names_each_file(self):
         for path in (SOURCE / "examples/campaign").iterdir():
             self.assertIn(f"`{path.name}`", PAGE)
 
-    def test_links_lead_somewhere(self):
+    def test_links_resolve(self):
         for target in re.findall(r"\]\(([^)#:]+)\)", PAGE):
             self.assertTrue((SOURCE / "docs" / target).exists(), target)
 

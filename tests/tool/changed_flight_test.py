@@ -56,7 +56,7 @@ def result_of(arguments, folder):
 
 
 class ChangedFlight(unittest.TestCase):
-    def test_no_command_mixes_two_versions(self):
+    def test_commands_never_mix_two_versions_of_a_flight(self):
         random.seed(1)
         counts = {}
         with tempfile.TemporaryDirectory() as scratch:

@@ -109,14 +109,14 @@ class Results(CheckTest):
         self.assertEqual(both["reverse-heading"]["numbers"]["pairs"], 2)
         self.assertEqual(both["circles"]["numbers"]["circles"], 2)
 
-    def test_a_second_system_without_a_model_is_as_measured(self):
+    def test_second_system_without_a_model_is_uncorrected(self):
         check = self.check("-m", self.model())["static-pressure"]
         self.assertEqual(check["verdict"], "cannot tell")
         self.assertIn("uncorrected", check["finding"])
         check = self.check("-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}")["static-pressure"]
         self.assertEqual(check["verdict"], "consistent")
 
-    def test_without_a_model(self):
+    def test_without_a_model_pressures_are_as_recorded(self):
         """The files of the simulator have no corrected pressures, so the pair is as measured."""
         result = self.json_of("check", ONE)
         self.assertEqual(result["model"], "PSFD/QCF as recorded")
@@ -218,7 +218,7 @@ class BadInput(CheckTest):
         self.assertTrue(result["checks"][0]["ran"])
         self.assertTrue(any("changed.nc" in note for note in note_texts(result)))
 
-    def test_refuses(self):
+    def test_invalid_inputs_are_refused(self):
         model = self.model()
         other = self.write("other.toml", model.read_text().replace('"PSFD"', '"PSFX"'))
         for arguments, words in (((ONE, ONE), ["one.nc", "twice"]), ((ONE, GV), ["aircraft"]),
@@ -229,7 +229,7 @@ class BadInput(CheckTest):
             with self.subTest(words):
                 self.refused("check", *arguments, words=words, output=self.path / "nothing")
 
-    def test_usage(self):
+    def test_wrong_usage_has_status_2(self):
         for arguments in ((), (ONE, "--secnd", OTHER_SYSTEM)):
             result = self.run_tool("check", *arguments)
             self.assertEqual(result.returncode, 2)

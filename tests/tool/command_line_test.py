@@ -38,12 +38,12 @@ def tearDownModule():
 class Lists(ComparisonTest):
     """A repeatable option takes one value each time: the next argument is a flight."""
 
-    def test_held_out_flights_swallow_no_flight(self):
+    def test_holdout_option_takes_one_flight(self):
         fit = self.json_of("refit", "--holdout", THREE, ONE, TWO, "-m", self.model(), "-o", self.path / "out.toml")
         self.assertEqual([(flight["name"], flight["holdout"]) for flight in fit["flights"]],
                          [("one.nc", False), ("two.nc", False), ("three.nc", True)])
 
-    def test_every_list_swallows_no_flight(self):
+    def test_every_list_option_takes_one_value(self):
         model, output = self.model(), self.path / "out.toml"
         for command, *option in (("refit", "--exclude", "turn"), ("refit", "--fix", "static-qp"),
                                  ("refit", "--free", "static-qp"), ("refit", "--reference", "lams"),
@@ -86,7 +86,7 @@ class Outputs(ComparisonTest):
         self.assertIn("forced", tomllib.loads(result.stdout)["provenance"])
         self.assert_no_file_called_dash()
 
-    def test_two_results_do_not_mix_on_standard_output(self):
+    def test_two_results_on_standard_output_are_refused(self):
         self.refused("refit", ONE, "-m", self.model(), "-o", "-", "--json", "-", words=["twice"])
         self.refused("refit", ONE, "-m", self.model(), "-o", "-", "--refit-reference", "-", words=["twice"])
 
@@ -163,7 +163,7 @@ class Outputs(ComparisonTest):
 
 
 class Hints(ComparisonTest):
-    def test_commands_begin_with_the_program_as_it_was_called(self):
+    def test_printed_commands_use_the_program_path_as_called(self):
         folder = self.path / "my tools"
         folder.mkdir()
         (folder / "pcor").symlink_to(TOOL)
@@ -220,7 +220,7 @@ class Help(ComparisonTest):
         for command, name in (("check", "--second"), ("diagnose", "--all")):
             self.assertNotIn(name, self.done(command, "--help").stdout)
 
-    def test_check_takes_no_reference_but_a_second_system(self):
+    def test_check_accepts_only_a_second_system_as_reference(self):
         self.refused("check", ONE, "-m", self.model(), "--reference", "lams", words=["'lams'", "static:OTHER.toml"], status=2)
 
     def test_the_documented_intervals_are_read(self):
@@ -272,7 +272,7 @@ class Terminal(ComparisonTest):
         self.assertEqual(text.split(), plain.split())
         self.assertRegex(text, r"(?m)^static-lag +lag +static-line +static-line\n +pneumatic lag of the static line\n")
 
-    def test_verdicts_are_coloured_unless_it_is_refused(self):
+    def test_verdicts_are_coloured_only_on_a_terminal(self):
         plain = self.done("check", ONE).stdout
         self.assertNotIn("\033", plain)
         self.assertRegex(self.shown(80, "check", ONE, "--verbose", TERM="xterm"), "\033\\[3[123]m(in)?consistent\033")
@@ -332,7 +332,7 @@ class Shell(ComparisonTest):
         self.assertEqual(self.completed("process", "one.nc", "--json", "no"), ["notes.txt"])
         self.assertEqual(self.completed("process", "one.nc", "--models", ""), ["flights"])
 
-    def test_a_colon_is_not_quoted(self):
+    def test_completion_does_not_quote_a_colon(self):
         """Readline quotes file names, as needed for names with blanks."""
         for words, quotes in (("check", "--reference", "st"), False), (("refit", "--exclude", "pit"), True):
             told = self.completed(*words, end='compopt() { echo "$*"; }; _pcor')

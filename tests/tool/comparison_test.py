@@ -193,7 +193,7 @@ class Compare(ComparisonTest):
         result = self.done("compare", ONE, "-m", self.model(), "--quiet")
         self.assertEqual((result.stdout, result.stderr), ("", ""))
 
-    def test_command_to_copy_for_a_model_that_holds(self):
+    def test_command_to_copy_for_a_good_model(self):
         self.model(name="my model.toml")
         self.link(ONE, "flight 1.nc")
         text = self.done("compare", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
@@ -208,7 +208,7 @@ class Compare(ComparisonTest):
                              flights if shown == many else [flights[0], flights[-1]])
             self.assertEqual(" ... " in advice, shown != many)
 
-    def test_command_to_copy_for_a_model_that_fails(self):
+    def test_command_to_copy_for_a_failing_model(self):
         self.model(with_a0(0.007), name="it's mine.toml")
         flights = [self.link(flight, name).name for flight, name in ((ONE, "flight 1.nc"), (TWO, "flight 2.nc"))]
         text = self.done("compare", *flights, "-m", "it's mine.toml", "--exclude", "pitch manoeuvre",
@@ -311,12 +311,12 @@ class ResidualFile(ComparisonTest):
         path = self.path / "residuals.nc"
         return path, self.compare("--residuals", path, *arguments)
 
-    def test_ncdump_reads_it(self):
+    def test_ncdump_reads_the_file(self):
         path, _ = self.residuals()
         header = subprocess.run(["ncdump", "-h", path], check=True, capture_output=True, text=True).stdout
         self.assertIn("float RESIDUAL_1(Time)", header)
 
-    def test_it_has_the_rms_of_the_json(self):
+    def test_rms_equals_that_of_the_json(self):
         """To the rounding of float, 6e-8 of each value."""
         path, result = self.residuals("-m", self.model(with_a0(0.005), "other.toml"), "--reference", "lams")
         with xarray.open_dataset(path) as file:
@@ -346,7 +346,7 @@ class ResidualFile(ComparisonTest):
                 flagged = (regime.values & bits[name.replace(" ", "_")]) != 0
                 self.assertEqual(numpy.count_nonzero(flagged & used), counts[name], name)
 
-    def test_two_deltas_make_the_residual(self):
+    def test_residual_is_the_difference_of_two_deltas(self):
         """Both are of one pressure, so their difference is the residual, to the rounding of floats of 10 hPa (1e-6)."""
         path, _ = self.residuals()
         with xarray.open_dataset(path) as file:
@@ -355,21 +355,21 @@ class ResidualFile(ComparisonTest):
             difference = (file["PCOR_REFERENCE_1"] - file["PCOR_1"]).values
             self.assertLess(numpy.abs(difference - residual)[used].max(), 3e-6)
 
-    def test_each_flight_has_its_own(self):
+    def test_each_flight_has_its_own_file(self):
         result = self.compare("--residuals", self.path / "r.nc", flights=(ONE, TWO))
         for flight in result["models"][0]["flights"]:
             with xarray.open_dataset(self.path / ("r-" + flight["name"])) as file:
                 self.assertEqual(numpy.count_nonzero(file["MASK"].values == 0), flight["samples"])
         self.assertFalse((self.path / "r.nc").exists())
 
-    def test_flights_of_one_name_would_overwrite_each_other(self):
+    def test_flights_of_equal_names_are_refused(self):
         (self.path / "a").mkdir()
         flight = self.link(ONE, "a/one.nc")
         self.refused("compare", ONE, flight, "-m", self.model(), "--residuals", self.path / "r.nc", words=["r-one.nc"])
 
 
 class References(ComparisonTest):
-    def test_lams_is_the_first_of_all_that_the_flight_allows(self):
+    def test_lams_is_the_first_default_reference(self):
         silent, stated = self.compare(), self.compare("--reference", "lams")
         self.assertEqual(silent["reference"], "LAMS")
         self.assertEqual([model["reference"] for model in silent["models"]],
@@ -481,7 +481,7 @@ class Refit(ComparisonTest):
     def test_finds_the_true_law(self):
         self.assert_true_law(self.refit(model=self.model(with_a0(0.01))))
 
-    def test_start_does_not_matter(self):
+    def test_result_is_independent_of_the_start(self):
         """Every coefficient enters linearly, so only the tolerance of the fit is left, far below an error. Not
         farther than 0.02: from 0.05 on, 40 hPa, some samples have no airspeed and are masked."""
         far, near = self.refit(model=self.model(with_a0(0.02))), self.refit()
@@ -561,7 +561,7 @@ class Refit(ComparisonTest):
         self.assertLess(fit["rms_hpa"], 1.02 * fit["least_squares_rms_hpa"])
         self.assertGreaterEqual(fit["drift_hpa"], 0.0)
 
-    def test_a_stage_is_held_in_the_next(self):
+    def test_coefficient_of_a_stage_is_fixed_in_the_next(self):
         """The rest is as if the coefficient had been fixed where the stage left it, but for the weights: of the
         noise of a flight of twenty minutes, found with a coefficient more or less, which moves the others by
         less than half of their errors."""
@@ -624,7 +624,7 @@ class Refit(ComparisonTest):
         result = self.done("refit", ONE, TWO, "-m", self.model(), "-o", self.path / "out.toml")
         self.assertEqual(result.stderr[:500], "")
 
-    def test_one_file_is_not_two_flights(self):
+    def test_duplicate_flight_is_refused(self):
         self.refused("refit", ONE, ONE, "-m", self.model(), "-o", self.path / "out.toml", words=["given twice", str(ONE)])
         self.refused("refit", ONE, "--holdout", ONE, "-m", self.model(), "-o", self.path / "out.toml",
                      words=["given twice"])
@@ -730,7 +730,7 @@ class RefitOfTooMuch(ComparisonTest):
         fit = self.fit("--loss", "none")
         self.assertLess(fit["rms_hpa"], 1.01 * fit["rms_before_hpa"])
 
-    def test_result_is_not_worse_than_with_an_effect_left_out(self):
+    def test_omitting_an_effect_does_not_improve_the_result(self):
         """A smaller model is a special case of the larger; one per cent as above."""
         fit = self.fit("--loss", "none")
         for omission in fit["omissions"]:
@@ -754,7 +754,7 @@ class BadInput(ComparisonTest):
     def test_no_such_flight(self):
         self.both(flights=(self.path / "none.nc",), words=["none.nc", "no such file"])
 
-    def test_no_such_flight_among_others(self):
+    def test_missing_flight_among_others(self):
         self.both(flights=(ONE, self.path / "none.nc"), words=["none.nc", "no such file"])
 
     def test_file_that_is_not_a_flight(self):
@@ -806,7 +806,7 @@ class BadInput(ComparisonTest):
         self.refused("refit", ONE, "-m", model, words=["static-constant.a0", "mine.k", "--fix "])
         self.assertIsNone(errors_of(self.refit("--fix", "mine.k", model=model))["k"])
 
-    def test_an_effect_without_effect(self):
+    def test_effect_that_is_always_zero(self):
         model = self.model(with_effect('id = "mine"\nwhere = "static"\nformula = "k * (FLAPS - FLAPS)"\n'
                                        'parameters = { k = 0.0 }\nunit = "hPa"\n'))
         self.refused("refit", ONE, "-m", model, words=["mine.k", "--fix mine.k"])
@@ -864,7 +864,7 @@ class BadInput(ComparisonTest):
                 self.refused("refit", ONE, "-m", model, option, value, words=[option], status=2)
                 (self.path / "out.toml").unlink(missing_ok=True)
 
-    def test_a_search_of_a_linear_problem(self):
+    def test_search_of_a_linear_problem_is_refused(self):
         self.refused("refit", ONE, "-m", self.model(), "--search", words=["--search", "linear"])
 
 
@@ -920,7 +920,7 @@ class BadOutput(ComparisonTest):
                         self.assertGreater((self.path / name).stat().st_size, 1000)
                         (self.path / name).unlink()
 
-    def test_residuals_are_not_left_without_the_report(self):
+    def test_failed_report_leaves_no_residual_file(self):
         residuals = self.path / "residuals.nc"
         report = self.path / "none" / "out.html"
         self.refused("compare", ONE, "-m", self.model(), "--residuals", residuals, "--report", report,
@@ -933,7 +933,7 @@ class BadOutput(ComparisonTest):
             with self.subTest(option):
                 self.refused("compare", ONE, "-m", self.model(), option, missing / "out", words=[missing, "make it"])
 
-    def test_a_second_output_that_cannot_be_written_leaves_no_first(self):
+    def test_unwritable_second_output_leaves_no_first_output(self):
         for option in ("--json", "--report"):
             with self.subTest(option):
                 output = self.path / f"out{option}.toml"
@@ -995,7 +995,7 @@ class Simulate(ComparisonTest):
     def test_unknown_term_of_the_law(self):
         self.refuse(replace("static-alpha = 0.02", "static-alpa = 0.02"), "static-alpa", "did you mean static-alpha")
 
-    def test_no_toml(self):
+    def test_invalid_toml(self):
         self.refuse(lambda text: "name = \"x\n" + text, "scenario.toml:1:")
 
     def test_speed_that_cannot_be_flown(self):

@@ -80,7 +80,7 @@ class Pasting(ChangedTest):
             self.assertIn(result.returncode, (0, 1), f"{command}\n{result.stderr}")
         return len(commands)
 
-    def test_own_commands(self):
+    def test_printed_commands_quote_file_names(self):
         commands = 0
         for number, name in enumerate(HOSTILE):
             shutil.copy(ONE, self.work / name)
@@ -96,7 +96,7 @@ class Pasting(ChangedTest):
                     commands += self.paste_all(result.stdout)
         self.assertGreater(commands, 15)
 
-    def test_commands_of_studies(self):
+    def test_commands_of_studies_quote_file_names(self):
         name, model = "-$(touch pwned) 'x'; touch pwned.nc", "-`touch pwned`; touch pwned.toml"
         shutil.copy(ONE, self.work / name)
         biased = comparison_test.with_a0(0.03)(comparison_test.MODEL)
@@ -116,14 +116,14 @@ class Pasting(ChangedTest):
                 commands[arguments[0]] = self.paste_all(text)
         self.assertEqual([command for command, count in commands.items() if count == 0], [])
 
-    def test_names_of_results(self):
+    def test_commands_quote_result_names(self):
         shutil.copy(ONE, self.work / "one.nc")
         result = self.here("process", "one.nc", "-m", PUBLISHED, "-o", "out.nc", "--suffix", "_X;touch pwned")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.paste(re.search(r": (ncdump .*) \| less$", result.stdout, flags=re.M).group(1))
         self.assertEqual(self.log.read_text().splitlines(), ["-v", "PCOR_X;touch pwned", "out.nc"])
 
-    def test_a_name_beside_one_that_is_absent(self):
+    def test_commands_in_errors_quote_file_names(self):
         name = "x;touch pwned.nc"
         def change(flight):
             flight.renameVariable("PSFD", "ABSENT")
@@ -135,14 +135,14 @@ class Pasting(ChangedTest):
         self.assertEqual(result.returncode, 1)
         self.paste(re.search(r"ncdump -h .*?(?=; )|$", result.stderr).group())
 
-    def test_commands_that_are_a_result(self):
+    def test_commands_in_json_quote_file_names(self):
         for name in HOSTILE[:4]:
             shutil.copy(ONE, self.work / name)
             result = self.here("inspect", "--json", "-", "--", name)
             for command in json.loads(result.stdout).get("next", []):
                 self.assertIn(self.paste(command).returncode, (0, 1), command)
 
-    def test_commands_of_others(self):
+    def test_commands_for_other_programs_quote_file_names(self):
         for name in HOSTILE:
             with self.subTest(name):
                 def text_scale(flight):
@@ -177,7 +177,7 @@ class Frozen(ChangedTest):
         if not folder or not os.path.exists(self.original):
             self.skipTest("no GOTEX-rf06-C130-2004.nc in $PCOR_FLIGHTS")
 
-    def test_a_minute_is_missing_and_has_its_bit(self):
+    def test_frozen_minute_is_missing_and_flagged(self):
         model = self.write("attack.toml", PUBLISHED.read_text().replace("[variables]", '[variables]\nattack = "ATTACK"', 1)
                            + '\n[[effect]]\nid = "mine"\nwhere = "static"\nformula = "k * attack"\nunit = "hPa"\n'
                              'parameters = { k = 0.1 }\n')
@@ -263,7 +263,7 @@ class Attributes(ChangedTest):
             packed[:] = numpy.nan_to_num(values / 0.02).astype("u2").astype("i2")
         return self.changed(change)
 
-    def test_unsigned_is_true_or_false(self):
+    def test_unsigned_attribute_must_be_true_or_false(self):
         for word in ("yes", "1", "t", " true", 1):
             with self.subTest(word):
                 self.refused("process", self.packed(word), "-m", PUBLISHED, "-o", self.path / "out.nc",
@@ -284,7 +284,7 @@ class Attributes(ChangedTest):
         model = self.model(comparison_test.with_effect('id = "mine"\nwhere = "static"\nformula = "PSFD / 1000"\nunit = "hPa"\nparameters = {}\n'))
         self.refused("process", ONE, "-m", model, "-o", self.path / "out.nc", words=["mine", "no coefficient"])
 
-    def test_a_small_file_does_not_demand_gigabytes(self):
+    def test_small_file_does_not_use_gigabytes_of_memory(self):
         path = self.path / "large.nc"
         with netCDF4.Dataset(path, "w") as flight:
             flight.createDimension("Time", 3000000)
@@ -322,7 +322,7 @@ class Attributes(ChangedTest):
 
 
 class Reports(ChangedTest):
-    def test_no_control_and_no_direction(self):
+    def test_reports_have_no_control_characters(self):
         signs = "\x1b[31m\x07\u202e\u2066\u2028\ufeff"
         model = self.model(lambda text: re.sub(r'^name = ".*"$', lambda _: f'name = "law \\u001b\\u0007{signs[6:]}"', text,
                                                count=1, flags=re.M))

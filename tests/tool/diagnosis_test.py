@@ -72,20 +72,20 @@ class Add(DiagnosisTest):
         for key in before.keys() - {"effect"}:
             self.assertEqual(after[key], before[key])
 
-    def test_an_effect_of_ones_own(self):
+    def test_user_defined_effect_is_added(self):
         effect = self.add("my-thrust", "--formula", "k * ENGTRQ / 100", "--where", "static", "--unit", "hPa",
                           "--source", "engine run-up, 2011-11-02")["effect"][-1]
         self.assertEqual(effect, {"id": "my-thrust", "where": "static", "formula": "k * ENGTRQ / 100",
                                   "parameters": {"k": 0.0}, "unit": "hPa", "source": "engine run-up, 2011-11-02"})
 
-    def test_an_effect_elsewhere_has_the_unit_of_the_place(self):
+    def test_effect_has_the_unit_of_its_location(self):
         self.assertEqual(self.add("mine", "--formula", "k * roll", "--where", "lams")["effect"][-1]["unit"], "m/s")
 
-    def test_variables_are_named(self):
+    def test_required_variables_are_added(self):
         model = self.model(replace(r'^attack = .*\n', ""))
         self.assertEqual(self.add("static-attack", model=model)["variables"]["attack"], "ATTACK")
 
-    def test_variables_are_those_of_the_flight(self):
+    def test_variables_of_the_flight_are_used(self):
         flight = self.path / "flight.nc"
         shutil.copy(ONE, flight)
         with netCDF4.Dataset(flight, "a") as file:
@@ -134,7 +134,7 @@ class Add(DiagnosisTest):
         fit = self.refit(flights=(LAGGING,), model=self.path / "lag.toml")["effects"][-1]
         self.assertAlmostEqual(fit["parameters"]["tau"], 1.0, delta=4.0 * fit["stderr"]["tau"])
 
-    def test_every_effect_of_the_catalogue(self):
+    def test_every_catalogue_effect_is_added_or_refused(self):
         """Each can be added, or the message names the role whose variable is unknown."""
         for effect in self.json_of("effects")["effects"]:
             with self.subTest(effect["id"]):
@@ -165,7 +165,7 @@ class Diagnose(DiagnosisTest):
             self.assertEqual(advice["power"] > 0, advice["manoeuvre"] != "")
             self.assertLessEqual(advice["power"], 1)
 
-    def test_no_effect_is_missing(self):
+    def test_complete_model_gives_no_finding(self):
         result = self.diagnose()
         self.assert_has_the_keys(result)
         self.assertEqual((result["verdict"], result["findings"]), ("silent", []))
@@ -243,7 +243,7 @@ class Diagnose(DiagnosisTest):
 
 
 class Improve(DiagnosisTest):
-    def test_climbs_the_steps(self):
+    def test_result_lists_the_steps(self):
         result = self.improve("--holdout", LAGGING_TOO, flights=(LAGGING,))
         self.assertIsNone(result["steps"][0]["added"])
         for step in result["steps"]:
@@ -326,12 +326,12 @@ class BadInput(DiagnosisTest):
                 self.both("--try", formula, words=[f"--try '{formula}'", *words])
                 self.refuse_add("mine", "--formula", formula, words=[f"--formula '{formula}'", *words])
 
-    def test_formula_to_try_of_a_variable_that_no_flight_has(self):
+    def test_formula_with_a_variable_missing_from_all_flights(self):
         self.both("--try", "k * ENGTQR", words=["--try 'k * ENGTQR'", "one.nc", "did you mean ENGTRQ"])
         self.both("--try", "k * roll", "--try", "k * NOTHING", flights=(ONE, LAGGING),
                   words=["--try 'k * NOTHING'", "any of the flights"])
 
-    def test_formula_to_try_of_a_variable_that_one_flight_has(self):
+    def test_formula_with_a_variable_of_only_one_flight(self):
         flight = self.path / "flight.nc"
         shutil.copy(LAGGING, flight)
         with netCDF4.Dataset(flight, "a") as file:
@@ -341,14 +341,14 @@ class BadInput(DiagnosisTest):
     def test_candidates_that_cannot_be_read(self):
         self.both("--candidates", self.path / "none.toml", words=["none.toml", "no such file"])
 
-    def test_formula_of_a_variable_that_the_flight_lacks(self):
+    def test_formula_with_a_variable_missing_from_the_flight(self):
         self.refuse_add("mine", "--formula", "k * ENGTQR", "--flight", ONE,
                         words=["one.nc", "ENGTQR", "did you mean ENGTRQ"])
 
     def test_formula_with_an_id_of_the_catalogue(self):
         self.refuse_add("static-lag", "--formula", "k * roll", words=["'static-lag'", "another id"])
 
-    def test_one_formula_for_two_effects(self):
+    def test_one_formula_for_two_effects_is_refused(self):
         self.refuse_add("mine", "thine", "--formula", "k * roll", words=["mine, thine", "one"])
 
     def test_wrong_unit(self):
@@ -380,7 +380,7 @@ class BadInput(DiagnosisTest):
         self.refuse_add("mine", "--formula", "k * mach * cabin_pressure * dew_point",
                         words=["'mine'", "'dew_point'", 'dew_point = "..."'])
 
-    def test_role_that_the_flight_lacks(self):
+    def test_role_missing_from_the_flight(self):
         flight = self.path / "flight.nc"
         shutil.copy(ONE, flight)
         with netCDF4.Dataset(flight, "a") as file:
@@ -429,7 +429,7 @@ class BadOutput(DiagnosisTest):
             with self.subTest(arguments):
                 self.refused(*arguments, missing / "out", "-m", model, words=[missing, "make it"])
 
-    def test_a_refused_effect_leaves_an_old_output(self):
+    def test_refused_effect_keeps_the_old_output(self):
         output = self.write("out.toml", "old")
         before = contents(self.path)
         self.run_tool("add", "static-lg", "-m", SOURCE / "data/models/c130-psfd-eq18.toml", "-o", output)
@@ -460,7 +460,7 @@ class WhatTakesPart(DiagnosisTest):
         self.assertAlmostEqual(improved["rms_train_hpa"], again["rms_hpa"], delta=1e-9)
         self.assertAlmostEqual(improved["noise_rms_hpa"], again["noise_rms_hpa"], delta=1e-9)
 
-    def test_flaps_are_out_of_the_fit_and_compared_beside_it(self):
+    def test_flap_samples_are_excluded_from_the_fit_and_reported(self):
         fit = self.refit(flights=(FLAPS,))
         self.assertEqual(fit["masks"]["flaps"], fit["flaps_out"]["samples"])
         # 1.5 hPa at 50 %, which the flaps have most of the time.
@@ -468,7 +468,7 @@ class WhatTakesPart(DiagnosisTest):
         text = self.done("refit", FLAPS, "-m", self.model(), "-o", self.path / "out.toml").stdout
         self.assertRegex(text, r"not in the fit: \d+ samples with flaps out, residual \+1\.\d\d \+- 0\.\d\d hPa")
 
-    def test_flaps_are_tested_though_they_are_out_of_the_fit(self):
+    def test_diagnose_tests_flap_samples(self):
         found = self.diagnose("--no-file-variables", flights=(FLAPS,), model=self.fitted_to(FLAPS))
         self.assertEqual([finding["effect"] for finding in found["findings"]], ["flaps-gear"])
         self.assertAlmostEqual(found["findings"][0]["parameters"]["defect"], 1.5,
@@ -477,7 +477,7 @@ class WhatTakesPart(DiagnosisTest):
         self.assertEqual(nothing["findings"], [])
         self.assertIn("flaps-gear", [limit["effect"] for limit in nothing["limits"]])
 
-    def test_a_model_with_flaps_takes_them_into_the_fit(self):
+    def test_model_with_flap_effect_fits_flap_samples(self):
         self.add("flaps-gear", name="flaps.toml")
         fit = self.refit(flights=(FLAPS,), model=self.path / "flaps.toml")
         self.assertEqual((fit["masks"]["flaps"], fit["flaps_out"]["samples"]), (0, 0))
@@ -497,7 +497,7 @@ class WhatTakesPart(DiagnosisTest):
             self.assertRegex(" ".join(note_texts(result)), words)
         self.assertEqual(self.compare()["masks"]["frozen"], 0)
 
-    def test_a_model_at_zero_keeps_its_flight(self):
+    def test_neutral_model_keeps_the_samples_of_its_flight(self):
         """Pressures that are off by 1.4 % of the static pressure put the airspeed off by 7 to 11 m/s."""
         flight = self.path / "off.nc"
         shutil.copy(ONE, flight)

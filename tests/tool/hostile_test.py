@@ -56,7 +56,7 @@ class Disks(HostileTest):
         self.assertEqual(result.stdout, "status 1, left: \n")
         self.assertRegex(result.stderr, r"\Apcor: .*out\.nc.*full.*; make room or choose another output\n\Z")
 
-    def test_a_full_disk_after_another_refusal(self):
+    def test_refusal_on_a_full_disk_keeps_its_message(self):
         """HDF5 closes what it cannot write when the program ends."""
         script = 'mount -t tmpfs -o size=300k none "$1" && head -c 100k /dev/zero > "$1/filled" && ' \
                  '"$0" process "$2" -m "$3" -o "$1/out.nc" --all --quiet; echo "status $?, left: $(ls -A "$1")"'
@@ -96,7 +96,7 @@ class Signals(HostileTest):
                 self.assertEqual(run.wait(), -stop)
                 self.assertEqual(list(self.path.iterdir()), [])
 
-    def test_one_that_the_caller_ignores_is_ignored(self):
+    def test_signal_ignored_by_the_caller_is_ignored(self):
         result = subprocess.run(["sh", "-c", 'trap "" HUP; "$0" effects > /dev/null & kill -HUP $!; wait $!', TOOL])
         self.assertEqual(result.returncode, 0)
 
@@ -116,7 +116,7 @@ class Signals(HostileTest):
 
 
 class Streams(HostileTest):
-    def test_closed(self):
+    def test_closed_streams_are_tolerated(self):
         for close in ("2>&-", ">&- 2>&-", "<&- >&- 2>&-"):
             with self.subTest(close):
                 refused = subprocess.run(["sh", "-c", f'"$0" process none.nc -m none.toml -o out.nc {close}', TOOL])
@@ -144,7 +144,7 @@ class Texts(HostileTest):
         path.write_text(INTERVALS + text)
         return self.run_tool("compare", FLIGHT, "-m", LAW, "--intervals", path)
 
-    def test_depth(self):
+    def test_deep_nesting_is_refused(self):
         key = ".".join(["a"] * 1000000)
         for text in (f"{key} = 1", f"[{key}]", f"[[{key}]]", f"x = {{ {key} = 1 }}"):
             self.assert_refused(self.model(f"{MODEL}\n{text}\n"), "a key has more than 16 dots")
@@ -152,7 +152,7 @@ class Texts(HostileTest):
             self.assert_refused(self.model(f"{MODEL}\n{text}\n"), "256")
         self.assert_refused(self.intervals(f"{key} = 1"), "a key has more than 16 dots")
 
-    def test_counts(self):
+    def test_too_many_entries_are_refused(self):
         effect = '[[effect]]\nid = "my-{0}"\nwhere = "static"\nunit = "hPa"\nformula = "k * attack"\nparameters = {{ {1} }}\n'
         numbered = ", ".join(f"k{i} = 0.0" for i in range(20000))
         self.assert_refused(self.model(MODEL + effect.format(0, numbered)), "entries; give at most")
@@ -165,13 +165,13 @@ class Texts(HostileTest):
         scenario.write_text(SCENARIO.read_text() + '[[leg]]\nkind = "level"\nduration = 1\n' * 20000)
         self.assert_refused(self.run_tool("simulate", scenario, "-o", self.path / "out.nc"), "entries; give at most")
 
-    def test_a_file_that_never_ends(self):
+    def test_devices_and_pipes_are_refused(self):
         os.mkfifo(self.path / "pipe")
         for path in ("/dev/zero", self.path / "pipe"):
             self.assert_refused(self.run_tool("process", FLIGHT, "-m", path, "-o", self.path / "out.nc"),
                                 "not a regular file")
 
-    def test_long_names(self):
+    def test_long_names_are_refused(self):
         for name in ("x" * 1000000, "\u00e9" * 100000, r"\u001b[31m\u009b\n" * 1000, "a'" * 100000):
             self.assert_refused(self.intervals(f'[[add]]\nregime = "{name}"\n'
                                                'begin = "20:10:00"\nend = "20:20:00"\n'), "there is no regime")

@@ -41,12 +41,12 @@ class Lineage(unittest.TestCase):
     def model(self, name):
         return tomllib.loads((self.path / name).read_text())
 
-    def test_a_fitted_model_has_a_name_of_its_own(self):
+    def test_fitted_model_has_a_new_name(self):
         self.assertEqual(self.model("first.toml")["name"], f"{NAME}, fitted to {FLIGHT}")
         self.assertEqual(self.model("second.toml")["name"], f"{NAME}, fitted to {FLIGHT} and 1 more")
         self.assertEqual(self.model("best.toml")["name"], f"{NAME}, improved on {FLIGHT}")
 
-    def test_the_source_is_the_last_fit_only(self):
+    def test_source_states_only_the_last_fit(self):
         for name in ("first.toml", "second.toml", "best.toml"):
             self.assertRegex(self.model(name)["law"]["source"], "^refit by pcor to [^;]*$")
 
@@ -59,7 +59,7 @@ class Lineage(unittest.TestCase):
         self.assertEqual(second["provenance"]["before"], [published, of_first])
         self.assertEqual(best["provenance"]["before"], [published, of_first, of_second])
 
-    def test_a_name_that_its_author_gave_is_kept(self):
+    def test_name_given_by_the_author_is_kept(self):
         own = self.path / "own.toml"
         own.write_text(MODEL.read_text().replace(NAME, "mine, fitted to my data"))
         self.run_tool("refit", "one.nc", "-m", "own.toml", "-o", "from_own.toml", "--force")
@@ -80,7 +80,7 @@ class Lineage(unittest.TestCase):
             self.assertIn(words, foot)
         self.assertRegex(foot, r"\d{4}-\d\d-\d\d \d\d:\d\d UTC")
 
-    def test_every_report_has_a_foot(self):
+    def test_every_report_has_its_command(self):
         for command in (["compare"], ["diagnose"], ["check"], ["improve", "-o", "more.toml", "--force"]):
             with self.subTest(command=command[0]):
                 self.run_tool(command[0], "one.nc", "-m", "first.toml", *command[1:], "--report", "report.html")

@@ -127,7 +127,7 @@ class Folder(ManyFlightsTest):
         self.process([self.path / "a.nc", self.path / "b.nc"])
         self.assertTrue(self.out.exists(), "it was there before")
 
-    def test_the_folder_is_not_that_of_the_flights(self):
+    def test_output_folder_with_the_input_flights_is_refused(self):
         flights = self.flights("a.nc", "b.nc")
         before = [path.read_bytes() for path in flights]
         result = self.process(flights, output=self.path)
@@ -162,7 +162,7 @@ class Unreadable(ManyFlightsTest):
         self.assertIn("--skip-unreadable", result.stderr)
         self.assertEqual(self.made(), ["a.nc"])
 
-    def test_a_bad_file_becomes_a_row_with_its_reason(self):
+    def test_bad_file_has_a_row_with_its_reason(self):
         a, b = self.flights("a.nc", "b.nc")
         bad = self.bad_flight()
         result = self.process([a, bad, b], "--skip-unreadable")
@@ -173,7 +173,7 @@ class Unreadable(ManyFlightsTest):
         self.assertEqual((summary["processed"], summary["unreadable"]), (2, 1))
         self.assertIn("netCDF", summary["flights"][1]["reason"])
 
-    def test_a_flight_without_a_variable_of_the_model_is_bad_too(self):
+    def test_flight_without_a_model_variable_is_unreadable(self):
         a, b = self.flights("a.nc", "b.nc")
         subprocess.run(["ncrename", "-v", "QCR,QCX", b], check=True, capture_output=True)
         self.assertEqual(self.states([b, a], "--skip-unreadable"), {"b.nc": "unreadable", "a.nc": "processed"})
@@ -204,7 +204,7 @@ class Unreadable(ManyFlightsTest):
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
         self.assertIn("worse.nc", result.stdout)
 
-    def test_an_output_that_cannot_be_written_is_no_bad_flight(self):
+    def test_unwritable_output_is_not_skipped(self):
         flights = self.flights("a.nc", "b.nc")
         (self.out / "a.nc").mkdir(parents=True)
         result = self.process(flights, "--skip-unreadable")
@@ -223,7 +223,7 @@ class Stale(ManyFlightsTest):
         self.assertEqual(self.states(flights, "--if-stale"), {**nothing, "b.nc": "processed"})
         self.assertEqual(self.states(flights), everything)
 
-    def test_content_counts_and_not_its_date_or_size(self):
+    def test_changed_content_makes_an_output_stale(self):
         flights = self.flights("a.nc", "b.nc")
         self.process(flights)
         before = flights[0].stat()
@@ -234,7 +234,7 @@ class Stale(ManyFlightsTest):
         self.assertEqual(flights[0].stat().st_size, before.st_size)
         self.assertEqual(self.states(flights, "--if-stale"), {"a.nc": "processed", "b.nc": "up to date"})
 
-    def test_another_model_or_option_makes_all_stale(self):
+    def test_changed_model_or_option_makes_all_outputs_stale(self):
         flights = self.flights("a.nc", "b.nc")
         model = self.path / "model.toml"
         model.write_text(MODEL.read_text())
@@ -252,7 +252,7 @@ class Stale(ManyFlightsTest):
         (self.out / "a.nc").write_text("something else")
         self.assertEqual(set(self.states(flights, "--if-stale").values()), {"processed"})
 
-    def test_one_flight(self):
+    def test_single_output_file_can_be_up_to_date(self):
         (flight,) = self.flights("a.nc")
         output = self.path / "out.nc"
         self.process([flight], "--if-stale", output=output)
@@ -279,7 +279,7 @@ class Stale(ManyFlightsTest):
                 self.assertEqual({name for name, state in states.items() if state == "up to date"}, done)
                 self.assertEqual(len(states), len(flights))
 
-    def test_the_hash_is_that_of_everyone_else(self):
+    def test_hash_equals_sha256_of_the_file(self):
         (flight,) = self.flights("a.nc")
         self.process([flight], output=self.path / "out.nc")
         with netCDF4.Dataset(self.path / "out.nc") as output:
@@ -326,7 +326,7 @@ class ModelNames(ManyFlightsTest):
         self.assertEqual(by_name.returncode, 0, by_name.stderr)
         self.assertEqual(Path(json.loads(by_name.stdout)["model"]).resolve(), MODEL)
 
-    def test_every_command_knows_names(self):
+    def test_every_command_accepts_model_names(self):
         flight = self.path / "flight.nc"
         self.run_tool("simulate", SOURCE / "data/scenarios/c130-short.toml", "-o", flight)
         second = ["--reference", "static:c130-psfrd-eq18"]
@@ -413,7 +413,7 @@ class ModelsByDate(ManyFlightsTest):
         again = json.loads(self.process("--if-stale", "--json", "-").stdout)
         self.assertEqual([flight["state"] for flight in again["flights"]], ["up to date", "processed"])
 
-    def test_models_that_fit_alike_are_not_guessed_among(self):
+    def test_ambiguous_models_are_refused(self):
         self.model("other", 'valid_to = "2003-12-31"')
         result = self.process()
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
@@ -426,7 +426,7 @@ class ModelsByDate(ManyFlightsTest):
         self.assertEqual(self.process().returncode, 0)
         self.assertEqual(self.model_of("early.nc"), "other")
 
-    def test_a_flight_without_a_model_is_a_row_with_its_reason(self):
+    def test_flight_without_a_model_has_a_row_with_its_reason(self):
         (self.models / "late.toml").unlink()
         result = self.process("--json", "-", "--skip-unreadable")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -445,13 +445,13 @@ class ModelsByDate(ManyFlightsTest):
         self.assertEqual(self.model_of("late.nc"), "plain")
         self.assertRegex(result.stderr, "late.nc: such flights are processed with late, .*NOT_THERE")
 
-    def test_the_models_are_not_written_over(self):
+    def test_model_files_are_not_overwritten(self):
         model = self.models / "late.toml"
         before = model.read_bytes()
         self.assertEqual(self.process("--json", model).returncode, 1)
         self.assertEqual(model.read_bytes(), before)
 
-    def test_one_model_or_a_folder(self):
+    def test_model_and_models_exclude_each_other(self):
         self.assertEqual(self.process("-m", MODEL).returncode, 2)
         self.assertEqual(self.run_tool("process", self.early, "-o", self.path / "out.nc").returncode, 2)
         (self.path / "empty").mkdir()

@@ -125,7 +125,7 @@ class Order(ComparisonTest):
                                                  comparison_test.MODEL), name="without.toml")
         return self.model(), shifted, without
 
-    def test_options(self):
+    def test_order_of_option_values_does_not_change_results(self):
         for (command, option), (values, change) in CASES.items():
             with self.subTest(command=command, option=option):
                 arguments = self.arguments(command, option, change)
@@ -135,7 +135,7 @@ class Order(ComparisonTest):
                     arguments += ("-m", self.model())
                 self.assert_no_order(*arguments, option=option, values=values)
 
-    def test_every_option_that_repeats_is_tried(self):
+    def test_every_repeatable_option_is_tested(self):
         repeat = set()
         for command in re.findall(r"^  ([a-z]+) ", self.done("--help").stdout, flags=re.MULTILINE):
             text = re.sub(r"\n {20,}", " ", self.run_tool(command, "--help").stdout)
@@ -144,7 +144,7 @@ class Order(ComparisonTest):
                     repeat.add((command, re.search(r"--[a-z-]+", line).group()))
         self.assertEqual(repeat, set(CASES))
 
-    def test_references_beside_a_fit_of_both_systems(self):
+    def test_order_of_references_when_fitting_both_systems(self):
         self.assert_no_order("refit", ONE, "-m", self.model(), "-o", self.path / "out.toml", "--force",
                              "--refit-reference", self.path / "other.toml",
                              option="--reference", values=("lams", f"static:{OTHER_SYSTEM}"))

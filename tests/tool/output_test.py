@@ -72,14 +72,14 @@ class Outputs(unittest.TestCase):
         self.assertEqual(self.output().Conventions.split()[-2:], ["CF-1.8", "ACDD-1.3"])
         self.assertEqual(self.output("--all").Conventions.split()[1:], ["ACDD-1.3"])
 
-    def test_it_is_a_trajectory(self):
+    def test_output_is_a_trajectory(self):
         output = self.output()
         self.assertEqual(output.featureType, "trajectory")
         (name,) = [name for name, variable in output.variables.items() if getattr(variable, "cf_role", "")]
         self.assertEqual(output[name].cf_role, "trajectory_id")
         self.assertIn("2003-06-01", str(netCDF4.chartostring(output[name][:])))
 
-    def test_coordinates_are_there_and_in_degrees_north_and_east(self):
+    def test_coordinates_have_names_and_units(self):
         for options in ((), ("--all", "--suffix", "_X")):
             output = self.output(*options)
             self.assertEqual((output["LATC"].units, output["LATC"].standard_name), ("degrees_north", "latitude"))
@@ -103,7 +103,7 @@ class Outputs(unittest.TestCase):
         self.assertEqual(output["PSXC"].coordinates, "LAT_GIN LON_GIN GGALT")
         self.assertEqual(output.featureType, "trajectory")
 
-    def test_a_flight_without_a_track_is_no_trajectory(self):
+    def test_flight_without_a_track_is_not_a_trajectory(self):
         self.edit(lambda flight: flight.renameVariable("LONC", "NOTHING"))
         output = self.output()
         self.assertFalse(hasattr(output, "featureType"))
@@ -129,7 +129,7 @@ class Outputs(unittest.TestCase):
                                  "-", "--min-airspeed", "0"], check=True, capture_output=True, text=True)
         self.assertEqual(json.loads(result.stdout)["masks"]["reference_missing"], 0)
 
-    def test_standard_names_are_of_the_table(self):
+    def test_standard_names_are_in_the_cf_table(self):
         for variable in self.output().variables.values():
             name = getattr(variable, "standard_name", "")
             if name:
@@ -151,7 +151,7 @@ class Outputs(unittest.TestCase):
                           "time_coverage_start", "time_coverage_duration", "geospatial_lat_min", "geospatial_lat_units"):
             self.assertTrue(str(output.getncattr(attribute)), attribute)
 
-    def test_the_model_is_in_it_whole(self):
+    def test_output_contains_the_complete_model(self):
         output = self.output()
         law = self.path / "from_output.toml"
         law.write_text(output.pcor_model_toml)
@@ -163,7 +163,7 @@ class Outputs(unittest.TestCase):
         self.assertTrue(output.pcor_model)
         self.assertTrue(output.pcor_model_source)
 
-    def test_coefficients_have_their_errors(self):
+    def test_coefficients_have_standard_errors(self):
         model = UNCERTAIN_MODEL
         model = model.replace("[[effect]]", '[[effect]]\nid = "static-mach3"\nparameters = { m3 = 0.0001 }\n'
                               "stderr = { m3 = 0.00002 }\n\n[[effect]]", 1)

@@ -93,13 +93,13 @@ class Simulated(CaseTest):
                                     "ATTACK", "SSLIP")}
     CORRECTED = {**{"PSXC": "TRUE_PS", "QCXC": "QCF"}, **{name: name for name in NCAR if name not in ("PSFD", "QCF")}}
 
-    def test_the_attribute_of_files_since_2012(self):
+    def test_platform_attribute_identifies_the_aircraft(self):
         flight = self.write(self.NCAR, {"institution": "NCAR", "Platform": "N677F"})
         inspected = self.inspect(flight)
         self.assertEqual(inspected["aircraft"], "N677F")
         self.assertTrue(inspected["laws"])
 
-    def test_a_range_that_r_wrote(self):
+    def test_text_range_does_not_exclude_a_variable(self):
         flight = self.write(self.NCAR, {"institution": "NCAR"})
         with netCDF4.Dataset(flight, "a") as file:
             for name, text in (("PITCH", "c(-180, 180)"), ("ROLL", "c(-180, 180)"), ("THDG", "as usual")):
@@ -109,7 +109,7 @@ class Simulated(CaseTest):
             self.assertEqual(inspected["roles"][role]["variable"], variable)
         self.assertTrue(any("THDG (valid_range = 'as usual')" in note["text"] for note in inspected["notes"]), inspected["notes"])
 
-    def test_a_corrected_pair_only(self):
+    def test_flight_with_only_corrected_pressures(self):
         flight = self.write(self.CORRECTED, {"institution": "NCAR", "Platform": "N130AR"})
         inspected = self.inspect(flight)
         self.assertTrue(any(note["text"].startswith("PSXC and QCXC ") for note in inspected["notes"]), inspected["notes"])
@@ -137,7 +137,7 @@ class Simulated(CaseTest):
                             {"institution": "NCAR"})
         self.assertIn("--reference pressure:PS_A", " ".join(self.inspect(flight)["next"]))
 
-    def test_coefficients_are_held_by_every_command(self):
+    def test_every_command_can_fix_coefficients(self):
         flight = self.write({**self.NCAR, "TRUTH": "TRUE_PS"}, {"institution": "NCAR"})
         (self.path / "m.toml").write_text(BARE.format(""))
         for command, output in (("refit", ("-o", "r.toml")), ("diagnose", ()), ("improve", ("-o", "i.toml", "--force"))):

@@ -217,7 +217,7 @@ class Fit(TemperatureTest):
         three times that."""
         self.assertAlmostEqual(self.temperature()["sigma_m"] / 0.3, 1.0, delta=0.24)
 
-    def test_an_error_of_the_pressure_makes_it_less_sure(self):
+    def test_pressure_error_increases_the_standard_error(self):
         sure, unsure = (self.temperature("--pressure-error", size) for size in ("0", "0.1"))
         expected = (sure["stderr"]["a0"] ** 2 + (0.1 * sure["per_hpa"]["a0"]) ** 2) ** 0.5
         self.assertGreater(unsure["stderr"]["a0"], 1.5 * sure["stderr"]["a0"])
@@ -264,7 +264,7 @@ class Fit(TemperatureTest):
         self.assertIn("not significant", text)
         self.assertNotIn("To apply it", text)
 
-    def test_a_correction_that_makes_it_worse(self):
+    def test_harmful_correction_is_not_advised(self):
         """If isobars are assumed level, their slope appears in the correction of a good thermometer."""
         flight = self.simulated(GOOD_THERMOMETER)
         arguments = ("--slope", "none", "--pressure-error", "0")
@@ -373,7 +373,7 @@ class Refusal(TemperatureTest):
         for at in result["corrections"]:
             self.assertLess(abs(at["correction_k"]), 2.0 * at["stderr_k"])
 
-    def test_force(self):
+    def test_force_is_recorded_only_if_needed(self):
         output = self.path / "out.toml"
         self.temperature(flights=(self.good,))
         self.assertIn("not significant",
@@ -384,7 +384,7 @@ class Refusal(TemperatureTest):
         self.done("temperature", ONE, "-m", PUBLISHED, "-o", output, "--quiet")
         self.assertEqual(output.read_bytes(), forced)
 
-    def test_numbers_are_printed_all_the_same(self):
+    def test_refused_result_prints_its_numbers(self):
         report = self.path / "out.html"
         result = self.run_tool("temperature", self.good, "-m", PUBLISHED, "-o", self.path / "out.toml", "--report", report)
         self.assertEqual(result.returncode, 1)
@@ -394,7 +394,7 @@ class Refusal(TemperatureTest):
         self.assertTrue(report.exists())
         self.assertFalse((self.path / "out.toml").exists())
 
-    def test_thermometers_that_differ(self):
+    def test_different_thermometers_are_refused(self):
         """One reads 0.55 K and 1 % too high, the other is right: the correction of one harms the other."""
         self.refuse("--quiet", flights=(ONE, self.good), words=["no model was written"])
         result = self.temperature(flights=(ONE, self.good))
@@ -405,7 +405,7 @@ class Refusal(TemperatureTest):
         text = self.text_of(flights=(ONE, self.good))
         self.assertRegex(text.splitlines()[0], "thermometers of the flights differ: one.nc: .* good.nc: .* 0.01")
 
-    def test_thermometers_that_agree(self):
+    def test_consistent_thermometers_are_accepted(self):
         result = self.temperature(flights=(ONE, TWO, THREE))
         self.assertEqual(result["parts"]["spread_of_flights_k"], 0.0)
         self.assertEqual(result["warnings"], [])
@@ -501,7 +501,7 @@ class Iterate(TemperatureTest):
         error = (result["stderr"]["a0"] ** 2 + (0.1 * result["per_hpa"]["a0"]) ** 2) ** 0.5
         self.assertAlmostEqual(result["coefficients"]["a0"], truth()["a0"], delta=3.0 * error)
 
-    def test_the_start_does_not_matter(self):
+    def test_result_is_independent_of_the_start(self):
         """Both stop where a round moves the temperature by less than 0.001 K, and rounds shrink tenfold."""
         near = self.temperature("--iterate", model=self.with_laser())
         far = self.temperature("--iterate", model=self.with_laser(with_a0(0.006), "far.toml"))
@@ -526,7 +526,7 @@ class Iterate(TemperatureTest):
     def test_a_reference_needs_iterate(self):
         self.refuse("--reference", "lams", words=["--reference", "--iterate"])
 
-    def test_needs_flights_as_recorded(self):
+    def test_archived_flights_are_refused(self):
         self.refuse("--iterate", "--archived", flights=(PROCESSED,), words=["--iterate", "--archived"])
 
 
@@ -535,21 +535,21 @@ class Archived(TemperatureTest):
     than a millimetre over a flight, and ATX to 1e-6 K. What remains is where the search for the noise stops, 0.001 of
     -2 ln L, and that some records at the ends have no output: a tenth of the stated error covers it."""
 
-    def test_gives_the_same(self):
+    def test_archived_flight_gives_the_same_result(self):
         self.assert_agree(self.temperature(), self.temperature("--archived", flights=(PROCESSED,)), share=0.1)
 
-    def test_gives_the_same_if_processed_with_a_correction(self):
+    def test_archived_flight_with_a_correction_gives_the_same_result(self):
         raw = self.temperature()
         corrected = self.process(ONE, self.path / "out.toml", "--hydrostatic")
         self.assert_agree(raw, self.temperature("--archived", flights=(corrected,)), share=0.1)
 
-    def test_gives_the_same_if_processed_with_a_curved_correction(self):
+    def test_archived_flight_with_a_curved_correction_gives_the_same_result(self):
         raw = self.temperature()
         self.temperature("--degree", "2")
         corrected = self.process(ONE, self.path / "out.toml", "--hydrostatic")
         self.assert_agree(raw, self.temperature("--archived", flights=(corrected,)), share=0.1)
 
-    def test_many(self):
+    def test_several_archived_flights_give_the_same_result(self):
         flights = [self.process(flight, PUBLISHED, "--hydrostatic", name=flight.name) for flight in (ONE, TWO, THREE)]
         raw = self.temperature(flights=(ONE, TWO, THREE))
         # They have no angle of attack, so an error of the law with it is not removed: errors of the noise are
@@ -575,7 +575,7 @@ class Archived(TemperatureTest):
         self.assert_agree(raw, archived, share=0.1)
         self.assertNotIn("ground", " ".join(note_texts(archived)))
 
-    def test_slopes(self):
+    def test_every_slope_gives_the_same_result(self):
         for slope in SLOPES:
             with self.subTest(slope):
                 raw = self.temperature("--slope", slope, "--degree", "1")
@@ -614,18 +614,18 @@ class Archived(TemperatureTest):
         self.assert_agree(self.temperature(),
                           self.temperature("--archived", flights=(archive,), model=in_feet(self)), share=0.1)
 
-    def test_needs_to_know_the_model(self):
+    def test_missing_model_attribute_is_refused(self):
         flight = self.edited(lambda file: file["HYDSTEP"].delncattr("model"), flight=PROCESSED)
         self.refuse("--archived", flights=(flight,), words=["flight.nc", "HYDSTEP", "attribute model"])
 
-    def test_needs_the_steps(self):
+    def test_missing_hydrostatic_steps_are_refused(self):
         self.refuse("--archived", flights=(self.process(ONE, PUBLISHED),),
                     words=["corrected.nc", "HYDSTEP", "--hydrostatic"])
 
     def test_needs_a_processed_flight(self):
         self.refuse("--archived", words=["one.nc", "--archived", "pcor process"])
 
-    def test_needs_to_know_the_correction(self):
+    def test_missing_correction_attribute_is_refused(self):
         flight = self.edited(lambda file: file["HYDSTEP"].delncattr("temperature_calibration"), flight=PROCESSED)
         self.refuse("--archived", flights=(flight,), words=["flight.nc", "HYDSTEP", "temperature_calibration"])
 
@@ -644,7 +644,7 @@ class Options(TemperatureTest):
                     self.assert_is_truth(result)
                     self.assertLess(result["stderr"]["a0"], 0.035)  # K: the wind of 10 m in 100 km, at 0.031 by the geostrophic slope
 
-    def test_a_wind_out_of_balance(self):
+    def test_unbalanced_wind_is_reported(self):
         """The wind of the scenario does not match its isobars: the errors include it, with a note."""
         result = self.temperature("--slope", "geostrophic", "--degree", "1")
         self.assert_is_truth(result)
@@ -677,10 +677,10 @@ class Options(TemperatureTest):
         self.assertGreater(climbs["flights"][0]["stretches"], everything["flights"][0]["stretches"])
         self.assert_is_truth(climbs)
 
-    def test_a_climb_rate_that_is_not_flown(self):
+    def test_climb_rate_above_all_climbs_is_refused(self):
         self.refuse("--min-climb-rate", "20", words=["one.nc", "climbs", "20 m/s"])
 
-    def test_flights_that_return_are_left_out(self):
+    def test_returning_flights_are_excluded(self):
         back = self.part(AND_BACK, "back.nc")
         result = self.temperature("--skip-returning", flights=(ONE, back))
         self.assertEqual([flight["used"] for flight in result["flights"]], [True, False])
@@ -688,7 +688,7 @@ class Options(TemperatureTest):
         self.assertEqual(result["coefficients"], self.temperature()["coefficients"])
         self.refuse("--skip-returning", flights=(back,), words=["--skip-returning"])
 
-    def test_an_excluded_hour_takes_no_part(self):
+    def test_excluded_interval_is_not_used(self):
         intervals = self.write("intervals.toml", 'format = "pcor-intervals/1"\n[[exclude]]\nbegin = "20:30:00"\n'
                                'end = "20:40:00"\nreason = "a test"\n')
         result, everything = self.temperature("--intervals", intervals), self.temperature()
@@ -742,16 +742,16 @@ class BadHeight(TemperatureTest):
         self.refuse(flights=(flight,), words=["flight.nc", "GGALT has no unit", "[units] altitude"])
         self.assert_agree(self.temperature(), self.temperature(flights=(flight,), model=in_feet(self)), share=0.1)
 
-    def test_feet_labelled_as_feet(self):
+    def test_height_in_feet_gives_the_same_result(self):
         """Values are floats of up to 32768 ft, rounded to 1e-3 ft, far below the noise of 0.3 m."""
         flight = self.edited(changed("GGALT", lambda height: height / 0.3048),
                              lambda file: file["GGALT"].setncattr("units", "ft"))
         self.assert_agree(self.temperature(), self.temperature(flights=(flight,)), share=0.1)
 
-    def test_none(self):
+    def test_missing_height_is_refused(self):
         self.refuse(flights=(self.edited(without("GGALT")),), words=["flight.nc", "GGALT", "[variables] altitude"])
 
-    def test_no_value(self):
+    def test_height_without_values_is_refused(self):
         flight = self.edited(changed("GGALT", lambda height: numpy.nan * height))
         self.refuse(flights=(flight,), words=["flight.nc", "GGALT"])
 
@@ -788,14 +788,14 @@ class BadInput(TemperatureTest):
         self.assertIn("no wind", " ".join(note_texts(geostrophic)))
         self.assert_is_truth(geostrophic)
 
-    def test_no_way_over_the_ground(self):
+    def test_missing_ground_speed_is_reported(self):
         for slope in ("fitted", "whole-flight", "geostrophic"):
             with self.subTest(slope):
                 result = self.temperature("--slope", slope, flights=(self.edited(without("GGSPD")),))
                 self.assertIn("ground", " ".join(note_texts(result)))
                 self.assert_is_truth(result)
 
-    def test_neither_way_nor_heading(self):
+    def test_missing_ground_speed_and_heading_increase_errors(self):
         flight = self.edited(without("GGSPD"), without("THDG"))
         result, whole = (self.temperature("--pressure-error", "0", flights=(each,)) for each in (flight, ONE))
         self.assertIn("turns", " ".join(note_texts(result)))
@@ -840,11 +840,11 @@ class BadInput(TemperatureTest):
                 self.assertAlmostEqual(middle["correction_k"], true["a0"] + true["a1"] * middle["temperature_degc"],
                                        delta=3.0 * middle["stderr_k"])
 
-    def test_a_correction_that_no_thermometer_needs(self):
+    def test_correction_beyond_its_bounds_is_refused(self):
         """Five minutes do not determine a curve: the result exceeds the bounds of the catalogue."""
         self.refuse("--degree", "2", flights=(self.part(CLIMB),), words=["a2", "--degree"])
 
-    def test_a_bad_flight_is_left_out_and_listed(self):
+    def test_bad_flight_is_excluded_and_listed(self):
         bad = self.edited(changed("GGALT", lambda height: height / 0.3048), name="feet.nc")
         result = self.temperature(flights=(bad, ONE))
         self.assertEqual([flight["used"] for flight in result["flights"]], [False, True])
@@ -853,17 +853,17 @@ class BadInput(TemperatureTest):
         self.assertEqual(tomllib.loads((self.path / "out.toml").read_text())["provenance"]["temperature"]["flights"],
                          ["one.nc"])
 
-    def test_a_bad_flight_is_not_the_one_to_process(self):
+    def test_advised_command_uses_a_good_flight(self):
         bad = self.edited(changed("GGALT", lambda height: height / 0.3048), name="feet.nc")
         text = self.text_of(flights=(bad, ONE))
         self.assertRegex(text, r"feet.nc +skipped: .*in feet")
         self.assertIn("pcor process " + str(ONE), text)
 
-    def test_no_flight_is_good(self):
+    def test_all_flights_unusable(self):
         flights = (self.edited(without("GGLAT"), name="first.nc"), self.edited(without("GGALT"), name="second.nc"))
         self.refuse(flights=flights, words=["2 flights", "first.nc", "latitude"])
 
-    def test_a_flight_twice(self):
+    def test_duplicate_flight(self):
         self.refuse(flights=(ONE, ONE), words=["one.nc", "twice"])
 
     def test_flights_of_two_aircraft(self):
@@ -890,12 +890,12 @@ class BadInput(TemperatureTest):
 
 
 class Output(TemperatureTest):
-    def test_replaces_an_old_one_by_a_whole_new_one(self):
+    def test_old_output_is_replaced(self):
         self.write("out.toml", "old")
         self.temperature()
         self.assertIn("temp-calibration", (self.path / "out.toml").read_text())
 
-    def test_is_an_input(self):
+    def test_output_is_an_input(self):
         model = self.write("model.toml", PUBLISHED.read_text())
         flight = self.edited()
         for output in (model, flight):
@@ -905,7 +905,7 @@ class Output(TemperatureTest):
                 for option in ("--json", "--report"):
                     self.refuse(option, output, flights=(flight,), model=model, words=[output.name, "input"])
 
-    def test_two_in_one_place(self):
+    def test_two_outputs_in_one_place(self):
         for option in ("--json", "--report"):
             with self.subTest(option):
                 self.refuse(option, self.path / "out.toml", words=["out.toml", "twice"])

@@ -116,7 +116,7 @@ class Done(ToolTest):
         result = self.process(self.flight(), None, None, "--quiet")
         self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
 
-    def test_replaces_an_old_output_by_a_whole_new_one(self):
+    def test_old_output_is_replaced(self):
         output = self.path / "out.nc"
         output.write_text("old")
         self.assertEqual(self.process(self.flight()).returncode, 0)
@@ -177,7 +177,7 @@ class Usage(ToolTest):
 
 
 class Notes(ToolTest):
-    def test_law_of_another_time_and_aircraft(self):
+    def test_law_for_another_time_and_aircraft_is_reported(self):
         model = self.model(
             lambda toml: re.sub(r'^valid_from.*$', 'valid_from = "2010-01-01"', toml, flags=re.MULTILINE)
             .replace("valid_to", "# valid_to").replace("N130AR", "N677F")
@@ -302,11 +302,11 @@ class BadOutput(ToolTest):
             self.assert_refused(result, "choose")
         self.assertEqual((flight.read_bytes(), model.read_bytes()), before)
 
-    def test_json_place_is_tried_before_the_work(self):
+    def test_unwritable_json_path_is_an_error(self):
         result = self.process(self.flight(), None, None, "--json", self.path / "none" / "result.json")
         self.assert_refused(result, "none")
 
-    def test_names_that_are_not_utf8(self):
+    def test_file_name_may_be_invalid_utf8(self):
         name = os.fsencode(self.path) + b"/w\xff.nc"
         os.rename(self.flight(), name)
         result = subprocess.run([TOOL, "process", name, "-m", self.model(), "-o", self.path / "out.nc", "--json", "-"],
@@ -337,7 +337,7 @@ class BadOutput(ToolTest):
         self.assertEqual(self.process(flight).returncode, 1)
         self.assertEqual(output.read_text(), "old")
 
-    def test_existing_name(self):
+    def test_output_variable_with_an_existing_name(self):
         flight = self.flight(lambda cdl: cdl.replace("GGALT", "PSXC"))
         self.assert_refused(self.process(flight, None, None, "--all"), "PSXC", "--suffix")
         self.assertEqual(self.process(flight, None, None, "--all", "--suffix", "_NEW").returncode, 0)

@@ -129,7 +129,7 @@ class WhatIfTest(ComparisonTest):
 
 
 class OneEffect(WhatIfTest):
-    def test_its_coefficients_equal_those_of_refit(self):
+    def test_coefficients_equal_those_of_refit(self):
         self.diagnosed(FIRST, SECOND)
         self.switch("static-lag")
         page = self.told()
@@ -229,7 +229,7 @@ class OneEffect(WhatIfTest):
         })()""")
         self.assertLess(differs, 1e-9)
 
-    def test_the_page_tests_itself(self):
+    def test_self_test_of_the_page(self):
         self.diagnosed(FIRST, SECOND)
         self.browser.open(self.report.as_uri() + "#selftest")
         self.assertEqual(json.loads(self.value("document.getElementById('selftest').textContent"))["wrong"], [])

@@ -59,14 +59,14 @@ TEST(Units, EveryUnitOfTheReferenceFlightIsKnown) {
   EXPECT_FALSE(pcor::is_known_unit("furlong-ish"));
 }
 
-TEST(Units, StandardSpellingChangesOnlyWhatNeedsIt) {
+TEST(Units, OnlyNonstandardSpellingsAreChanged) {
   EXPECT_EQ(pcor::standard_unit("C"), "degC");
   EXPECT_EQ(pcor::standard_unit("M/s"), "m/s");
   EXPECT_EQ(pcor::standard_unit("hPa"), "hPa");
   EXPECT_EQ(pcor::standard_unit("c"), "c") << "the table is case-sensitive";
 }
 
-TEST(Units, TheSameUnitKeepsEveryBit) {
+TEST(Units, EqualUnitsConvertExactly) {
   for (const auto& [from, to] :
        {std::pair{"hPa", "hPa"}, {"mbar", "hPa"}, {"C", "degC"}, {"deg", "degree"}}) {
     const UnitConversion conversion = UnitConversion::between(from, to, owner);
@@ -75,7 +75,7 @@ TEST(Units, TheSameUnitKeepsEveryBit) {
   }
 }
 
-TEST(Units, ATimeConvertsToADateByTheirBegins) {
+TEST(Units, TimeConversionUsesTheReferenceDates) {
   // 10957 days from 1970 to 2000. 2011-11-17 20:00 is day 4338 of 2000 and 5/6 of it.
   const auto date = [](double seconds) {
     return convert(seconds, "seconds since 1970-01-01 00:00:00 +0000", "days since 2000-01-01");
@@ -84,7 +84,7 @@ TEST(Units, ATimeConvertsToADateByTheirBegins) {
   EXPECT_NEAR(date(10957.0 * 86400.0), 0.0, 1e-9);
 }
 
-TEST(Units, ConversionThereAndBackIsTheIdentity) {
+TEST(Units, RoundTripConversionIsTheIdentity) {
   const auto there = UnitConversion::between("degF", "K", owner),
              back = UnitConversion::between("K", "degF", owner);
   for (const double value : {-459.67, -40.0, 0.0, 32.0, 212.0}) EXPECT_NEAR(back(there(value)), value, 1e-10);
@@ -94,12 +94,12 @@ TEST(Units, MissingValuesStayMissing) {
   EXPECT_TRUE(std::isnan(convert(std::numeric_limits<double>::quiet_NaN(), "C", "K")));
 }
 
-TEST(Units, ErrorOfAnUnknownUnitAdvises) {
+TEST(Units, UnknownUnitErrorStatesRemedy) {
   EXPECT_THAT(refusal("furlong-ish", "hPa"), IsError(Error::Code::unit, "flight.nc", "PSFD", "furlong-ish",
                                                      "unit.static_pressure = \"hPa\"", "[units]"));
 }
 
-TEST(Units, ErrorOfAnAbsentUnitAdvises) {
+TEST(Units, MissingUnitErrorStatesRemedy) {
   EXPECT_THAT(refusal("", "hPa"), IsError(Error::Code::unit, "PSFD", "unit.static_pressure = \"hPa\""));
 }
 
@@ -118,7 +118,7 @@ TEST(Units, AReciprocalIsRefused) {
   EXPECT_THAT(refusal("0.1 ks-1 @ 5", "seconds since 1970-01-01"), IsError(Error::Code::unit));
 }
 
-TEST(Units, AnOriginThatHidesEveryValueIsRefused) {
+TEST(Units, OriginBeyondPrecisionIsRefused) {
   EXPECT_THAT(refusal("hPa @ 1e300", "hPa"), IsError(Error::Code::unit));
 }
 
