@@ -15,7 +15,7 @@
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "parallel/workers.hpp"
-#include "residuals/frozen.hpp"
+#include "residuals/mark_frozen.hpp"
 #include "residuals/masks.hpp"
 
 namespace pcor::internal {

@@ -17,7 +17,7 @@
 #include "model_io/output_table.hpp"
 #include "process/delay_line.hpp"
 #include "roles/fast_series.hpp"
-#include "roles/frozen.hpp"
+#include "roles/find_frozen.hpp"
 #include "roles/model_inputs.hpp"
 
 namespace pcor::internal {

@@ -20,7 +20,7 @@
 #include "numerics/missing.hpp"
 #include "residuals/contradicting_signs.hpp"
 #include "residuals/flaps_by_lift.hpp"
-#include "residuals/frozen.hpp"
+#include "residuals/mark_frozen.hpp"
 #include "residuals/moving_columns.hpp"
 #include "roles/fast_series.hpp"
 #include "roles/model_inputs.hpp"

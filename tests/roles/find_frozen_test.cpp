@@ -1,4 +1,4 @@
-#include "roles/frozen.hpp"
+#include "roles/find_frozen.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "roles/frozen.hpp"
+#include "roles/find_frozen.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,22 +15,22 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::size_t min_samples = 20;
-constexpr std::size_t min_noise_values = 50;  // minimum number of samples to estimate the noise
-constexpr std::size_t neighbours = 20;
-constexpr std::size_t longest_excluded = 2;
-constexpr double more_than_near = 20.0;
-constexpr double more_than_half = 5.0;
-constexpr double more_than_most = 10.0;
-constexpr double noisy = 3.0;              // steps of resolution in a second difference
-constexpr std::size_t noise_window = 300;  // samples on either side
-constexpr std::size_t max_listed = 3;
+constexpr std::size_t min_runs = 50;         // minimum number of runs to estimate their usual length
+constexpr std::size_t neighbours = 20;       // runs on either side
+constexpr std::size_t longest_excluded = 2;  // of the neighbours
+constexpr double min_over_near = 20.0;       // length of a frozen run over the mean of its neighbours
+constexpr double min_over_median = 5.0;      // over the median, if the series is noisy around the run
+constexpr double min_over_90th = 10.0;       // over the 90th percentile, otherwise
+constexpr double noisy = 3.0;                // second difference, in steps of resolution
+constexpr std::size_t noise_window = 300;    // samples on either side
+constexpr std::size_t max_listed = 3;        // segments in a text
 
-/// The stretches of one value.
-std::vector<Segment> runs_of(const std::vector<double>& values, const std::vector<bool>& looked_at) {
+/// Runs of samples with one value.
+std::vector<Segment> runs_of(const std::vector<double>& values, const std::vector<bool>& used) {
   std::vector<Segment> runs;
   double last = nan;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double value = looked_at[i] ? values[i] : nan;
+    const double value = used[i] ? values[i] : nan;
     if (!std::isnan(value)) {
       if (value != last) runs.push_back({i, 0});
       ++runs.back().count;
@@ -40,7 +40,7 @@ std::vector<Segment> runs_of(const std::vector<double>& values, const std::vecto
   return runs;
 }
 
-/// The smallest step of a series.
+/// Smallest step of a series: its resolution.
 double smallest_step(const std::vector<double>& values) {
   double resolution = infinity;
   for (std::size_t i = 1; i < values.size(); ++i) {
@@ -62,15 +62,15 @@ bool is_noisy(const std::vector<double>& values, std::size_t first, std::size_t 
   return bends.empty() || median(std::move(bends)) >= noisy * resolution;
 }
 
-/// Before a run and after it.
+/// True if the series is noisy before and after the run.
 bool is_noisy_around(const std::vector<double>& values, const Segment& run, double resolution) {
   const std::size_t after = run.first + run.count;
   return is_noisy(values, run.first - std::min(run.first, noise_window), run.first, resolution) &&
          is_noisy(values, after, std::min(after + noise_window, values.size()), resolution);
 }
 
-/// The length of run that the share `part` of the samples does not exceed.
-double usual_length(const std::vector<Segment>& runs, double part) {
+/// Quantile of run lengths, each run weighted by its number of samples. @param part 0 to 1
+double length_quantile(const std::vector<Segment>& runs, double part) {
   std::vector<std::size_t> lengths;
   std::size_t samples = 0;
   for (const Segment& run : runs) {
@@ -87,7 +87,7 @@ double usual_length(const std::vector<Segment>& runs, double part) {
 }
 
 /// Mean length of the neighbouring runs, without the longest ones.
-double near_length(const std::vector<Segment>& runs, std::size_t run) {
+double mean_length_near(const std::vector<Segment>& runs, std::size_t run) {
   std::vector<std::size_t> lengths;
   const std::size_t end = std::min(run + neighbours + 1, runs.size());
   for (std::size_t i = run - std::min(run, neighbours); i < end; ++i) {
@@ -102,24 +102,24 @@ double near_length(const std::vector<Segment>& runs, std::size_t run) {
 
 }  // namespace
 
-std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
+std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& used,
                                  bool always_varies) {
-  const std::vector<Segment> runs = runs_of(values, looked_at);
+  const std::vector<Segment> runs = runs_of(values, used);
   const auto same = [&](const Segment& run) { return values[run.first] == values[runs.front().first]; };
   if (always_varies && !runs.empty() && std::all_of(runs.begin(), runs.end(), same)) return runs;
-  if (runs.size() < min_noise_values) return {};
+  if (runs.size() < min_runs) return {};
   const auto is_long = [](const Segment& run) { return run.count >= min_samples; };
   if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
   const double resolution = smallest_step(values);
-  const double of_half = usual_length(runs, 0.5);
-  const double of_most = usual_length(runs, 0.9);
+  const double median_length = length_quantile(runs, 0.5);
+  const double length_90th = length_quantile(runs, 0.9);
   std::vector<Segment> frozen;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!is_long(runs[i])) continue;
     const auto length = static_cast<double>(runs[i].count);
-    const double minimum =
-        is_noisy_around(values, runs[i], resolution) ? more_than_half * of_half : more_than_most * of_most;
-    if (length >= minimum && length >= more_than_near * near_length(runs, i)) frozen.push_back(runs[i]);
+    const double minimum = is_noisy_around(values, runs[i], resolution) ? min_over_median * median_length
+                                                                        : min_over_90th * length_90th;
+    if (length >= minimum && length >= min_over_near * mean_length_near(runs, i)) frozen.push_back(runs[i]);
   }
   return frozen;
 }

@@ -1,8 +1,8 @@
-#include "residuals/frozen.hpp"
+#include "residuals/mark_frozen.hpp"
 
 #include <pcor/base/note.hpp>
 
-#include "roles/frozen.hpp"
+#include "roles/find_frozen.hpp"
 
 namespace pcor::internal {
 

@@ -18,9 +18,9 @@ namespace pcor::internal {
 /// altitude in whole feet are not reported, and for a coarse sensor only segments shorter than a tenth of the
 /// flight are found.
 ///
-/// @param values NaN where missing @param looked_at the samples that count
+/// @param values NaN where missing @param used true for samples that are evaluated
 /// @param always_varies one value from beginning to end is frozen, too
-std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
+std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& used,
                                  bool always_varies = false);
 
 /// True for quantities that always vary in flight; false for flaps and liquid water.
