@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pcor/realtime/loop.hpp>
+#include "support/test_name.hpp"
 
 namespace pcor {
 namespace {
@@ -132,9 +133,9 @@ void expect_stated(const State<double>& stated, const State<double>& above, cons
   }
 }
 
-class OfEveryEffect : public testing::TestWithParam<EffectInfo> {};
+class EffectUncertainty : public testing::TestWithParam<EffectInfo> {};
 
-TEST_P(OfEveryEffect, EqualsTheFiniteDifferenceByItsCoefficient) {
+TEST_P(EffectUncertainty, EqualsTheFiniteDifferenceByItsCoefficient) {
   const EffectInfo& info = GetParam();
   const Recorded all = everything_recorded();
   for (const Recorded& recorded :
@@ -160,13 +161,8 @@ TEST_P(OfEveryEffect, EqualsTheFiniteDifferenceByItsCoefficient) {
   }
 }
 
-std::string name_of_test(const testing::TestParamInfo<EffectInfo>& effect) {
-  std::string name(effect.param.id);
-  for (char& letter : name) letter = letter == '-' ? '_' : letter;
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Catalogue, OfEveryEffect, testing::ValuesIn(effect_info), name_of_test);
+INSTANTIATE_TEST_SUITE_P(Catalogue, EffectUncertainty, testing::ValuesIn(effect_info),
+                         [](const auto& effect) { return test::test_name(effect.param.id); });
 
 TEST(ResultUncertainty, RoleUncertaintyEqualsTheFiniteDifference) {
   Model model = law();

@@ -1,8 +1,18 @@
 #pragma once
 
+#include <pcor/model/effect.hpp>
+
 #include <cctype>
+#include <ostream>
 #include <string>
 #include <string_view>
+
+namespace pcor {
+
+/// Makes a test of an effect print its name, not its bytes.
+inline void PrintTo(const EffectInfo& info, std::ostream* stream) { *stream << info.id; }
+
+}  // namespace pcor
 
 namespace pcor::test {
 
