@@ -33,8 +33,8 @@ std::string text_of_file(const std::filesystem::path& path, std::string_view wha
     fail(fmt::format("is not a regular file; give the path of {}", what));
   }
   if (std::filesystem::file_size(path, code) > max_bytes) {
-    fail(fmt::format("has more than {} MB, as no text of this program does; give the path of {}",
-                     max_bytes >> 20U, what));
+    fail(fmt::format("has more than {} MB, the limit of a text file; give the path of {}", max_bytes >> 20U,
+                     what));
   }
   std::ifstream stream(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};

@@ -40,7 +40,7 @@ std::size_t end_of_quotes(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-// The place of the first key with too many dots, if there is one.
+// Position of the first key with too many dots, if there is one.
 std::optional<std::size_t> place_of_deep_key(std::string_view text) {
   std::size_t dots = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -61,7 +61,7 @@ std::vector<Entry> entries_of(const toml::table& table, const std::string& title
     entries.push_back({std::string(key.str()), key.source().begin, &node, title});
   }
   std::stable_sort(entries.begin(), entries.end(),
-                   [](const Entry& a, const Entry& b) { return a.place < b.place; });
+                   [](const Entry& a, const Entry& b) { return a.position < b.position; });
   return entries;
 }
 
@@ -104,13 +104,13 @@ double seconds_of(const toml::date_time& moment) {
 toml::table TomlReader::parse(std::string_view text) const {
   for (const std::string_view begin : {"CDF", "\x89HDF"}) {
     if (text.substr(0, begin.size()) == begin)
-      fail(Place{1, 1},
+      fail(Position{1, 1},
            "this is a netCDF file, and a text in TOML is required; check the order of the arguments");
   }
   if (const std::optional<std::size_t> deep = place_of_deep_key(text)) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(*deep), '\n');
-    fail(Place{static_cast<toml::source_index>(line), 1},
-         fmt::format("a key has more than {} dots; give the table that is meant", max_dots));
+    fail(Position{static_cast<toml::source_index>(line), 1},
+         fmt::format("a key has more than {} dots; use fewer nested tables", max_dots));
   }
   try {
     toml::table root = toml::parse(text, name_);
@@ -136,13 +136,13 @@ void TomlReader::refuse_crowd(const toml::node& node) const {
   }
 }
 
-std::string TomlReader::place_of(Place place) const {
-  if (!place) place = {1, 1};
-  return fmt::format("{}:{}:{}", name_, place.line, place.column);
+std::string TomlReader::position_of(Position position) const {
+  if (!position) position = {1, 1};
+  return fmt::format("{}:{}:{}", name_, position.line, position.column);
 }
 
-void TomlReader::fail(Place place, const std::string& what) const {
-  throw Error(Error::Code::definition, one_line(place_of(place) + ": " + what));
+void TomlReader::fail(Position position, const std::string& what) const {
+  throw Error(Error::Code::definition, one_line(position_of(position) + ": " + what));
 }
 
 void TomlReader::fail(const toml::node& node, const std::string& what) const {
@@ -152,7 +152,7 @@ void TomlReader::fail(const toml::node& node, const std::string& what) const {
 void TomlReader::fail(const Entry& entry, const std::string& what) const { fail(*entry.node, what); }
 
 void TomlReader::refuse(const Entry& entry, const Names& known) const {
-  fail(entry.place, fmt::format("there is no {}; {}", unknown(entry), suggestion_text(entry.key, known)));
+  fail(entry.position, fmt::format("there is no {}; {}", unknown(entry), suggestion_text(entry.key, known)));
 }
 
 void TomlReader::each(const toml::table& table, const std::string& title, const Actions& actions) const {
@@ -166,7 +166,8 @@ void TomlReader::each(const toml::table& table, const std::string& title, const 
 
 Entry TomlReader::format_of(const toml::table& root, std::string_view is, std::string_view format) const {
   if (const std::optional<Entry> entry = entry_of(root, "format")) return *entry;
-  fail(Place{1, 1}, fmt::format("is not declared to be {}; begin the file with format = \"{}\"", is, format));
+  fail(Position{1, 1},
+       fmt::format("is not declared to be {}; begin the file with format = \"{}\"", is, format));
 }
 
 std::string TomlReader::wrong_kind(const Entry& entry, const std::string& requested) {

@@ -22,7 +22,7 @@ namespace pcor::internal {
 /// A key of a table with its value.
 struct Entry {
   std::string key;
-  toml::source_position place;  // position of the key
+  toml::source_position position;  // position of the key
   const toml::node* node;
   std::string title;  // title of the table
 };
@@ -60,7 +60,7 @@ double seconds_of(const toml::date_time& moment);
 /// Base of the readers of TOML files: entries without a meaning are refused with their position.
 class TomlReader {
  protected:
-  using Place = toml::source_position;
+  using Position = toml::source_position;
   using Action = std::function<void(const Entry&)>;
   using Actions = std::vector<std::pair<std::string, Action>>;
 
@@ -72,16 +72,16 @@ class TomlReader {
   /// more than 10,000 entries.
   toml::table parse(std::string_view text) const;
 
-  /// "file:line:column"; the beginning of the file for a place that is not known.
-  std::string place_of(Place place) const;
+  /// "file:line:column"; the beginning of the file for an unknown position.
+  std::string position_of(Position position) const;
 
   /// Name of the file for messages.
   const std::string& name() const { return name_; }
 
-  [[noreturn]] void fail(Place place, const std::string& what) const;
+  [[noreturn]] void fail(Position position, const std::string& what) const;
   [[noreturn]] void fail(const toml::node& node, const std::string& what) const;
 
-  /// An error at the value of `entry`; for one at the key see its place.
+  /// An error at the value of `entry`; for an error at the key use its `position`.
   [[noreturn]] void fail(const Entry& entry, const std::string& what) const;
 
   /// An error at a key that is not among the `known` ones.
@@ -124,7 +124,7 @@ class TomlReader {
   /// The two ends of [lower, upper], of which the lower one is below the upper one.
   std::pair<double, double> range(const Entry& entry) const;
 
-  /// The texts of a list, each with its place.
+  /// The texts of a list, each with its position.
   std::vector<std::pair<const toml::node*, std::string>> texts(const Entry& entry,
                                                                const std::string& requested) const;
 

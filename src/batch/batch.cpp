@@ -23,7 +23,7 @@ Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWi
   if (!chain) throw Error(Error::Code::model, fmt::format("model '{}': {}", model.name, why.message()));
   const auto require = [&](Quantity quantity) {
     if (!chain->derives(quantity)) return;
-    throw Error(Error::Code::model, fmt::format("model '{}': over whole arrays it needs '{}' among them",
+    throw Error(Error::Code::model, fmt::format("model '{}': batch processing requires '{}' among the arrays",
                                                 model.name, info_of(quantity).name));
   };
   require(Quantity::time);

@@ -15,7 +15,7 @@ inline constexpr double spread_of_sizes = 3.0;
 
 /// Tested parameter of a candidate.
 struct CandidateParameter {
-  std::size_t place = 0;  ///< index among the parameters of its effect
+  std::size_t index = 0;  ///< index among the parameters of its effect
   std::string name;
   std::string unit;
   double typical = 0.0;  ///< 0 if unknown

@@ -96,11 +96,11 @@ Allowed allowed_by_all(const std::vector<Allowed>& flights) {
 
 std::vector<std::string> in_order(std::vector<std::string> texts) {
   constexpr std::array<std::string_view, 6> forms{"lams", "static", "pressure", "total", "height", "wind"};
-  const auto place_of = [&forms](const std::string& text) {
+  const auto position_of = [&forms](const std::string& text) {
     return std::find(forms.begin(), forms.end(), text.substr(0, text.find(':'))) - forms.begin();
   };
-  std::sort(texts.begin(), texts.end(), [&place_of](const std::string& a, const std::string& b) {
-    return std::make_pair(place_of(a), a) < std::make_pair(place_of(b), b);
+  std::sort(texts.begin(), texts.end(), [&position_of](const std::string& a, const std::string& b) {
+    return std::make_pair(position_of(a), a) < std::make_pair(position_of(b), b);
   });
   return texts;
 }

@@ -28,7 +28,7 @@ using EffectJet = ceres::Jet<double, effect_jet_width>;
 /// Evaluation of a candidate: its derivatives with respect to some of the tested parameters.
 struct Evaluation {
   std::size_t effect;            // number in the extended model of its system
-  Eigen::Index place = 0;        // index among the locations of all candidates
+  Eigen::Index location = 0;     // index among the locations of all candidates
   std::size_t first_column = 0;  // first column of the parameters
   std::size_t width = 0;
   std::vector<EffectJet> parameters{};
@@ -41,16 +41,16 @@ struct Evaluation {
 struct System {
   ModelDefinition model{};
   std::vector<std::size_t> free{};
-  std::size_t first_place = 0;
+  std::size_t first_location = 0;
   std::size_t end = 0;  // after the last location
 
-  const std::vector<EffectLocation>& places() const { return model.model.additions; }
+  const std::vector<EffectLocation>& locations() const { return model.model.additions; }
 };
 
 /// Evaluations of the candidates of one system.
 std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t reference, bool of_reference,
-                                       const std::vector<EffectLocation>& places, const ModelSamples& inputs,
-                                       const FlightSamples& samples) {
+                                       const std::vector<EffectLocation>& locations,
+                                       const ModelSamples& inputs, const FlightSamples& samples) {
   std::vector<Evaluation> evaluations;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
     const Candidate& candidate = set.candidates[c];
@@ -59,8 +59,8 @@ std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t r
         of_reference ? candidate.numbers_in_others[reference] : candidate.number;
     if (!number) continue;
     Evaluation evaluation{*number};
-    const auto place = std::find(places.begin(), places.end(), location_of(candidate.effect));
-    evaluation.place = place - places.begin();
+    const auto location = std::find(locations.begin(), locations.end(), location_of(candidate.effect));
+    evaluation.location = location - locations.begin();
     if (candidate.memory != 0.0) {  // the history starts from the samples' inputs
       evaluation.memory = memory_of(candidate.effect).of;
       evaluation.remembered =
@@ -72,7 +72,7 @@ std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t r
       evaluation.width = std::min<std::size_t>(effect_jet_width, candidate.tested.size() - first);
       evaluation.parameters = std::vector<EffectJet>(neutral.begin(), neutral.end());
       for (std::size_t k = 0; k < evaluation.width; ++k)
-        evaluation.parameters[candidate.tested[first + k].place].v[as_index(k)] = 1.0;
+        evaluation.parameters[candidate.tested[first + k].index].v[as_index(k)] = 1.0;
       evaluations.push_back(evaluation);
     }
   }
@@ -119,22 +119,23 @@ std::vector<std::size_t> with_neighbours(const std::vector<std::size_t>& samples
 }
 
 /// Locations of the candidates of one system.
-std::vector<EffectLocation> places_of(const CandidateModels& set, bool of_reference) {
-  std::vector<EffectLocation> places;
+std::vector<EffectLocation> locations_of(const CandidateModels& set, bool of_reference) {
+  std::vector<EffectLocation> locations;
   for (const Candidate& candidate : set.candidates) {
     if (candidate.is_of_reference() != of_reference) continue;
     const EffectLocation location = location_of(candidate.effect);
-    if (std::find(places.begin(), places.end(), location) == places.end()) places.push_back(location);
+    if (std::find(locations.begin(), locations.end(), location) == locations.end())
+      locations.push_back(location);
   }
-  return places;
+  return locations;
 }
 
 System system_of(ModelDefinition model, const CandidateModels& set, bool of_reference, std::size_t first) {
   System system{std::move(model)};
-  system.model.model.additions = places_of(set, of_reference);
+  system.model.model.additions = locations_of(set, of_reference);
   for (const std::size_t parameter : free_parameters(system.model)) system.free.push_back(first + parameter);
   system.end = first + parameter_count(system.model.model);
-  system.first_place = system.end - system.places().size();
+  system.first_location = system.end - system.locations().size();
   return system;
 }
 
@@ -146,7 +147,7 @@ System system_of(ModelDefinition model, const CandidateModels& set, bool of_refe
 template <class See>
 void put_candidates(const Chain& chain, const ModelSamples& inputs,
                     const std::vector<Evaluation>& evaluations, const std::vector<std::size_t>& samples,
-                    const Eigen::Ref<const Eigen::MatrixXd>& at_places, const See& see,
+                    const Eigen::Ref<const Eigen::MatrixXd>& by_location, const See& see,
                     Eigen::MatrixXf& columns) {
   std::vector<std::pair<Quantity, const double*>> read;
   for (const Quantity input : chain.inputs()) read.emplace_back(input, inputs.find(input)->data());
@@ -162,10 +163,10 @@ void put_candidates(const Chain& chain, const ModelSamples& inputs,
       if (remembers) state[each.memory] = each.remembered[sample];
       const EffectJet value = chain.effect_value(each.effect, state, each.parameters.data());
       if (remembers) state[each.memory] = usual;
-      const double at_place = at_places.cols() == 0 ? 1.0 : at_places(as_index(k), each.place);
+      const double by_this_location = by_location.cols() == 0 ? 1.0 : by_location(as_index(k), each.location);
       for (std::size_t p = 0; p < each.width; ++p)
         columns(as_index(sample), as_index(each.first_column + p)) =
-            static_cast<float>(-at_place * value.v[as_index(p)]);
+            static_cast<float>(-by_this_location * value.v[as_index(p)]);
     }
     see(sample, state);
   }
@@ -174,7 +175,7 @@ void put_candidates(const Chain& chain, const ModelSamples& inputs,
 /// Converts columns of added amounts, sample by sample, to columns of residuals that depend on neighbouring
 /// samples. @param first_place among the parameters of the residuals
 void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluation>& evaluations,
-                         std::size_t first_place, const std::vector<std::size_t>& used,
+                         std::size_t first_location, const std::vector<std::size_t>& used,
                          const std::vector<std::size_t>& needed, Eigen::MatrixXf& columns) {
   std::vector<Direction> directions;
   std::vector<Eigen::Index> numbers;
@@ -184,7 +185,7 @@ void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluatio
       auto column = columns.col(number);
       bridge(column, needed);
       Direction& direction = directions.emplace_back();
-      direction.parameter = first_place + static_cast<std::size_t>(each.place);
+      direction.parameter = first_location + static_cast<std::size_t>(each.location);
       direction.rate.assign(residuals.size(), 0.0);
       for (const std::size_t i : needed) direction.rate[i] = static_cast<double>(column[as_index(i)]);
       column.setZero();
@@ -231,12 +232,13 @@ void complete(const CandidateModels& set, bool two_systems, const std::vector<st
 AddedEffects effects_of(const CandidateModels& set, std::size_t reference, const System& own,
                         const FlightSamples& samples, const std::vector<std::size_t>& used) {
   AddedEffects effects;
-  for (std::size_t place = own.first_place; place < own.end; ++place)
-    effects.amounts_of_model.push_back(place);
+  for (std::size_t location = own.first_location; location < own.end; ++location)
+    effects.amounts_of_model.push_back(location);
   effects.at.resize(set.first_column(set.candidates.size()), 0);
-  for (const Evaluation& each : evaluations_of(set, reference, false, own.places(), samples.model, samples)) {
+  for (const Evaluation& each :
+       evaluations_of(set, reference, false, own.locations(), samples.model, samples)) {
     for (std::size_t p = 0; p < each.width; ++p)
-      effects.at[each.first_column + p] = static_cast<std::size_t>(each.place);
+      effects.at[each.first_column + p] = static_cast<std::size_t>(each.location);
   }
   effects.amounts = [&, reference,
                      columns = as_index(effects.at.size())](const ModelSamples& inputs) -> Eigen::MatrixXd {
@@ -245,7 +247,7 @@ AddedEffects effects_of(const CandidateModels& set, std::size_t reference, const
     Eigen::MatrixXf added = Eigen::MatrixXf::Zero(as_index(all.size()), columns);
     put_candidates(
         chain_of(set.extended.model, inputs.roles), inputs,
-        evaluations_of(set, reference, false, own.places(), inputs, samples), all, Eigen::MatrixXd(),
+        evaluations_of(set, reference, false, own.locations(), inputs, samples), all, Eigen::MatrixXd(),
         [](std::size_t, const State<double>&) {}, added);
     complete(set, false, used, added);
     return -added.unaryExpr([](float amount) { return std::isfinite(amount) ? amount : 0.0F; })
@@ -355,11 +357,11 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
                            double first_part) {
   const std::vector<System> systems = systems_of(model, set, reference);
   const System& own = systems.front();
-  std::shared_ptr<const Reference> held_against = set.references[reference];
-  if (systems.size() > 1) held_against = held_against->with_model(systems.back().model);
-  const std::optional<GpsKind> kind = gps_kind(*held_against);
+  std::shared_ptr<const Reference> compared_with = set.references[reference];
+  if (systems.size() > 1) compared_with = compared_with->with_model(systems.back().model);
+  const std::optional<GpsKind> kind = gps_kind(*compared_with);
   const bool is_wind = kind == GpsKind::wind;  // its residuals contain gusts, as their derivatives do
-  const LinearRows rows(Residuals(extended, own.model, *held_against, mask), own.model, *held_against,
+  const LinearRows rows(Residuals(extended, own.model, *compared_with, mask), own.model, *compared_with,
                         {is_wind ? Inputs::none : Inputs::noise_free, {}, first_part});
   const Residuals& residuals = rows.residuals();
   const double* const start = residuals.parameters().data();
@@ -370,7 +372,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
 
   FlightColumns columns;
   columns.reference = reference;
-  columns.window = held_against->window();
+  columns.window = compared_with->window();
   columns.samples = extended;
   columns.mask = rows.mask();
   columns.exact = residuals.values(start);
@@ -378,8 +380,8 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   for (const System& system : systems) {
     if (is_wind) continue;
     requested.insert(requested.end(), system.free.begin(), system.free.end());
-    for (std::size_t place = system.first_place; place < system.end && !of_neighbours; ++place)
-      requested.push_back(place);
+    for (std::size_t location = system.first_location; location < system.end && !of_neighbours; ++location)
+      requested.push_back(location);
   }
   const Eigen::MatrixXd found = rows.evaluate(used, start, requested);
   columns.given.assign(residuals.size(), nan);
@@ -403,15 +405,15 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
       for (std::size_t k = 0; k < used.size(); ++k)
         columns.base(as_index(used[k]), as_index(first + c)) = static_cast<float>(-found(as_index(k), next));
     }
-    const Eigen::Index places = of_neighbours ? 0 : as_index(system.places().size());
-    const auto at_places = found.middleCols(next, places);
-    next += places;
+    const Eigen::Index locations = of_neighbours ? 0 : as_index(system.locations().size());
+    const auto by_location = found.middleCols(next, locations);
+    next += locations;
     const ModelSamples& inputs = is_own ? rows.inputs().model : rows.inputs().reference;
     const Model& with_all = is_own ? set.extended.model : set.others[reference]->model;
     const std::vector<Evaluation> evaluations =
-        evaluations_of(set, reference, !is_own, system.places(), extended->model, *extended);
+        evaluations_of(set, reference, !is_own, system.locations(), extended->model, *extended);
     put_candidates(
-        chain_of(with_all, inputs.roles), inputs, evaluations, needed, at_places,
+        chain_of(with_all, inputs.roles), inputs, evaluations, needed, by_location,
         [&](std::size_t sample, const State<double>& state) {
           for (auto& [quantity, values] : columns.quantities) {
             if (is_own) values[sample] = state[quantity];
@@ -419,7 +421,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
         },
         columns.candidates);
     if (of_neighbours && !is_wind)
-      sum_over_neighbours(residuals, evaluations, system.first_place, used, needed, columns.candidates);
+      sum_over_neighbours(residuals, evaluations, system.first_location, used, needed, columns.candidates);
   }
   complete(set, systems.size() > 1, used, columns.candidates);
   // With other references first, heights are the climbs of minutes, whose noise is that of any residual.

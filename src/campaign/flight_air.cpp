@@ -81,8 +81,8 @@ void find_heights(const Flight& flight, const ModelDefinition& model, FlightAir&
   air.height_variable = height.values.empty() ? height.without_unit : height.variable;
   const HeightEvidence evidence = height_evidence(flight, height.values, static_pressures_of(flight, model));
   if (evidence.kind == HeightEvidence::Kind::pressure_altitude) {
-    air.notes.push_back(fmt::format("{} is a pressure altitude and no height of GPS: {}", height.variable,
-                                    to_string(evidence)));
+    air.notes.push_back(
+        fmt::format("{} is a pressure altitude, not a GPS height: {}", height.variable, to_string(evidence)));
     air.height_variable.clear();
     height.values.clear();
   }

@@ -30,8 +30,8 @@ constexpr std::array<Size, 5> height_sizes{{{0.05, 1.0}, {0.02, 1.0}, {0.2, 0.7}
 constexpr std::array<double, 3> gust_times{2.0, 8.0, 32.0};  // s
 
 const Size& size_of(GpsKind kind, Eigen::Index k) {
-  const auto place = static_cast<std::size_t>(k);
-  return kind == GpsKind::wind ? wind_sizes[place] : height_sizes[place];
+  const auto position = static_cast<std::size_t>(k);
+  return kind == GpsKind::wind ? wind_sizes[position] : height_sizes[position];
 }
 
 double stays_for(double seconds, double time) { return std::exp(-seconds / time); }

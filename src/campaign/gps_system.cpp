@@ -76,10 +76,10 @@ GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& usual) {
 double thermometer_of(const GpsSystem& system, const std::vector<double>& usual) {
   const Eigen::Index law = as_index(usual.size());
   const Eigen::Index columns = system.rows.cols() - 1;
-  std::vector<Eigen::Index> places(usual.size());
-  std::iota(places.begin(), places.end(), Eigen::Index{0});
-  for (Eigen::Index n = columns - gps_shared_nuisances; n <= columns; ++n) places.push_back(n);
-  const Eigen::MatrixXd rows = system.rows(Eigen::all, places).cast<double>();
+  std::vector<Eigen::Index> indices(usual.size());
+  std::iota(indices.begin(), indices.end(), Eigen::Index{0});
+  for (Eigen::Index n = columns - gps_shared_nuisances; n <= columns; ++n) indices.push_back(n);
+  const Eigen::MatrixXd rows = system.rows(Eigen::all, indices).cast<double>();
   Eigen::MatrixXd products = rows.transpose() * rows;
   for (Eigen::Index k = 0; k < law; ++k) {
     const double deviation = gps_prior_in_typical_sizes * usual[static_cast<std::size_t>(k)];

@@ -11,10 +11,10 @@ std::size_t parameter_count(const Model& model) {
 }
 
 std::optional<std::size_t> first_parameter_of(const ModelDefinition& model, std::string_view effect) {
-  std::size_t place = 0;
+  std::size_t position = 0;
   for (const ModelEffect& each : model.model.effects) {
-    if (each.id == effect) return place;
-    place += each.parameters.size();
+    if (each.id == effect) return position;
+    position += each.parameters.size();
   }
   return std::nullopt;
 }

@@ -62,7 +62,7 @@ ModelDefinition with_effects_of(const ModelDefinition& model, const std::vector<
 }
 
 /// @param model has the effect
-std::size_t place_of(const ModelDefinition& model, const SensorDoubt& doubt) {
+std::size_t position_of(const ModelDefinition& model, const SensorDoubt& doubt) {
   return *first_parameter_of(model, doubt.effect) + doubt.parameter;
 }
 
@@ -87,13 +87,13 @@ ReferenceDoubt::ReferenceDoubt(const ModelDefinition& model, const Reference& re
   if (trusted) return;
   std::vector<NamedDoubt> doubts = own_doubts(model, reference);
   model_ = with_effects_of(model, doubts);
-  for (const NamedDoubt& each : doubts) places_.push_back(place_of(model_, each.doubt));
+  for (const NamedDoubt& each : doubts) indices_.push_back(position_of(model_, each.doubt));
   if (reference.model() != nullptr) {
     const std::vector<NamedDoubt> second = second_doubts(*reference.model(), reference);
     const ModelDefinition system = with_effects_of(*reference.model(), second);
     reference_ = reference.with_model(system);
     for (const NamedDoubt& each : second)
-      places_.push_back(parameter_count(model_.model) + place_of(system, each.doubt));
+      indices_.push_back(parameter_count(model_.model) + position_of(system, each.doubt));
     doubts.insert(doubts.end(), second.begin(), second.end());
   } else {
     reference_ = std::shared_ptr<const Reference>(std::shared_ptr<const Reference>(), &reference);
@@ -118,7 +118,7 @@ Eigen::MatrixXd ReferenceDoubt::columns(const std::shared_ptr<const FlightSample
               all.begin() + static_cast<std::ptrdiff_t>(parameter_count(model_.model)));
   }
   std::vector<double> residual(samples.size());
-  residuals.evaluate(samples.data(), samples.size(), all.data(), places_, residual.data(),
+  residuals.evaluate(samples.data(), samples.size(), all.data(), indices_, residual.data(),
                      derivatives.data());
   return derivatives * sizes_.asDiagonal();
 }

@@ -40,7 +40,7 @@ class ReferenceDoubt {
   std::shared_ptr<const Reference> reference_;
   std::vector<std::string> names_;
   Eigen::VectorXd sizes_;
-  std::vector<std::size_t> places_;  // indices among the parameters of residuals with all these effects
+  std::vector<std::size_t> indices_;  // indices among the parameters of residuals with all these effects
 };
 
 }  // namespace pcor::internal

@@ -68,16 +68,16 @@ constexpr AngleReference other_system{"second system", from_second_system};
 struct AngleSensitivity {
   Flown flown;
   AngleReference reference{};
-  std::vector<double> residual;   ///< residual at the records of the manoeuvre, hPa, minus its mean
-  double swing = 0.0;             ///< standard deviation of the angle, deg
-  double maximum = 0.0;           ///< largest absolute angle, deg
-  Estimated slope{};              ///< slope of the residual, hPa/deg
-  Estimated per_ratio{nan, nan};  ///< slope against the ratio of the radome pressures, hPa; NaN: not recorded
-  Estimated bend{nan, nan};       ///< coefficient of the square of the angle, hPa/deg2; NaN if not fitted
-  double scatter = 0.0;           ///< scatter of the residual about the fit, hPa
+  std::vector<double> residual;  ///< residual at the records of the manoeuvre, hPa, minus its mean
+  double swing = 0.0;            ///< standard deviation of the angle, deg
+  double maximum = 0.0;          ///< largest absolute angle, deg
+  Estimate slope{};              ///< slope of the residual, hPa/deg
+  Estimate per_ratio{nan, nan};  ///< slope against the ratio of the radome pressures, hPa; NaN: not recorded
+  Estimate bend{nan, nan};       ///< coefficient of the square of the angle, hPa/deg2; NaN if not fitted
+  double scatter = 0.0;          ///< scatter of the residual about the fit, hPa
 
   /// Change of the residual from one end of the swing to the other, hPa.
-  Estimated across() const { return ends_of_sine * swing * slope; }
+  Estimate across() const { return ends_of_sine * swing * slope; }
 };
 
 /// Check of all manoeuvres of one kind.
@@ -127,8 +127,8 @@ AngleSensitivity sensitivity_of(const Flown& flown, const AngleReference& refere
 }
 
 /// Combined result of all manoeuvres.
-Estimated all_of(const std::vector<AngleSensitivity>& manoeuvres, Estimated AngleSensitivity::*number) {
-  std::vector<Estimated> estimates;
+Estimate all_of(const std::vector<AngleSensitivity>& manoeuvres, Estimate AngleSensitivity::*number) {
+  std::vector<Estimate> estimates;
   for (const AngleSensitivity& each : manoeuvres) estimates.push_back(each.*number);
   return combined(estimates);
 }
@@ -192,16 +192,16 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   }
   if (manoeuvres.empty()) return not_flown(flights, check.regime, result.notes);
   const AngleSensitivity& first = manoeuvres.front();
-  const Estimated slope = all_of(manoeuvres, &AngleSensitivity::slope);
-  const Estimated bend = all_of(manoeuvres, &AngleSensitivity::bend);
+  const Estimate slope = all_of(manoeuvres, &AngleSensitivity::slope);
+  const Estimate bend = all_of(manoeuvres, &AngleSensitivity::bend);
   std::vector<double> swings;
   std::vector<double> squares;
   for (const AngleSensitivity& each : manoeuvres) {
     swings.push_back(ends_of_sine * each.swing);
     squares.push_back(each.maximum * each.maximum);
   }
-  const Estimated across = mean_of(swings) * slope;
-  const Estimated bent = mean_of(squares) * bend;
+  const Estimate across = mean_of(swings) * slope;
+  const Estimate bent = mean_of(squares) * bend;
   std::vector<TestStatistic> numbers{judged(across, min_swing_change, "hPa", "change across the swing")};
   result.finding = fmt::format(
       "Over {} {}{} the residual against {} changes by {} of {}, {} from one end of the swing to the other.",
@@ -225,7 +225,7 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   result.numbers = {{"manoeuvres", static_cast<double>(manoeuvres.size())}};
   add_number("slope", "_hpa_deg", slope, result);
   add_number("across", "_hpa", across, result);
-  if (const Estimated ratio = all_of(manoeuvres, &AngleSensitivity::per_ratio); std::isfinite(ratio.value)) {
+  if (const Estimate ratio = all_of(manoeuvres, &AngleSensitivity::per_ratio); std::isfinite(ratio.value)) {
     add_number("per_ratio", "_hpa", ratio, result);
   }
   if (check.with_square) {

@@ -81,8 +81,8 @@ constexpr Figure figures[] = {
     {"yaw", Figure::Kind::against, "Residual against the sideslip in yaw manoeuvres", angle_caption, "", "",
      "residual", "angle", 3.0},
     {"layers", Figure::Kind::bars, "Correction required by the thermometer",
-     "T_p - T_m of every layer. Errors are shared: layers of one climb have an end in common, and layers of "
-     "one flight the slope of the isobars.",
+     "T_p - T_m of every layer. Errors are correlated: neighbouring layers of a climb share one end, "
+     "and layers of a flight share the slope of the isobars.",
      "T_p - T_m", "K"},
     {"layers", Figure::Kind::over_time, "Temperature of the layers", "One line over each layer.",
      "temperature", "", "hydrostatic", "measured"},

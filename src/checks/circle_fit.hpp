@@ -8,10 +8,10 @@ namespace pcor::internal {
 
 /// Result of one circle.
 struct CircleFit {
-  Estimated east_wind{};        ///< m/s, westerly positive
-  Estimated north_wind{};       ///< m/s, southerly positive
-  Estimated airspeed_error{};   ///< error of the true airspeed, too high positive, m/s
-  Estimated heading_error{};    ///< error of the heading, clockwise positive, minus the sideslip, deg
+  Estimate east_wind{};         ///< m/s, westerly positive
+  Estimate north_wind{};        ///< m/s, southerly positive
+  Estimate airspeed_error{};    ///< error of the true airspeed, too high positive, m/s
+  Estimate heading_error{};     ///< error of the heading, clockwise positive, minus the sideslip, deg
   double rms = 0.0;             ///< rms residual of the ground velocity, m/s
   double turned = 0.0;          ///< heading change, deg, to starboard positive
   std::vector<double> along{};  ///< residual of the ground velocity along the heading, m/s

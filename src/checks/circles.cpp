@@ -57,7 +57,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
         flown, fit_circle(flown.of(air.airspeed), flown.of(air.samples->motion.heading),
                           flown.of(air.east_speed), flown.of(air.north_speed), flown.time(), flown.step())};
     if (!std::isfinite(circle.fit.airspeed_error.value)) {
-      result.notes.push_back(flown.location() + ": the circle has too few values");
+      result.notes.push_back(flown.location() + ": too few values in the circle");
     } else if (std::abs(circle.fit.turned) < min_turn) {
       result.notes.push_back(fmt::format("{}: usable turn of {:.0f} deg, at least {:.0f} deg required",
                                          flown.location(), std::abs(circle.fit.turned), min_turn));
@@ -66,14 +66,14 @@ CheckResult check_circles(const CheckedFlights& flights) {
     }
   }
   if (circles.empty()) return not_flown(flights, Regime::circle, result.notes);
-  std::vector<Estimated> errors;
+  std::vector<Estimate> errors;
   for (const Circle& circle : circles) {
-    const Estimated& of_fit = circle.fit.airspeed_error;
+    const Estimate& of_fit = circle.fit.airspeed_error;
     errors.push_back({of_fit.value, std::hypot(of_fit.error, wind_drift_of_circle)});
     result.bars.push_back({circle.flown.label() + (circle.fit.turned < 0.0 ? " left" : " right"),
                            errors.back().value, errors.back().error});
   }
-  const Estimated error = combined(errors);
+  const Estimate error = combined(errors);
   const auto to_port = std::count_if(circles.begin(), circles.end(),
                                      [](const Circle& circle) { return circle.fit.turned < 0.0; });
   std::vector<double> factors;
@@ -82,7 +82,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
     factors.push_back(pressure_per_airspeed(circle.flown.mean(air.pressure), circle.flown.mean(air.mach),
                                             circle.flown.mean(air.airspeed)));
   }
-  const Estimated hpa = mean_of(factors) * error;
+  const Estimate hpa = mean_of(factors) * error;
   decide({judged(error, min_circle_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "

@@ -111,11 +111,11 @@ double speed_at(const std::vector<double>& speed, std::size_t i) {
 
 /// Deviation of the GPS height from the height implied by pressure and temperature, within five minutes.
 struct Piece {
-  double squares = 0.0;     ///< sum of squares after the fit of a line in time and one in height, m2
-  double freedom = 0.0;     ///< degrees of freedom
-  double gradient = 0.0;    ///< slope of the line in time, m per 100 km of distance
-  Estimated lag{nan, nan};  ///< lag of the pressure relative to the height, s; NaN if the climb rate hardly
-                            ///< changes
+  double squares = 0.0;    ///< sum of squares after the fit of a line in time and one in height, m2
+  double freedom = 0.0;    ///< degrees of freedom
+  double gradient = 0.0;   ///< slope of the line in time, m per 100 km of distance
+  Estimate lag{nan, nan};  ///< lag of the pressure relative to the height, s; NaN if the climb rate hardly
+                           ///< changes
 };
 
 /// The line in time is the slope of the pressure surfaces, the line in height an error of the thermometer,
@@ -167,9 +167,9 @@ std::vector<Piece> look_at_pieces(const FlightAir& air, const std::vector<double
 /// errors of several kelvins, with opposite signs.
 void note_lag(const std::vector<Piece>& pieces, Notes& notes) {
   constexpr double significant = 4.0;  // standard errors
-  std::vector<Estimated> lags;
+  std::vector<Estimate> lags;
   for (const Piece& piece : pieces) lags.push_back(piece.lag);
-  const Estimated lag = combined(lags);
+  const Estimate lag = combined(lags);
   if (!(std::abs(lag.value) > std::max(lag_that_matters, significant * lag.error))) return;
   notes.push_back(
       fmt::format("the static pressure is {:.1f} +- {:.1f} s {} the GPS height during changes of the climb "
@@ -195,13 +195,13 @@ LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<P
   } else if (all.empty()) {
     uncertainty.height_noise = usual_height_noise;
     notes.push_back(fmt::format(
-        "no stretch of {:.0f} s is available to estimate the error of the GPS height; {} m is assumed",
+        "no segment of {:.0f} s is available to estimate the error of the GPS height; {} m is assumed",
         piece_time, usual_height_noise));
   } else {
     uncertainty.height_noise = std::max(min_height_noise, std::sqrt(squares / freedom));
     notes.push_back(
-        fmt::format("the error of the GPS height is estimated as {:.2f} m: rms deviation from the height of "
-                    "the pressure within {} stretches of {:.0f} s",
+        fmt::format("the error of the GPS height is estimated as {:.2f} m: rms deviation from the pressure "
+                    "height within {} segments of {:.0f} s",
                     uncertainty.height_noise, all.size(), piece_time));
   }
   note_lag(all, notes);
@@ -281,8 +281,8 @@ class Causes {
 
   explicit Causes(std::size_t layers) : layers_(static_cast<Eigen::Index>(layers)) {}
 
-  void add(Kind kind, std::size_t flight, long place, std::size_t layer, double error) {
-    const auto cause = causes_.try_emplace(Key(kind, flight, place), Eigen::VectorXd::Zero(layers_)).first;
+  void add(Kind kind, std::size_t flight, long position, std::size_t layer, double error) {
+    const auto cause = causes_.try_emplace(Key(kind, flight, position), Eigen::VectorXd::Zero(layers_)).first;
     cause->second(static_cast<Eigen::Index>(layer)) += error;
   }
 
@@ -311,10 +311,10 @@ Eigen::MatrixXd covariance_of(const std::vector<FlightLayers>& flights, std::siz
     for (const Layer& layer : flights[flight].layers) {
       const double metre = per_metre(layer);
       const auto end_point = [&](std::size_t record, double height, double pressure, double sign) {
-        const auto place = static_cast<long>(record);
-        causes.add(Kind::height, flight, place, number, sign * metre * uncertainty.height_noise);
+        const auto position = static_cast<long>(record);
+        causes.add(Kind::height, flight, position, number, sign * metre * uncertainty.height_noise);
         const double hectopascal = sign * per_pressure(layer, pressure);
-        causes.add(Kind::pressure, flight, place, number, hectopascal * uncertainty.pressure_noise);
+        causes.add(Kind::pressure, flight, position, number, hectopascal * uncertainty.pressure_noise);
         causes.add(Kind::bias, 0, 0, number, hectopascal * uncertainty.static_bias);
         causes.add(Kind::change, 0, std::lround(height / band), number,
                    hectopascal * uncertainty.static_change);
@@ -395,7 +395,7 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
   }
   if (impossible > 0)
     found.notes.push_back(
-        fmt::format("in {} layers the pressure rises with height; they are not used", impossible));
+        fmt::format("{} layers were not used, because their pressure rises with height", impossible));
   return found;
 }
 

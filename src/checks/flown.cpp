@@ -11,14 +11,14 @@
 namespace pcor::internal {
 std::vector<double> Flown::time() const {
   std::vector<double> times;
-  for (const std::size_t place : places) times.push_back(flight->air.time()[place]);
+  for (const std::size_t record : records) times.push_back(flight->air.time()[record]);
   return times;
 }
 
 std::vector<double> Flown::of(const std::vector<double>& series) const {
-  std::vector<double> values(places.size(), nan);
+  std::vector<double> values(records.size(), nan);
   if (series.empty()) return values;
-  for (std::size_t i = 0; i < places.size(); ++i) values[i] = series[places[i]];
+  for (std::size_t i = 0; i < records.size(); ++i) values[i] = series[records[i]];
   return values;
 }
 
@@ -40,10 +40,10 @@ std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime) {
       Flown flown{&flight, interval, {}};
       const auto first = std::lower_bound(time.begin(), time.end(), interval.begin);
       for (auto at = first; at != time.end() && *at < interval.end; ++at) {
-        const auto place = static_cast<std::size_t>(at - time.begin());
-        if (flight.air.flying[place]) flown.places.push_back(place);
+        const auto record = static_cast<std::size_t>(at - time.begin());
+        if (flight.air.flying[record]) flown.records.push_back(record);
       }
-      if (!flown.places.empty()) all.push_back(std::move(flown));
+      if (!flown.records.empty()) all.push_back(std::move(flown));
     }
   }
   return all;

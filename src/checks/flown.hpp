@@ -16,7 +16,7 @@ namespace pcor::internal {
 struct Flown {
   const CheckedFlight* flight = nullptr;
   Interval interval;
-  std::vector<std::size_t> places;  ///< airborne records that are not excluded
+  std::vector<std::size_t> records;  ///< airborne records that are not excluded
 
   /// Times of the samples, s since 1970 UTC.
   std::vector<double> time() const;
@@ -67,7 +67,7 @@ ReportColumn column_in(const CheckedFlights& flights, std::string name, std::str
                      for (const Manoeuvre& each : all) {
                        if (each.flown.flight != &flight) continue;
                        const std::vector<double> here = series(each);
-                       for (std::size_t i = 0; i < here.size(); ++i) values[each.flown.places[i]] = here[i];
+                       for (std::size_t i = 0; i < here.size(); ++i) values[each.flown.records[i]] = here[i];
                      }
                      return values;
                    });

@@ -171,13 +171,13 @@ ReportTable cloud_table(const CheckedFlights& flights, double outside) {
                     {}};
   for (const Flown& cloud : all_flown(flights, Regime::cloud)) {
     const FlightAir& air = cloud.flight->air;
-    if (!air.laser || air.temperature.empty() || cloud.places.size() < min_in_cloud) continue;
+    if (!air.laser || air.temperature.empty() || cloud.records.size() < min_in_cloud) continue;
     const std::vector<double> values = cloud.of(difference_of(air));
     const auto missing = static_cast<double>(std::count_if(values.begin(), values.end(),
                                                            [](double x) { return std::isnan(x); })) /
                          static_cast<double>(values.size());
     const LeastSquares mean = mean_of(values, cloud.time(), cloud.step());
-    const Estimated change{mean.coefficients[0].value - outside, mean.coefficients[0].error};
+    const Estimate change{mean.coefficients[0].value - outside, mean.coefficients[0].error};
     std::string remark;
     if (missing > suspect_share)
       remark = "laser mostly missing: an iced window";
@@ -205,15 +205,16 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
                                      [](const CheckedFlight& f) { return f.air.laser.has_value(); });
   if (!has_laser) {
     return not_run(
-        "no flight has a laser airspeed that a model names (-m; [variables] lams_airspeed, with "
-        "attack and sideslip)");
+        "no flight has a laser airspeed; give a model (-m) with lams_airspeed, "
+        "attack and sideslip in [variables]");
   }
   const bool has_thermometer = std::any_of(flights.begin(), flights.end(), [](const CheckedFlight& f) {
     return f.air.laser && !f.air.temperature.empty();
   });
   if (!has_thermometer)
     return not_run(
-        "no thermometer is known to compare with the laser; a model names it as recovery_temperature");
+        "no thermometer is known to compare with the laser; give a model (-m) "
+        "with recovery_temperature in [variables]");
   const Differences all = all_differences(flights);
   const auto clear = [&](std::size_t i) { return !all.in_cloud[i]; };
   const Part outside = part_of(all, "clear air", clear);
@@ -222,7 +223,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
     return not_run("the laser and the thermometer have less than a minute out of cloud together");
 
   CheckResult result;
-  const Estimated offset = outside.fit.coefficients[0];
+  const Estimate offset = outside.fit.coefficients[0];
   decide({judged(offset, min_temperature_difference, "K", "laser minus thermometer")}, result);
   const std::vector<double> clear_values = location(all, clear);
   const double noise =
@@ -236,11 +237,11 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
                                                {"noise_k", noise},
                                                {"samples", static_cast<double>(outside.fit.samples)}});
   if (inside.fit.samples >= min_samples) {
-    const Estimated in_cloud_offset = inside.fit.coefficients[0];
+    const Estimate in_cloud_offset = inside.fit.coefficients[0];
     result.finding += fmt::format("; in cloud it is {}", with_error(in_cloud_offset, "K"));
     add_number("cloud_offset", "_k", in_cloud_offset, result);
-    const Estimated change{in_cloud_offset.value - offset.value,
-                           std::hypot(in_cloud_offset.error, offset.error)};
+    const Estimate change{in_cloud_offset.value - offset.value,
+                          std::hypot(in_cloud_offset.error, offset.error)};
     if (judge(change, min_temperature_difference) == CheckVerdict::inconsistent) {
       result.notes.emplace_back(
           "the difference changes in cloud: the thermometer is wet (reads low), or the laser's window is "

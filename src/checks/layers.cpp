@@ -22,7 +22,8 @@ constexpr double max_useful_error = 1.0;
 /// Reason why a flight has no layers; empty if it has layers.
 std::string trouble_with(const FlightAir& air, const FlightLayers& found) {
   if (air.temperature.empty())
-    return "no thermometer is known; a model names it as recovery_temperature or ambient_temperature (-m)";
+    return "no thermometer is known; give a model (-m) with recovery_temperature "
+           "or ambient_temperature in [variables]";
   if (std::string trouble = height_problem(air); !trouble.empty()) return trouble;
   if (!found.layers.empty()) return "";
   const LayerOptions options;
@@ -43,8 +44,8 @@ void show_layers(const std::vector<FlightLayers>& flights, CheckResult& result) 
       {}};
   ReportTable errors{
       "Sources of the error of a layer",
-      "Standard errors of T_p, K. Noise counts at the two ends of a layer alone, because the steps between "
-      "them cancel, and does not fall with the number of samples.",
+      "Standard errors of T_p, K. Noise affects only the two ends of a layer, because the steps between "
+      "the ends cancel; it does not decrease with the number of samples.",
       {"flight", "start (UTC)", "GPS height", "pressure noise", "delta-p, constant", "delta-p, changing",
        "isobars"},
       {}};
@@ -120,9 +121,9 @@ CheckResult check_layers(const CheckedFlights& flights) {
   const double range = warmest - coldest;
   const std::string span =
       fmt::format("{:.0f} to {:.0f} degC", coldest - constants::ice_point, warmest - constants::ice_point);
-  const Estimated change{fit.c1 * range, fit.c1_error * range};
-  const Estimated at_freezing{fit.correction_at(constants::ice_point),
-                              fit.correction_error_at(constants::ice_point)};
+  const Estimate change{fit.c1 * range, fit.c1_error * range};
+  const Estimate at_freezing{fit.correction_at(constants::ice_point),
+                             fit.correction_error_at(constants::ice_point)};
   if (std::isnan(fit.c1)) {
     result.finding += fmt::format(
         "; the layers are too few or too similar ({}) to determine a slope with temperature.", span);
@@ -130,7 +131,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
     // An uncertain slope leaves the verdict to the mean.
     TestStatistic over_range = judged(change, min_thermometer_error, "K", "change from " + span);
     if (over_range.verdict == CheckVerdict::inconsistent) numbers.push_back(std::move(over_range));
-    const Estimated slope{fit.c1, fit.c1_error};
+    const Estimate slope{fit.c1, fit.c1_error};
     result.finding += at_freezing.error > max_useful_error
                           ? fmt::format("; its slope from {} is undetermined ({} per degree).", span,
                                         with_error(slope, "K", 3))

@@ -7,8 +7,8 @@ namespace pcor::internal {
 
 /// Means over one leg of a reverse heading.
 struct LegMean {
-  Estimated tail_wind{};  ///< UXW, m/s
-  double scatter = 0.0;   ///< scatter of UXW, m/s
+  Estimate tail_wind{};  ///< UXW, m/s
+  double scatter = 0.0;  ///< scatter of UXW, m/s
   /// Ground velocity to starboard of the nose, m/s, caused by wind and sideslip; NaN: not known.
   double cross_speed = nan;
   double heading = 0.0;   ///< deg
@@ -20,7 +20,7 @@ struct LegMean {
 
 /// Result of a pair of legs. Errors apply to the means of the legs, without changes of the wind between them.
 struct LegPair {
-  Estimated sum{};  ///< sum of the tail winds, m/s: the differences in the memo's table
+  Estimate sum{};  ///< sum of the tail winds, m/s: the differences in the memo's table
   /// Deviation of the headings from opposite, deg, from -180 to 180.
   double heading_error = 0.0;
   /// Part of the sum caused by the wind because the headings are not opposite, m/s; 0 if the cross speeds are
@@ -28,10 +28,10 @@ struct LegPair {
   double heading_share = 0.0;
   double pressure_per_airspeed = 0.0;     ///< hPa/(m/s), see the function pressure_per_airspeed
   double temperature_per_airspeed = 0.0;  ///< warming for 1 m/s more airspeed, K/(m/s): 2 T/v
-  Estimated airspeed_error{};             ///< error of the true airspeed, too high positive, m/s: -(sum -
+  Estimate airspeed_error{};              ///< error of the true airspeed, too high positive, m/s: -(sum -
                                           ///< share)/2
-  Estimated pressure_error{};             ///< error of delta-p alone that would cause it, hPa
-  Estimated temperature_error{};          ///< error of the ambient temperature alone that would cause it, K
+  Estimate pressure_error{};              ///< error of delta-p alone that would cause it, hPa
+  Estimate temperature_error{};           ///< error of the ambient temperature alone that would cause it, K
 };
 
 /// Increase of delta-p that raises the true airspeed by 1 m/s, hPa/(m/s):

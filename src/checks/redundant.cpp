@@ -139,7 +139,7 @@ void add_results(const CheckedFlights& flights, const std::string& check, const 
   result.numbers.emplace_back("samples", static_cast<double>(fit.samples));
   if (std::any_of(flights.begin(), flights.end(), with_avionics)) {
     result.notes.push_back(fmt::format(
-        "The avionics smooth their pressures; samples with a pressure change above {} hPa/s are excluded",
+        "The avionics smooth their pressures, so samples with a pressure change above {} hPa/s are excluded",
         fastest_of_avionics));
   }
   result.tables = {table_of(fit, std::move(table))};

@@ -19,9 +19,9 @@ struct Redundant {
 struct RedundantFit {
   LineFit ordinary{};       ///< second on first: all noise in the second
   LineFit orthogonal{};     ///< equal noise in both
-  Estimated difference{};   ///< mean of second minus first, hPa
+  Estimate difference{};    ///< mean of second minus first, hPa
   double scatter = 0.0;     ///< scatter of the difference, hPa
-  Estimated across{};       ///< change of the difference from the minimum to the maximum pressure, hPa
+  Estimate across{};        ///< change of the difference from the minimum to the maximum pressure, hPa
   std::size_t samples = 0;  ///< number of samples used
 };
 

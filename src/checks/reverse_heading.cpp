@@ -102,7 +102,7 @@ std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights, Not
 ///
 ///     s^2 = (n0 assumed^2 + sum (value - mean)^2)/(n0 + n - 1),  error = s/sqrt(n)
 struct Mean {
-  Estimated airspeed{};
+  Estimate airspeed{};
   double from_assumption = 0.0;  ///< error from the assumed change of the wind alone
   double from_scatter = 0.0;     ///< error from the scatter alone; NaN for fewer than three pairs
 };
@@ -113,7 +113,7 @@ Mean mean_over(const std::vector<Pair>& pairs) {
   double squares = 0.0;
   std::vector<double> values;
   for (const Pair& pair : pairs) {
-    const Estimated& each = pair.result.airspeed_error;
+    const Estimate& each = pair.result.airspeed_error;
     values.push_back(each.value);
     squares += each.error * each.error + between_legs * between_legs;
   }
@@ -213,14 +213,14 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   }
   if (pairs.empty()) return not_flown(flights, Regime::reverse_heading, result.notes);
   const Mean mean = mean_over(pairs);
-  const Estimated& error = mean.airspeed;
+  const Estimate& error = mean.airspeed;
   const auto as_other = [&](double LegPair::*factor) {
     std::vector<double> factors;
     for (const Pair& pair : pairs) factors.push_back(pair.result.*factor);
     return mean_of(factors) * error;
   };
-  const Estimated hpa = as_other(&LegPair::pressure_per_airspeed);
-  const Estimated kelvin = as_other(&LegPair::temperature_per_airspeed);
+  const Estimate hpa = as_other(&LegPair::pressure_per_airspeed);
+  const Estimate kelvin = as_other(&LegPair::temperature_per_airspeed);
   decide({judged(error, min_airspeed_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "Over {} pair{} the tail winds of both legs add up to {} instead of zero: the true airspeed is too {} "
@@ -241,11 +241,10 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   add_number("delta_p_error", "_hpa", hpa, result);
   add_number("temperature_error", "_k", kelvin, result);
   if (const std::vector<Pair> lasers = with_laser(pairs); !lasers.empty()) {
-    const Estimated laser = mean_over(lasers).airspeed;
+    const Estimate laser = mean_over(lasers).airspeed;
     add_number("laser_airspeed_error", "_m_s", laser, result);
     result.notes.push_back(
-        "With the airspeed of the laser, equivalent to a correction sample by sample with LAMS, the airspeed "
-        "is off by " +
+        "Error of the airspeed from the laser, equivalent to a correction of each sample with LAMS: " +
         with_error(laser, "m/s"));
   }
   if (pairs.size() < min_for_scatter)
@@ -256,7 +255,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   std::vector<Leg> legs;
   for (const Pair& pair : pairs) {
     legs.insert(legs.end(), {pair.first, pair.second});
-    const Estimated& of_pair = pair.result.airspeed_error;
+    const Estimate& of_pair = pair.result.airspeed_error;
     result.bars.push_back(
         {pair.first.flown.label(), of_pair.value, std::hypot(of_pair.error, 0.5 * change_of_wind)});
   }

@@ -92,7 +92,7 @@ Spectrum spectrum_of(const CheckedFlights& flights, const Source& source) {
 
 /// Slope of log power over log frequency in the last two octaves, from single segments: their scatter gives
 /// its error. (Segments overlap by half, but are almost independent through Hann's window.)
-Estimated fall_of(const Spectrum& spectrum) {
+Estimate fall_of(const Spectrum& spectrum) {
   std::vector<double> slopes;
   for (const std::vector<double>& each : spectrum.periodograms) {
     std::vector<double> x;
@@ -111,7 +111,7 @@ Estimated fall_of(const Spectrum& spectrum) {
   return {mean_of(slopes), standard_deviation(slopes) / std::sqrt(count)};
 }
 
-std::string in_words(const Estimated& fall) {
+std::string in_words(const Estimate& fall) {
   if (fall.value - margin * fall.error > flattest_fall)
     return "the spectrum flattens towards a floor of noise or resolution";
   if (fall.value + margin * fall.error < flattest_fall)
@@ -149,7 +149,7 @@ std::vector<Octave> octaves_of(const Spectrum& spectrum) {
 }
 
 /// Rms, hPa, of white noise with the density of the highest octave at all frequencies.
-Estimated floor_of(const Octave& highest) {
+Estimate floor_of(const Octave& highest) {
   // The octave is the upper half of all frequencies.
   return {std::sqrt(2.0) * highest.rms, std::sqrt(2.0) * highest.error};
 }
@@ -192,13 +192,13 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   }
   if (spectrum.periodograms.size() < min_segments) {
     return not_run(
-        fmt::format("no flight has a laser, a second static system or a GPS height over {} "
-                    "stretches of {} samples without a gap, in the air",
+        fmt::format("no flight has a laser, a second static system or a GPS height in the air over {} "
+                    "segments of {} samples without a gap",
                     min_segments, segment_length));
   }
   const std::vector<Octave> octaves = octaves_of(spectrum);
-  const Estimated fall = fall_of(spectrum);
-  const Estimated floor = floor_of(octaves.front());
+  const Estimate fall = fall_of(spectrum);
+  const Estimate floor = floor_of(octaves.front());
   const double per_speed = pressure_per_speed(flights);
 
   CheckResult result;

@@ -24,16 +24,16 @@ constexpr double drift_in_scatter = 1.0;
 
 /// Dependence of a series on the airspeed in a run.
 struct Trend {
-  double scatter = 0.0;        ///< standard deviation
-  double range = 0.0;          ///< maximum minus minimum
-  Estimated slope{};           ///< slope per m/s of airspeed, fitted with a drift in time
-  Estimated pressure_error{};  ///< error of delta-p at the fast end if correct at the slow end, hPa
+  double scatter = 0.0;       ///< standard deviation
+  double range = 0.0;         ///< maximum minus minimum
+  Estimate slope{};           ///< slope per m/s of airspeed, fitted with a drift in time
+  Estimate pressure_error{};  ///< error of delta-p at the fast end if correct at the slow end, hPa
 };
 
 struct Run {
   Flown flown;
   double airspeed_range = 0.0;  ///< m/s
-  Estimated dynamic_slope{};    ///< slope of DVALUE, m per hPa of dynamic pressure
+  Estimate dynamic_slope{};     ///< slope of DVALUE, m per hPa of dynamic pressure
   Trend height;                 ///< DVALUE, m
   Trend wind;                   ///< UXW, m/s
 };
@@ -84,16 +84,16 @@ Run run_of(const Flown& flown) {
 
 bool known(const Trend& trend) { return std::isfinite(trend.slope.value); }
 
-Estimated combined_error(const std::vector<Run>& runs, Trend Run::*trend) {
-  std::vector<Estimated> errors;
+Estimate combined_error(const std::vector<Run>& runs, Trend Run::*trend) {
+  std::vector<Estimate> errors;
   for (const Run& run : runs) errors.push_back((run.*trend).pressure_error);
   return combined(errors);
 }
 
 /// Height and wind are blind to different errors, so one inconsistent result is enough; otherwise the more
 /// accurate one decides.
-Estimated decisive(const Estimated& height, const Estimated& wind) {
-  for (const Estimated& each : {height, wind}) {
+Estimate decisive(const Estimate& height, const Estimate& wind) {
+  for (const Estimate& each : {height, wind}) {
     if (judge(each, min_run_change) == CheckVerdict::inconsistent) return each;
   }
   return !(height.error <= wind.error) && std::isfinite(wind.error) ? wind : height;
@@ -143,11 +143,11 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
                                wind.empty() ? "" : " (no flight " + wind + ")"));
   }
   CheckResult result;
-  const Estimated height = combined_error(runs, &Run::height);
-  const Estimated wind = combined_error(runs, &Run::wind);
+  const Estimate height = combined_error(runs, &Run::height);
+  const Estimate wind = combined_error(runs, &Run::wind);
   const bool has_height = std::isfinite(height.value);
   const bool has_wind = std::isfinite(wind.value);
-  const Estimated across = decisive(height, wind);
+  const Estimate across = decisive(height, wind);
   decide({judged(across, min_run_change, "hPa", "change from slow to fast")}, result);
   const auto average = [&](Trend Run::*trend, double Trend::*number) {
     std::vector<double> values;

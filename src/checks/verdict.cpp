@@ -42,7 +42,7 @@ std::string reason_of(const TestStatistic& key) {
 
 }  // namespace
 
-CheckVerdict judge(const Estimated& number, double size) {
+CheckVerdict judge(const Estimate& number, double size) {
   const double magnitude = std::abs(number.value);
   if (magnitude > size && magnitude > significant * number.error) return CheckVerdict::inconsistent;
   if (magnitude + likely * number.error <= size) return CheckVerdict::consistent;
@@ -56,7 +56,7 @@ CheckVerdict together(CheckVerdict a, CheckVerdict b) {
   return CheckVerdict::consistent;
 }
 
-TestStatistic judged(const Estimated& number, double size, std::string unit, std::string what) {
+TestStatistic judged(const Estimate& number, double size, std::string unit, std::string what) {
   return {number.value, number.error, size, std::move(unit), std::move(what), judge(number, size)};
 }
 
@@ -79,13 +79,13 @@ void withhold(const std::string& reason, CheckResult& result) {
   result.decided += ", but " + reason;
 }
 
-void add_number(const std::string& name, const std::string& unit, const Estimated& number,
+void add_number(const std::string& name, const std::string& unit, const Estimate& number,
                 CheckResult& result) {
   result.numbers.emplace_back(name + unit, number.value);
   result.numbers.emplace_back(name + "_stderr" + unit, number.error);
 }
 
-std::string with_error(const Estimated& number, const std::string& unit, int digits) {
+std::string with_error(const Estimate& number, const std::string& unit, int digits) {
   return fmt::format("{:+.{}f} +- {:.{}f}{}{}", number.value, digits, number.error, digits,
                      unit.empty() ? "" : " ", unit);
 }

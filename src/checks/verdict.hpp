@@ -12,13 +12,13 @@ namespace pcor::internal {
 ///
 /// Inconsistent: larger than `size` and than three standard errors. Consistent: not larger than `size`, and
 /// more than two standard errors below it. Otherwise, and for NaN, inconclusive.
-CheckVerdict judge(const Estimated& number, double size);
+CheckVerdict judge(const Estimate& number, double size);
 
 /// Combined verdict: inconsistent if either is, otherwise inconclusive if either is.
 CheckVerdict together(CheckVerdict a, CheckVerdict b);
 
 /// Number with its verdict, unit and description.
-TestStatistic judged(const Estimated& number, double size, std::string unit, std::string what);
+TestStatistic judged(const Estimate& number, double size, std::string unit, std::string what);
 
 /// Sets the verdict of a check that was run from several numbers. The deciding number, with the largest ratio
 /// to its tolerance, becomes the key number, and `decided` states the reason.
@@ -29,10 +29,10 @@ void withhold(const std::string& reason, CheckResult& result);
 
 /// Adds a number and its standard error: "offset_k" and "offset_stderr_k" for the name "offset" and the unit
 /// "_k".
-void add_number(const std::string& name, const std::string& unit, const Estimated& number,
+void add_number(const std::string& name, const std::string& unit, const Estimate& number,
                 CheckResult& result);
 
 /// Text like "+0.31 +- 0.04 hPa".
-std::string with_error(const Estimated& number, const std::string& unit, int digits = 2);
+std::string with_error(const Estimate& number, const std::string& unit, int digits = 2);
 
 }  // namespace pcor::internal

@@ -49,23 +49,23 @@ NoiseFloor min_noise(const FlightResiduals& flight) {
 
 /// Compared model and one of its references.
 struct Pairing {
-  const ComparedModel& contender;
+  const ComparedModel& compared;
   const Reference& reference;
-  std::size_t rank = 0;  // place of the model by name
+  std::size_t rank = 0;  // of the model by name
 };
 
-/// All contenders that have one reference, in the order in which they are given.
+/// All models that have one reference, in the order in which they are given.
 struct Field {
   std::string name;        // name of the reference
   std::size_t number = 0;  // index among the references with this name of one model
   std::vector<Pairing> pairings{};
 };
 
-/// The places of the contenders by name, so that the order in which they are given decides nothing.
-std::vector<std::size_t> by_name(const std::vector<ComparedModel>& contenders) {
+/// Ranks the models by name, so that results do not depend on the order of the options.
+std::vector<std::size_t> by_name(const std::vector<ComparedModel>& models) {
   std::vector<std::pair<std::string, std::string>> keys;
-  for (const ComparedModel& each : contenders) keys.emplace_back(each.name, write_model(each.model));
-  std::vector<std::size_t> order(contenders.size());
+  for (const ComparedModel& each : models) keys.emplace_back(each.name, write_model(each.model));
+  std::vector<std::size_t> order(models.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return keys[a] < keys[b]; });
@@ -74,14 +74,14 @@ std::vector<std::size_t> by_name(const std::vector<ComparedModel>& contenders) {
 
 /// Calls `visit` for each reference with its name, its number among equal names, and itself.
 template <class Visit>
-void each_reference(const ComparedModel& contender, const Visit& visit) {
+void each_reference(const ComparedModel& compared, const Visit& visit) {
   std::map<std::string, std::size_t> met;
-  for (const std::shared_ptr<const Reference>& reference : contender.references)
+  for (const std::shared_ptr<const Reference>& reference : compared.references)
     visit(reference->name(), met[reference->name()]++, *reference);
 }
 
-/// The contenders by reference, those with the first reference of the first contender by name in front.
-std::vector<Field> fields_of(const std::vector<ComparedModel>& contenders) {
+/// Models by reference; first those with the first reference of the first model by name.
+std::vector<Field> fields_of(const std::vector<ComparedModel>& models) {
   std::vector<Field> fields;
   const auto field_of = [&fields](const std::string& name, std::size_t number) -> Field& {
     const auto field = std::find_if(fields.begin(), fields.end(), [&](const Field& each) {
@@ -89,18 +89,18 @@ std::vector<Field> fields_of(const std::vector<ComparedModel>& contenders) {
     });
     return field == fields.end() ? fields.emplace_back(Field{name, number}) : *field;
   };
-  const std::vector<std::size_t> order = by_name(contenders);
-  std::vector<std::size_t> ranks(contenders.size());
+  const std::vector<std::size_t> order = by_name(models);
+  std::vector<std::size_t> ranks(models.size());
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
     ranks[order[rank]] = rank;
-    each_reference(contenders[order[rank]], [&](const std::string& name, std::size_t number,
-                                                const Reference&) { field_of(name, number); });
+    each_reference(models[order[rank]], [&](const std::string& name, std::size_t number, const Reference&) {
+      field_of(name, number);
+    });
   }
-  for (std::size_t i = 0; i < contenders.size(); ++i) {
-    each_reference(contenders[i],
-                   [&](const std::string& name, std::size_t number, const Reference& reference) {
-                     field_of(name, number).pairings.push_back({contenders[i], reference, ranks[i]});
-                   });
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    each_reference(models[i], [&](const std::string& name, std::size_t number, const Reference& reference) {
+      field_of(name, number).pairings.push_back({models[i], reference, ranks[i]});
+    });
   }
   return fields;
 }
@@ -126,7 +126,7 @@ FlightResiduals residuals_on(const std::vector<std::shared_ptr<const FlightSampl
   for (const std::size_t k : by_rank(pairings)) {
     const Reference& reference = pairings[k].reference;
     const std::shared_ptr<const FlightSamples>& samples = samples_of[k];
-    const Residuals residuals(samples, pairings[k].contender.model, reference, options);
+    const Residuals residuals(samples, pairings[k].compared.model, reference, options);
     const double* const parameters = residuals.parameters().data();
     result.values[k] = residuals.values(parameters);
     result.reference_defects[k] = residuals.target_defect(parameters);
@@ -264,7 +264,7 @@ void separate_atmosphere(const Pairing& pairing, const FlightSamples& samples,
   const std::optional<GpsKind> kind = gps_kind(pairing.reference);
   if (!kind || parts.front().empty()) return;
   std::vector<Eigen::MatrixXd> products =
-      gps_products_of_parts(*kind, samples, pairing.contender.model, parts.front(), parts);
+      gps_products_of_parts(*kind, samples, pairing.compared.model, parts.front(), parts);
   if (products.empty()) return;
   auto next = products.begin();
   sums.each_part([&](ResidualSums& part) { part.by_gps = std::move(*next++); });
@@ -281,12 +281,12 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   const auto read = [&](std::size_t number) {
     SamplesOfPairings samples;
     for (const Pairing& each : pairings)
-      samples.push_back(flights.samples(number, each.contender.model, each.reference, options.mask));
+      samples.push_back(flights.samples(number, each.compared.model, each.reference, options.mask));
     return samples;
   };
   std::vector<ReferenceDoubt> doubts;
   for (const Pairing& each : pairings)
-    doubts.emplace_back(each.contender.model, each.reference, !each.reference.is_of_one_sample());
+    doubts.emplace_back(each.compared.model, each.reference, !each.reference.is_of_one_sample());
   const auto make = [&](const SamplesOfPairings& samples, bool with_series,
                         std::vector<SummedRecords>& records) {
     Notes notes;
@@ -331,7 +331,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
       sums.add(part.models[m]);
       of_flights.push_back({part.name, part.models[m].all.statistics()});
     }
-    result.models.push_back(comparison_of(pairings[m].contender.name, pairings[m].reference, std::move(sums),
+    result.models.push_back(comparison_of(pairings[m].compared.name, pairings[m].reference, std::move(sums),
                                           std::move(of_flights)));
   }
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
@@ -347,12 +347,12 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
 
 }  // namespace
 
-Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
+Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& models,
                    const CompareOptions& options) {
-  if (flights.empty() || contenders.empty())
+  if (flights.empty() || models.empty())
     throw Error(Error::Code::usage, "give at least one flight to compare and one model");
-  for (const ComparedModel& contender : contenders) first_of(contender.references);
-  const std::vector<Field> fields = fields_of(contenders);
+  for (const ComparedModel& compared : models) first_of(compared.references);
+  const std::vector<Field> fields = fields_of(models);
   flights.require_one_aircraft();
   const auto tell = [&, done = std::size_t{0}]() mutable {
     ++done;

@@ -26,11 +26,11 @@ std::string residual_column(std::size_t model) { return fmt::format("residual{}"
 
 /// Used samples of a flight: a report shows no others.
 std::vector<std::size_t> used(const FlightResiduals& flight) {
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> records;
   for (std::size_t i = 0; i < flight.mask.size(); ++i) {
-    if (flight.mask[i] == Mask::none) places.push_back(i);
+    if (flight.mask[i] == Mask::none) records.push_back(i);
   }
-  return places;
+  return records;
 }
 
 /// Concatenated series of all flights; NaN for a flight without the series.
@@ -54,13 +54,13 @@ void ComparisonPanels::add(const std::string& name, const std::string& title, co
 
 ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(comparison) {
   for (const FlightResiduals& flight : comparison.flights) {
-    const std::vector<std::size_t> places = used(flight);
-    if (places.empty()) continue;
+    const std::vector<std::size_t> records = used(flight);
+    if (records.empty()) continue;
     report_.flight_starts.push_back(report_.time.size());
     report_.flight_names.push_back(flight.samples->name);
-    for (const std::size_t i : places) report_.time.push_back(flight.samples->time[i]);
+    for (const std::size_t i : records) report_.time.push_back(flight.samples->time[i]);
     for (const Interval& interval : flight.samples->intervals) {
-      const bool met = std::any_of(places.begin(), places.end(), [&](std::size_t i) {
+      const bool met = std::any_of(records.begin(), records.end(), [&](std::size_t i) {
         return flight.samples->time[i] >= interval.begin && flight.samples->time[i] < interval.end;
       });
       if (met)
@@ -133,8 +133,7 @@ void ComparisonPanels::add_panels() {
   BinnedPanel binned;
   binned.title = "Residual against a variable";
   binned.caption =
-      "A slope or a bend larger than the error bars is an effect that the model lacks, or has with a wrong "
-      "coefficient.";
+      "A slope or curvature larger than the error bars indicates a missing effect or a wrong coefficient.";
   binned.y = residuals_;
   binned.axis = "residual";
   binned.x_choices = variables_;
@@ -224,8 +223,8 @@ void ComparisonPanels::add_pairs() {
   reference.title = "static pressure of the reference";
   const std::vector<double>& residual = report_.columns[comparison_.models.size() - 1].values;
   for (std::size_t i = 0; i < reference.values.size(); ++i) reference.values[i] += residual[i];
-  pair("Corrected static pressures", "The line makes the distances perpendicular to it small. ", "corrected",
-       "reference_corrected", comparison_.models.back().static_pressure);
+  pair("Corrected static pressures", "The line is an orthogonal fit. ", "corrected", "reference_corrected",
+       comparison_.models.back().static_pressure);
 }
 
 void ComparisonPanels::add_tables() {

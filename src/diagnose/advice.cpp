@@ -31,19 +31,19 @@ void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
     Finding& finding = findings[i];
     if (finding.aliases.empty()) continue;
     const std::size_t winner = analysis.result().chosen[i];
-    SeparationProblem rivalry{now, variance, places_of(analysis.groups()[winner], analysis.base()), {}, {}};
+    SeparationProblem rivalry{now, variance, indices_of(analysis.groups()[winner], analysis.base()), {}, {}};
     const Candidate& found = candidates[winner];
     rivalry.size.resize(as_index(found.tested.size()));
     for (std::size_t k = 0; k < found.tested.size(); ++k) {
-      const std::size_t place = found.tested[k].place;
-      rivalry.size[as_index(k)] = finding.effect.parameters[place] - found.effect.parameters[place];
+      const std::size_t position = found.tested[k].index;
+      rivalry.size[as_index(k)] = finding.effect.parameters[position] - found.effect.parameters[position];
     }
     std::vector<std::string> rivals;
     for (const Alias& alias : finding.aliases) {
       rivals.push_back(alias.effect);
       std::vector<std::size_t> instead = analysis.result().chosen;
       instead[i] = number_of(candidates, alias.effect);
-      rivalry.rests.push_back(places_of(instead, analysis.groups(), analysis.base()));
+      rivalry.rests.push_back(indices_of(instead, analysis.groups(), analysis.base()));
     }
     const Plan best = best_plan(regimes, rivalry);
     finding.advice.sentence = text_of(best, finding.id(), finding.effect, rivals);

@@ -118,20 +118,20 @@ std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>
   return part(all_columns_of(groups), 0, flights_.size());
 }
 
-std::vector<Eigen::Index> Analysis::places_of(const std::vector<std::size_t>& groups) const {
-  return internal::places_of(groups, groups_, base_);
+std::vector<Eigen::Index> Analysis::indices_of(const std::vector<std::size_t>& groups) const {
+  return internal::indices_of(groups, groups_, base_);
 }
 
 std::vector<Eigen::MatrixXd> Analysis::all_columns_of(const std::vector<std::size_t>& groups) const {
-  const std::vector<Eigen::Index> places = places_of(groups);
+  const std::vector<Eigen::Index> indices = indices_of(groups);
   std::vector<Eigen::MatrixXd> result;
-  for (const Eigen::MatrixXd& columns : binned_.columns) result.emplace_back(columns(Eigen::all, places));
+  for (const Eigen::MatrixXd& columns : binned_.columns) result.emplace_back(columns(Eigen::all, indices));
   return result;
 }
 
 Eigen::VectorXd Analysis::left_of(std::size_t flight, const std::vector<std::size_t>& groups,
                                   const Eigen::VectorXd& estimate) const {
-  return binned_.residuals[flight] - binned_.columns[flight](Eigen::all, places_of(groups)) * estimate;
+  return binned_.residuals[flight] - binned_.columns[flight](Eigen::all, indices_of(groups)) * estimate;
 }
 
 std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::size_t>& groups,
@@ -141,10 +141,10 @@ std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::s
   for (const std::size_t record : binned_.bins[flight].records()) {
     const Eigen::Index row = as_index(record);
     double sum = columns.base.row(row).cast<double>().dot(estimate.head(base_));
-    Eigen::Index place = base_;
+    Eigen::Index position = base_;
     for (const std::size_t group : groups) {
       for (Eigen::Index k = 0; k < groups_[group].count; ++k)
-        sum += static_cast<double>(columns.candidates(row, groups_[group].first + k)) * estimate[place++];
+        sum += static_cast<double>(columns.candidates(row, groups_[group].first + k)) * estimate[position++];
     }
     result[record] = sum;
   }
@@ -154,15 +154,15 @@ std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::s
 std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std::size_t>& groups,
                                        std::size_t which, const Eigen::VectorXd& estimate) const {
   const FlightColumns& columns = this->flight(flight);
-  Eigen::Index place = base_;
-  for (std::size_t i = 0; i < which; ++i) place += groups_[groups[i]].count;
+  Eigen::Index position = base_;
+  for (std::size_t i = 0; i < which; ++i) position += groups_[groups[i]].count;
   const ColumnGroup& group = groups_[groups[which]];
   std::vector<double> result(columns.given.size(), nan);
   for (const std::size_t record : binned_.bins[flight].records()) {
     result[record] = columns.candidates.row(as_index(record))
                          .segment(group.first, group.count)
                          .cast<double>()
-                         .dot(estimate.segment(place, group.count));
+                         .dot(estimate.segment(position, group.count));
   }
   return result;
 }
@@ -183,10 +183,10 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
 
 void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
                                   const FindNoise& find) {
-  const std::vector<Eigen::Index> places = places_of(groups);
+  const std::vector<Eigen::Index> indices = indices_of(groups);
   noise_ = noise_of_flights(
       share_, binned_,
-      {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, places); },
+      {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, indices); },
        [&](std::size_t f) { return left_of(f, groups, estimate); }, digest_of(packed(estimate))},
       find);
   first_noise_ = noise_of_first_reference(binned_, noise_);
@@ -215,7 +215,7 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
 
 void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
   coefficients_ = Eigen::VectorXd::Zero(binned_.columns.front().cols());
-  coefficients_(places_of(groups)) = estimate;
+  coefficients_(indices_of(groups)) = estimate;
 }
 
 std::vector<Eigen::MatrixXd> Analysis::find_shape_uncertainty(const std::vector<std::size_t>& chosen) {
@@ -335,13 +335,13 @@ Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products, double rows,
   const Eigen::Index count = products.cols() - 1;
   Eigen::VectorXd precision = Eigen::VectorXd::Zero(count);
   precision.head(base_) = prior_;
-  Eigen::Index place = base_;
+  Eigen::Index position = base_;
   for (const std::size_t group : groups) {
     for (std::size_t k = 0; k < groups_[group].usual.size(); ++k) {
       const double deviation = groups_[group].deviation(k);
-      if (deviation > 0.0) precision[place + as_index(k)] = 1.0 / (deviation * deviation);
+      if (deviation > 0.0) precision[position + as_index(k)] = 1.0 / (deviation * deviation);
     }
-    place += groups_[group].count;
+    position += groups_[group].count;
   }
   Eigen::MatrixXd normal = products.topLeftCorner(count, count);
   // Unit: variance of the rows.
@@ -349,19 +349,19 @@ Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products, double rows,
   return pseudo_solution(normal, products.col(count).head(count));
 }
 
-Eigen::MatrixXd Analysis::rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& places) const {
+Eigen::MatrixXd Analysis::rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& indices) const {
   if (this->flight(flight).is_by_gps) {
-    std::vector<Eigen::Index> with_residual = places;
+    std::vector<Eigen::Index> with_residual = indices;
     with_residual.push_back(scores_->columns());
     return scores_->rows[flight](Eigen::all, with_residual);
   }
-  return side_by_side(binned_.columns[flight](Eigen::all, places), binned_.residuals[flight]);
+  return side_by_side(binned_.columns[flight](Eigen::all, indices), binned_.residuals[flight]);
 }
 
 Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) const {
-  const std::vector<Eigen::Index> places = places_of(groups);
+  const std::vector<Eigen::Index> indices = indices_of(groups);
   const auto sums = first_share_.sum_of_each_flight<PartialSums>([&](std::size_t f) {
-    const Eigen::MatrixXd rows = rows_of_refit(f, places);
+    const Eigen::MatrixXd rows = rows_of_refit(f, indices);
     PartialSums own(1, rows.cols());
     own.products[0] = rows.transpose() * rows;
     own.counts[0] = static_cast<double>(rows.rows());
@@ -371,8 +371,8 @@ Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) 
 }
 
 HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
-  const std::vector<Eigen::Index> places = places_of(groups);
-  const Eigen::Index width = as_index(places.size()) + 1;
+  const std::vector<Eigen::Index> indices = indices_of(groups);
+  const Eigen::Index width = as_index(indices.size()) + 1;
   const auto part_of = [this](std::size_t f, double time) { return held_out_part(*flight(f).samples, time); };
   const auto time_of = [this](std::size_t f, Eigen::Index row) {
     return binned_.bins[f].time()[static_cast<std::size_t>(scores_->bin_of(f, row))];
@@ -380,7 +380,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   std::vector<Eigen::MatrixXd> white(binned_.bins.size());
   // Whitened rows of each part first, then unwhitened ones.
   const auto sums = share_.sum_of_each_flight<PartialSums>([&](std::size_t f) {
-    const Eigen::MatrixXd all = rows_of_refit(f, places);
+    const Eigen::MatrixXd all = rows_of_refit(f, indices);
     white[f] = flight(f).is_by_gps ? all : whitened(all, binned_.bins[f], noise_[f], 0);
     PartialSums own(2 * held_out_parts, width);
     for (Eigen::Index i = 0; i < all.rows(); ++i) {

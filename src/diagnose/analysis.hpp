@@ -137,13 +137,13 @@ class Analysis {
   Eigen::VectorXd left_of(std::size_t flight, const std::vector<std::size_t>& groups,
                           const Eigen::VectorXd& estimate) const;
   /// Columns and residual of a flight as a refit has them: in bins, or the white rows of GPS.
-  Eigen::MatrixXd rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& places) const;
+  Eigen::MatrixXd rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& indices) const;
   /// Coefficients of base and groups from the products of their columns and the residual with each other.
   /// @param rows number of rows in the products
   Eigen::VectorXd solution(const Eigen::MatrixXd& products, double rows,
                            const std::vector<std::size_t>& groups) const;
   /// Positions of the columns of base and groups.
-  std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& groups) const;
+  std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& groups) const;
 
   FlightPartition share_;
   FlightPartition first_share_;

@@ -54,9 +54,9 @@ void name_usual_variables(ModelDefinition& file, const FlightSet& flights) {
       has.push_back(has_values(flights[number], variable, std::string(info_of(role).unit)));
     return has;
   });
-  std::size_t place = 0;
+  std::size_t position = 0;
   for (const auto& [role, variable] : usual) {
-    const std::size_t k = place++;
+    const std::size_t k = position++;
     if (file.variables.count(role) != 0) continue;
     if (!std::all_of(recorded.begin(), recorded.end(), [k](const std::vector<bool>& has) { return has[k]; }))
       continue;
@@ -171,7 +171,7 @@ std::string why_not_testable(const EffectInfo& info, bool is_moist, const std::v
            "temperature)";
   if (info.constants == GasConstants::dry && is_moist) return "the model uses the constants of moist air";
   if (info.constants == GasConstants::moist && !is_moist) return "the model uses the constants of dry air";
-  if (reads_date(info) && dates.empty()) return "it needs flights at two times";
+  if (reads_date(info) && dates.empty()) return "it needs flights at two different times";
   return "";
 }
 
@@ -299,17 +299,17 @@ void add_those_of_the_references(CandidateSet& set, const References& references
         std::optional<Chain> with = chain.with_effect(twin.effect, &error);
         if (!with) continue;
         chain = std::move(*with);
-        auto place =
+        auto position =
             std::find_if(set.candidates.begin(), set.candidates.end(), [&twin](const Candidate& each) {
               return each.id == twin.id && each.effect.parameters == twin.effect.parameters &&
                      each.effect.scaling == twin.effect.scaling;
             });
-        if (place == set.candidates.end()) {
+        if (position == set.candidates.end()) {
           twin.numbers_in_others.resize(references.size());
-          place = set.candidates.insert(place, std::move(twin));
+          position = set.candidates.insert(position, std::move(twin));
         }
-        place->numbers_in_others[r] = other->model.effects.size();
-        other->model.effects.push_back(place->effect);
+        position->numbers_in_others[r] = other->model.effects.size();
+        other->model.effects.push_back(position->effect);
       }
     }
     set.references.back() = references[r]->with_model(*other);

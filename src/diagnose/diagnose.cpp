@@ -139,14 +139,14 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
 
 /// Model coefficients of least squares, as a refit has them, with the errors by the noise.
 /// @param refitted their change
-std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoefficient>& base,
-                             const Eigen::VectorXd& refitted) {
+std::vector<CoefficientEstimate> own_of(const Analysis& analysis, const std::vector<BaseCoefficient>& base,
+                                        const Eigen::VectorXd& refitted) {
   const Eigen::MatrixXd covariance = analysis.search().fit({}).covariance;
-  std::vector<Estimate> own;
+  std::vector<CoefficientEstimate> own;
   for (std::size_t b = 0; b < base.size(); ++b) {
-    const Eigen::Index place = as_index(b);
-    own.push_back({base[b].name, base[b].unit, base[b].value + refitted[place],
-                   std::sqrt(std::max(0.0, covariance(place, place)))});
+    const Eigen::Index k = as_index(b);
+    own.push_back({base[b].name, base[b].unit, base[b].value + refitted[k],
+                   std::sqrt(std::max(0.0, covariance(k, k)))});
   }
   return own;
 }
@@ -339,7 +339,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   leave_out_empty(columns);
   add_statistics(columns, options.training_share, diagnosis);
   if (diagnosis.samples < diagnosis.masks[0]) {
-    diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights were not used",
+    diagnosis.notes.push_back(fmt::format("{} samples after the training share of the flights were not used",
                                           diagnosis.masks[0] - diagnosis.samples));
   }
   if (diagnosis.samples < min_samples) {
@@ -377,9 +377,8 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   UnexplainedStructure structure;
   if (gps_kind(*references.front())) {
     diagnosis.notes.emplace_back(
-        "structure without a name was not searched for, because what the atmosphere adds to a comparison "
-        "with "
-        "GPS looks like it; give a laser or a second system as a further reference");
+        "unnamed structure was not tested, because atmospheric variations in a comparison with GPS look the "
+        "same; give a laser or a second system as a further reference");
   } else {
     structure = find_unexplained(
         analysis, files, model, references, effect_inputs(diagnosis.findings, set.extended), options,
@@ -395,7 +394,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   } else if (!structure.rival.empty()) {
     diagnosis.rival = structure.rival;
     diagnosis.notes.push_back(
-        fmt::format("a straight line in {} may be the cause in place of the effects: its "
+        fmt::format("a straight line in {} may be the cause instead of the effects: its "
                     "probability is between 5 and 95 %",
                     diagnosis.rival));
   }
@@ -438,11 +437,11 @@ std::string places_text(const EmpiricalPredictor& variable) {
       variable.formula.empty() ? ""
                                : fmt::format("; the formula is written as added to the {} pressure",
                                              variable.location == EffectLocation::pitot ? "total" : "static");
-  if (variable.places.empty()) return "its location is unknown" + formula;
-  return fmt::format(
-      "its location is one of: {}, since the total pressures of the two systems {}{}",
-      fmt::join(variable.places, ", "),
-      variable.location == EffectLocation::pitot ? "differ with it, too" : "do not differ with it", formula);
+  if (variable.components.empty()) return "its location is unknown" + formula;
+  return fmt::format("its location is one of: {}, since the total pressures of the two systems {}{}",
+                     fmt::join(variable.components, ", "),
+                     variable.location == EffectLocation::pitot ? "also vary with it" : "do not vary with it",
+                     formula);
 }
 
 std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }

@@ -80,9 +80,9 @@ std::vector<std::string> inputs_of(const ModelEffect& effect) {
         inputs.push_back(quantity == Quantity::count ? variable_column(name) : column_of(quantity));
       }
     }
-  } else if (const std::size_t place = effect_named(effect.id); place < catalogue_size) {
-    for (std::size_t i = 0; i < effect_info[place].need_count(); ++i)
-      inputs.push_back(column_of(effect_info[place].needs[i]));
+  } else if (const std::size_t entry = effect_named(effect.id); entry < catalogue_size) {
+    for (std::size_t i = 0; i < effect_info[entry].need_count(); ++i)
+      inputs.push_back(column_of(effect_info[entry].needs[i]));
   }
   std::stable_partition(inputs.begin(), inputs.end(),
                         [](const std::string& name) { return name != pressure; });
@@ -105,14 +105,14 @@ DiagnosisPanels::DiagnosisPanels(const Flights& flights) {
     if (flight.samples == nullptr) continue;
     Used used{number, flight.samples.get(), {}};
     for (std::size_t i = 0; i < flight.before.size(); ++i) {
-      if (std::isfinite(flight.before[i])) used.places.push_back(i);
+      if (std::isfinite(flight.before[i])) used.records.push_back(i);
     }
-    if (used.places.empty()) continue;
+    if (used.records.empty()) continue;
     report_.flight_starts.push_back(report_.time.size());
     report_.flight_names.push_back(used.samples->name);
-    for (const std::size_t i : used.places) report_.time.push_back(used.samples->time[i]);
+    for (const std::size_t i : used.records) report_.time.push_back(used.samples->time[i]);
     for (const Interval& interval : used.samples->intervals) {
-      const bool met = std::any_of(used.places.begin(), used.places.end(), [&](std::size_t i) {
+      const bool met = std::any_of(used.records.begin(), used.records.end(), [&](std::size_t i) {
         return used.samples->time[i] >= interval.begin && used.samples->time[i] < interval.end;
       });
       if (met)
@@ -175,7 +175,7 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
           std::find_if(what_if.flights.begin(), what_if.flights.end(), [&used](const WhatIfFlight& each) {
             return each.samples->name == used.samples->name && each.samples->time == used.samples->time;
           });
-      for (const std::size_t i : used.places)
+      for (const std::size_t i : used.records)
         column.push_back(flight == what_if.flights.end() ? std::numeric_limits<double>::quiet_NaN()
                                                          : flight->columns[c][i]);
     }
@@ -390,8 +390,8 @@ void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
 void add_residual_in_time(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
   if (panels.report().time.empty()) return;
   panels.add_time("Residual in time",
-                  "Static pressure of the reference less that of the model; regimes are shaded. Drag over a "
-                  "time range, or choose a regime, and every picture shows its samples alone.",
+                  "Static pressure of the reference minus that of the model; regimes are shaded. Drag over a "
+                  "time range, or choose a regime, to restrict every picture to its samples.",
                   residuals, "residual");
 }
 

@@ -22,10 +22,10 @@ using Series = std::vector<double>;
 using Info = std::vector<std::pair<std::string, std::string>>;
 
 inline constexpr const char* structure_caption =
-    "A slope or a bend that is more than the error bars is something that the model does not have.";
+    "A slope or curvature larger than the error bars indicates an effect that the model lacks.";
 inline constexpr const char* effect_caption =
-    "Without the effect the residual has a slope or a bend that is more than the error bars; with it none "
-    "should be left.";
+    "Without the effect the residual has a slope or curvature larger than the error bars; with the effect it "
+    "should have neither.";
 
 /// Name of one of several columns, "residual1".
 std::string numbered(const char* name, std::size_t number);
@@ -65,7 +65,7 @@ class DiagnosisPanels {
       const bool same = used.number < flights.size() && flights[used.number].samples != nullptr &&
                         flights[used.number].samples->time.size() == used.samples->time.size();
       const Series part = same ? series(flights[used.number]) : Series{};
-      for (const std::size_t i : used.places)
+      for (const std::size_t i : used.records)
         values.push_back(i < part.size() ? part[i] : std::numeric_limits<double>::quiet_NaN());
     }
     if (std::none_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) return false;
@@ -134,7 +134,7 @@ class DiagnosisPanels {
   struct Used {
     std::size_t number;
     const FlightSamples* samples;
-    std::vector<std::size_t> places;
+    std::vector<std::size_t> records;
   };
 
   void add_variables(const Flights& flights);

@@ -170,7 +170,7 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
   const std::vector<Finding>& findings = diagnosis.findings;
   panels.add_time("Contributions of the missing effects",
                   "Contribution to the residual with the estimated coefficients.", columns.added, "added");
-  panels.add_time("Evidence in time", "Fall of chi2 per minute around each sample.", columns.evidence,
+  panels.add_time("Evidence in time", "Decrease of chi2 per minute around each sample.", columns.evidence,
                   "fall of chi2");
   panels.add(ranking_bars(diagnosis));
   panels.add_plane("Remaining residual over Mach number and pressure",
@@ -213,9 +213,9 @@ std::string verdict_text(const Diagnosis& diagnosis) {
   return "No missing effect is detectable on these flights";
 }
 
-std::string estimates_text(const std::vector<Estimate>& estimates) {
+std::string estimates_text(const std::vector<CoefficientEstimate>& estimates) {
   std::vector<std::string> all;
-  for (const Estimate& e : estimates) {
+  for (const CoefficientEstimate& e : estimates) {
     all.push_back(
         std::isfinite(e.value)
             ? fmt::format("{} = {}", e.name, with_unit(with_error(e.value, e.standard_error), e.unit))
@@ -227,7 +227,7 @@ std::string estimates_text(const std::vector<Estimate>& estimates) {
 std::string limits_text(const UpperLimit& limit) {
   std::vector<std::string> all;
   for (std::size_t i = 0; i < std::min(limit.estimates.size(), limit.limits.size()); ++i) {
-    const Estimate& e = limit.estimates[i];
+    const CoefficientEstimate& e = limit.estimates[i];
     if (std::isfinite(limit.limits[i]))
       all.push_back(
           fmt::format("|{}| < {}", e.name, with_unit(fmt::format("{:.2g}", limit.limits[i]), e.unit)));
@@ -279,7 +279,7 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
 
 std::string kind_text(const Finding& finding) {
   constexpr double far = 5.0;  // usual sizes
-  std::string text = fmt::format("place: {}", fmt::join(finding.places, " or "));
+  std::string text = fmt::format("place: {}", fmt::join(finding.components, " or "));
   if (!finding.family.empty()) text = fmt::format("family: {}; {}", finding.family, text);
   if (!finding.shape.empty()) text += "; shape: " + finding.shape;
   if (finding.times_usual > far)

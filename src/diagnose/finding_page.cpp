@@ -20,21 +20,21 @@ constexpr std::size_t max_in_a_sentence = 3;
 
 /// Text of the page about an effect that needs no flight.
 struct Law {
-  std::string formula, unit, added_to, size, look_alikes, manoeuvre, source;
+  std::string formula, unit, added_to, size, confounders, manoeuvre, source;
 };
 
 Law law_of(const ModelEffect& effect) {
-  const std::size_t place = effect_named(effect.id);
-  if (effect.is_formula() || place == catalogue_size) {
+  const std::size_t entry = effect_named(effect.id);
+  if (effect.is_formula() || entry == catalogue_size) {
     return {effect.formula, effect.unit, std::string(info_of(effect.location).adds_to), "", "", "",
             effect.source};
   }
-  const EffectInfo& info = effect_info[place];
+  const EffectInfo& info = effect_info[entry];
   return {std::string(info.formula),
           std::string(info_of(info.location).unit),
           std::string(info_of(info.location).adds_to),
           std::string(info.size),
-          std::string(info.look_alikes),
+          std::string(info.confounders),
           std::string(info.manoeuvre),
           std::string(info.source)};
 }
@@ -84,7 +84,7 @@ std::string how_sure(const Finding& finding, double threshold) {
 
 std::string held_out(const Finding& finding) {
   if (!std::isfinite(finding.rms_before) || !std::isfinite(finding.rms_after)) return "";
-  return fmt::format("On stretches outside the fit the rms residual {} from {} to {} hPa.",
+  return fmt::format("On parts outside the fit the rms residual {} from {} to {} hPa.",
                      finding.rms_after < finding.rms_before ? "falls" : "does not fall: it changes",
                      hpa(finding.rms_before), hpa(finding.rms_after));
 }
@@ -112,8 +112,8 @@ std::string rivals(const Finding& finding, const Law& law) {
   }
   if (!finding.advice.sentence.empty()) {
     text += " " + sentence(finding.advice.sentence);
-  } else if (!law.look_alikes.empty()) {
-    text += fmt::format(" In general it is easily mistaken for {}", law.look_alikes);
+  } else if (!law.confounders.empty()) {
+    text += fmt::format(" In general it is easily mistaken for {}", law.confounders);
     text += law.manoeuvre.empty() ? "." : fmt::format("; to separate them: {}.", law.manoeuvre);
   }
   return text;
@@ -148,8 +148,8 @@ std::string percent(double share) {
   return fmt::format("{:.{}f} %", 100.0 * share, std::abs(share) < 0.0995 ? 1 : 0);
 }
 
-double size_to_usual(const std::vector<Estimate>& estimates) {
-  for (const Estimate& e : estimates) {
+double size_to_usual(const std::vector<CoefficientEstimate>& estimates) {
+  for (const CoefficientEstimate& e : estimates) {
     const double ratio = std::abs(e.value / e.typical);
     if (std::isfinite(ratio)) return ratio;
   }
@@ -214,11 +214,12 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
                                 first.unit.empty() || first.unit == "1" ? "hPa" : "hPa per " + first.unit));
     }
     with += ".";
-    if (!first.sampling.empty()) with += fmt::format(" Of the variable {} are used.", first.sampling);
+    if (!first.sampling.empty()) with += fmt::format(" Values used: {}.", first.sampling);
     with += " The location of the error is unknown, since one residual cannot separate locations.";
     if (!first.formula.empty()) {
       with += fmt::format(
-          " The formula {} would describe it, added to the static pressure as well as at any other place.",
+          " The formula {} would describe it, added to the static pressure or at another location equally "
+          "well.",
           first.formula);
     }
     all.push_back(with);

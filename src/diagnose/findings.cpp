@@ -24,9 +24,11 @@ constexpr double alias_margin = 9.0;  // probability of 0.13 % that one rival be
 constexpr std::size_t most_evidence = 6;
 
 /// Parameters that these flights determine; the model's coefficients imitate the others.
-std::vector<Estimate> estimates_of(const Candidate& candidate, const std::vector<Eigen::Index>& identifiable,
-                                   const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
-  std::vector<Estimate> estimates;
+std::vector<CoefficientEstimate> estimates_of(const Candidate& candidate,
+                                              const std::vector<Eigen::Index>& identifiable,
+                                              const Eigen::VectorXd& values,
+                                              const Eigen::MatrixXd& covariance) {
+  std::vector<CoefficientEstimate> estimates;
   for (const Eigen::Index k : identifiable) {
     const CandidateParameter& parameter = candidate.tested[static_cast<std::size_t>(k)];
     estimates.push_back({parameter.name, parameter.unit, values[k],
@@ -39,7 +41,7 @@ std::vector<Estimate> estimates_of(const Candidate& candidate, const std::vector
 ModelEffect with_estimate(const Candidate& candidate, const Eigen::VectorXd& estimate) {
   ModelEffect effect = candidate.effect;
   for (std::size_t k = 0; k < candidate.tested.size(); ++k)
-    effect.parameters[candidate.tested[k].place] += estimate[as_index(k)];
+    effect.parameters[candidate.tested[k].index] += estimate[as_index(k)];
   return effect;
 }
 
@@ -187,7 +189,7 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     alias.chi2_less = (best.chi2 - best.freedom) - (score.chi2 - score.freedom);
     alias.log_likelihood_less = rival.less;
     alias.estimates = estimates_of(candidates[g], search.identifiable(g), score.estimate, score.covariance);
-    const Estimate& first = alias.estimates.front();
+    const CoefficientEstimate& first = alias.estimates.front();
     if (first.typical != 0.0) alias.size_to_usual = first.value / first.typical;
     aliases.push_back(std::move(alias));
   }
@@ -215,11 +217,11 @@ Eigen::VectorXd static_estimate(const Analysis& analysis, const std::vector<Cand
                                 const std::vector<std::size_t>& groups) {
   Eigen::VectorXd with = analysis.search().fit(groups).estimate;
   with.head(analysis.base()) -= analysis.search().fit({}).estimate;
-  Eigen::Index place = analysis.base();
+  Eigen::Index position = analysis.base();
   for (const std::size_t group : groups) {
     const Eigen::Index count = analysis.groups()[group].count;
-    if (!corrects_static_pressure(candidates[group])) with.segment(place, count).setZero();
-    place += count;
+    if (!corrects_static_pressure(candidates[group])) with.segment(position, count).setZero();
+    position += count;
   }
   return with;
 }
@@ -319,11 +321,11 @@ std::string shape_of(const Candidate& candidate) {
   return text;
 }
 
-std::string place_of(const Candidate& candidate) {
+std::string component_of(const Candidate& candidate) {
   if (candidate.is_of_reference()) return "other-system";
   const std::size_t known = effect_named(candidate.effect.id);
-  return std::string(known < catalogue_size ? pcor::place_of(effect_info[known])
-                                            : info_of(candidate.effect.location).place);
+  return std::string(known < catalogue_size ? pcor::component_of(effect_info[known])
+                                            : info_of(candidate.effect.location).component);
 }
 
 /// Family, locations, shapes, size and probability of a finding.
@@ -334,7 +336,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   if (known < catalogue_size) finding.family = std::string(effect_info[known].family);
   finding.shape = shape_of(own);
   finding.shape_beyond_model = shape_beyond_model(own);
-  finding.places = {place_of(own)};
+  finding.components = {component_of(own)};
   // Whether the shapes of the catalogue are exact is unknown: both assumptions count the same.
   struct Weights {
     double exact = 1.0;
@@ -344,9 +346,10 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   for (const Rival& rival : rivals) {
     const Candidate& candidate = candidates[rival.group];
     if (candidate.id == own.id) finding.variants.push_back(shape_of(candidate));
-    const std::string place = place_of(candidate);
-    if (std::find(finding.places.begin(), finding.places.end(), place) == finding.places.end())
-      finding.places.push_back(place);
+    const std::string component = component_of(candidate);
+    if (std::find(finding.components.begin(), finding.components.end(), component) ==
+        finding.components.end())
+      finding.components.push_back(component);
     Weights& weight = weights.try_emplace(candidate.id, Weights{0.0, 0.0}).first->second;
     weight.exact = std::max(weight.exact, std::exp(-rival.less));
     weight.uncertain = std::max(weight.uncertain, std::exp(-rival.less_uncertain));
@@ -359,7 +362,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   };
   finding.probability = probability_of(own.id);
   for (Alias& alias : finding.aliases) alias.probability = probability_of(alias.effect);
-  for (const Estimate& estimate : finding.estimates) {
+  for (const CoefficientEstimate& estimate : finding.estimates) {
     if (estimate.typical != 0.0)
       finding.times_usual = std::max(finding.times_usual, std::abs(estimate.value / estimate.typical));
   }
@@ -403,22 +406,22 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
   const auto [estimate, covariance] = analysis.search().fit(chosen);
   const HeldOut with_all = chosen.empty() ? HeldOut{} : analysis.held_out(chosen);
   std::vector<Finding> findings;
-  Eigen::Index place = analysis.base();
+  Eigen::Index position = analysis.base();
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::size_t group = chosen[i];
     const Candidate& candidate = candidates[group];
     const Eigen::Index count = as_index(candidate.tested.size());
     Finding finding;
-    finding.effect = with_estimate(candidate, estimate.segment(place, count));
+    finding.effect = with_estimate(candidate, estimate.segment(position, count));
     finding.of_reference = candidate.is_of_reference();
     finding.is_alike = candidate.is_shared;
     finding.system = candidate.system;
     finding.title = candidate.title;
     const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);
-    finding.estimates = estimates_of(candidate, identifiable, estimate.segment(place, count),
-                                     covariance.block(place, place, count, count));
+    finding.estimates = estimates_of(candidate, identifiable, estimate.segment(position, count),
+                                     covariance.block(position, position, count, count));
     finding.held = held_of(candidate, identifiable);
-    place += count;
+    position += count;
     measure(analysis, chosen, i, estimate, candidate, finding);
     finding.chi2 = analysis.search().score(group, chosen).chi2;
     finding.p_value = analysis.result().p_values[i];
@@ -515,7 +518,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     limit.estimates = estimates_of(candidates[g], search.identifiable(g), score.estimate, score.covariance);
     bool seen = false;  // any coefficient determined better than by its bounds
     for (std::size_t k = 0; k < limit.estimates.size(); ++k) {
-      const Estimate& estimate = limit.estimates[k];
+      const CoefficientEstimate& estimate = limit.estimates[k];
       const Bounds& bounds = candidates[g].tested[static_cast<std::size_t>(search.identifiable(g)[k])].bounds;
       const double largest = std::max(std::abs(bounds.lower), std::abs(bounds.upper));
       const double statistical = std::abs(estimate.value) + two_sided_95 * estimate.standard_error;

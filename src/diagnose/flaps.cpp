@@ -21,8 +21,8 @@ bool looks_like_flaps(const ModelEffect& effect) {
   if (effect.is_formula()) return false;
   const auto& info = effect_info[effect_named(effect.id)];
   const auto& flaps = effect_info[effect_named(flaps_effect)];
-  return info.look_alikes.find(flaps_effect) != std::string_view::npos ||
-         flaps.look_alikes.find(effect.id) != std::string_view::npos;
+  return info.confounders.find(flaps_effect) != std::string_view::npos ||
+         flaps.confounders.find(effect.id) != std::string_view::npos;
 }
 
 /// Residual of all samples, including those with flaps out.

@@ -57,12 +57,12 @@ Testability testability_of(const FlightColumns& flight, const std::vector<double
 
 References in_order_of_diagnosis(References references) {
   // The samples are read once for the first reference; the laser reads the most.
-  const auto place = [](const Reference& reference) {
+  const auto position = [](const Reference& reference) {
     if (!reference.is_of_one_sample()) return reference.window() > 0.0 ? 2 : 3;
     return reference.reads_laser() ? 0 : 1;
   };
   std::stable_sort(references.begin(), references.end(),
-                   [&place](const auto& a, const auto& b) { return place(*a) < place(*b); });
+                   [&position](const auto& a, const auto& b) { return position(*a) < position(*b); });
   return references;
 }
 

@@ -62,14 +62,14 @@ RegimeSums sums_of(const WhitenedSystem& scores, std::size_t number, const Fligh
   const FlightSamples& samples = *flight.columns.samples;
   const std::vector<double>& time = flight.bins.time();
   const std::vector<RegimeSet> regimes = regimes_of_samples(time, samples.intervals);
-  const auto place = [&time](double when) {
+  const auto position = [&time](double when) {
     return static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), when) - time.begin());
   };
   RegimeSums sums;
   for (const Interval& interval : samples.intervals) {
     if (!can_be_repeated(interval.regime)) continue;
-    const std::size_t first = place(interval.begin);
-    const std::size_t last = place(interval.end);
+    const std::size_t first = position(interval.begin);
+    const std::size_t last = position(interval.end);
     std::vector<Eigen::Index> own;
     double within = 0.0;
     for (Eigen::Index row = 0; row < rows.rows(); ++row) {

@@ -40,10 +40,10 @@ class EquivalentTable {
       values_.push_back(chi2_one_dof(static_cast<double>(i) * width, freedom_));
   }
   double operator()(double chi2) const {
-    const double place = chi2 / width;
-    const auto before = static_cast<std::size_t>(place);
+    const double position = chi2 / width;
+    const auto before = static_cast<std::size_t>(position);
     if (before >= steps) return chi2_one_dof(chi2, freedom_);
-    const double part = place - static_cast<double>(before);
+    const double part = position - static_cast<double>(before);
     return values_[before] + part * (values_[before + 1] - values_[before]);
   }
 
@@ -86,21 +86,21 @@ std::vector<std::size_t> without(std::vector<std::size_t> set, std::size_t value
 
 }  // namespace
 
-std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base) {
-  std::vector<Eigen::Index> places(static_cast<std::size_t>(group.count));
-  std::iota(places.begin(), places.end(), base + group.first);
-  return places;
+std::vector<Eigen::Index> indices_of(const ColumnGroup& group, Eigen::Index base) {
+  std::vector<Eigen::Index> indices(static_cast<std::size_t>(group.count));
+  std::iota(indices.begin(), indices.end(), base + group.first);
+  return indices;
 }
 
-std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& some,
-                                    const std::vector<ColumnGroup>& groups, Eigen::Index base) {
-  std::vector<Eigen::Index> places(static_cast<std::size_t>(base));
-  std::iota(places.begin(), places.end(), Eigen::Index{0});
+std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& some,
+                                     const std::vector<ColumnGroup>& groups, Eigen::Index base) {
+  std::vector<Eigen::Index> indices(static_cast<std::size_t>(base));
+  std::iota(indices.begin(), indices.end(), Eigen::Index{0});
   for (const std::size_t group : some) {
-    const std::vector<Eigen::Index> own = places_of(groups[group], base);
-    places.insert(places.end(), own.begin(), own.end());
+    const std::vector<Eigen::Index> own = indices_of(groups[group], base);
+    indices.insert(indices.end(), own.begin(), own.end());
   }
-  return places;
+  return indices;
 }
 
 Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups)
@@ -166,11 +166,11 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
 }
 
 std::vector<Eigen::Index> Search::directions_of(const std::vector<std::size_t>& groups) const {
-  std::vector<Eigen::Index> places;
+  std::vector<Eigen::Index> indices;
   for (const std::size_t group : groups) {
-    for (Eigen::Index k = 0; k < turned_[group].cols(); ++k) places.push_back(begin_[group] + k);
+    for (Eigen::Index k = 0; k < turned_[group].cols(); ++k) indices.push_back(begin_[group] + k);
   }
-  return places;
+  return indices;
 }
 
 std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set) const {
@@ -184,21 +184,21 @@ std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set)
 
 Search::Conditional Search::given(const std::vector<std::size_t>& groups) const {
   Conditional result{information_, score_, squares_, 1.0};
-  std::vector<Eigen::Index> places = directions_of(groups);
-  const std::size_t count = places.size();
+  std::vector<Eigen::Index> indices = directions_of(groups);
+  const std::size_t count = indices.size();
   const std::vector<Eigen::Index> shapes = shapes_of(groups);
   const Eigen::Index turned = information_.cols() - (left_.cols() - candidates_);
-  for (const Eigen::Index shape : shapes) places.push_back(turned + shape - candidates_);
-  if (!places.empty()) {
-    Eigen::MatrixXd own = information_(places, places);
+  for (const Eigen::Index shape : shapes) indices.push_back(turned + shape - candidates_);
+  if (!indices.empty()) {
+    Eigen::MatrixXd own = information_(indices, indices);
     for (std::size_t k = 0; k < shapes.size(); ++k) {
       const double scale = scale_[base_ + shapes[k]];
       own(as_index(count + k), as_index(count + k)) += scale * scale;
     }
     const Eigen::MatrixXd inverse = pseudo_inverse(own, redundant_below);
-    const Eigen::MatrixXd across = information_(Eigen::all, places);
+    const Eigen::MatrixXd across = information_(Eigen::all, indices);
     const Eigen::MatrixXd solution = inverse * across.transpose();
-    const Eigen::VectorXd score = score_(places);
+    const Eigen::VectorXd score = score_(indices);
     result.information -= across * solution;
     result.score -= solution.transpose() * score;
     result.squares -= score.dot(inverse * score);
@@ -278,9 +278,10 @@ double Search::threshold_of(const Conditional& conditional, const std::vector<st
   const Eigen::MatrixXd independent = Eigen::MatrixXd::NullaryExpr(
       turn.cols(), as_index(options.draws), [&](Eigen::Index, Eigen::Index) { return normal(engine); });
   std::vector<double> maxima = maxima_of(root * independent, freedom);
-  const auto place = static_cast<std::ptrdiff_t>(options.confidence * static_cast<double>(maxima.size() - 1));
-  std::nth_element(maxima.begin(), maxima.begin() + place, maxima.end());
-  return maxima[static_cast<std::size_t>(place)];
+  const auto position =
+      static_cast<std::ptrdiff_t>(options.confidence * static_cast<double>(maxima.size() - 1));
+  std::nth_element(maxima.begin(), maxima.begin() + position, maxima.end());
+  return maxima[static_cast<std::size_t>(position)];
 }
 
 std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
@@ -296,7 +297,7 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
           scale_.segment(base_ + own.first, own.count).asDiagonal() * turned_[group].col(kept - 1);
   }
   weight.segment(base_ + own.first, own.count) = found.estimate;
-  const std::vector<Eigen::Index> rest = places_of(without(others, group), groups_, base_);
+  const std::vector<Eigen::Index> rest = indices_of(without(others, group), groups_, base_);
   const Eigen::VectorXd imitated = scores_->information(rest, Eigen::all).leftCols(columns) * weight;
   weight(rest) = -pseudo_solution(scores_->information(rest, rest), imitated);
   std::vector<Eigen::VectorXd> rows(scores_->rows.size());
@@ -325,7 +326,7 @@ double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen,
 
 std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen) const {
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(scores_->columns());
-  coefficients(places_of(chosen, groups_, base_)) = fit(chosen).estimate;
+  coefficients(indices_of(chosen, groups_, base_)) = fit(chosen).estimate;
   std::vector<Eigen::VectorXd> result(scores_->rows.size());
   for (std::size_t f = 0; f < result.size(); ++f) {
     if (scores_->share.owns(f)) result[f] = scores_->left(f, coefficients);
@@ -547,33 +548,33 @@ double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::
 }
 
 SearchFit Search::fit(const std::vector<std::size_t>& chosen) const {
-  std::vector<Eigen::Index> places(static_cast<std::size_t>(base_));  // positions among the scores' columns
-  std::iota(places.begin(), places.end(), Eigen::Index{0});
-  std::vector<Eigen::Index> out = places;  // positions among the estimates
+  std::vector<Eigen::Index> indices(static_cast<std::size_t>(base_));  // positions among the scores' columns
+  std::iota(indices.begin(), indices.end(), Eigen::Index{0});
+  std::vector<Eigen::Index> out = indices;  // positions among the estimates
   Eigen::Index size = base_;
   for (const std::size_t group : chosen) {
     for (const Eigen::Index column : identifiable_[group]) {
-      places.push_back(base_ + groups_[group].first + column);
+      indices.push_back(base_ + groups_[group].first + column);
       out.push_back(size + column);
     }
     size += groups_[group].count;
   }
-  const Eigen::VectorXd scale = scale_(places);
-  Eigen::MatrixXd scaled = scale.asDiagonal() * scores_->information(places, places) * scale.asDiagonal();
-  Eigen::Index place = base_;
+  const Eigen::VectorXd scale = scale_(indices);
+  Eigen::MatrixXd scaled = scale.asDiagonal() * scores_->information(indices, indices) * scale.asDiagonal();
+  Eigen::Index position = base_;
   for (const std::size_t group : chosen) {
     const Eigen::VectorXd precision = precision_of(group, tails.back().times);
     for (const Eigen::Index column : identifiable_[group]) {
       const auto k = static_cast<std::size_t>(column);
       if (k < groups_[group].usual.size() && groups_[group].usual[k] != 0.0)
-        scaled(place, place) += precision[column];
-      ++place;
+        scaled(position, position) += precision[column];
+      ++position;
     }
   }
   const Eigen::MatrixXd inverse =
       scale.asDiagonal() * pseudo_inverse(scaled, rank_limit) * scale.asDiagonal();
   SearchFit result{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
-  result.estimate(out) = inverse * scores_->information.col(scores_->columns())(places);
+  result.estimate(out) = inverse * scores_->information.col(scores_->columns())(indices);
   result.covariance(out, out) = variance(chosen) * inverse;
   return result;
 }

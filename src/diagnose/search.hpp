@@ -34,11 +34,11 @@ struct ColumnGroup {
 };
 
 /// Columns of a group among those of base and candidates.
-std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base);
+std::vector<Eigen::Index> indices_of(const ColumnGroup& group, Eigen::Index base);
 
 /// Columns of the base, then of some groups, among those of base and candidates.
-std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& some,
-                                    const std::vector<ColumnGroup>& groups, Eigen::Index base);
+std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& some,
+                                     const std::vector<ColumnGroup>& groups, Eigen::Index base);
 
 struct SearchOptions {
   std::size_t draws = 4000;

@@ -86,9 +86,9 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
 }
 
 std::string general_advice(const std::string& id, const ModelEffect& effect) {
-  const std::size_t place = effect_named(effect.id);
-  if (place == catalogue_size) return "";
-  return fmt::format("manoeuvres that separate {} in general: {}", id, effect_info[place].manoeuvre);
+  const std::size_t entry = effect_named(effect.id);
+  if (entry == catalogue_size) return "";
+  return fmt::format("manoeuvres that separate {} in general: {}", id, effect_info[entry].manoeuvre);
 }
 
 bool is_separated(const SeparationProblem& rivalry) {

@@ -13,7 +13,7 @@ namespace {
 /// Coefficients of all columns in a fit of base and groups.
 Eigen::VectorXd coefficients_of(const Analysis& analysis, const std::vector<std::size_t>& groups) {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(analysis.scores().columns());
-  all(places_of(groups, analysis.groups(), analysis.base())) = analysis.search().fit(groups).estimate;
+  all(indices_of(groups, analysis.groups(), analysis.base())) = analysis.search().fit(groups).estimate;
   return all;
 }
 
@@ -29,7 +29,7 @@ double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::s
   const double whole = analysis.search().score(effect, others).chi2;
   const Eigen::VectorXd fitted = coefficients_of(analysis, with(others, effect));
   const Eigen::VectorXd difference = fitted - coefficients_of(analysis, with(others, rival));
-  const std::vector<Eigen::Index> own = places_of(analysis.groups()[effect], analysis.base());
+  const std::vector<Eigen::Index> own = indices_of(analysis.groups()[effect], analysis.base());
   using Squares = std::array<double, 2>;  // squares of the contribution and of the difference
   const auto of_flights = analysis.whole_share().of_each_flight<Squares>([&](std::size_t f) {
     const auto columns = analysis.scores().rows[f].leftCols(analysis.scores().columns());

@@ -77,9 +77,9 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
     };
     const auto squares = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
       Eigen::VectorXd of_references = Eigen::VectorXd::Zero(2 * as_index(references));
-      const Eigen::Index place = 2 * as_index(flights[f]->reference);
-      of_references[place] = effect_on(f).squaredNorm();
-      of_references[place + 1] = static_cast<double>(binned.columns[f].rows());
+      const Eigen::Index position = 2 * as_index(flights[f]->reference);
+      of_references[position] = effect_on(f).squaredNorm();
+      of_references[position + 1] = static_cast<double>(binned.columns[f].rows());
       return of_references;
     });
     const double sum = squares(Eigen::seq(0, Eigen::last, 2)).sum();
@@ -97,9 +97,9 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
       auto columns = result[f].middleCols(shape_columns * e, shape_columns);
       columns.leftCols(factors) = factor_sd * (effect.asDiagonal() * varying);
       columns.col(factors) = delay_sd * rate_of(effect, binned.bins[f]);
-      const Eigen::Index place = 2 * as_index(flights[f]->reference);
-      if (squares[place] > 0.0)
-        columns.col(factors + 1).setConstant(std::sqrt(squares[place] / squares[place + 1]));
+      const Eigen::Index position = 2 * as_index(flights[f]->reference);
+      if (squares[position] > 0.0)
+        columns.col(factors + 1).setConstant(std::sqrt(squares[position] / squares[position + 1]));
     }
   }
   return result;

@@ -83,8 +83,8 @@ void Smooth::evaluate(double value, double* out) const {
   }
   out[0] = (value - centre_) / deviation_;
   if (distance_ > 0.0) {
-    const double place = (value - first_) / distance_;
-    for (std::size_t k = 1; k < columns_; ++k) out[k] = spline_at(place + 2.0 - static_cast<double>(k));
+    const double position = (value - first_) / distance_;
+    for (std::size_t k = 1; k < columns_; ++k) out[k] = spline_at(position + 2.0 - static_cast<double>(k));
     return;
   }
   if (knots_.empty()) {

@@ -253,10 +253,10 @@ std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& te
       return other.file == flight.file;
     });
     if (known == flights.end() || !analysis.whole_share().owns(f)) continue;
-    const auto place = static_cast<std::size_t>(known - flights.begin());
+    const auto position = static_cast<std::size_t>(known - flights.begin());
     for (std::size_t k = 0; k < variables.size(); ++k) {
       columns.col(references * as_index(k) + as_index(flight.reference)) = bins.means(line_in(
-          *tested.variables[variables[k]]->values[place], tested.test.structures()[variables[k]].centre));
+          *tested.variables[variables[k]]->values[position], tested.test.structures()[variables[k]].centre));
     }
   }
   return lines;
@@ -287,13 +287,13 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
     if (total.freedom == 0.0) continue;
     const double error = std::sqrt(total.covariance(0, 0));
     if (std::abs(total.estimate[0]) > seen * error) {
-      variable.places = {"pitot", "p-transducer", "q-transducer"};
-      if (!references.front()->reads_laser()) variable.places.emplace_back("other-system");
+      variable.components = {"pitot", "p-transducer", "q-transducer"};
+      if (!references.front()->reads_laser()) variable.components.emplace_back("other-system");
       variable.location = EffectLocation::pitot;
     } else if (std::abs(variable.slope) > would_be_seen * error) {
-      variable.places = {"port", references.front()->reads_laser() ? "laser" : "other-system"};
-      if (references.front()->reads_laser()) variable.places.emplace_back("thermometer");
-      variable.places.emplace_back("pitot");  // both systems alike
+      variable.components = {"port", references.front()->reads_laser() ? "laser" : "other-system"};
+      if (references.front()->reads_laser()) variable.components.emplace_back("thermometer");
+      variable.components.emplace_back("pitot");  // both systems alike
     }
   }
 }

@@ -70,8 +70,8 @@ VariableValues::VariableValues(const FlightPartition& share,
 std::vector<double> VariableValues::distinct(std::size_t maximum) const {
   std::vector<double> all;  // sorted
   const auto add = [&all](double value) {
-    const auto place = std::lower_bound(all.begin(), all.end(), value);
-    if (place == all.end() || *place != value) all.insert(place, value);
+    const auto position = std::lower_bound(all.begin(), all.end(), value);
+    if (position == all.end() || *position != value) all.insert(position, value);
   };
   const auto of_flights = share_.of_each_flight<std::vector<double>>([&](std::size_t flight) {
     all.clear();
@@ -85,13 +85,13 @@ std::vector<double> VariableValues::distinct(std::size_t maximum) const {
   return all;
 }
 
-std::vector<double> VariableValues::quantiles(std::size_t places) const {
+std::vector<double> VariableValues::quantiles(std::size_t number) const {
   std::vector<double> own;
   for (const std::vector<double>& values : values_) own.insert(own.end(), values.begin(), values.end());
-  return values_at(share_.comm(), std::move(own), [places](std::uint64_t count) {
+  return values_at(share_.comm(), std::move(own), [number](std::uint64_t count) {
     std::vector<std::uint64_t> requested;
-    for (std::size_t k = 0; k < places; ++k) {
-      const double part = static_cast<double>(k) / static_cast<double>(places - 1);
+    for (std::size_t k = 0; k < number; ++k) {
+      const double part = static_cast<double>(k) / static_cast<double>(number - 1);
       requested.push_back(static_cast<std::uint64_t>(part * static_cast<double>(count - 1)));
     }
     return requested;

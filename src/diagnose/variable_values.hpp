@@ -27,7 +27,7 @@ class VariableValues {
   std::vector<double> distinct(std::size_t maximum) const;
 
   /// Quantiles at equidistant ranks, including minimum and maximum.
-  std::vector<double> quantiles(std::size_t places) const;
+  std::vector<double> quantiles(std::size_t number) const;
 
  private:
   FlightPartition share_;

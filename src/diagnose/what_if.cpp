@@ -39,7 +39,7 @@ bool is_meant(const Candidate& candidate, const WhatIfCandidate& requested) {
   for (std::size_t p = 0; p < candidate.effect.parameters.size(); ++p) {
     const bool is_tested =
         std::any_of(candidate.tested.begin(), candidate.tested.end(),
-                    [p](const CandidateParameter& parameter) { return parameter.place == p; });
+                    [p](const CandidateParameter& parameter) { return parameter.index == p; });
     if (!is_tested && candidate.effect.parameters[p] != requested.effect->parameters[p]) return false;
   }
   return true;
@@ -53,7 +53,7 @@ double distance(const Candidate& candidate, const WhatIfCandidate& requested) {
 }
 
 /// Index of the matching candidate; the number of candidates if there is no match.
-std::size_t place_of(const std::vector<Candidate>& candidates, const WhatIfCandidate& requested) {
+std::size_t position_of(const std::vector<Candidate>& candidates, const WhatIfCandidate& requested) {
   std::size_t best = candidates.size();
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (!is_meant(candidates[c], requested)) continue;
@@ -78,10 +78,10 @@ std::vector<double> dates_for(const std::vector<WhatIfCandidate>& requested, con
 void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& requested) {
   std::vector<bool> kept(set.candidates.size() + 1, false);
   for (const WhatIfCandidate& each : requested) {
-    std::size_t place = place_of(set.candidates, each);
-    kept[place] = true;
-    while (place < set.candidates.size() && set.candidates[place].is_shared) --place;
-    kept[place] = true;
+    std::size_t candidate = position_of(set.candidates, each);
+    kept[candidate] = true;
+    while (candidate < set.candidates.size() && set.candidates[candidate].is_shared) --candidate;
+    kept[candidate] = true;
   }
   std::vector<Candidate> candidates;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
@@ -97,12 +97,12 @@ std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flight
   std::vector<Candidate> candidates;
   std::vector<Eigen::Index> columns;
   for (const WhatIfCandidate& each : requested) {
-    const std::size_t place = place_of(set.candidates, each);
-    if (place == set.candidates.size()) continue;
+    const std::size_t position = position_of(set.candidates, each);
+    if (position == set.candidates.size()) continue;
     found.push_back(each);
-    candidates.push_back(set.candidates[place]);
+    candidates.push_back(set.candidates[position]);
     for (std::size_t k = 0; k < candidates.back().tested.size(); ++k)
-      columns.push_back(as_index(set.first_column(place) + k));
+      columns.push_back(as_index(set.first_column(position) + k));
   }
   set.candidates = std::move(candidates);
   for (FlightColumns& flight : flights.flights) flight.keep_candidates(columns);
@@ -160,7 +160,7 @@ ResidualAt residual_with(const ModelDefinition& model, const CandidateSet& set, 
     const Candidate& candidate = set.candidates[group];
     if (candidate.is_shared || candidate.is_of_reference() || candidate.memory != 0.0) return {};
     for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
-      free.push_back(parameter_count(with.model) + candidate.tested[k].place);
+      free.push_back(parameter_count(with.model) + candidate.tested[k].index);
       number.push_back(set.base.size() + set.first_column(group) + k);
     }
     with.model.effects.push_back(candidate.effect);
@@ -256,7 +256,7 @@ std::string note_of(const Candidate& candidate, const std::string& flaps_variabl
 /// Regime that would separate each pair of effects, each at its size alone.
 std::vector<WhatIfSeparation> separations_of(const WhatIfFit& fit, const std::vector<Candidate>& candidates) {
   std::vector<WhatIfSeparation> separations;
-  const auto columns_of = [&fit](std::size_t effect) { return places_of(fit.groups()[effect], fit.base()); };
+  const auto columns_of = [&fit](std::size_t effect) { return indices_of(fit.groups()[effect], fit.base()); };
   for (std::size_t effect = 0; effect < candidates.size(); ++effect) {
     if (candidates[effect].is_shared) continue;  // its columns repeat those of another
     const Eigen::VectorXd alone = fit.fitted({effect}).values;
@@ -314,7 +314,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   std::vector<std::pair<double, const UpperLimit*>> others;
   for (const UpperLimit& limit : diagnosis.limits) {
     double score = 0.0;
-    for (const Estimate& estimate : limit.estimates)
+    for (const CoefficientEstimate& estimate : limit.estimates)
       score = std::max(score, std::abs(estimate.value) / estimate.standard_error);
     if (std::isfinite(score)) others.emplace_back(score, &limit);
   }
@@ -346,7 +346,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   keep(set, requested);
   TeamColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);
-  if (columns.flights.empty()) throw Error(Error::Code::samples, "no sample is left to try effects on");
+  if (columns.flights.empty()) throw Error(Error::Code::samples, "no sample remains to test effects");
   drop_untestable(set, columns);
   TeamColumns others = held_out_columns(files, flights.size(), columns, model, set, options);
   hold_imitated_coefficients(set, columns, &others);
@@ -359,8 +359,9 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   WhatIfPanel& panel = result.panel;
   panel.own = ordered.base.size();
   for (const BaseCoefficient& coefficient : ordered.base) {
-    const auto start = std::find_if(options.own.begin(), options.own.end(),
-                                    [&](const Estimate& each) { return each.name == coefficient.name; });
+    const auto start =
+        std::find_if(options.own.begin(), options.own.end(),
+                     [&](const CoefficientEstimate& each) { return each.name == coefficient.name; });
     panel.coefficients.push_back({coefficient.name, coefficient.unit, coefficient.value,
                                   start == options.own.end() ? coefficient.value : start->value,
                                   coefficient.bounds.lower, coefficient.bounds.upper,
@@ -386,7 +387,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
     if (stands_for != found.end())
       panel.effects.back().stands_for = static_cast<std::size_t>(stands_for - found.begin());
     for (const CandidateParameter& tested : candidate.tested) {
-      const double neutral = candidate.effect.parameters[tested.place];
+      const double neutral = candidate.effect.parameters[tested.index];
       panel.coefficients.push_back({tested.name, tested.unit, neutral, neutral, neutral + tested.bounds.lower,
                                     neutral + tested.bounds.upper});
     }

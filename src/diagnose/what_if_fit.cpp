@@ -17,7 +17,7 @@
 namespace pcor::internal {
 namespace {
 
-using Places = std::vector<Eigen::Index>;
+using Indices = std::vector<Eigen::Index>;
 
 /// Change of the residual of a record by changed coefficients of base and candidates.
 double taken_off(const FlightColumns& flight, std::size_t record, const Eigen::VectorXd& values) {
@@ -41,7 +41,7 @@ std::vector<double> calm(const FlightColumns& flight, const std::vector<double>&
 }
 
 /// Least-squares coefficients of some columns, with the others fixed.
-Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Places& free, Eigen::VectorXd values) {
+Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Indices& free, Eigen::VectorXd values) {
   values(free).setZero();
   const Eigen::Index width = values.size();
   const Eigen::VectorXd right = sum.col(width).head(width) - sum.topLeftCorner(width, width) * values;
@@ -98,13 +98,13 @@ WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
     }
   }
   sum_held_out();
-  for (const ColumnGroup& group : groups_) identifiable_.push_back(places_of(group, base_));
+  for (const ColumnGroup& group : groups_) identifiable_.push_back(indices_of(group, base_));
   for (const std::vector<std::size_t>& some : subsets_of(found)) find_sums(some, is_robust, residual_with);
   sum_records();
 }
 
 std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>& groups) const {
-  Places free = own_;
+  Indices free = own_;
   for (const std::size_t group : groups)
     free.insert(free.end(), identifiable_[group].begin(), identifiable_[group].end());
   return free;
@@ -139,7 +139,7 @@ std::vector<Eigen::VectorXd> WhatIfFit::weights_at(const Eigen::VectorXd& values
 }
 
 /// Fits the free columns and sets `values`. @param weights of the bins, and later with those of Huber's loss
-WhitenedSystem WhatIfFit::least_squares(const Places& free, bool is_robust, Eigen::VectorXd& values,
+WhitenedSystem WhatIfFit::least_squares(const Indices& free, bool is_robust, Eigen::VectorXd& values,
                                         std::vector<Eigen::VectorXd>& weights) const {
   constexpr int max_steps = 50;
   constexpr double enough = 1e-3;  // fraction of the uncertainty from the flights
@@ -187,7 +187,7 @@ void WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust,
     weights = weights_at(values);
     system = least_squares(free_columns(found), is_robust && round > 0, values, weights);
   }
-  const Places free = free_columns(found);
+  const Indices free = free_columns(found);
   const std::vector<NoiseModel> noise = noise_of_flights(
       share, binned_,
       {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, free); },
@@ -258,14 +258,14 @@ Eigen::MatrixXd WhatIfFit::information() const {
 }
 
 double WhatIfFit::variance(const std::vector<std::size_t>& groups) const {
-  const Places free = free_columns(groups);
+  const Indices free = free_columns(groups);
   Eigen::VectorXd change(given_.size() + 1);
   change << -solved(information_, free, given_), 1.0;
   return change.dot(information_ * change) / std::max(row_count_ - static_cast<double>(free.size()), 1.0);
 }
 
 WhatIfFit::Fitted WhatIfFit::fitted(const std::vector<std::size_t>& groups) const {
-  const Places free = free_columns(groups);
+  const Indices free = free_columns(groups);
   Fitted result{solved(least_squares_, free, given_), Eigen::VectorXd::Zero(given_.size())};
   result.errors(free) = std::sqrt(variance(groups)) *
                         information_inverse(information_(free, free)).diagonal().cwiseMax(0.0).cwiseSqrt();

@@ -40,8 +40,8 @@ class Blocks {
   std::size_t count(std::size_t flight) const { return count_[flight]; }
 
   std::size_t operator()(std::size_t flight, double time) const {
-    const double place = std::max((time - begin_[flight]) / length_, 0.0);
-    return std::min(static_cast<std::size_t>(place), count_[flight] - 1);
+    const double position = std::max((time - begin_[flight]) / length_, 0.0);
+    return std::min(static_cast<std::size_t>(position), count_[flight] - 1);
   }
 
  private:

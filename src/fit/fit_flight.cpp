@@ -15,7 +15,7 @@ namespace {
 
 /// Coefficient of an effect shared by the model and the reference's model, and its neutral value.
 struct Alike {
-  std::size_t place;  ///< index among the parameters of residuals
+  std::size_t position;  ///< index among the parameters of residuals
   double neutral;
 };
 
@@ -26,9 +26,9 @@ std::vector<Alike> alike_in(const FitTask& task) {
   for (const std::string& effect : task.options.alike) {
     const std::vector<double> neutral = neutral_effect(effect).parameters;
     const auto add = [&](const ModelDefinition& model, std::size_t first) {
-      const std::optional<std::size_t> place = first_parameter_of(model, effect);
-      for (std::size_t i = 0; place && i < neutral.size(); ++i)
-        alike.push_back({first + *place + i, neutral[i]});
+      const std::optional<std::size_t> position = first_parameter_of(model, effect);
+      for (std::size_t i = 0; position && i < neutral.size(); ++i)
+        alike.push_back({first + *position + i, neutral[i]});
     };
     add(task.model, 0);
     add(*other, parameter_count(task.model.model));
@@ -48,7 +48,7 @@ Eigen::MatrixXd by_requested(
   std::vector<std::size_t> columns;
   for (std::size_t k = 0; k < requested.size(); ++k) {
     const bool is_alike = std::any_of(alike.begin(), alike.end(),
-                                      [&](const Alike& each) { return each.place == requested[k]; });
+                                      [&](const Alike& each) { return each.position == requested[k]; });
     if (is_alike || requested[k] >= shared_parameters(residuals, task)) continue;
     known.push_back(requested[k]);
     columns.push_back(k);
@@ -72,7 +72,7 @@ Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
   Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(file.data(), as_index(file.size()));
   const Eigen::Index shared = as_index(shared_parameters(residuals, task));
   own.head(shared) = parameters.head(shared);
-  for (const Alike& alike : alike_in(task)) own[as_index(alike.place)] = alike.neutral;
+  for (const Alike& alike : alike_in(task)) own[as_index(alike.position)] = alike.neutral;
   return own;
 }
 

@@ -212,10 +212,10 @@ FitRows FitFlights::rows(std::size_t flight, const Eigen::VectorXd& parameters,
 
 Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss,
                              const std::vector<std::size_t>& free) {
-  std::vector<Eigen::Index> places;
+  std::vector<Eigen::Index> indices;
   for (const std::size_t parameter : free) {
-    places.push_back(std::find(setup_.requested.begin(), setup_.requested.end(), parameter) -
-                     setup_.requested.begin());
+    indices.push_back(std::find(setup_.requested.begin(), setup_.requested.end(), parameter) -
+                      setup_.requested.begin());
   }
   const Eigen::Index fitted = as_index(free.size());
   Reduction whole;
@@ -228,7 +228,7 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
       Reduction part;
       for (const double innovation : rows.innovations) part.cost += 0.5 * loss(innovation)[0];
       const Eigen::VectorXd weight = loss.weights(rows.innovations);
-      const Eigen::MatrixXd all = side_by_side(rows.columns(Eigen::all, places), rows.innovations);
+      const Eigen::MatrixXd all = side_by_side(rows.columns(Eigen::all, indices), rows.innovations);
       const Eigen::MatrixXd left = rows.without_offsets(all, weight);
       part.absorbed = (all - left).leftCols(fitted).cwiseAbs2().transpose() * weight;
       TriangularFactor factor(fitted + 1);

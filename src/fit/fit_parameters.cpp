@@ -41,8 +41,8 @@ void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition
 }
 
 /// Indices of the named parameter, or of all parameters of the named effect.
-std::vector<std::size_t> places_of(const std::vector<FitParameter>& parameters, const std::string& name,
-                                   const char* option) {
+std::vector<std::size_t> indices_of(const std::vector<FitParameter>& parameters, const std::string& name,
+                                    const char* option) {
   std::vector<std::size_t> found;
   std::vector<std::string> known;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -65,10 +65,10 @@ std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Ref
   if (reference.model() != nullptr)
     add_parameters(parameters, *reference.model(), "reference:", options.fit_reference);
   for (const std::string& name : options.free) {
-    for (const std::size_t p : places_of(parameters, name, "--free")) parameters[p].fixed = false;
+    for (const std::size_t p : indices_of(parameters, name, "--free")) parameters[p].fixed = false;
   }
   for (const std::string& name : options.fix) {
-    for (const std::size_t p : places_of(parameters, name, "--fix")) parameters[p].fixed = true;
+    for (const std::size_t p : indices_of(parameters, name, "--fix")) parameters[p].fixed = true;
   }
   for (const FitParameter& parameter : parameters) {
     if (!(parameter.bounds.lower < parameter.bounds.upper)) {
@@ -95,7 +95,7 @@ std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>
   for (const FitStage& stage : stages) {
     std::vector<std::size_t>& requested = result.emplace_back();
     for (const std::string& name : stage.parameters) {
-      for (const std::size_t p : places_of(parameters, name, "--stage")) {
+      for (const std::size_t p : indices_of(parameters, name, "--stage")) {
         if (!left[p])
           throw Error(Error::Code::usage,
                       fmt::format("--stage: {} is fixed, or fitted in a stage before", parameters[p].name));

@@ -82,10 +82,10 @@ Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values
   std::vector<double> upper;
   std::vector<double> start;
   for (const Eigen::Index k : trial.searched()) {
-    const std::size_t place = free[static_cast<std::size_t>(k)];
-    const auto& [low, high] = task.parameters[place].bounds;
+    const std::size_t position = free[static_cast<std::size_t>(k)];
+    const auto& [low, high] = task.parameters[position].bounds;
     if (!std::isfinite(low) || !std::isfinite(high)) {
-      const std::string& name = task.parameters[place].name;
+      const std::string& name = task.parameters[position].name;
       throw Error(Error::Code::usage,
                   fmt::format("--search: {} has no bounds to search between; give the effect "
                               "bounds = {{ {} = [lower, upper] }} in the model file",

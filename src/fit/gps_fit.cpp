@@ -155,10 +155,9 @@ class GpsSolver {
     }
     task_.tell();
     if (samples_ == 0)
-      throw Error(
-          Error::Code::samples,
-          "wind and height have no sample in these flights: they need more than 40 m/s; leave them out, or "
-          "name other flights");
+      throw Error(Error::Code::samples,
+                  "wind and height have no sample in these flights, because they need more than 40 m/s; omit "
+                  "them, or give other flights");
     eliminate_own(blocks);
   }
 
@@ -390,8 +389,8 @@ class GpsSolver {
     const double determined = std::sqrt(std::max(0.0, fit.stated * fit.stated - fit.held * fit.held));
     if (change < std::max(small, notable * determined)) return;
     fit.warnings.push_back(fmt::format(
-        "the fit by GPS did not converge: its last step changed delta-p by {:.2f} hPa (rms); leave "
-        "out the fastest manoeuvres with an intervals file, or fit their coefficients by a laser",
+        "the fit by GPS did not converge: its last step changed delta-p by {:.2f} hPa (rms); exclude the "
+        "fastest manoeuvres with an intervals file, or fit their coefficients with a laser",
         change));
   }
 

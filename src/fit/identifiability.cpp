@@ -76,8 +76,8 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
   std::vector<std::string> words;
   // With priors, large standard errors are expected.
   for (Eigen::Index a = 0; a < size && !task.uses_prior(); ++a) {
-    const std::size_t place = fitted[static_cast<std::size_t>(a)];
-    const FitParameter& parameter = task.parameters[place];
+    const std::size_t position = fitted[static_cast<std::size_t>(a)];
+    const FitParameter& parameter = task.parameters[position];
     const double error = std::sqrt(covariance(a, a));
     if (!(parameter.typical > 0.0) || !(error > weak_share * parameter.typical)) continue;
     std::string partners;
@@ -91,7 +91,7 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
         fmt::format("{} is {}: {:.3g} +- {:.2g}, with a typical size of {:.2g}{}{}; fix it with --fix {}; to "
                     "determine it: {}",
                     parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
-                    solution.values[as_index(place)], error, parameter.typical,
+                    solution.values[as_index(position)], error, parameter.typical,
                     partners.empty() ? "" : ", and it is correlated with ", partners, parameter.name,
                     parameter.manoeuvre));
   }

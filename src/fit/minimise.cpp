@@ -70,9 +70,9 @@ void minimise(const LossProblem& problem, Eigen::VectorXd& x) {
                             x.data());
   }
   for (Eigen::Index k = 0; k < x.size(); ++k) {
-    const int place = static_cast<int>(k);
-    if (std::isfinite(problem.lower[k])) solved.SetParameterLowerBound(x.data(), place, problem.lower[k]);
-    if (std::isfinite(problem.upper[k])) solved.SetParameterUpperBound(x.data(), place, problem.upper[k]);
+    const int position = static_cast<int>(k);
+    if (std::isfinite(problem.lower[k])) solved.SetParameterLowerBound(x.data(), position, problem.lower[k]);
+    if (std::isfinite(problem.upper[k])) solved.SetParameterUpperBound(x.data(), position, problem.upper[k]);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -89,10 +89,9 @@ void minimise(const LossProblem& problem, Eigen::VectorXd& x) {
     ceres::Solve(options, &solved, &summary);
   }
   if (!summary.IsSolutionUsable() || !x.allFinite()) {
-    throw Error(
-        Error::Code::fit,
-        "the fit found no coefficients: from their values in the model the residuals are not numbers; give "
-        "other starting values, or look for them with --search");
+    throw Error(Error::Code::fit,
+                "the residuals are not finite at the starting coefficients of the model; give other starting "
+                "values, or use --search");
   }
 }
 

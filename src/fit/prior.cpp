@@ -43,9 +43,9 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
     }
   }
   if (stated.empty()) return rows;
-  std::vector<std::size_t> places;
-  for (const Eigen::Index k : stated) places.push_back(requested[static_cast<std::size_t>(k)]);
-  const Eigen::MatrixXd covariance = task.doubt(places, places);
+  std::vector<std::size_t> indices;
+  for (const Eigen::Index k : stated) indices.push_back(requested[static_cast<std::size_t>(k)]);
+  const Eigen::MatrixXd covariance = task.doubt(indices, indices);
   // The inverse root, of the correlations: coefficients of one law may differ by powers of ten.
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   constexpr double min_eigenvalue = 1e-10;  // nearly certain directions are treated as equal

@@ -34,17 +34,18 @@ void require_sense(const FlightSet& flights, const References& references, const
   if (flights.empty()) throw Error(Error::Code::usage, "no flight to fit; give at least one");
   const bool is_in_memory = flights.path(0).empty();
   if (is_in_memory && references.size() > 1)
-    throw Error(
-        Error::Code::usage,
-        "samples in memory hold what one reference reads; give one reference, or the paths of the flights");
+    throw Error(Error::Code::usage,
+                "samples in memory have the variables of one reference only; give one reference, or the "
+                "paths of the flights");
   if (options.fit_reference && first_of(references).model() == nullptr) {
     throw Error(
         Error::Code::usage,
-        "only a static system can be fitted together with the model, and it is the first of the references; "
-        "give --reference static:OTHER.toml");
+        "the first reference is not a static system, so it cannot be fitted with the model; give --reference "
+        "static:OTHER.toml first");
   }
   if (!(options.training_share > 0.0 && options.training_share <= 1.0)) {
-    throw Error(Error::Code::usage, "the share of samples that is fitted has to be above 0 and at most 1");
+    throw Error(Error::Code::usage, fmt::format("the training share is {:g}, expected above 0 and at most 1",
+                                                options.training_share));
   }
   const FlightSet all = flights.with(options.holdout);
   all.require_each_once();
@@ -172,21 +173,19 @@ Fitted fit_in_stages(FitTask& task) {
 /// The flights as the fit reads them, at the start, for references of GPS alone.
 Fitted prepared_for_gps(const FitTask& task) {
   if (!task.options.stages.empty())
-    throw Error(
-        Error::Code::usage,
-        "--stage: a fit to GPS alone has no stages; give a further reference, or leave the stages out");
+    throw Error(Error::Code::usage,
+                "--stage: a fit to GPS alone has no stages; give a further reference, or omit --stage");
   if (task.options.use_prior)
     throw Error(
         Error::Code::usage,
         "--prior: a fit to GPS alone always has a prior about the start, with the typical sizes of the "
         "effects; "
-        "leave --prior out, or give a further reference");
+        "omit --prior, or give a further reference");
   if (task.options.loss != RefitOptions().loss)
     throw Error(
         Error::Code::usage,
         fmt::format("--loss {}: a fit to GPS alone has no loss function, outliers get a larger variance; "
-                    "leave --loss out, "
-                    "or give a further reference",
+                    "omit --loss, or give a further reference",
                     to_string(task.options.loss)));
   Fitted fitted = at_start(task, fit_stages(task.parameters, {}, task.model.model.name));
   for (const std::size_t p : fitted.parameters) {

@@ -53,11 +53,12 @@ void require_samples(const FitFlights& flights, std::size_t free, bool is_stage)
   const std::size_t fewest = unknown + (is_stage ? 1 : min_free_bins);
   const std::size_t bins = flights.bins();
   if (bins < fewest) {
-    throw Error(Error::Code::samples,
-                fmt::format("{} samples, in {} intervals of four seconds, are too few for {} coefficients "
-                            "and their errors: {} "
-                            "intervals are the fewest (not used: {}); give more flights or fix coefficients",
-                            flights.samples(), bins, unknown, fewest, mask_text(flights.masks())));
+    throw Error(
+        Error::Code::samples,
+        fmt::format("{} samples in {} intervals of four seconds are too few for {} coefficients and their "
+                    "errors, at least {} intervals required (not used: {}); give more flights or fix "
+                    "coefficients",
+                    flights.samples(), bins, unknown, fewest, mask_text(flights.masks())));
   }
 }
 
@@ -256,10 +257,10 @@ class Solver {
       const Eigen::VectorXd now = unknowns_;
       const auto [cost, length] = linear_step(loss);
       if (!std::isfinite(cost) && !std::isfinite(minimum)) {
-        throw Error(
-            Error::Code::fit,
-            "the fit found no coefficients: from their values in the model the residuals are not numbers; "
-            "give other starting values, or look for them with --search");
+        throw Error(Error::Code::fit,
+                    "the residuals are not finite at the starting coefficients of the model; give other "
+                    "starting values, "
+                    "or use --search");
       }
       if (cost > (1.0 + 1e-12) * minimum) {
         unknowns_ = 0.5 * (now + best);

@@ -23,8 +23,8 @@ constexpr double many_outliers = 0.05;  // fraction of all samples
 std::string why_worse(const RefitResult& result, double bulk_rms_before) {
   if (result.rms > larger * result.rms_before && result.bulk_rms > larger * bulk_rms_before) {
     return fmt::format(
-        "the fit leaves a larger rms, {:.3f} hPa, than the coefficients of the file, {:.3f} hPa, on the "
-        "samples that were fitted",
+        "the rms of the fitted samples is larger with the fit, {:.3f} hPa, "
+        "than with the coefficients of the file, {:.3f} hPa",
         result.rms, result.rms_before);
   }
   const std::optional<HeldOutPart> held_out = worst_held_out(result.flights);

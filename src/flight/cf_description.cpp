@@ -112,12 +112,12 @@ class CfDescription {
   /// The global attributes of the position belong to this file, not to the input.
   void describe_whole_file() const {
     std::vector<std::string> names;
-    for (const Place& place : places) {
-      const std::string range = place.range, &name = description_.*place.variable;
+    for (const GeospatialRange& each : geospatial_ranges) {
+      const std::string range = each.range, &name = description_.*each.variable;
       const std::optional<int> variable = output_.find_variable(name);
       if (name.empty() || !variable) {
         for (const char* const end : {"_min", "_max", "_units"}) output_.drop(global, range + end);
-        output_.drop(global, place.coordinate);
+        output_.drop(global, each.coordinate);
         continue;
       }
       names.push_back(name);

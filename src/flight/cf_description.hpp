@@ -9,14 +9,15 @@
 namespace pcor::internal {
 
 /// A coordinate of a description and the global attributes that repeat it.
-struct Place {
+struct GeospatialRange {
   std::string FileDescription::*variable;
   const char *coordinate, *range;  // `range` without _min, _max and _units
 };
 
-inline constexpr Place places[] = {{&FileDescription::latitude, "latitude_coordinate", "geospatial_lat"},
-                                   {&FileDescription::longitude, "longitude_coordinate", "geospatial_lon"},
-                                   {&FileDescription::altitude, "zaxis_coordinate", "geospatial_vertical"}};
+inline constexpr GeospatialRange geospatial_ranges[] = {
+    {&FileDescription::latitude, "latitude_coordinate", "geospatial_lat"},
+    {&FileDescription::longitude, "longitude_coordinate", "geospatial_lon"},
+    {&FileDescription::altitude, "zaxis_coordinate", "geospatial_vertical"}};
 
 /// Adds the attributes of the CF conventions once all variables of a flight are defined: the position of the
 /// aircraft, in degrees north and east, named by every time series for which it is known; the trajectory; and

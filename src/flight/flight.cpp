@@ -78,8 +78,8 @@ double packing_number(const FlightFile& file, int variable, const char* attribut
   if (is_number && (numbers.front() != 0 || otherwise == 0)) return numbers.front();
   throw Error(
       Error::Code::variable,
-      fmt::format("{}: the attribute {} of {} is \"{}\", which values cannot be unpacked with; "
-                  "correct it with ncatted -a {} {}",
+      fmt::format("{}: the attribute {} of {} is \"{}\", which is not valid for packed values; correct it "
+                  "with ncatted -a {} {}",
                   file.path().string(), attribute, file.variable_name(variable), text,
                   shell_quote(fmt::format("{},{},o,d,NUMBER", attribute, file.variable_name(variable))),
                   shell_path(file.path().string())));
@@ -294,8 +294,9 @@ struct Flight::Implementation {
     const double rate = info.rate / axis.step;
     if (rate <= max_samples_a_second * (1 + rounding)) return;
     throw Error(Error::Code::variable,
-                fmt::format("{}: {} has {:.6g} samples a second, {} in each record of {:.6g} s; flights are "
-                            "read with up to {:g} a second: average it, or correct the times of the records",
+                fmt::format("{}: {} has {:.6g} samples a second, {} in each record of {:.6g} s; at most {:g} "
+                            "a second are supported; average the variable, or correct "
+                            "the times of the records",
                             path(), info.name, rate, info.rate, axis.step, max_samples_a_second));
   }
 
@@ -354,12 +355,11 @@ struct Flight::Implementation {
     read(variable(static_cast<std::size_t>(source.variable)), block, out);
     for (std::size_t i = 0; i < block.count; ++i) {
       if (std::isnan(out[i]))
-        throw Error(Error::Code::time,
-                    fmt::format("{}: the time of record {} is missing; leave that record out", path(),
-                                block.first + i));
+        throw Error(Error::Code::time, fmt::format("{}: the time of record {} is missing; remove that record",
+                                                   path(), block.first + i));
       out[i] = out[i] * source.scale + source.offset;
       if (!is_of_aviation(out[i]))
-        throw Error(Error::Code::time, fmt::format("{}: the time of record {} is {}; leave that record out",
+        throw Error(Error::Code::time, fmt::format("{}: the time of record {} is {}; remove that record",
                                                    path(), block.first + i, utc_text(out[i])));
     }
     for (const std::size_t wrap : axis.midnight_wraps)
@@ -534,9 +534,8 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
                 fmt::format("{}: {} samples a record are impossible", path().string(), rate));
   if (rate % own != 0 && own % rate != 0)
     throw Error(Error::Code::samples,
-                fmt::format("{}: {} has {} samples a record, which cannot be brought to {}; name a variable "
-                            "with {} samples a "
-                            "record instead",
+                fmt::format("{}: {} has {} samples a record, which cannot be converted to {}; choose a "
+                            "variable with {} samples a record",
                             path().string(), name, own, rate, implementation_->rates_that_fit(rate)));
   std::vector<double>& values = implementation_->scratch;
   values.resize(block.count * static_cast<std::size_t>(own));

@@ -61,11 +61,9 @@ std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) 
     throw Error(Error::Code::file,
                 fmt::format("{} is compressed; unpack it with gunzip -k {}, and name {}", path.string(),
                             shell_quote(path.string()), (path.parent_path() / path.stem()).string()));
-  throw Error(
-      Error::Code::file,
-      path.string() +
-          " is not a netCDF file, nor one of ICARTT; name one that `ncdump -k` knows, or whose first line "
-          "ends in 1001");
+  throw Error(Error::Code::file, path.string() +
+                                     " is not a netCDF file or an ICARTT file; give a file that `ncdump -k` "
+                                     "can read, or whose first line ends in 1001");
 }
 
 }  // namespace pcor::internal

@@ -39,7 +39,7 @@ struct Range {
   bool empty() const { return minimum > maximum; }
 };
 
-constexpr Range reserved{fill, fill};  // keeps the place of a range until the values are known
+constexpr Range reserved{fill, fill};  // written until the values of a range are known
 
 /// A duration by ISO 8601, always of the same length.
 std::string duration_text(double seconds) {
@@ -156,10 +156,10 @@ struct FlightWriter::Implementation {
     supply("FlightDate", utc_text(midnight, "%m/%d/%Y"));
     put_text(global, "TimeInterval", "00:00:00-00:00:00");
     put_text(global, "time_coverage_duration", duration_text(0));
-    for (const Place& place : places) {
-      if ((description.*place.variable).empty()) continue;
-      put_text(global, place.coordinate, description.*place.variable);
-      put_range(global, place.range, reserved);
+    for (const GeospatialRange& each : geospatial_ranges) {
+      if ((description.*each.variable).empty()) continue;
+      put_text(global, each.coordinate, description.*each.variable);
+      put_range(global, each.range, reserved);
     }
     if (!description.altitude.empty()) put_text(global, "geospatial_vertical_positive", "up");
   }
@@ -224,10 +224,10 @@ struct FlightWriter::Implementation {
                   shown.string() + ": " + name + " is defined after the first value was written");
     if (name.empty() || name.find('/') != std::string::npos)
       throw Error(Error::Code::usage,
-                  shown.string() + ": a variable cannot be called \"" + name + "\"; choose another name");
+                  shown.string() + ": \"" + name + "\" is not a valid variable name; choose another name");
     if (file->has(name))
-      throw Error(Error::Code::usage,
-                  shown.string() + ": there is a variable " + name + " already; give the new one a suffix");
+      throw Error(Error::Code::usage, shown.string() + ": the file already has a variable " + name +
+                                          "; give the new variable a suffix");
   }
 
   std::size_t define(const OutputVariable& variable) {
@@ -280,7 +280,8 @@ struct FlightWriter::Implementation {
 
   void copy(const std::string& name) {
     if (!input)
-      throw Error(Error::Code::usage, shown.string() + ": " + name + " cannot be copied, there is no input");
+      throw Error(Error::Code::usage,
+                  shown.string() + ": " + name + " cannot be copied, because there is no input");
     input->variable(name);  // or an error that lists the existing variables
     if (name == input->time_variable() && name != "time_offset") return;
     check_new(name);
@@ -291,7 +292,7 @@ struct FlightWriter::Implementation {
   void define_series(const VariableInfo& info) {
     if (!info.is_series)
       throw Error(Error::Code::variable, shown.string() + ": " + info.name +
-                                             " is not a time series, which alone is copied; leave it out");
+                                             " is not a time series, so it cannot be copied; omit it");
     const int variable = file->add_variable(info.name, NC_DOUBLE,
                                             file->dimensions_of_series(static_cast<std::size_t>(info.rate)));
     file->variable(variable).putAtt("_FillValue", netCDF::ncDouble, fill);
@@ -418,9 +419,9 @@ struct FlightWriter::Implementation {
     put_text(global, "time_coverage_duration", duration_text(last_time - first_time));
     for (const Written& variable : written)
       if (!variable.flags) put_range(variable.id, "actual_range", variable.range);
-    for (const Place& place : places)
-      if (const std::string& name = description.*place.variable; !name.empty())
-        put_range(global, place.range, range_of(name));
+    for (const GeospatialRange& each : geospatial_ranges)
+      if (const std::string& name = description.*each.variable; !name.empty())
+        put_range(global, each.range, range_of(name));
     file->close();
     replacement.commit();
   }

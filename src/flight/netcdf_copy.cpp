@@ -80,9 +80,10 @@ void NetcdfCopy::define(const std::string& name) {
   if (!from || !is_copied(type))
     throw Error(
         Error::Code::variable,
-        fmt::format("{}: {} holds strings, has a user-defined type or a name that netCDF does not allow, and "
-                    "cannot be copied; leave it out",
-                    shown, name));
+        fmt::format(
+            "{}: {} cannot be copied, because it has strings, a user-defined type or a name that netCDF "
+            "does not allow; do not copy it",
+            shown, name));
   Copied entry;
   entry.from = *from;
   source_.fit_chunk_cache(entry.from);
@@ -92,7 +93,7 @@ void NetcdfCopy::define(const std::string& name) {
     const std::size_t length = source_.dimension_length(each);
     if (time && !dimensions.empty())
       throw Error(Error::Code::variable,
-                  fmt::format("{}: Time is not the first dimension of {}; leave it out", shown, name));
+                  fmt::format("{}: Time is not the first dimension of {}; do not copy it", shown, name));
     dimensions.push_back(time ? output_.time() : output_.dimension_of(source_.dimension_name(each), length));
     entry.over_time = entry.over_time || time;
     if (!time) entry.shape.push_back(length);

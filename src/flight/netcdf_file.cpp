@@ -304,7 +304,7 @@ bool NetcdfFile::is_unsigned(int variable) const {
   const std::string said = text_attribute(variable, "_Unsigned");
   const auto is = [&said](const char* word) { return strcasecmp(said.c_str(), word) == 0; };
   if (!is("true") && !is("false")) {
-    refuse_attribute(variable, "_Unsigned", fmt::format("is {}, and neither true nor false", quote(said)));
+    refuse_attribute(variable, "_Unsigned", fmt::format("is {}, expected true or false", quote(said)));
   }
   return is("true");
 }

@@ -47,7 +47,7 @@ NcDim NetcdfOutput::dimension_of(const std::string& name, std::size_t length) {
                    [&] { return file_.addDim(name, length); });
   if (known.getSize() != length)
     throw Error(Error::Code::variable,
-                fmt::format("{}: the dimension {} has two lengths, {} and {}; leave one variable out",
+                fmt::format("{}: the dimension {} has two lengths, {} and {}; omit one of the variables",
                             path().string(), name, length, known.getSize()));
   return known;
 }

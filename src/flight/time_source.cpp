@@ -88,9 +88,9 @@ Counting counting_of(const FlightFile& file, int variable) {
   const std::optional<double> date = flight_date(file);
   const std::string day_of_flight = date ? utc_text(*date, "%Y-%m-%d") : "DAY";
   return {path + ": " + name,
-          "state the unit it is in with ncatted -a " + shell_quote("units," + name + ",o,c,") +
+          "state its unit with ncatted -a " + shell_quote("units," + name + ",o,c,") +
               shell_quote("seconds since " + day_of_flight + " 00:00:00 +0000") + " " + shell_path(path) +
-              (date ? "" : ", where DAY is the one that it counts from, as year-month-day"),
+              (date ? "" : ", where DAY is its reference date as year-month-day"),
           usual_spelling(file.text_attribute(variable, "units")), file.text_attribute(variable, "calendar")};
 }
 
@@ -161,8 +161,8 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
                             (is("proleptic_gregorian") && year >= first_gregorian_year);
   if (!is_gregorian)
     throw Error(Error::Code::time,
-                fmt::format("{} counts from the year {} in the calendar \"{}\", whose days are not those of "
-                            "the standard calendar; write the time in that",
+                fmt::format("{} counts from the year {} in the calendar \"{}\", which differs from the "
+                            "standard calendar; write the time in the standard calendar",
                             time.of, year, time.calendar));
   const auto refuse_time_of_day = [&time]() {
     throw Error(Error::Code::time,

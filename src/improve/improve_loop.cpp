@@ -71,8 +71,7 @@ OfferedEffect candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
                     finding.advice.sentence.empty() ? "" : ": ", finding.advice.sentence);
   }
   if (!diagnosis.rival.empty())
-    candidate.caution +=
-        fmt::format("; a straight line in {} may be the cause in its place", diagnosis.rival);
+    candidate.caution += fmt::format("; a straight line in {} may be the cause instead", diagnosis.rival);
   return candidate;
 }
 
@@ -408,8 +407,8 @@ class ForwardSelection {
     for (const Finding& finding : now.findings) {
       if (may_be_of_reference(finding)) {
         return stop(StopReason::reference_system,
-                    fmt::format("{} {} of the reference system, so the model was left unchanged (with "
-                                "--trust-reference that system counts as right){}{}",
+                    fmt::format("{} {} of the reference system, so the model is unchanged (--trust-reference "
+                                "assumes that this system is right){}{}",
                                 finding.id(), is_of_reference(finding) ? "is" : "may be an error",
                                 finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence));
       }

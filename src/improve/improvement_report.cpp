@@ -125,8 +125,8 @@ void summarise(Report& report, const Improvement& improvement) {
 }
 
 /// Fitted coefficients of an effect.
-std::vector<Estimate> fitted_of(const RefitResult& fit, const std::string& effect) {
-  std::vector<Estimate> estimates;
+std::vector<CoefficientEstimate> fitted_of(const RefitResult& fit, const std::string& effect) {
+  std::vector<CoefficientEstimate> estimates;
   for (const FittedParameter& p : fit.parameters) {
     if (p.name.rfind(effect + ".", 0) == 0)
       estimates.push_back({p.name.substr(effect.size() + 1), p.unit, p.value, p.standard_error});
@@ -160,7 +160,7 @@ void add_step(DiagnosisPanels& panels, const Improvement& improvement, std::size
     panels.add_column(added, "added by " + step.added, "hPa", before.flights,
                       [number](const F& f) { return one_of(f.added, number); });
   }
-  if (const std::vector<Estimate> fitted = fitted_of(improvement.fit, step.added); !fitted.empty())
+  if (const std::vector<CoefficientEstimate> fitted = fitted_of(improvement.fit, step.added); !fitted.empty())
     page.paragraphs.push_back(
         fmt::format("{} {}.", step.rivals.empty() ? "In the best model" : "Fitted as the only added effect",
                     estimates_text(fitted)));

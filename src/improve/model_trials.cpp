@@ -15,7 +15,7 @@ namespace pcor::internal {
 namespace {
 
 /// Index of an effect in a model; the number of effects if there is no effect with that name.
-std::size_t place_of(const ModelDefinition& model, const std::string& effect) {
+std::size_t position_of(const ModelDefinition& model, const std::string& effect) {
   const std::vector<ModelEffect>& effects = model.model.effects;
   const auto found = std::find_if(effects.begin(), effects.end(),
                                   [&effect](const ModelEffect& each) { return each.id == effect; });
@@ -38,10 +38,10 @@ std::vector<double> neutral_of(const ModelEffect& effect) {
 ModelDefinition with_what_is_alike(ModelDefinition other, const TrialModel& model,
                                    const std::vector<std::string>& variables) {
   for (const std::string& effect : model.alike) {
-    const ModelEffect& own = model.file.model.effects[place_of(model.file, effect)];
-    const std::size_t place = place_of(other, effect);
-    if (place < other.model.effects.size()) {
-      other.model.effects[place].parameters = own.parameters;
+    const ModelEffect& own = model.file.model.effects[position_of(model.file, effect)];
+    const std::size_t position = position_of(other, effect);
+    if (position < other.model.effects.size()) {
+      other.model.effects[position].parameters = own.parameters;
     } else {
       other = add_effects(other, {own}, variables);
     }
@@ -53,8 +53,8 @@ ModelDefinition with_what_is_alike(ModelDefinition other, const TrialModel& mode
 ModelDefinition without_what_is_alike(ModelDefinition file, const TrialModel& model) {
   std::vector<ModelEffect>& effects = file.model.effects;
   for (const std::string& alike : model.alike) {
-    const auto place = static_cast<std::ptrdiff_t>(place_of(file, alike));
-    if (place < static_cast<std::ptrdiff_t>(effects.size())) effects.erase(effects.begin() + place);
+    const auto position = static_cast<std::ptrdiff_t>(position_of(file, alike));
+    if (position < static_cast<std::ptrdiff_t>(effects.size())) effects.erase(effects.begin() + position);
   }
   return file;
 }
@@ -84,7 +84,7 @@ TrialFlight tried_on(const FlightSet& flights, std::size_t number, const ModelDe
 }  // namespace
 
 bool has(const ModelDefinition& model, const std::string& effect) {
-  return place_of(model, effect) < model.model.effects.size();
+  return position_of(model, effect) < model.model.effects.size();
 }
 
 ModelDefinition union_of(const std::vector<ModelDefinition>& models) {
@@ -106,9 +106,9 @@ ModelDefinition union_of(const std::vector<ModelDefinition>& models) {
 std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDefinition& whole) {
   std::vector<double> coefficients;
   for (const ModelEffect& effect : whole.model.effects) {
-    const std::size_t place = place_of(model, effect.id);
+    const std::size_t position = position_of(model, effect.id);
     const std::vector<double> own =
-        place < model.model.effects.size() ? model.model.effects[place].parameters : neutral_of(effect);
+        position < model.model.effects.size() ? model.model.effects[position].parameters : neutral_of(effect);
     coefficients.insert(coefficients.end(), own.begin(), own.end());
   }
   return coefficients;

@@ -41,12 +41,12 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
     if (effect.is_formula()) return std::nullopt;
     const EffectInfo& info = effect_info[effect_named(effect.id)];
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
-      const Eigen::Index place = as_index(deviations.size());
+      const Eigen::Index position = as_index(deviations.size());
       const bool by_attack = effect.id == "static-alpha" || effect.id == "static-attack";
       if (by_attack)
-        with_attack.push_back(place);
+        with_attack.push_back(position);
       else
-        with_speed.push_back(place);
+        with_speed.push_back(position);
       deviations.push_back(gps_prior_in_typical_sizes * std::abs(info.parameters[p].typical));
     }
   }

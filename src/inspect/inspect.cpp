@@ -120,8 +120,8 @@ class Look {
           return pair.static_pressure == static_pressure && pair.dynamic_pressure == dynamic_pressure;
         });
     if (result_.is_corrected) {
-      result_.notes.push_back(
-          fmt::format("{} and {} are already corrected by the archive", static_pressure, dynamic_pressure));
+      result_.notes.push_back(warning_note(
+          fmt::format("{} and {} are already corrected by the archive", static_pressure, dynamic_pressure)));
     }
     if (const auto altitude = model.variables.find(Quantity::altitude);
         altitude != model.variables.end() && pressure_altitudes_.count(altitude->second) != 0)
@@ -134,7 +134,7 @@ class Look {
     } else if (has(Quantity::attack)) {
       model.model.effects.push_back(neutral_effect("static-attack"));
     }
-    model.law.source = "no law yet: all terms are zero until a refit finds them";
+    model.law.source = "no law yet: all coefficients are zero until a refit";
     result_.model = std::move(model);
   }
 
@@ -164,11 +164,11 @@ class Look {
       if (evidence.kind == HeightEvidence::Kind::pressure_altitude &&
           pressure_altitudes_.insert(variable).second) {
         result_.problems.push_back(
-            {variable, "pressure altitude, by that of " + evidence.pressure,
+            {variable, "pressure altitude, consistent with " + evidence.pressure,
              fmt::format("{} to {}", utc_text(flight_.time().first),
                          utc_text(flight_.time().last, "%H:%M:%S")),
              evidence.scatter, "hPa",
-             "not taken as altitude, which is a height of GPS: a fit to it would be circular"});
+             "not used as altitude, because it is not a GPS height: a fit to it would be circular"});
       }
       return evidence;
     };
@@ -186,8 +186,8 @@ class Look {
       } else if (!says_geometric(flight_.variable(each.variable))) {
         each.score = std::min(each.score, sure_score - 0.01);
         result_.notes.push_back(
-            fmt::format("{} may be a height of GPS or a pressure altitude: {}; it is not used; if it is a "
-                        "height of GPS, write altitude = \"{}\" into the [variables] of the model",
+            fmt::format("{} may be a GPS height or a pressure altitude: {}; it is not used; if it is a GPS "
+                        "height, write altitude = \"{}\" into the [variables] of the model",
                         each.variable, to_string(evidence), each.variable));
       }
     }
@@ -253,8 +253,8 @@ class Look {
     const auto& [there, requested] =
         has_static ? std::pair("static_pressure", "dynamic") : std::pair("dynamic_pressure", "static");
     return fmt::format(
-        "{}: it has {} ({}), but no {} pressure of a known name, unit and size, without which nothing can be "
-        "corrected; {}get the file with the {} pressure, or name it in the [variables] of a model",
+        "{}: it has {} ({}), but no {} pressure of a known name, unit and size, so it cannot be corrected; "
+        "{}get the file with the {} pressure, or name it in the [variables] of a model",
         flight_.path().string(), evidence_.at(there).front().variable, evidence_.at(there).front().why,
         requested, has_static ? dynamic_pressure_by_airspeed() : "", requested);
   }
@@ -286,9 +286,9 @@ class Look {
       return "";
     }
     return fmt::format(
-        "the archive made {} from a dynamic pressure that it corrected, which equals QC = {} in hPa; "
-        "with QC in a copy of the file and both named in the [variables] of a model, a fit finds what that "
-        "correction left, and not the raw error; ",
+        "the archive computed {} from a corrected dynamic pressure, QC = {} in "
+        "hPa; add QC to a copy of the file and name both in the [variables] of "
+        "a model to fit the remaining error (not the raw error); ",
         source, formula);
   }
 

@@ -54,7 +54,7 @@ ReportTable roles_of(const Inspection& flight) {
   for (const InspectedRole& role : flight.roles) {
     std::string remarks = role.trap;
     if (!role.is_verified)
-      remarks += std::string(remarks.empty() ? "" : "; ") + "no public document has the name";
+      remarks += std::string(remarks.empty() ? "" : "; ") + "name not documented publicly";
     table.rows.push_back({role.role, role.variable, role.unit, role.is_turned ? "reversed" : "unchanged",
                           std::to_string(role.rate), percent(role.present), remarks});
   }
@@ -112,12 +112,10 @@ Report inspection_report(const std::vector<Inspection>& flights) {
     columns.add("latitude", "latitude", "deg", [](const Inspection& f) { return f.samples->latitude; });
     columns.add("longitude", "longitude", "deg", [](const Inspection& f) { return f.samples->longitude; });
     add_strip(report);
-    add_if_present(
-        report,
-        TimePanel{"Height",
-                  "Altitude in time; regimes are shaded. Drag over a time range, or choose a regime, and "
-                  "every picture shows its samples alone.",
-                  {"altitude"}});
+    add_if_present(report, TimePanel{"Height",
+                                     "Altitude in time; regimes are shaded. Drag over a time range, or "
+                                     "choose a regime, to restrict every picture to its samples.",
+                                     {"altitude"}});
     add_if_present(
         report, TimePanel{"Speed", "True airspeed and speed over the ground.", {"airspeed", "ground_speed"}});
     add_if_present(report, TimePanel{"Attitude", "Pitch and roll.", {"pitch", "roll"}});
@@ -127,8 +125,7 @@ Report inspection_report(const std::vector<Inspection>& flights) {
       const std::vector<ReportBarb> part = wind_of(*flight.samples);
       wind.insert(wind.end(), part.begin(), part.end());
     }
-    add_track(report, "Track", "The track over the ground, by its height.", "altitude", std::move(wind),
-              false);
+    add_track(report, "Track", "Ground track, coloured by altitude.", "altitude", std::move(wind), false);
   }
   for (const Inspection& flight : flights) {
     if (!flight.roles.empty()) report.items.emplace_back(roles_of(flight));

@@ -87,9 +87,10 @@ class Plausibility {
           std::count_if(read.values.begin(), read.values.end(), [](double x) { return !std::isnan(x); }));
       if (impossible > present)
         add(variable,
-            fmt::format("share of values beyond {:g} to {:g} {}", info.minimum, info.maximum, info.unit),
+            fmt::format("share of values outside {:g} to {:g} {}", info.minimum, info.maximum, info.unit),
             100.0 * impossible / (impossible + present), "%",
-            "these values are missing; state the unit of the variable in the [units] of the model");
+            "these values are treated as missing; state the unit of the variable in the [units] of the "
+            "model");
     }
   }
 
@@ -98,8 +99,8 @@ class Plausibility {
     if (!wrong) return;
     const std::string_view role = info_of(wrong->role).name;
     add(model_.variables.at(wrong->role),
-        fmt::format("{} pressure over that of {}", wrong->role == Q::static_pressure ? "static" : "dynamic",
-                    wrong->against),
+        fmt::format("{} pressure divided by the value expected from {}",
+                    wrong->role == Q::static_pressure ? "static" : "dynamic", wrong->against),
         wrong->ratio, "1",
         fmt::format("refused; state its unit in the [units] of the model{}",
                     wrong->unit.empty() ? "" : fmt::format(", {} = \"{}\"", role, wrong->unit)));
@@ -133,7 +134,7 @@ class Plausibility {
     const double ratio = median(std::move(ratios));
     constexpr double maximum = 0.1;
     if (std::abs(ratio - 1.0) > maximum)
-      add(q.variable, "airspeed by the pressures over " + airspeed.variable, ratio, "1",
+      add(q.variable, "airspeed from the pressures divided by " + airspeed.variable, ratio, "1",
           "used unchanged; name another dynamic pressure in the [variables] of the model, or its unit in "
           "[units]");
   }
@@ -173,7 +174,7 @@ class Plausibility {
     const double ratio = median(std::move(ratios));
     constexpr double maximum = 0.05;
     if (std::abs(ratio - 1.0) > maximum)
-      add(speed.variable, "speed by the positions over it", ratio, "1",
+      add(speed.variable, "speed from the positions divided by this speed", ratio, "1",
           "used unchanged; state its unit in the [units] of the model");
   }
 

@@ -6,15 +6,15 @@
 namespace pcor::internal {
 
 Covariance part_of(const Covariance& covariance, const std::function<bool(const std::string&)>& kept) {
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < covariance.parameters.size(); ++i) {
-    if (kept(covariance.parameters[i])) places.push_back(i);
+    if (kept(covariance.parameters[i])) indices.push_back(i);
   }
   Covariance part;
-  for (const std::size_t i : places) {
+  for (const std::size_t i : indices) {
     part.parameters.push_back(covariance.parameters[i]);
     std::vector<double>& row = part.matrix.emplace_back();
-    for (const std::size_t j : places) row.push_back(covariance.matrix[i][j]);
+    for (const std::size_t j : indices) row.push_back(covariance.matrix[i][j]);
   }
   return part;
 }

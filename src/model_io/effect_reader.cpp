@@ -36,8 +36,8 @@ class EffectReader final : TomlReader {
 
   void read_effect(const toml::table& table) {
     EffectEntries given;
-    const auto keep = [](std::optional<Entry>& place) {
-      return [&place](const Entry& entry) { place = entry; };
+    const auto keep = [](std::optional<Entry>& target) {
+      return [&target](const Entry& entry) { target = entry; };
     };
     each(table, "[[effect]]",
          {{"id", keep(given.id)},
@@ -66,7 +66,7 @@ class EffectReader final : TomlReader {
   }
 
   void check_new(const std::string& id, const Entry& entry) {
-    const auto [first, is_new] = effect_lines_.emplace(id, entry.place.line);
+    const auto [first, is_new] = effect_lines_.emplace(id, entry.position.line);
     if (is_new) return;
     fail(entry,
          fmt::format("effect {} is in the model already, at line {}; remove one", quote(id), first->second));
@@ -85,19 +85,21 @@ class EffectReader final : TomlReader {
       fail(*given.id->node,
            fmt::format("surface {} lacks its knots or coefficients; give {}", quote(id), requested));
     if (effect_named(id) != catalogue_size)
-      fail(given.axes->place, fmt::format("effect {} has its formula in the catalogue; remove 'axes' and "
-                                          "'coefficients', or choose another id",
-                                          quote(id)));
+      fail(given.axes->position, fmt::format("effect {} has its formula in the catalogue; remove 'axes' and "
+                                             "'coefficients', or choose another id",
+                                             quote(id)));
     for (const std::optional<Entry>* entry :
          {&given.location, &given.unit, &given.source, &given.formula, &given.parameters, &given.scaling}) {
-      if (*entry) fail((*entry)->place, fmt::format("a surface takes no '{}'; remove it", (*entry)->key));
+      if (*entry)
+        fail((*entry)->position, fmt::format("a surface has no key '{}'; remove it", (*entry)->key));
     }
     std::vector<std::vector<double>> rows;
     for (const toml::node& node : array(*given.coefficients, requested)) {
-      rows.push_back(numbers({given.coefficients->key, given.coefficients->place, &node, {}}, requested));
+      rows.push_back(numbers({given.coefficients->key, given.coefficients->position, &node, {}}, requested));
       if (rows.back().size() != rows.front().size())
-        fail(node, fmt::format("this row has {} coefficients, the first one {}; give as many in each",
-                               rows.back().size(), rows.front().size()));
+        fail(node,
+             fmt::format("this row has {} coefficients, the first row {}; give the same number in each row",
+                         rows.back().size(), rows.front().size()));
     }
     const std::vector<Entry> axes = entries_of(table(*given.axes, requested), quote(given.axes->key));
     if (axes.size() != 2)
@@ -108,7 +110,8 @@ class EffectReader final : TomlReader {
       const std::size_t count = k == 0 ? rows.size() : rows.empty() ? 0 : rows.front().size();
       made[k] = {quantity_named(axes[k].key), lower, upper, count};
       if (made[k].quantity == Quantity::count)
-        fail(axes[k].place, fmt::format("there is no quantity {}; give {}", quote(axes[k].key), requested));
+        fail(axes[k].position,
+             fmt::format("there is no quantity {}; give {}", quote(axes[k].key), requested));
       if (!made[k].is_valid())
         fail(*given.coefficients, fmt::format("{} has {} splines; give {} to {}", quote(axes[k].key), count,
                                               SurfaceAxis::min_count, SurfaceAxis::max_count));
@@ -130,7 +133,7 @@ class EffectReader final : TomlReader {
     for (const std::optional<Entry>* entry : {&given.location, &given.unit, &given.source}) {
       if (!*entry) continue;
       fail(
-          (*entry)->place,
+          (*entry)->position,
           fmt::format("effect {} of the catalogue has no key '{}'; remove it, or give a formula and a new id",
                       quote(id), (*entry)->key));
     }
@@ -154,7 +157,7 @@ class EffectReader final : TomlReader {
       } else if (power.key == "dynamic_pressure") {
         result.dynamic_pressure = whole_power(power);
       } else {
-        fail(power.place,
+        fail(power.position,
              fmt::format("an effect is scaled by powers of the two pressures, not of {}; give {}",
                          quote(power.key), requested));
       }
@@ -190,12 +193,12 @@ class EffectReader final : TomlReader {
 
   ModelEffect formula_effect(const std::string& id, const EffectEntries& given) const {
     if (effect_named(id) != catalogue_size) {
-      fail(given.formula->place,
+      fail(given.formula->position,
            fmt::format("effect {} has its formula in the catalogue; remove 'formula', or give a new id",
                        quote(id)));
     }
     if (given.scaling) {
-      fail(given.scaling->place,
+      fail(given.scaling->position,
            fmt::format("effect {} is defined by a formula; write the scaling into it", quote(id)));
     }
     ModelEffect effect;
@@ -205,7 +208,7 @@ class EffectReader final : TomlReader {
     if (given.unit) effect.unit = unit_of_action(*given.unit, effect.location);
     if (given.source) effect.source = text(*given.source);
     if (!given.parameters) {
-      fail(given.formula->place,
+      fail(given.formula->position,
            fmt::format("effect {} has a formula but no parameters; give parameters = {{ "
                        "name = value }}, each with its first value",
                        quote(id)));
@@ -246,7 +249,7 @@ class EffectReader final : TomlReader {
     const EffectLocation location = location_named(name);
     if (location == EffectLocation::count) {
       fail(entry,
-           fmt::format("there is no location {} of an effect; {}", quote(name),
+           fmt::format("unknown location {} of an effect; {}", quote(name),
                        suggestion_text(name, names_of(effect_location_info, &EffectLocationInfo::name))));
     }
     return location;
@@ -272,16 +275,17 @@ class EffectReader final : TomlReader {
   template <class Handler>
   void each_parameter(const Entry& entry, const ModelEffect& effect, const Handler& action) const {
     for (const Entry& parameter : parameter_entries(entry)) {
-      action(parameter_number(parameter.key, parameter.place, effect), parameter);
+      action(parameter_number(parameter.key, parameter.position, effect), parameter);
     }
   }
 
-  std::size_t parameter_number(const std::string& name, Place place, const ModelEffect& effect) const {
+  std::size_t parameter_number(const std::string& name, Position position, const ModelEffect& effect) const {
     const Names known = parameter_names(effect);
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) {
-      fail(place, fmt::format("effect {} has no parameter {}; {}", quote(effect.id), quote(name),
-                              known.empty() ? "the effect has no parameters" : suggestion_text(name, known)));
+      fail(position,
+           fmt::format("effect {} has no parameter {}; {}", quote(effect.id), quote(name),
+                       known.empty() ? "the effect has no parameters" : suggestion_text(name, known)));
     }
     return static_cast<std::size_t>(found - known.begin());
   }

@@ -53,11 +53,11 @@ ModelUncertainty uncertainty_of(const ModelDefinition& file) {
   for (std::size_t i = 0; i < count; ++i) uncertainty.covariance[i * count + i] = variances[i];
   const Covariance& stated = file.covariance;
   constexpr auto absent = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> indices;
   for (const std::string& name : stated.parameters) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end() && has_doubt(name)) {
-      places.push_back(absent);
+      indices.push_back(absent);
       continue;
     }
     if (found == names.end()) {
@@ -67,12 +67,12 @@ ModelUncertainty uncertainty_of(const ModelDefinition& file) {
               "model '{}': its covariance names {}, which is not a parameter of the model; refit the model",
               file.model.name, quote(name)));
     }
-    places.push_back(static_cast<std::size_t>(found - names.begin()));
+    indices.push_back(static_cast<std::size_t>(found - names.begin()));
   }
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    for (std::size_t j = 0; j < places.size() && places[i] != absent; ++j) {
-      if (places[j] == absent) continue;
-      uncertainty.covariance[places[i] * count + places[j]] = stated.matrix[i][j];
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    for (std::size_t j = 0; j < indices.size() && indices[i] != absent; ++j) {
+      if (indices[j] == absent) continue;
+      uncertainty.covariance[indices[i] * count + indices[j]] = stated.matrix[i][j];
     }
   }
   for (const auto& [role, size] : file.uncertainty.roles) uncertainty.random[index(role)] = size;
@@ -90,9 +90,9 @@ Bounds ModelDefinition::bounds(std::size_t effect, std::size_t parameter) const 
   const std::optional<Bounds> own = fit(effect, parameter).bounds;
   if (own) return *own;
   const ModelEffect& which = model.effects[effect];
-  const std::size_t place = effect_named(which.id);
-  if (which.is_formula() || place == catalogue_size) return {};
-  const ParameterInfo& info = effect_info[place].parameters[parameter];
+  const std::size_t entry = effect_named(which.id);
+  if (which.is_formula() || entry == catalogue_size) return {};
+  const ParameterInfo& info = effect_info[entry].parameters[parameter];
   return {info.lower, info.upper};
 }
 
@@ -103,14 +103,14 @@ std::vector<std::string> parameter_names(const ModelEffect& effect) {
 }
 
 ModelEffect neutral_effect(std::string_view id) {
-  const std::size_t place = effect_named(id);
-  if (place == catalogue_size) {
+  const std::size_t entry = effect_named(id);
+  if (entry == catalogue_size) {
     throw Error(Error::Code::usage, fmt::format("there is no effect {} in the catalogue; {}", quote(id),
                                                 suggestion_text(id, names_of(effect_info, &EffectInfo::id))));
   }
   ModelEffect effect;
   effect.id = id;
-  const EffectInfo& info = effect_info[place];
+  const EffectInfo& info = effect_info[entry];
   for (std::size_t i = 0; i < info.parameter_count(); ++i) {
     effect.parameters.push_back(info.parameters[i].neutral);
   }

@@ -76,10 +76,10 @@ class Reader final : TomlReader {
     const Quantity quantity = quantity_named(entry.key);
     if (quantity != Quantity::count && is_role(quantity)) return quantity;
     if (quantity != Quantity::count) {
-      fail(entry.place, fmt::format("{} is computed, not recorded, so it is not a role; remove it from {}",
-                                    quote(entry.key), entry.title));
+      fail(entry.position, fmt::format("{} is computed, not recorded, so it is not a role; remove it from {}",
+                                       quote(entry.key), entry.title));
     }
-    fail(entry.place,
+    fail(entry.position,
          fmt::format("there is no role {}; {}", quote(entry.key), suggestion_text(entry.key, role_names())));
   }
 
@@ -124,7 +124,7 @@ class Reader final : TomlReader {
     };
     with("variables", &Reader::read_variables);
     const auto variables = sections.find("variables");
-    require_pressures(variables == sections.end() ? Place{1, 1} : variables->second.place);
+    require_pressures(variables == sections.end() ? Position{1, 1} : variables->second.position);
     with("units", &Reader::read_units);
     with("output", &Reader::read_output);
     with("lams", &Reader::read_lams);
@@ -146,17 +146,18 @@ class Reader final : TomlReader {
     for (const Entry& entry : entries_of(table(section_entry), "[variables]")) {
       const Quantity quantity = role(entry);
       file_.variables[quantity] = variable_name(entry);
-      variable_places_[quantity] = entry.place;
+      variable_positions_[quantity] = entry.position;
     }
   }
 
   // A model without pressure variables uses the variables of the flight's aircraft.
-  void require_pressures(Place place) const {
+  void require_pressures(Position position) const {
     if (!names_pressures()) return;
     for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
       if (file_.variables.count(quantity) != 0) continue;
       const std::string_view name = info_of(quantity).name;
-      fail(place, fmt::format("the role '{}' has no variable; add {} = \"...\" to [variables]", name, name));
+      fail(position,
+           fmt::format("the role '{}' has no variable; add {} = \"...\" to [variables]", name, name));
     }
   }
 
@@ -169,15 +170,15 @@ class Reader final : TomlReader {
   void check_variables() const {
     if (names_pressures() &&
         file_.variables.at(Quantity::static_pressure) == file_.variables.at(Quantity::dynamic_pressure)) {
-      fail(std::max(variable_places_.at(Quantity::static_pressure),
-                    variable_places_.at(Quantity::dynamic_pressure)),
+      fail(std::max(variable_positions_.at(Quantity::static_pressure),
+                    variable_positions_.at(Quantity::dynamic_pressure)),
            fmt::format("'static_pressure' and 'dynamic_pressure' are both {}; give each its own variable",
                        quote(file_.variables.at(Quantity::static_pressure))));
     }
     give_one({Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point}, "the humidity");
     if (file_.model.lams.approach != LamsApproach::with_temperature) {
       give_one({Quantity::recovery_temperature, Quantity::ambient_temperature},
-               "the temperature, except with [lams] approach = 3, which takes the ambient one");
+               "the temperature, except with [lams] approach = 3, which uses the ambient temperature");
     }
   }
 
@@ -189,9 +190,9 @@ class Reader final : TomlReader {
     }
     if (given.size() < 2) return;
     std::stable_sort(given.begin(), given.end(), [this](Quantity a, Quantity b) {
-      return variable_places_.at(a) < variable_places_.at(b);
+      return variable_positions_.at(a) < variable_positions_.at(b);
     });
-    fail(variable_places_.at(given[1]),
+    fail(variable_positions_.at(given[1]),
          fmt::format("the roles '{}' and '{}' both have a variable; give one for {}", info_of(given[0]).name,
                      info_of(given[1]).name, what));
   }
@@ -215,9 +216,9 @@ class Reader final : TomlReader {
     const std::string requested(info_of(quantity).unit);
     // Without pressure variables the names follow from the flight's aircraft.
     if (file_.variables.count(quantity) == 0 && file_.variables.count(Quantity::static_pressure) != 0) {
-      fail(entry.place, fmt::format("the role {} has a unit but no variable; name its variable in "
-                                    "[variables], or remove it from [units]",
-                                    quote(entry.key)));
+      fail(entry.position, fmt::format("the role {} has a unit but no variable; name its variable in "
+                                       "[variables], or remove it from [units]",
+                                       quote(entry.key)));
     }
     if (!is_known_unit(unit)) {
       fail(entry, fmt::format("{}: unknown unit {}; give one that converts to {}", called(entry), quote(unit),
@@ -231,7 +232,7 @@ class Reader final : TomlReader {
                               quote(unit), requested));
     }
     if (!file_.units.emplace(quantity, unit).second) {
-      fail(entry.place, fmt::format("the unit of {} is given twice; remove one", quote(entry.key)));
+      fail(entry.position, fmt::format("the unit of {} is given twice; remove one", quote(entry.key)));
     }
   }
 
@@ -240,7 +241,7 @@ class Reader final : TomlReader {
     const std::vector<Entry> entries = entries_of(table(section_entry), "[output]");
     for (const Entry& entry : entries) {
       if (!contains(known, entry.key)) {
-        fail(entry.place,
+        fail(entry.position,
              fmt::format("there is no output {}; {}", quote(entry.key), suggestion_text(entry.key, known)));
       }
       file_.output[entry.key] = variable_name(entry);
@@ -344,7 +345,7 @@ class Reader final : TomlReader {
     for (const Entry& entry : entries_of(table(section_entry), "[domain]")) {
       if (quantity_named(entry.key) == Quantity::count) {
         const Names known = names_of(quantity_info, &QuantityInfo::name);
-        fail(entry.place,
+        fail(entry.position,
              fmt::format("there is no quantity {}; {}", quote(entry.key), suggestion_text(entry.key, known)));
       }
       const auto [lower, upper] = range(entry);
@@ -385,9 +386,10 @@ class Reader final : TomlReader {
           {"values", [&](const Entry& entry) { values = entry; }},
           {"matrix", [&](const Entry& entry) { matrix = entry; }}});
     if (!parameters || !matrix) {
-      fail(section_entry.place, fmt::format("[covariance] has no '{}'; give both parameters and matrix, or "
-                                            "remove the table",
-                                            parameters ? "matrix" : "parameters"));
+      fail(section_entry.position,
+           fmt::format("[covariance] has no '{}'; give both parameters and matrix, or "
+                       "remove the table",
+                       parameters ? "matrix" : "parameters"));
     }
     read_covariance_parameters(*parameters);
     if (values) check_values(*values);
@@ -422,8 +424,8 @@ class Reader final : TomlReader {
         const auto found = std::find(names.begin(), names.end(), name);
         const std::optional<double> stated = file_.fit(e, i).standard_error;
         if (found == names.end() || !stated) continue;
-        const auto place = static_cast<std::size_t>(found - names.begin());
-        const double here = std::sqrt(file_.covariance.matrix[place][place]);
+        const auto position = static_cast<std::size_t>(found - names.begin());
+        const double here = std::sqrt(file_.covariance.matrix[position][position]);
         if (std::abs(here - *stated) <= 0.02 * std::max(here, *stated)) continue;
         fail(entry, fmt::format("[covariance] does not match the effect: standard error of {} is {:.3g} in "
                                 "the matrix, {:.3g} in the effect; refit the model or remove one",
@@ -452,13 +454,13 @@ class Reader final : TomlReader {
     if (quantity == Quantity::count || !is_role(quantity)) {
       Names known = role_names();
       known.insert(known.end(), {"static_defect", "static_defect_ratio"});
-      fail(entry.place,
+      fail(entry.position,
            fmt::format("there is no role {}; {}", quote(entry.key), suggestion_text(entry.key, known)));
     }
     if (file_.variables.count(quantity) == 0) {
-      fail(entry.place, fmt::format("the role {} has an uncertainty but no variable; name its variable in "
-                                    "[variables], or remove it from [uncertainty]",
-                                    quote(entry.key)));
+      fail(entry.position, fmt::format("the role {} has an uncertainty but no variable; name its variable in "
+                                       "[variables], or remove it from [uncertainty]",
+                                       quote(entry.key)));
     }
     return quantity;
   }
@@ -484,7 +486,7 @@ class Reader final : TomlReader {
     const std::string requested = fmt::format("{} rows of {} numbers, one for each parameter", size, size);
     std::vector<std::vector<double>>& matrix = file_.covariance.matrix;
     for (const toml::node& node : array(entry, requested)) {
-      matrix.push_back(numbers({entry.key, entry.place, &node, entry.title}, requested));
+      matrix.push_back(numbers({entry.key, entry.position, &node, entry.title}, requested));
       if (matrix.back().size() != size) {
         fail(node,
              fmt::format("a row of the matrix has {} numbers; give {}", matrix.back().size(), requested));
@@ -538,7 +540,7 @@ class Reader final : TomlReader {
   }
 
   ModelDefinition file_;
-  std::map<Quantity, Place> variable_places_;
+  std::map<Quantity, Position> variable_positions_;
 };
 
 }  // namespace

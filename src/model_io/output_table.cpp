@@ -46,9 +46,9 @@ Quantities law(const Correction& correction) {
 }
 
 /// Inputs of the effects that act before the ports.
-Quantities read_before_ports(const Correction& correction, const std::vector<EffectLocation>& places) {
+Quantities read_before_ports(const Correction& correction, const std::vector<EffectLocation>& locations) {
   Quantities read;
-  for (const EffectLocation place : places) read = joined({read, correction.chain.read_at(place)});
+  for (const EffectLocation location : locations) read = joined({read, correction.chain.read_at(location)});
   return sources_of(correction, read);
 }
 

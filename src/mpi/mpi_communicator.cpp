@@ -30,19 +30,19 @@ std::vector<std::string> MpiCommunicator::exchange(const std::string& own) {
   const std::size_t longest = *std::max_element(lengths.begin(), lengths.end());
   for (std::size_t first = 0; first < longest; first += maximum) {
     std::vector<int> counts;
-    std::vector<int> places;
+    std::vector<int> offsets;
     int end = 0;
     for (const std::uint64_t of_member : lengths) {
       const std::size_t left = of_member > first ? of_member - first : 0;
       counts.push_back(static_cast<int>(std::min(left, maximum)));
-      places.push_back(end);
+      offsets.push_back(end);
       end += counts.back();
     }
     std::string bytes(static_cast<std::size_t>(end), '\0');
     MPI_Allgatherv(own.data() + std::min(first, own.size()), counts[rank_], MPI_BYTE, bytes.data(),
-                   counts.data(), places.data(), MPI_BYTE, MPI_COMM_WORLD);
+                   counts.data(), offsets.data(), MPI_BYTE, MPI_COMM_WORLD);
     for (std::size_t member = 0; member < size_; ++member)
-      all[member].append(bytes, static_cast<std::size_t>(places[member]),
+      all[member].append(bytes, static_cast<std::size_t>(offsets[member]),
                          static_cast<std::size_t>(counts[member]));
   }
   return all;

@@ -76,11 +76,11 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& columns, cons
   fit.coefficients.assign(width, {nan, nan});
   fit.residuals.assign(y.size(), nan);
   fit.rms = nan;
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < y.size(); ++i) {
-    if (takes_part(columns, y, i)) places.push_back(i);
+    if (takes_part(columns, y, i)) indices.push_back(i);
   }
-  fit.samples = places.size();
+  fit.samples = indices.size();
   if (fit.samples < width + 3) return fit;
 
   const auto rows = static_cast<Eigen::Index>(fit.samples);
@@ -88,23 +88,23 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& columns, cons
   Eigen::MatrixXd x(rows, across);
   Eigen::VectorXd right(rows);
   for (Eigen::Index r = 0; r < rows; ++r) {
-    const std::size_t place = places[static_cast<std::size_t>(r)];
-    for (Eigen::Index c = 0; c < across; ++c) x(r, c) = columns[static_cast<std::size_t>(c)][place];
-    right(r) = y[place];
+    const std::size_t position = indices[static_cast<std::size_t>(r)];
+    for (Eigen::Index c = 0; c < across; ++c) x(r, c) = columns[static_cast<std::size_t>(c)][position];
+    right(r) = y[position];
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition(x);
   if (decomposition.rank() < across) return fit;
   const Eigen::VectorXd solution = decomposition.solve(right);
   const Eigen::VectorXd left = right - x * solution;
-  for (Eigen::Index r = 0; r < rows; ++r) fit.residuals[places[static_cast<std::size_t>(r)]] = left(r);
+  for (Eigen::Index r = 0; r < rows; ++r) fit.residuals[indices[static_cast<std::size_t>(r)]] = left(r);
   fit.rms = std::sqrt(left.squaredNorm() / static_cast<double>(rows));
 
   const Eigen::MatrixXd inverse = inverse_of(x.transpose() * x);
   const Eigen::MatrixXd covariance =
       inverse * covariance_of_sums(columns, fit.residuals, time, step) * inverse;
   for (std::size_t c = 0; c < width; ++c) {
-    const auto place = static_cast<Eigen::Index>(c);
-    fit.coefficients[c] = {solution(place), std::sqrt(std::max(covariance(place, place), 0.0))};
+    const auto position = static_cast<Eigen::Index>(c);
+    fit.coefficients[c] = {solution(position), std::sqrt(std::max(covariance(position, position), 0.0))};
   }
   return fit;
 }
@@ -113,24 +113,24 @@ LeastSquares mean_of(const std::vector<double>& values, const std::vector<double
   return least_squares({std::vector<double>(values.size(), 1.0)}, values, time, step);
 }
 
-Estimated combined(const std::vector<Estimated>& estimates) {
-  std::vector<Estimated> known;
+Estimate combined(const std::vector<Estimate>& estimates) {
+  std::vector<Estimate> known;
   std::copy_if(estimates.begin(), estimates.end(), std::back_inserter(known),
-               [](const Estimated& e) { return std::isfinite(e.value) && std::isfinite(e.error); });
+               [](const Estimate& e) { return std::isfinite(e.value) && std::isfinite(e.error); });
   if (known.empty()) return {nan, nan};
   // An error of zero, of a series without any noise, would take all the weight.
   double smallest = 1e-100;
-  for (const Estimated& each : known) smallest = std::max(smallest, 1e-9 * std::abs(each.value));
+  for (const Estimate& each : known) smallest = std::max(smallest, 1e-9 * std::abs(each.value));
   double weights = 0.0;
   double sum = 0.0;
-  for (const Estimated& each : known) {
+  for (const Estimate& each : known) {
     const double weight = 1.0 / std::pow(std::max(each.error, smallest), 2);
     weights += weight;
     sum += weight * each.value;
   }
   const double mean = sum / weights;
   double chi2 = 0.0;
-  for (const Estimated& each : known)
+  for (const Estimate& each : known)
     chi2 += std::pow((each.value - mean) / std::max(each.error, smallest), 2);
   const double excess = known.size() > 1 ? chi2 / static_cast<double>(known.size() - 1) : 1.0;
   return {mean, std::sqrt(std::max(excess, 1.0) / weights)};

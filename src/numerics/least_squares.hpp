@@ -7,20 +7,20 @@
 namespace pcor::internal {
 
 /// A number with its standard error.
-struct Estimated {
+struct Estimate {
   double value = 0.0;
   double error = 0.0;
 };
 
-inline Estimated operator*(double factor, const Estimated& number) {
+inline Estimate operator*(double factor, const Estimate& number) {
   return {factor * number.value, std::abs(factor) * number.error};
 }
 
 /// Least squares of a few columns, with errors that know the memory and the slow drift of the noise.
 struct LeastSquares {
-  std::vector<Estimated> coefficients{};  ///< one for each column; NaN where the fit is not possible
-  std::vector<double> residuals{};        ///< residual of each sample; NaN if the sample was not used
-  double rms = 0.0;                       ///< rms of the residuals
+  std::vector<Estimate> coefficients{};  ///< one for each column; NaN where the fit is not possible
+  std::vector<double> residuals{};       ///< residual of each sample; NaN if the sample was not used
+  double rms = 0.0;                      ///< rms of the residuals
   std::size_t samples = 0;
 };
 
@@ -37,6 +37,6 @@ LeastSquares mean_of(const std::vector<double>& values, const std::vector<double
 
 /// Mean of independent estimates, weighted by their errors. If their scatter exceeds their errors, the error
 /// follows from the scatter. NaN estimates are excluded; the mean of zero estimates is NaN.
-Estimated combined(const std::vector<Estimated>& estimates);
+Estimate combined(const std::vector<Estimate>& estimates);
 
 }  // namespace pcor::internal

@@ -29,8 +29,8 @@ double pivot(const std::vector<double>& values, std::size_t rank) {
   for (std::size_t i = 0; i < size; ++i) sample[i] = values[(2 * i + 1) * values.size() / (2 * size)];
   const double share = static_cast<double>(rank) / static_cast<double>(values.size());
   const double doubt = std::sqrt(share * (1.0 - share) * size);
-  const double place = share * size + (share < 0.5 ? doubt : -doubt);
-  auto* const at = sample.begin() + std::clamp(static_cast<std::ptrdiff_t>(place), std::ptrdiff_t{0},
+  const double position = share * size + (share < 0.5 ? doubt : -doubt);
+  auto* const at = sample.begin() + std::clamp(static_cast<std::ptrdiff_t>(position), std::ptrdiff_t{0},
                                                static_cast<std::ptrdiff_t>(size - 1));
   std::nth_element(sample.begin(), at, sample.end());
   return *at;

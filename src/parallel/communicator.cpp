@@ -19,13 +19,13 @@ struct Message {
   std::string part{};
   // Fields of an error:
   bool has_error = false;
-  std::uint64_t place = 0;
+  std::uint64_t order = 0;
   Error::Code code{};
   std::string text{};
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(kind, state, part, has_error, place, code, text);
+    archive(kind, state, part, has_error, order, code, text);
   }
 };
 
@@ -42,10 +42,10 @@ class Alone final : public Communicator {
   std::vector<std::string> exchange(const std::string& own) override { return {own}; }
 };
 
-Message message_of(const Error& error, std::size_t place) {
+Message message_of(const Error& error, std::size_t order) {
   Message message{Kind::failed};
   message.has_error = true;
-  message.place = place;
+  message.order = order;
   message.code = error.code();
   message.text = error.what();
   return message;
@@ -55,7 +55,7 @@ Message message_of(const Error& error, std::size_t place) {
 const Message* first_error(const std::vector<Message>& all) {
   const Message* first = nullptr;
   for (const Message& each : all) {
-    if (each.has_error && (first == nullptr || each.place < first->place)) first = &each;
+    if (each.has_error && (first == nullptr || each.order < first->order)) first = &each;
   }
   return first;
 }
@@ -71,8 +71,7 @@ bool agree(const std::vector<Message>& all) {
 
 std::vector<Message> Communicator::talk(const Message& own) {
   if (has_parted_)
-    throw parted_with_ ? *parted_with_
-                       : Error(Error::Code::system, "a member of the team has left it before");
+    throw parted_with_ ? *parted_with_ : Error(Error::Code::system, "another process of this run has ended");
   std::vector<Message> all;
   for (const std::string& bytes : exchange(packed(own))) all.push_back(unpacked<Message>(bytes));
   has_parted_ =
@@ -103,8 +102,8 @@ std::vector<std::string> Communicator::gather(const std::string& own, std::uint6
   return parts;
 }
 
-void Communicator::fail(const Error& error, std::size_t place) {
-  if (size() > 1) talk(message_of(error, place));
+void Communicator::fail(const Error& error, std::size_t order) {
+  if (size() > 1) talk(message_of(error, order));
   throw error;
 }
 

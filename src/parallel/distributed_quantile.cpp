@@ -28,8 +28,8 @@ double value_of(std::uint64_t number) {
   return value;
 }
 
-/// A place that is looked for.
-struct Place {
+/// State of the search for one order statistic.
+struct OrderStatistic {
   std::uint64_t found = 0;            // bits of the number
   std::uint64_t below = 0;            // number of remaining values that must be smaller
   std::vector<std::uint64_t> left{};  // values of this rank
@@ -46,11 +46,11 @@ std::vector<Counts> counts_of_all(Communicator& comm, const std::vector<Counts>&
   return all;
 }
 
-std::vector<double> values_of_one(std::vector<double> values, const std::vector<std::uint64_t>& places) {
+std::vector<double> values_of_one(std::vector<double> values, const std::vector<std::uint64_t>& orders) {
   std::vector<double> found;
   auto begin = values.begin();
-  for (const std::uint64_t place : places) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
+  for (const std::uint64_t order : orders) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(order);
     std::nth_element(begin, at, values.end());
     found.push_back(*at);
     begin = at;
@@ -63,39 +63,39 @@ std::vector<double> values_of_one(std::vector<double> values, const std::vector<
 std::vector<double> values_at(Communicator& comm, std::vector<double> values, const WantedPlaces& requested) {
   for (double& value : values) value += 0.0;  // there is one zero
   if (comm.size() == 1) {
-    const std::vector<std::uint64_t> places = requested(values.size());
-    return values_of_one(std::move(values), places);
+    const std::vector<std::uint64_t> orders = requested(values.size());
+    return values_of_one(std::move(values), orders);
   }
-  std::vector<Place> places(1);
-  for (const double value : values) places[0].left.push_back(number_of(value));
+  std::vector<OrderStatistic> statistics(1);
+  for (const double value : values) statistics[0].left.push_back(number_of(value));
   for (unsigned shift = 64; shift > 0;) {
     shift -= bits_at_a_time;
     const auto digit = [shift](std::uint64_t number) { return (number >> shift) & 0xffU; };
-    std::vector<Counts> own(places.size(), Counts{});
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      for (const std::uint64_t number : places[k].left) ++own[k][digit(number)];
+    std::vector<Counts> own(statistics.size(), Counts{});
+    for (std::size_t k = 0; k < statistics.size(); ++k) {
+      for (const std::uint64_t number : statistics[k].left) ++own[k][digit(number)];
     }
     std::vector<Counts> all = counts_of_all(comm, own);
     if (shift + bits_at_a_time == 64) {
       std::uint64_t count = 0;
       for (const std::uint64_t each : all[0]) count += each;
       const std::vector<std::uint64_t> below = requested(count);
-      places.resize(below.size(), places[0]);
+      statistics.resize(below.size(), statistics[0]);
       all.resize(below.size(), all[0]);
-      for (std::size_t k = 0; k < places.size(); ++k) places[k].below = below[k];
+      for (std::size_t k = 0; k < statistics.size(); ++k) statistics[k].below = below[k];
     }
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      Place& place = places[k];
+    for (std::size_t k = 0; k < statistics.size(); ++k) {
+      OrderStatistic& statistic = statistics[k];
       std::uint64_t chosen = 0;
-      while (place.below >= all[k][chosen]) place.below -= all[k][chosen++];
-      place.found |= chosen << shift;
-      place.left.erase(std::remove_if(place.left.begin(), place.left.end(),
-                                      [&](std::uint64_t number) { return digit(number) != chosen; }),
-                       place.left.end());
+      while (statistic.below >= all[k][chosen]) statistic.below -= all[k][chosen++];
+      statistic.found |= chosen << shift;
+      statistic.left.erase(std::remove_if(statistic.left.begin(), statistic.left.end(),
+                                          [&](std::uint64_t number) { return digit(number) != chosen; }),
+                           statistic.left.end());
     }
   }
   std::vector<double> found;
-  for (const Place& place : places) found.push_back(value_of(place.found));
+  for (const OrderStatistic& statistic : statistics) found.push_back(value_of(statistic.found));
   return found;
 }
 

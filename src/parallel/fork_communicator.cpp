@@ -61,12 +61,12 @@ Error ForkCommunicator::loss_of(const PeerProcess& other, int why) const {
   if (end && WIFSIGNALED(*end) && WTERMSIG(*end) != SIGKILL)
     return Error(
         Error::Code::system,
-        fmt::format("{}was ended by the signal \"{}\"; give the command again, and report it if that "
-                    "happens again",
-                    which, ::strsignal(WTERMSIG(*end))));
+        fmt::format(
+            "{}was ended by the signal \"{}\"; run the command again; if this happens again, report it",
+            which, ::strsignal(WTERMSIG(*end))));
   const bool is_killed = end && WIFSIGNALED(*end);
   return Error(Error::Code::system,
-               fmt::format("{}, as where the memory is short; {}",
+               fmt::format("{}, possibly because of too little memory; {}",
                            which + (is_killed ? "was killed" : "ended before the others"), fewer));
 }
 
@@ -97,10 +97,9 @@ void ForkCommunicator::receive_of_all(std::vector<std::string>& all) {
 std::vector<std::string> ForkCommunicator::exchange(const std::string& own) {
   if (loss_) throw *loss_;
   // Until all messages are sent and received: an interruption is not an Error of this process.
-  loss_ = Error(
-      Error::Code::system,
-      "the processes of this run lost each other where the memory is short; give fewer processes, or fewer "
-      "flights at a time");
+  loss_ = Error(Error::Code::system,
+                "the processes of this run lost their connection, possibly because of too little memory; "
+                "give fewer processes, or fewer flights at a time");
   std::vector<std::string> all(size_);
   if (rank_ > 0) {
     const PeerProcess& first = others_.front();

@@ -23,11 +23,11 @@
 namespace pcor::internal {
 namespace {
 
-/// The place of a bit among `quality_info`.
+/// Index of a bit in `quality_info`.
 constexpr std::size_t flagged_place(Quality bit) {
-  std::size_t place = 0;
-  while (quality_info[place].bit != bit) ++place;
-  return place;
+  std::size_t position = 0;
+  while (quality_info[position].bit != bit) ++position;
+  return position;
 }
 
 /// Dynamic pressure, hPa, at the flying speed of an aircraft at sea level in the standard atmosphere. The
@@ -45,11 +45,9 @@ void Processing::choose_roles() {
   for (const auto& [role, variable] : file_.variables) {
     if (role == Quantity::lams_airspeed && !flight_.has(variable)) {
       if (options_.correct_with == CorrectWith::lams) {
-        fail(Error::Code::variable,
-             fmt::format(
-                 "{} (lams_airspeed) is not in this file, so it cannot be corrected with LAMS; leave out "
-                 "--correct-with lams",
-                 variable));
+        fail(Error::Code::variable, fmt::format("{} (lams_airspeed) is not in this file, so the flight "
+                                                "cannot be corrected with LAMS; omit --correct-with lams",
+                                                variable));
       }
       note("{} is not in this file: the flight is processed without LAMS", variable);
       continue;
@@ -189,18 +187,19 @@ ModelUncertainty Processing::uncertainty() {
                            : part == UncertaintyPart::random ? "no uncertainty of a sample in [uncertainty]"
                                                              : "no uncertainty";
   fail_model(
-      fmt::format("it states {}; 'pcor refit' writes the covariance, [uncertainty] takes those of sensors, "
-                  "or omit --uncertainty",
+      fmt::format("it states {}; run 'pcor refit' for the covariance, set the "
+                  "uncertainties of the sensors in [uncertainty], or omit --uncertainty",
                   what));
 }
 
 /// True if an uncertainty is stated of a coefficient at one of the locations, or of one of the roles.
-bool Processing::states(std::initializer_list<EffectLocation> places,
+bool Processing::states(std::initializer_list<EffectLocation> locations,
                         std::initializer_list<Quantity> roles) const {
   const std::size_t count = chain_->parameters().size();
   for (std::size_t effect = 0; !uncertainty_.covariance.empty() && effect < chain_->effect_count();
        ++effect) {
-    if (std::find(places.begin(), places.end(), chain_->location_of(effect)) == places.end()) continue;
+    if (std::find(locations.begin(), locations.end(), chain_->location_of(effect)) == locations.end())
+      continue;
     const std::size_t next =
         effect + 1 < chain_->effect_count() ? chain_->first_parameter_of(effect + 1) : count;
     for (std::size_t i = chain_->first_parameter_of(effect); i < next; ++i) {
@@ -241,7 +240,7 @@ void Processing::note_uncertainty() {
   if (chain_->has_temperature() &&
       !states({EffectLocation::temperature, EffectLocation::recovery, EffectLocation::ambient_temperature},
               {Q::recovery_temperature, Q::ambient_temperature})) {
-    note("the uncertainties of temperature and airspeed leave out the thermometer");
+    note("the uncertainties of temperature and airspeed exclude the thermometer");
   }
 }
 
@@ -394,7 +393,8 @@ std::string Processing::temperature_calibration() {
     if (effect.id == effects::TempCalibration::info().id) {
       coefficients = effect.parameters;
     } else if (effect.is_formula() && effect.location == EffectLocation::ambient_temperature) {
-      note("the attribute temperature_calibration of HYDSTEP is without the effect {}, a formula", effect.id);
+      note("the attribute temperature_calibration of HYDSTEP omits the effect {}, because it is a formula",
+           effect.id);
     }
   }
   return fmt::format("{}", fmt::join(coefficients, " "));

@@ -46,14 +46,14 @@ std::vector<ProcessTask> tasks_in_folder(const std::vector<fs::path>& flights, c
     const auto [other, is_new] = flight_called.emplace(name, flight);
     if (!is_new) {
       throw Error(Error::Code::usage,
-                  fmt::format("{} and {} would have one output, {}; process them into two folders",
+                  fmt::format("{} and {} would have the same output, {}; process them into two folders",
                               other->second.string(), flight.string(), (folder / name).string()));
     }
     std::error_code code;
     if (fs::equivalent(fs::absolute(flight).parent_path(), folder, code)) {
       throw Error(
           Error::Code::usage,
-          fmt::format("{} lies in the folder {} itself, and is never written over; choose another folder",
+          fmt::format("{} lies in the output folder {} and is never overwritten; choose another folder",
                       flight.string(), folder.string()));
     }
     tasks.push_back({flight, folder / name});

@@ -53,8 +53,7 @@ class Outputs {
     for (const Shown& each : shown)
       columns_.push_back(
           {each.standard_name, each.title, std::string_view(each.unit) == "1" ? "" : each.unit, {}});
-    columns_.push_back(
-        {own_difference, "static pressure less that of the flight's own processing", "hPa", {}});
+    columns_.push_back({own_difference, "static pressure minus that of the original processing", "hPa", {}});
   }
 
   void add(const ProcessedFlight& processed) {
@@ -104,7 +103,7 @@ void add_pictures(Report& report) {
   if (!states.empty() && column_named(report.columns, "PCOR") != nullptr)
     report.items.emplace_back(BinnedPanel{
         "Delta-p by the state of flight", "The samples, and their mean in each bin.", {"PCOR"}, states});
-  add_if_present(report, TimePanel{"Difference from the flight's own processing",
+  add_if_present(report, TimePanel{"Difference from the original processing",
                                    "Corrected static pressure minus the corrected static pressure of the "
                                    "input: 1 hPa is about 8 m of height at the ground.",
                                    {own_difference},

@@ -78,7 +78,7 @@ class Processing {
   ModelUncertainty uncertainty();
   void note_archive();
   void note_uncertainty();
-  bool states(std::initializer_list<EffectLocation> places, std::initializer_list<Quantity> roles) const;
+  bool states(std::initializer_list<EffectLocation> locations, std::initializer_list<Quantity> roles) const;
   FileDescription describe() const;
   void copy_variables(FlightWriter& writer, const FileDescription& description);
   Names dependencies_of(const OutputRow& row) const;

@@ -33,8 +33,8 @@ Division divide(const std::vector<double>& time) {
     if (!std::isfinite(time[i]) || (i > 0 && !(time[i] > time[i - 1]))) {
       throw Error(
           Error::Code::time,
-          fmt::format("flight motion: the time of sample {} is not after the time before; give times that "
-                      "strictly increase",
+          fmt::format("flight motion: the time of sample {} is not after the previous time; give strictly "
+                      "increasing times",
                       i));
     }
     if (i == 0) first_begin = time[0];

@@ -28,7 +28,7 @@ double nearest_moment(double time_of_day, double first_time, double last_time) {
 }
 
 template <class Span>
-void place(Span& span, double first_time, double last_time) {
+void shift_day(Span& span, double first_time, double last_time) {
   if (is_time_of_day(span.begin)) span.begin = nearest_moment(span.begin, first_time, last_time);
   if (is_time_of_day(span.end)) {
     span.end += midnight_before(span.begin);
@@ -85,9 +85,9 @@ bool UserIntervals::is_for(const std::filesystem::path& flight_file) const {
 
 UserIntervals placed(const UserIntervals& user, double first_time, double last_time) {
   UserIntervals result = user;
-  for (Interval& interval : result.add) place(interval, first_time, last_time);
-  for (Veto& veto : result.veto) place(veto, first_time, last_time);
-  for (Exclusion& exclusion : result.exclude) place(exclusion, first_time, last_time);
+  for (Interval& interval : result.add) shift_day(interval, first_time, last_time);
+  for (Veto& veto : result.veto) shift_day(veto, first_time, last_time);
+  for (Exclusion& exclusion : result.exclude) shift_day(exclusion, first_time, last_time);
   return result;
 }
 

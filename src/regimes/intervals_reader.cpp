@@ -137,7 +137,8 @@ class Reader final : TomlReader {
     const bool of_day = span.begin < day_length;
     if (of_day != (span.end < day_length)) {
       fail(end_node,
-           "one of 'begin' and 'end' is a time of the day and the other has a date; give both alike");
+           "one of 'begin' and 'end' is a time of the day and the other has a date; give both in the same "
+           "form");
     }
     if (of_day && span.end != span.begin) {
       const double duration = span.end - span.begin + (span.end < span.begin ? day_length : 0.0);

@@ -69,12 +69,12 @@ std::vector<bool> ModelOnSamples::linear() const {
   std::vector<bool> linear;
   const bool has_minimum = std::isfinite(model_.policy.minimum);
   for (const ModelEffect& effect : model_.effects) {
-    const std::size_t place = effect_named(effect.id);
-    const bool is = !has_minimum && !effect.is_formula() && place != catalogue_size &&
-                    effect_info[place].location == EffectLocation::static_defect;
+    const std::size_t entry = effect_named(effect.id);
+    const bool is = !has_minimum && !effect.is_formula() && entry != catalogue_size &&
+                    effect_info[entry].location == EffectLocation::static_defect;
     for (std::size_t p = 0; p < effect.parameters.size(); ++p)
       linear.push_back((effect.is_surface() && !has_minimum) ||
-                       (is && !effect_info[place].parameters[p].shape));
+                       (is && !effect_info[entry].parameters[p].shape));
   }
   linear.resize(linear.size() + model_.additions.size(), false);
   return linear;

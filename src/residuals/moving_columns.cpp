@@ -53,7 +53,7 @@ void find_moving_columns(const Model& model, const double* parameters, const std
   std::size_t first = 0;
   for (const ModelEffect& effect : model.effects) {
     const Memory memory = memory_of(effect);
-    const std::size_t place = first + memory.parameter;
+    const std::size_t position = first + memory.parameter;
     first += effect.parameters.size();
     if (memory.of == Quantity::count) continue;
     const auto column = std::find_if(samples.columns.begin(), samples.columns.end(),
@@ -65,7 +65,7 @@ void find_moving_columns(const Model& model, const double* parameters, const std
     if (moving == samples.moving.end())
       moving = samples.moving.insert(moving, {memory.of, effect.id, memory.parameter, 0.0,
                                               std::vector<double>(column->second.size(), 0.0)});
-    const double at = parameters[place];
+    const double at = parameters[position];
     const auto over = [&](double seconds) { return remembered(memory.of, samples, time, step, seconds); };
     std::vector<double> values = over(at);
     if (memory.of == Quantity::airspeed_rate) {

@@ -64,11 +64,11 @@ std::vector<double> slow_part_of(const std::vector<double>& series, double step)
   blocks = low_passed(blocks, slow_part / (step * static_cast<double>(width)));
   std::vector<double> result(series.size());
   for (std::size_t i = 0; i < result.size(); ++i) {
-    const double place = std::clamp((static_cast<double>(i) + 0.5) / static_cast<double>(width) - 0.5, 0.0,
-                                    static_cast<double>(blocks.size() - 1));
-    const auto before = static_cast<std::size_t>(place);
+    const double position = std::clamp((static_cast<double>(i) + 0.5) / static_cast<double>(width) - 0.5, 0.0,
+                                       static_cast<double>(blocks.size() - 1));
+    const auto before = static_cast<std::size_t>(position);
     const std::size_t after = std::min(before + 1, blocks.size() - 1);
-    const double part = place - static_cast<double>(before);
+    const double part = position - static_cast<double>(before);
     const double between = blocks[before] + part * (blocks[after] - blocks[before]);
     result[i] = std::isfinite(between) ? between : blocks[part < 0.5 ? before : after];
   }

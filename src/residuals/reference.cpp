@@ -94,7 +94,8 @@ constexpr std::array<Form, 6> forms{{
 ModelSamples Reference::read(const Flight&, const std::vector<double>&, Notes&) const { return {}; }
 
 const Reference& first_of(const References& references) {
-  if (references.empty()) throw Error(Error::Code::usage, "no reference is given; give at least one");
+  if (references.empty())
+    throw Error(Error::Code::usage, "there is no reference; give at least one, for example --reference lams");
   return *references.front();
 }
 

@@ -20,22 +20,22 @@ using namespace internal;
 
 namespace {
 
-/// Derivatives by dual numbers with respect to the parameters `places` among the `requested` ones, into their
-/// columns. `values(dual, out)` computes the `count` values for dual parameters.
+/// Derivatives by dual numbers with respect to the parameters `indices` among the `requested` ones, into
+/// their columns. `values(dual, out)` computes the `count` values for dual parameters.
 template <class Values>
 void differentiate(std::size_t count, const std::vector<double>& parameters,
-                   const std::vector<std::size_t>& requested, const std::vector<std::size_t>& places,
+                   const std::vector<std::size_t>& requested, const std::vector<std::size_t>& indices,
                    double* derivatives, const Values& values) {
   std::vector<Jet> dual(parameters.size());
   std::vector<Jet> out(count);
-  for (std::size_t first = 0; first < places.size(); first += jet_width) {
-    const std::size_t width = std::min<std::size_t>(jet_width, places.size() - first);
+  for (std::size_t first = 0; first < indices.size(); first += jet_width) {
+    const std::size_t width = std::min<std::size_t>(jet_width, indices.size() - first);
     for (std::size_t p = 0; p < dual.size(); ++p) dual[p] = Jet(parameters[p]);
     for (std::size_t k = 0; k < width; ++k)
-      dual[requested[places[first + k]]].v[static_cast<Eigen::Index>(k)] = 1.0;
+      dual[requested[indices[first + k]]].v[static_cast<Eigen::Index>(k)] = 1.0;
     values(dual.data(), out.data());
     for (std::size_t k = 0; k < width; ++k) {
-      double* const column = derivatives + places[first + k] * count;
+      double* const column = derivatives + indices[first + k] * count;
       for (std::size_t i = 0; i < count; ++i) column[i] = out[i].v[static_cast<Eigen::Index>(k)];
     }
   }
@@ -59,18 +59,18 @@ struct Residuals::Implementation {
   }
 
   Implementation(std::shared_ptr<const FlightSamples> flight, const ModelDefinition& of,
-                 const Reference& held_against)
+                 const Reference& compared_with)
       : samples(std::move(flight)),
         model(of, samples->model),
-        reference(held_against.on(*samples, model)),
+        reference(compared_with.on(*samples, model)),
         reference_columns(reference->columns()),
         parameters(model.parameters()),
         linear(model.linear()) {
-    if (!held_against.is_static_pressure()) linear.assign(linear.size(), false);
+    if (!compared_with.is_static_pressure()) linear.assign(linear.size(), false);
     if (const ModelOnSamples* const other = reference->model()) {
       parameters.insert(parameters.end(), other->parameters().begin(), other->parameters().end());
       std::vector<bool> more = other->linear();
-      if (!held_against.is_static_pressure()) more.assign(more.size(), false);
+      if (!compared_with.is_static_pressure()) more.assign(more.size(), false);
       linear.insert(linear.end(), more.begin(), more.end());
     }
   }

@@ -49,7 +49,8 @@ std::string inputs_of(const ModelDefinition& file, bool with_laser) {
   add(text, model.sideslip_radome);
   const bool with_parameters = chain.derives(Quantity::airspeed_rate) || chain.derives(Quantity::wetness);
   for (const ModelEffect& effect : model.effects) add(text, effect, with_parameters);
-  for (const EffectLocation place : model.additions) text += fmt::format("|@{}", static_cast<int>(place));
+  for (const EffectLocation location : model.additions)
+    text += fmt::format("|@{}", static_cast<int>(location));
   return text;
 }
 

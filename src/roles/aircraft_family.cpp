@@ -43,7 +43,7 @@ class Reader final : TomlReader {
           {"traps", [&](const Entry& entry) { family_.traps = texts_by_name(entry); }}});
     for (const auto& [what, value] : {std::pair("name", &family_.name), {"title", &family_.title}}) {
       if (value->empty())
-        fail(Place{1, 1}, fmt::format("the aircraft has no {}; add {} = \"...\"", what, what));
+        fail(Position{1, 1}, fmt::format("the aircraft has no {}; add {} = \"...\"", what, what));
     }
     return std::move(family_);
   }

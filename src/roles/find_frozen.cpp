@@ -141,7 +141,7 @@ std::string frozen_text(const std::string& variable, Quantity quantity, const st
   }
   return fmt::format(
       "{} is frozen, {}{}", variable, fmt::join(spans, ", "),
-      frozen.size() > max_listed ? fmt::format(" and {} times more", frozen.size() - max_listed) : "");
+      frozen.size() > max_listed ? fmt::format(" and {} more segments", frozen.size() - max_listed) : "");
 }
 
 }  // namespace pcor::internal

@@ -128,8 +128,9 @@ ModelCandidate model_candidate(const Flight& flight, const std::vector<std::file
                 fmt::format("{}: no model fits it: {}; name one with --model", who, reasons_of(laws)));
   for (const ModelCandidate& law : laws) {
     if (!first.model.law.in_processing && law.model.law.in_processing && law.is_in_time)
-      notes.push_back(fmt::format("such flights are processed with {}, which this one does not allow: {}",
-                                  law.path.stem().string(), reasons_of({law})));
+      notes.push_back(
+          fmt::format("such flights are processed with {}, which does not apply to this flight: {}",
+                      law.path.stem().string(), reasons_of({law})));
   }
   const VariableNaming& family = family_of(flight);
   laws.erase(
@@ -137,10 +138,10 @@ ModelCandidate model_candidate(const Flight& flight, const std::vector<std::file
                    [&](const ModelCandidate& law) { return rank_of(law, family) != rank_of(first, family); }),
       laws.end());
   if (laws.size() > 1) {
-    throw Error(Error::Code::model, fmt::format("{}: {} fit alike; name one with --model, or state "
-                                                "in_processing = true in the [law] of that with "
-                                                "which such flights are processed",
-                                                who, names_of(laws)));
+    throw Error(Error::Code::model,
+                fmt::format("{}: {} match equally well; name one with --model, or set in_processing = true "
+                            "in the [law] of the model used operationally",
+                            who, names_of(laws)));
   }
   return laws.front();
 }

@@ -34,7 +34,7 @@ void note_other_unit(const VariableInfo& variable, const QuantityInfo& role, con
       is_same(UnitConversion::between(variable.units, unit, {}), UnitConversion::between(stated, unit, {}));
   if (!same) {
     notes.push_back(warning_note(fmt::format(
-        "{} is taken as {}, as stated by the model or the aircraft's data; the unit in the file is {}",
+        "{} is read in {}, as stated by the model or the data of the aircraft; the unit in the file is {}",
         variable.name, quote(stated), quote(variable.units))));
   }
 }
@@ -87,13 +87,13 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
     if (!flight.has(name)) {
       const std::string meant = did_you_mean(name, flight.variables());
       throw Error(Error::Code::variable,
-                  fmt::format("{}: {}, which a formula of the model names, is neither a variable of this "
-                              "file nor a quantity{}",
+                  fmt::format("{}: {} in a formula of the model is neither a variable of this file nor a "
+                              "quantity{}",
                               flight.path().string(), name, meant.empty() ? "" : "; " + meant));
     }
     const std::string unit = flight.variable(name).units;
-    notes.push_back(
-        fmt::format("a formula takes {} in {}", name, unit.empty() ? "no unit: the file gives none" : unit));
+    notes.push_back(fmt::format("a formula of the model reads {} in the unit of the file{}", name,
+                                unit.empty() ? std::string(" (not stated)") : ", " + unit));
     inputs.push_back({name, extra_quantity(i), UnitConversion()});
   }
   std::vector<std::string> flagged;
@@ -137,7 +137,7 @@ Notes notes_on_law(const Flight& flight, const ModelDefinition& file) {
   if (!law.holds_on(day)) {
     const bool early = day < law.valid_from;
     notes.push_back(warning_note(
-        fmt::format("the law holds {} {}, the flight is of {}; look for a model of its time in data/models",
+        fmt::format("the law is valid {} {}, the flight is of {}; choose a model of its time in data/models",
                     early ? "from" : "until", early ? law.valid_from : law.valid_to, day)));
   }
   const std::string& expected = file.model.aircraft;

@@ -215,12 +215,12 @@ void require_possible_pressure(const Flight& flight, const ModelDefinition& mode
   const std::string unit = flight.variable(variable).units;
   throw Error(
       Error::Code::unit,
-      fmt::format(
-          "{}: {} in {} is {:.3g} times the value expected from {}{}; state the right unit in the [units] of "
-          "the model, {} = {}, or name another variable; a unit stated in the model is not checked",
-          flight.path().string(), variable, quote(unit), wrong->ratio, wrong->against,
-          wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
-          info_of(wrong->role).name, wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
+      fmt::format("{}: {} in {} is {:.3g} times the value expected from {}{}; set the right unit in the "
+                  "[units] of the model, {} = {}, or name another variable; a unit set there is not checked",
+                  flight.path().string(), variable, quote(unit), wrong->ratio, wrong->against,
+                  wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
+                  info_of(wrong->role).name,
+                  wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
 }
 
 }  // namespace pcor::internal

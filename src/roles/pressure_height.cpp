@@ -92,7 +92,7 @@ std::vector<std::string> static_pressures_of(const Flight& flight, const ModelDe
 
 std::string to_string(const HeightEvidence& evidence) {
   return fmt::format(
-      "its pressure in the standard atmosphere is that of {} within {:.2f} hPa, mean {:+.2f} hPa",
+      "its pressure in the standard atmosphere agrees with {} within {:.2f} hPa, mean {:+.2f} hPa",
       evidence.pressure, evidence.scatter, evidence.bias);
 }
 

@@ -34,9 +34,9 @@ std::vector<double> series_of(const Flight& flight, const ModelDefinition& model
 
 SurfaceAxis axis_of(Quantity quantity, std::vector<double> values, std::size_t splines) {
   const auto at = [&values](double share) {
-    const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + place, values.end());
-    return values[static_cast<std::size_t>(place)];
+    const auto position = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + position, values.end());
+    return values[static_cast<std::size_t>(position)];
   };
   const double lower = at(share_outside);
   return {quantity, lower, at(1.0 - share_outside), splines};

@@ -80,9 +80,9 @@ Column::Column(const Scenario::Atmosphere& a, double latitude) : bottom_(a.groun
 }
 
 Air Column::at(double height) const {
-  const double place = std::clamp((height - bottom_) / step, 0.0, static_cast<double>(levels_.size() - 2));
-  const auto i = static_cast<std::size_t>(place);
-  const double part = place - static_cast<double>(i);
+  const double position = std::clamp((height - bottom_) / step, 0.0, static_cast<double>(levels_.size() - 2));
+  const auto i = static_cast<std::size_t>(position);
+  const double part = position - static_cast<double>(i);
   const auto between = [part](double a, double b) { return a + (b - a) * part; };
   return {std::exp(between(log_pressure_[i], log_pressure_[i + 1])),
           between(levels_[i].temperature, levels_[i + 1].temperature),

@@ -140,12 +140,12 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
     throw Error(Error::Code::definition,
                 fmt::format("{}: at {:.0f} m and {:.0f} m/s the {} stalls (angle of attack {:.1f} deg); fly "
                             "faster, lower or with flaps",
-                            leg.place, height_, speed_, aircraft_.type, attack));
+                            leg.position, height_, speed_, aircraft_.type, attack));
   } else if (steady_mach > aircraft_.max_mach) {
     throw Error(Error::Code::definition,
                 fmt::format("{}: at {:.0f} m, {:.0f} m/s is Mach {:.3f}, beyond the limit {} of the {}; fly "
                             "slower or lower",
-                            leg.place, height_, speed_, steady_mach, aircraft_.max_mach, aircraft_.type));
+                            leg.position, height_, speed_, steady_mach, aircraft_.max_mach, aircraft_.type));
   }
   const double climb = std::clamp(vertical_speed_ / std::max(speed_, 10.0), -1.0, 1.0);  // sine of the path
   const double per_speed = 1.0 / (constants::radians_per_degree * std::max(airspeed, 10.0));

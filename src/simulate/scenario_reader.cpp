@@ -69,7 +69,7 @@ class Reader final : TomlReader {
     return value;
   }
 
-  /// Calls `read(table, place)` for each table of a list of tables.
+  /// Calls `read(table, position)` for each table of a list of tables.
   template <class Read>
   void tables(const Entry& entry, Read read) const {
     const std::string requested = fmt::format("tables [[{}]]", entry.key);
@@ -120,21 +120,22 @@ class Reader final : TomlReader {
                     {"outliers", keep},
                     {"gap", keep}});
     each(root, "a scenario", actions);
-    if (scenario_.name.empty()) fail(Place{1, 1}, "the scenario has no name; add name = \"...\"");
-    if (!has_aircraft_) fail(Place{1, 1}, R"(the scenario has no aircraft; add aircraft = "C-130" or "GV")");
+    if (scenario_.name.empty()) fail(Position{1, 1}, "the scenario has no name; add name = \"...\"");
+    if (!has_aircraft_)
+      fail(Position{1, 1}, R"(the scenario has no aircraft; add aircraft = "C-130" or "GV")");
     const auto with = [&](const std::string& key, void (Reader::*reader)(const Entry&)) {
       const auto found = later.find(key);
       if (found != later.end()) (this->*reader)(found->second);
     };
     with("atmosphere", &Reader::read_atmosphere);
     with("system", &Reader::read_systems);
-    if (scenario_.systems.empty()) fail(Place{1, 1}, "there is no pair of pressures; add a [[system]]");
+    if (scenario_.systems.empty()) fail(Position{1, 1}, "there is no pair of pressures; add a [[system]]");
     with("lams", &Reader::read_lams);
     with("avionics", &Reader::read_avionics);
     scenario_.noise = usual_noise(scenario_);
     with("noise", &Reader::read_noise);
     with("leg", &Reader::read_legs);
-    if (scenario_.legs.empty()) fail(Place{1, 1}, "nothing is flown; add a [[leg]]");
+    if (scenario_.legs.empty()) fail(Position{1, 1}, "the scenario has no leg; add a [[leg]]");
     with("effect", &Reader::read_effects);
     with("outliers", &Reader::read_outliers);
     with("gap", &Reader::read_gaps);
@@ -172,22 +173,22 @@ class Reader final : TomlReader {
   void read_atmosphere(const Entry& section) {
     Actions actions = numbers(scenario_.atmosphere, atmosphere_keys);
     actions.emplace_back("cloud", [this](const Entry& entry) {
-      tables(entry, [this](const toml::table& layer, Place place) { read_cloud(layer, place); });
+      tables(entry, [this](const toml::table& layer, Position position) { read_cloud(layer, position); });
     });
     each(table(section), "[atmosphere]", actions);
     if (scenario_.atmosphere.inversion_height < scenario_.atmosphere.ground_height)
-      fail(section.place, "the inversion is below the ground; give inversion_height above ground_height");
+      fail(section.position, "the inversion is below the ground; give inversion_height above ground_height");
   }
 
-  void read_cloud(const toml::table& layer, Place place) {
+  void read_cloud(const toml::table& layer, Position position) {
     Scenario::Cloud cloud;
     each(layer, "[[atmosphere.cloud]]", numbers(cloud, cloud_keys));
-    if (!(cloud.base < cloud.top)) fail(place, "the cloud's base is not below its top; give base < top");
+    if (!(cloud.base < cloud.top)) fail(position, "the cloud's base is not below its top; give base < top");
     scenario_.atmosphere.clouds.push_back(cloud);
   }
 
   void read_systems(const Entry& section) {
-    tables(section, [this](const toml::table& items, Place place) {
+    tables(section, [this](const toml::table& items, Position position) {
       Scenario::System system;
       each(items, "[[system]]",
            {{"static", [&](const Entry& entry) { system.static_pressure = text(entry); }},
@@ -199,14 +200,14 @@ class Reader final : TomlReader {
             {"law", [&](const Entry& entry) { read_law(entry, system.law); }}});
       for (const auto& [key, name] :
            {std::pair{"static", system.static_pressure}, std::pair{"dynamic", system.dynamic_pressure}}) {
-        if (name.empty()) fail(place, fmt::format("the system has no {} = \"...\"; add it", key));
+        if (name.empty()) fail(position, fmt::format("the system has no {} = \"...\"; add it", key));
         for (const Scenario::System& other : scenario_.systems) {
           if (name == other.static_pressure || name == other.dynamic_pressure)
-            fail(place, fmt::format("{} belongs to two systems; give each its own", name));
+            fail(position, fmt::format("{} belongs to two systems; give each its own", name));
         }
       }
       if (system.static_pressure == system.dynamic_pressure)
-        fail(place, "static and dynamic are one variable; give each its own");
+        fail(position, "static and dynamic are one variable; give each its own");
       scenario_.systems.push_back(system);
     });
   }
@@ -230,7 +231,7 @@ class Reader final : TomlReader {
       scenario_.avionics.has_law = true;
       const Scenario::Law& law = scenario_.avionics.law;
       if (law.m1 == 0.0 && law.m2 == 0.0 && law.m3 == 0.0)
-        fail(entry.place, "the law does not depend on the Mach number; add a term static-mach or another");
+        fail(entry.position, "the law does not depend on the Mach number; add a term static-mach or another");
     });
     each(table(section), "[avionics]", actions);
   }
@@ -240,8 +241,8 @@ class Reader final : TomlReader {
     for (const Entry& entry : entries_of(table(section))) {
       const auto found = scenario_.noise.find(entry.key);
       if (found == scenario_.noise.end()) {
-        fail(entry.place, fmt::format("no variable {} is recorded; {}", quote(entry.key),
-                                      suggestion_text(entry.key, recorded())));
+        fail(entry.position, fmt::format("no variable {} is recorded; {}", quote(entry.key),
+                                         suggestion_text(entry.key, recorded())));
       }
       if (entry.node->is_table())
         each(*entry.node->as_table(), "the noise of " + entry.key, numbers(found->second, noise_keys));
@@ -255,10 +256,10 @@ class Reader final : TomlReader {
     const AircraftInfo& aircraft = info_of(scenario_.aircraft);
     bool flying = false;
     double height = scenario_.atmosphere.ground_height;
-    tables(section, [&](const toml::table& items, Place place) {
+    tables(section, [&](const toml::table& items, Position position) {
       Scenario::Leg leg;
-      leg.place = place_of(place);
-      const LegInfo& info = leg_kind(items, place);
+      leg.position = position_of(position);
+      const LegInfo& info = leg_kind(items, position);
       leg.kind = info.kind;
       std::map<std::string, Entry> given;
       Actions actions{{"kind", [](const Entry&) {}}};
@@ -271,57 +272,60 @@ class Reader final : TomlReader {
       }
       each(items, fmt::format("a leg of kind {}", quote(info.name)), actions);
       complete(leg, aircraft);
-      check_leg(leg, info, place, flying, height);
+      check_leg(leg, info, position, flying, height);
       scenario_.legs.push_back(leg);
     });
   }
 
-  const LegInfo& leg_kind(const toml::table& items, Place place) const {
+  const LegInfo& leg_kind(const toml::table& items, Position position) const {
     if (const std::optional<Entry> entry = entry_of(items, "kind")) {
       const std::string kind = one_of(*entry, names_of(leg_info, &LegInfo::name));
       return *std::find_if(leg_info.begin(), leg_info.end(),
                            [&](const LegInfo& each) { return each.name == kind; });
     }
-    fail(place, "the leg has no kind; add kind = \"level\" or another");
+    fail(position, "the leg has no kind; add kind = \"level\" or another");
   }
 
   /// Checks the combination of numbers of a leg, and of the legs before it. `height` is the altitude they
   /// reach.
-  void check_leg(const Scenario::Leg& leg, const LegInfo& info, Place place, bool& flying,
+  void check_leg(const Scenario::Leg& leg, const LegInfo& info, Position position, bool& flying,
                  double& height) const {
     using Kind = Scenario::Leg::Kind;
     const bool starts = leg.kind == Kind::take_off || leg.kind == Kind::ground;
     if (starts == flying) {
-      fail(place, flying ? fmt::format("{} in the air; put a landing before it", info.name)
-                         : fmt::format("{} on the ground; put a take-off before it", info.name));
+      fail(position, flying ? fmt::format("{} in the air; put a landing before it", info.name)
+                            : fmt::format("{} on the ground; put a take-off before it", info.name));
     }
     if (leg.kind == Kind::take_off) flying = true;
     if (leg.kind == Kind::landing) flying = false;
     const bool changes_height = leg.kind == Kind::climb || leg.kind == Kind::descent;
     if (changes_height && std::isnan(leg.altitude))
-      fail(place, fmt::format("the {} has no altitude; add altitude = ... (m)", info.name));
+      fail(position, fmt::format("the {} has no altitude; add altitude = ... (m)", info.name));
     if ((changes_height || leg.kind == Kind::take_off) &&
         leg.altitude < scenario_.atmosphere.ground_height + min_height)
-      fail(place,
+      fail(position,
            fmt::format("altitude = {} m is not {} m above the ground; give more", leg.altitude, min_height));
     if (leg.kind == Kind::climb && leg.altitude <= height)
-      fail(place, fmt::format("the climb to {} m begins at {} m; make it a descent", leg.altitude, height));
+      fail(position,
+           fmt::format("the climb to {} m begins at {} m; make it a descent", leg.altitude, height));
     if (leg.kind == Kind::descent && leg.altitude >= height)
-      fail(place, fmt::format("the descent to {} m begins at {} m; make it a climb", leg.altitude, height));
+      fail(position,
+           fmt::format("the descent to {} m begins at {} m; make it a climb", leg.altitude, height));
     if (changes_height || leg.kind == Kind::take_off) height = leg.altitude;
     if (leg.kind == Kind::landing) height = scenario_.atmosphere.ground_height;
     if (std::abs(leg.angle) < 1.0)
-      fail(place, fmt::format("angle = {} deg is not a {}; give 1 deg or more to either side", leg.angle,
-                              info.name));
+      fail(position, fmt::format("angle = {} deg is not a {}; give 1 deg or more to either side", leg.angle,
+                                 info.name));
     if (leg.kind == Kind::speed_run && !(leg.low < leg.high))
-      fail(place, fmt::format("low = {} m/s is not below high = {} m/s; give low < high", leg.low, leg.high));
+      fail(position,
+           fmt::format("low = {} m/s is not below high = {} m/s; give low < high", leg.low, leg.high));
   }
 
   void read_effects(const Entry& section) {
-    tables(section, [this](const toml::table& items, Place place) {
+    tables(section, [this](const toml::table& items, Position position) {
       Scenario::Effect effect;
-      effect.place = place_of(place);
-      const FaultInfo& info = effect_info(items, place);
+      effect.position = position_of(position);
+      const FaultInfo& info = effect_info(items, position);
       effect.id = info.id;
       Actions actions{{"id", [](const Entry&) {}},
                       {"on", [&](const Entry& entry) { effect.on = target(entry, info); }}};
@@ -336,15 +340,15 @@ class Reader final : TomlReader {
       each(items, fmt::format("the effect {}", quote(info.id)), actions);
       for (const FaultParameter& parameter : info.parameters) {
         if (effect.parameters.count(std::string(parameter.key)) == 0)
-          fail(place, fmt::format("{} has no {}; add {} = ... ({})", effect.id, parameter.key, parameter.key,
-                                  parameter.unit));
+          fail(position, fmt::format("{} has no {}; add {} = ... ({})", effect.id, parameter.key,
+                                     parameter.key, parameter.unit));
       }
       if (info.target == Target::variable && effect.on.empty())
-        fail(place, fmt::format("{} has no variable; add on = \"VLAMS\" or another", effect.id));
+        fail(position, fmt::format("{} has no variable; add on = \"VLAMS\" or another", effect.id));
       if (info.id == "unknown" && (effect.of.empty() || effect.location.empty()))
-        fail(place,
+        fail(position,
              R"(unknown needs of = "...", the variable that causes it, and where = "static" or another)");
-      check_effect(effect, place);
+      check_effect(effect, position);
       scenario_.effects.push_back(effect);
     });
   }
@@ -371,25 +375,25 @@ class Reader final : TomlReader {
   }
 
   /// Checks an effect in combination with the rest of the scenario.
-  void check_effect(const Scenario::Effect& effect, Place place) const {
+  void check_effect(const Scenario::Effect& effect, Position position) const {
     const bool of_clouds = effect.id == "lams-cloud" || effect.id == "temp-wetting";
     if (of_clouds && scenario_.atmosphere.clouds.empty())
-      fail(place, fmt::format("{} needs a cloud; add an [[atmosphere.cloud]]", effect.id));
+      fail(position, fmt::format("{} needs a cloud; add an [[atmosphere.cloud]]", effect.id));
     if (effect.id != "unknown") return;
     const bool on_systems = effect.location == "static" || effect.location == "total";
     if (!on_systems && !effect.on.empty())
-      fail(place, fmt::format("an effect on the {} has no other target; remove 'on'", effect.location));
-    if (effect.parameters.at("scale") == 0.0) fail(place, "scale = 0 is impossible; give another number");
+      fail(position, fmt::format("an effect on the {} has no other target; remove 'on'", effect.location));
+    if (effect.parameters.at("scale") == 0.0) fail(position, "scale = 0 is impossible; give another number");
   }
 
-  const FaultInfo& effect_info(const toml::table& items, Place place) const {
+  const FaultInfo& effect_info(const toml::table& items, Position position) const {
     if (const std::optional<Entry> entry = entry_of(items, "id")) {
       const std::string id = text(*entry);
       if (const FaultInfo* info = find_fault(id)) return *info;
       fail(*entry, fmt::format("no effect {} can be simulated; {}", quote(id),
                                suggestion_text(id, names_of(fault_info(), &FaultInfo::id))));
     }
-    fail(place, "the effect has no id; add id = \"static-lag\" or another");
+    fail(position, "the effect has no id; add id = \"static-lag\" or another");
   }
 
   std::string target(const Entry& entry, const FaultInfo& info) const {
@@ -401,31 +405,31 @@ class Reader final : TomlReader {
         known.push_back(system.dynamic_pressure);
       }
     }
-    if (known.empty()) fail(entry.place, fmt::format("{} acts on one thing only; remove 'on'", info.id));
+    if (known.empty()) fail(entry.position, fmt::format("{} has a fixed target; remove 'on'", info.id));
     return one_of(entry, known);
   }
 
   void read_outliers(const Entry& section) {
-    tables(section, [this](const toml::table& items, Place place) {
+    tables(section, [this](const toml::table& items, Position position) {
       Scenario::Outliers outliers;
       Actions actions = numbers(outliers, outlier_keys);
       actions.emplace_back("variable",
                            [&](const Entry& entry) { outliers.variable = one_of(entry, recorded()); });
       each(items, "[[outliers]]", actions);
-      if (outliers.variable.empty()) fail(place, "the outliers have no variable; add variable = \"...\"");
+      if (outliers.variable.empty()) fail(position, "the outliers have no variable; add variable = \"...\"");
       if (outliers.fraction == 0.0 || outliers.size == 0.0)
-        fail(place, "the outliers have no effect; give a fraction and a size above 0");
+        fail(position, "the outliers have no effect; give a fraction and a size above 0");
       scenario_.outliers.push_back(outliers);
     });
   }
 
   void read_gaps(const Entry& section) {
-    tables(section, [this](const toml::table& items, Place place) {
+    tables(section, [this](const toml::table& items, Position position) {
       Scenario::Gap gap;
       Actions actions = numbers(gap, gap_keys);
       actions.emplace_back("variable", [&](const Entry& entry) { gap.variable = one_of(entry, recorded()); });
       each(items, "[[gap]]", actions);
-      if (gap.duration == 0.0) fail(place, "the gap has no duration; add duration = ... (s)");
+      if (gap.duration == 0.0) fail(position, "the gap has no duration; add duration = ... (s)");
       scenario_.gaps.push_back(gap);
     });
   }

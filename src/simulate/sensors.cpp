@@ -215,10 +215,10 @@ Series delayed(Series series, double seconds) {
   Series late(series.size());
   const double end = static_cast<double>(series.size() - 1);
   for (std::size_t i = 0; i < series.size(); ++i) {
-    const double place = std::clamp(static_cast<double>(i) - seconds * internal_rate, 0.0, end);
-    const auto before = static_cast<std::size_t>(place);
+    const double position = std::clamp(static_cast<double>(i) - seconds * internal_rate, 0.0, end);
+    const auto before = static_cast<std::size_t>(position);
     const std::size_t after = std::min(before + 1, series.size() - 1);
-    const double part = place - static_cast<double>(before);
+    const double part = position - static_cast<double>(before);
     late[i] = part == 0.0 ? series[before] : series[before] + part * (series[after] - series[before]);
   }
   return late;

@@ -53,7 +53,7 @@ void require_same_model(const Flight& flight, const ModelDefinition& model) {
       fmt::format(
           "{}: its pressures are not those of the model '{}' ({}); process the flight again with this model "
           "and "
-          "--hydrostatic, give the model that it was processed with, or leave out --archived for raw flights",
+          "--hydrostatic, give the model that it was processed with, or omit --archived for raw flights",
           flight.path().string(), model.model.name, difference));
 }
 
@@ -73,7 +73,7 @@ std::vector<double> archived_steps(const Flight& flight, const ModelDefinition& 
   if (!flight.has(steps_variable)) {
     throw Error(
         Error::Code::variable,
-        fmt::format("{}: there is no {}; write it with pcor process --hydrostatic, or leave out --archived",
+        fmt::format("{}: there is no {}; write it with pcor process --hydrostatic, or omit --archived",
                     flight.path().string(), steps_variable));
   }
   require_same_model(flight, model);

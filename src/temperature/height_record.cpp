@@ -390,9 +390,8 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
     throw Error(
         Error::Code::samples,
         fmt::format(
-            "{}: it climbs by {:.0f} m only{}; a fit of temperature needs climbs or descents of {:.0f} m and "
-            "more",
-            name, record.blocks.empty() ? 0.0 : highest - lowest,
+            "{}: climbs and descents span {:.0f} m{}; a fit of temperature needs {:.0f} m", name,
+            record.blocks.empty() ? 0.0 : highest - lowest,
             options.min_climb_rate > 0.0 ? fmt::format(" at {} m/s or more", options.min_climb_rate) : "",
             min_height_range));
   }

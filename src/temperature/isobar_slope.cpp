@@ -52,7 +52,7 @@ constexpr double height_scatter = 2.0;  // m, of surfaces about a plane
 // 3 m in 100 km, a third of the usual slope. A wind is out of balance by a similar fraction.
 constexpr double slope_left_by_estimates = 1.0 / 3.0;
 
-/// A place at which the height of an isobaric surface is known, and which surface or leg it belongs to.
+/// Location with a known height of an isobaric surface, and the surface or leg that it belongs to.
 struct Sighting {
   long group = 0;
   double east = 0.0;
@@ -106,9 +106,9 @@ IsobarSlopeEstimate estimate_isobar_slope(const HeightRecord& record, IsobarSlop
   for (const Sighting& s : all) {
     const Eigen::Vector4d& sum = sums.at(s.group);
     if (sum[3] < 2.0) continue;
-    const Eigen::Vector2d place(s.east - sum[0] / sum[3], s.north - sum[1] / sum[3]);
-    information += place * place.transpose();
-    right += place * (s.height - sum[2] / sum[3]);
+    const Eigen::Vector2d offset(s.east - sum[0] / sum[3], s.north - sum[1] / sum[3]);
+    information += offset * offset.transpose();
+    right += offset * (s.height - sum[2] / sum[3]);
     ++result.blocks;
   }
   const Eigen::Vector2d slope = information.ldlt().solve(right);

@@ -46,12 +46,12 @@ std::vector<Eigen::VectorXd> standard_deviations(const std::vector<double>& cova
 
 /// True if an uncertainty is stated of a coefficient of the law itself, not of a sensor.
 bool states_law(const ModelDefinition& model, const ModelUncertainty& stated) {
-  std::size_t place = 0;
+  std::size_t position = 0;
   const auto count = static_cast<std::size_t>(std::lround(std::sqrt(stated.covariance.size())));
   for (const ModelEffect& effect : model.model.effects) {
-    for (std::size_t p = 0; p < effect.parameters.size(); ++p, ++place) {
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p, ++position) {
       if (location_of(effect) == EffectLocation::static_defect &&
-          stated.covariance[place * count + place] > 0.0)
+          stated.covariance[position * count + position] > 0.0)
         return true;
     }
   }

@@ -31,9 +31,9 @@ HeightRecord record_of(const FlightSet& flights, std::size_t number, const Model
     if (!recorded || recorded->variables.count(Quantity::ambient_temperature) == 0) {
       throw Error(
           Error::Code::variable,
-          fmt::format("{}: --archived needs PSXC, QCXC and ATX as pcor process writes them; leave it out "
-                      "for raw flights",
-                      flight.path().string()));
+          fmt::format(
+              "{}: --archived needs PSXC, QCXC and ATX as pcor process writes them; omit it for raw flights",
+              flight.path().string()));
     }
     for (const Quantity role : flown_quantities) {
       if (model.variables.count(role) > 0) recorded->variables[role] = model.variables.at(role);

@@ -560,8 +560,10 @@ TemperatureResult fit_temperature(const FlightSet& flights, const ModelDefinitio
     throw Error(Error::Code::usage, "no flights for the temperature fit; give at least one flight");
   constexpr int max_degree = static_cast<int>(calibration_terms) - 1;
   if (options.degree && (*options.degree < 0 || *options.degree > max_degree))
-    throw Error(Error::Code::usage, fmt::format("a correction has no degree {}; give one from 0 to {}",
-                                                *options.degree, max_degree));
+    throw Error(Error::Code::usage,
+                fmt::format("the degree {} of the correction is not supported; give a degree from "
+                            "0 to {}",
+                            *options.degree, max_degree));
   TemperatureResult result = TemperatureCalibration(flights, model, options).run();
   flights.require_unchanged();
   return result;

@@ -37,10 +37,11 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
     std::vector<std::string> texts;
     for (const PartCorrection& part : parts) texts.push_back(part_text(part));
     const Disagreement apart = disagreement_of(parts);
-    warnings.push_back(fmt::format(
-        "{} differ: {}; chance makes a chi-squared of {:.1f}, of {} degrees of freedom, with a probability "
-        "of {:.1g}, and the limit is 0.01; the standard deviation between them, {:.2g} K, is in the errors",
-        who, fmt::join(texts, ", "), apart.chi_squared, parts.size() - 1, apart.chance, spread));
+    warnings.push_back(
+        fmt::format("{} differ: {}; chi-squared {:.1f} with {} degrees of freedom, p = "
+                    "{:.1g} (threshold 0.01); the standard deviation between them, {:.2g} "
+                    "K, is included in the errors",
+                    who, fmt::join(texts, ", "), apart.chi_squared, parts.size() - 1, apart.chance, spread));
   };
   differ(result.parts_by_flight, result.spread_of_flights, "the thermometers of the flights");
   differ(result.parts_by_climb, result.spread_of_climbs, "climbs and descents");
@@ -92,7 +93,7 @@ Notes method_notes(const TemperatureOptions& options, bool attack_is_unknown) {
   if (options.slope == IsobarSlope::none ||
       (options.slope == IsobarSlope::fitted && options.slope_size == 0.0)) {
     notes.emplace_back(
-        "isobars are assumed level: a slope of 10 m in 100 km in a climb of 5 m/s is equivalent to 1 K "
+        "isobars are assumed to be level: a slope of 10 m in 100 km in a climb of 5 m/s is equivalent to 1 K "
         "(--slope fitted)");
   }
   if (options.slope == IsobarSlope::geostrophic) {
@@ -120,7 +121,7 @@ Notes record_notes(const std::vector<HeightRecord>& records, IsobarSlope slope) 
   if (missing > 0) notes.push_back(fmt::format("{} samples have no GPS height", missing));
   if (unknown_ways > 0 && slope != IsobarSlope::none) {
     notes.push_back(fmt::format(
-        "{} samples have no ground velocity: airspeed and heading, or the last velocity, are used instead",
+        "{} samples have no ground velocity; airspeed and heading, or the last velocity, were used",
         unknown_ways));
   }
   if (steps + spikes > 0) {

@@ -73,7 +73,7 @@ ReportTable flight_table(const TemperatureResult& result) {
                    "warmest, °C", "rms before, m", "rms after, m", ""};
   for (const FlightHeights& flight : result.flights) {
     if (!flight.excluded.empty()) {
-      table.rows.push_back({flight.flight, "", "", "", "", "", "", "left out: " + flight.excluded});
+      table.rows.push_back({flight.flight, "", "", "", "", "", "", "excluded: " + flight.excluded});
       continue;
     }
     table.rows.push_back(
@@ -206,7 +206,7 @@ Report temperature_report(const TemperatureResult& result) {
   report.items.emplace_back(correction_bars(result));
   report.items.emplace_back(coefficient_table(result));
   TimePanel difference;
-  difference.title = "Height by GPS less the integral of the hydrostatic equation";
+  difference.title = "GPS height minus the integral of the hydrostatic equation";
   difference.caption =
       "Means over 10 s, about the mean of each segment, after subtraction of an estimated slope of isobars. "
       "A thermometer error makes the difference follow the height.";

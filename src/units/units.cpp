@@ -167,9 +167,9 @@ Unit parse(const std::string& unit) {
 }
 
 std::string how_to_state(const UnitOwner& owner, const std::string& to) {
-  if (owner.role.empty()) return "state the unit it is in, e.g. \"" + to + "\"";
+  if (owner.role.empty()) return "state its unit, e.g. \"" + to + "\"";
   return "add unit." + owner.role + " = \"" + to +
-         "\", or the unit it is in, to the [units] table of the model file";
+         "\", or its actual unit, to the [units] table of the model file";
 }
 
 }  // namespace
@@ -194,7 +194,7 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
   if (from.empty()) throw Error(Error::Code::unit, whose + " has no unit; " + how_to_state(owner, to));
   const Unit target = parse(to);
   if (!target)
-    throw Error(Error::Code::unit, whose + ": the wanted unit \"" + to + "\" is not known to UDUNITS");
+    throw Error(Error::Code::unit, whose + ": the requested unit \"" + to + "\" is not known to UDUNITS");
   const Unit source = parse(from);
   if (!source)
     throw Error(Error::Code::unit,

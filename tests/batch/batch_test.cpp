@@ -370,12 +370,12 @@ TEST(Batch, SingleOutputEqualsJointOutputOrIsRefused) {
     constexpr std::size_t count = 50;
     const Arrays recorded = random_samples(count, roles);
     const Arrays together = in_batch(batch, recorded, count);
-    for (std::size_t place = 0; place < state_capacity; ++place) {
-      const auto quantity = static_cast<Quantity>(place);
+    for (std::size_t position = 0; position < state_capacity; ++position) {
+      const auto quantity = static_cast<Quantity>(position);
       std::vector<double> values(count);
       const auto run = [&] { batch.run(inputs_of(recorded), {{quantity, values.data()}}, count); };
       if (!batch.finds(quantity)) {
-        EXPECT_THAT(test::error_of(run), test::IsError(Error::Code::variable)) << place;
+        EXPECT_THAT(test::error_of(run), test::IsError(Error::Code::variable)) << position;
         continue;
       }
       run();

@@ -117,7 +117,7 @@ FlightSamples made_flight(const std::vector<Quantity>& roles, double laser_noise
   return samples;
 }
 
-/// A formula in addition to the catalogue, at another place than the ports and nonlinear in a quantity.
+/// A formula in addition to the catalogue, at another location than the ports and nonlinear in a quantity.
 ModelEffect formula() {
   ModelEffect effect;
   effect.id = "try-1";
@@ -136,8 +136,8 @@ struct Made {
   FlightColumns columns;
 
   explicit Made(double laser_noise = 0.3,
-                std::shared_ptr<const pcor::Reference> held_against = pcor::lams_reference())
-      : reference(std::move(held_against)),
+                std::shared_ptr<const pcor::Reference> compared_with = pcor::lams_reference())
+      : reference(std::move(compared_with)),
         set(pcor::internal::find_candidates(model, {formula()}, {}, {reference})),
         samples(std::make_shared<const FlightSamples>(made_flight(set.extended.roles(), laser_noise))),
         columns(pcor::internal::find_columns(samples, model, set, 0, {}, 1.0)) {}
@@ -191,11 +191,11 @@ std::set<std::string> expect_differences(const Made& made,
       }
       // A centred difference over 0.01 hPa: curvature below 1e-6 of the derivative, rounding below 1e-9.
       const double size = 0.01 / largest;
-      const std::size_t place = first + candidate.tested[k].place;
+      const std::size_t position = first + candidate.tested[k].index;
       std::vector<double> moved = parameters;
-      moved[place] += size;
+      moved[position] += size;
       const std::vector<double> above = residual_of(quiet, with, moved, *made.reference);
-      moved[place] = parameters[place] - size;
+      moved[position] = parameters[position] - size;
       const std::vector<double> below = residual_of(quiet, with, moved, *made.reference);
       for (std::size_t i = 0; i < above.size(); i += 3) {
         if (std::isnan(made.columns.given[i])) continue;

@@ -58,7 +58,7 @@ TEST(CircleFit, StatedErrorsCoverTheTruth) {
   constexpr unsigned count = 300;
   unsigned within = 0;
   for (unsigned seed = 1; seed <= count; ++seed) {
-    const Estimated found = fly(360.0, 0.4, seed).airspeed_error;
+    const Estimate found = fly(360.0, 0.4, seed).airspeed_error;
     if (std::abs(found.value - too_high) < 2.0 * found.error) ++within;
   }
   // Of 300 normal errors 286 +- 3.6 are within two of theirs; the noise is estimated too, from a turn of 150

@@ -73,7 +73,7 @@ TEST(LegPair, ReproducesTheSumsOfTheMemo) {
 
 TEST(LegPair, ReproducesAirspeedAndPressureChangesOfTheMemo) {
   // The new airspeed is higher by the error of the old one.
-  const auto change = [](std::size_t first, Estimated LegPair::*number) {
+  const auto change = [](std::size_t first, Estimate LegPair::*number) {
     return (new_pair(first).*number).value - (standard_pair(first).*number).value;
   };
   EXPECT_NEAR(change(0, &LegPair::airspeed_error), 0.47, printed);

@@ -73,11 +73,11 @@ TEST(SpectrumCheck, FallingTurbulenceSpectrumIsReported) {
   // A random walk, smoothed over two samples: frequency to the -2 and steeper.
   const std::vector<double> steps = white(8000, 0.02, 3);
   std::vector<double> walk(steps.size());
-  double place = 0.0;
+  double position = 0.0;
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const double before = place;
-    place = 0.99 * place + steps[i];
-    walk[i] = 0.5 * (before + place);
+    const double before = position;
+    position = 0.99 * position + steps[i];
+    walk[i] = 0.5 * (before + position);
   }
   const CheckResult result = check_spectrum({made(walk)});
   ASSERT_TRUE(result.ran);

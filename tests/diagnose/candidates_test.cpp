@@ -27,7 +27,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/// A formula in addition to the catalogue, at another place than the ports and nonlinear in a quantity.
+/// A formula in addition to the catalogue, at another location than the ports and nonlinear in a quantity.
 ModelEffect formula() {
   ModelEffect effect;
   effect.id = "try-1";
@@ -84,8 +84,8 @@ TEST(Candidates, AreTheCatalogueEffectsMissingFromTheModel) {
     const pcor::EffectInfo& info = pcor::effect_info[pcor::effect_named(candidate.effect.id)];
     EXPECT_FALSE(candidate.tested.empty());
     for (const pcor::internal::CandidateParameter& parameter : candidate.tested) {
-      EXPECT_FALSE(info.parameters[parameter.place].shape);
-      EXPECT_EQ(candidate.effect.parameters[parameter.place], info.parameters[parameter.place].neutral);
+      EXPECT_FALSE(info.parameters[parameter.index].shape);
+      EXPECT_EQ(candidate.effect.parameters[parameter.index], info.parameters[parameter.index].neutral);
       EXPECT_LE(parameter.bounds.lower, 0.0) << candidate.effect.id;
       EXPECT_GE(parameter.bounds.upper, 0.0) << candidate.effect.id;
     }

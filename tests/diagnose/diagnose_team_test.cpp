@@ -30,7 +30,7 @@ void serialize(Archive& archive, pcor::ModelEffect& effect) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, pcor::Estimate& estimate) {
+void serialize(Archive& archive, pcor::CoefficientEstimate& estimate) {
   archive(estimate.name, estimate.unit, estimate.value, estimate.standard_error, estimate.typical);
 }
 
@@ -56,8 +56,9 @@ void serialize(Archive& archive, pcor::Finding& finding) {
           finding.estimates, finding.held, finding.rms, finding.worst, finding.worst_flight,
           finding.worst_time, finding.chi2, finding.p_value, finding.rms_before, finding.rms_after,
           finding.gain, finding.gain_error, finding.events, finding.evidence, finding.aliases, finding.family,
-          finding.shape, finding.shape_beyond_model, finding.variants, finding.places, finding.probability,
-          finding.times_usual, finding.static_risk, finding.static_change, finding.advice);
+          finding.shape, finding.shape_beyond_model, finding.variants, finding.components,
+          finding.probability, finding.times_usual, finding.static_risk, finding.static_change,
+          finding.advice);
 }
 
 template <class Archive>
@@ -79,7 +80,7 @@ template <class Archive>
 void serialize(Archive& archive, pcor::EmpiricalPredictor& variable) {
   archive(variable.name, variable.unit, variable.description, variable.r2, variable.p_value,
           variable.linear_r2, variable.slope, variable.slope_error, variable.centre, variable.formula,
-          variable.sampling, variable.places, variable.location);
+          variable.sampling, variable.components, variable.location);
 }
 
 template <class Archive>

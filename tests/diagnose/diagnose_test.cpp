@@ -127,7 +127,7 @@ std::vector<std::string> family_of(const Finding& finding) {
 
 void expect_coefficient(const Finding& finding, double truth) {
   ASSERT_THAT(finding.estimates, SizeIs(1));
-  const pcor::Estimate& estimate = finding.estimates[0];
+  const pcor::CoefficientEstimate& estimate = finding.estimates[0];
   // A normal estimate is beyond four of its errors once in 16,000 times.
   EXPECT_NEAR(estimate.value, truth, 4.0 * estimate.standard_error);
   EXPECT_LT(estimate.standard_error, 0.3 * std::abs(truth));
@@ -426,9 +426,9 @@ TEST(Diagnose, TotalPressuresLocateTracedVariable) {
       EXPECT_EQ(traced.name, "ENGTRQ");
     }
     EXPECT_EQ(traced.location, total ? pcor::EffectLocation::pitot : pcor::EffectLocation::static_defect);
-    EXPECT_EQ(traced.places.front(), total ? "pitot" : "port");
-    EXPECT_EQ(std::count(traced.places.begin(), traced.places.end(), "laser"), total ? 0 : 1);
-    EXPECT_THAT(places_text(traced), HasSubstr(total ? "differ with it, too" : "do not differ with it"));
+    EXPECT_EQ(traced.components.front(), total ? "pitot" : "port");
+    EXPECT_EQ(std::count(traced.components.begin(), traced.components.end(), "laser"), total ? 0 : 1);
+    EXPECT_THAT(places_text(traced), HasSubstr(total ? "also vary with it" : "do not vary with it"));
   }
 }
 
@@ -536,8 +536,8 @@ void expect_advice(const Diagnosis& diagnosis) {
     EXPECT_THAT(advice.sentence, HasSubstr(finding.effect.id));
     for (const Alias& alias : finding.aliases) EXPECT_THAT(advice.sentence, HasSubstr(alias.effect));
     if (advice.manoeuvre.empty()) {
-      const std::size_t place = pcor::effect_named(finding.effect.id);
-      EXPECT_THAT(advice.sentence, HasSubstr(std::string(pcor::effect_info[place].manoeuvre)));
+      const std::size_t entry = pcor::effect_named(finding.effect.id);
+      EXPECT_THAT(advice.sentence, HasSubstr(std::string(pcor::effect_info[entry].manoeuvre)));
       continue;
     }
     EXPECT_THAT(advice.sentence, HasSubstr(advice.manoeuvre));

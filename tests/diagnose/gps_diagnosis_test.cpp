@@ -27,8 +27,8 @@ std::filesystem::path flight(int seed, const std::string& effect = "") {
   static const pcor::test::TemporaryDirectory directory;
   std::ifstream file(scenarios / "c130-eq18.toml");
   std::string text{std::istreambuf_iterator<char>(file), {}};
-  const std::size_t place = text.find("\nseed = ");
-  text.replace(place, text.find('\n', place + 1) - place, "\nseed = " + std::to_string(seed));
+  const std::size_t position = text.find("\nseed = ");
+  text.replace(position, text.find('\n', position + 1) - position, "\nseed = " + std::to_string(seed));
   const std::filesystem::path path =
       directory / (std::to_string(seed) + (effect.empty() ? "" : "-hidden") + ".nc");
   if (!std::filesystem::exists(path))
@@ -123,7 +123,7 @@ TEST(GpsDiagnosis, FindsHiddenEffect) {
   const pcor::Diagnosis diagnosis = pcor::diagnose({flight(26, effect)}, law(), references_of(false));
   ASSERT_THAT(diagnosis.findings, testing::SizeIs(1));
   EXPECT_EQ(diagnosis.findings[0].effect.id, "static-beta-odd");
-  const pcor::Estimate& estimate = diagnosis.findings[0].estimates.front();
+  const pcor::CoefficientEstimate& estimate = diagnosis.findings[0].estimates.front();
   // An effect of 5 hPa is not linear: the first step of the iterations of a refit is up to 15 % too long.
   EXPECT_NEAR(estimate.value, 0.01, 0.0015);
   EXPECT_GT(diagnosis.findings[0].gain, 2.0 * diagnosis.findings[0].gain_error);
@@ -135,6 +135,6 @@ TEST(GpsDiagnosis, LaserAndWindFindOneEffectOnly) {
   const pcor::Diagnosis diagnosis = pcor::diagnose({flight(26, effect)}, law(), references);
   ASSERT_THAT(diagnosis.findings, testing::SizeIs(1));
   EXPECT_EQ(diagnosis.findings[0].effect.id, "static-beta-odd");
-  const pcor::Estimate& estimate = diagnosis.findings[0].estimates.front();
+  const pcor::CoefficientEstimate& estimate = diagnosis.findings[0].estimates.front();
   EXPECT_NEAR(estimate.value, 0.01, 4.0 * estimate.standard_error);
 }

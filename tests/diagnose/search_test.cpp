@@ -102,14 +102,14 @@ struct Dense {
   Eigen::MatrixXd covariance;
   double variance = 0.0;  // variance of the remaining residuals, in units of the noise
 
-  Dense(const Problem& problem, const std::vector<Eigen::Index>& places) {
-    const Eigen::MatrixXd white = problem.columns(Eigen::all, places) / problem.noise.level[0][0];
+  Dense(const Problem& problem, const std::vector<Eigen::Index>& indices) {
+    const Eigen::MatrixXd white = problem.columns(Eigen::all, indices) / problem.noise.level[0][0];
     const Eigen::VectorXd right = problem.residual / problem.noise.level[0][0];
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition(white);
     estimate = decomposition.solve(right);
     covariance = (white.transpose() * white).inverse();
     variance = (right - white * estimate).squaredNorm() /
-               static_cast<double>(right.size() - static_cast<Eigen::Index>(places.size()));
+               static_cast<double>(right.size() - static_cast<Eigen::Index>(indices.size()));
   }
 };
 

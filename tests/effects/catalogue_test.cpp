@@ -137,26 +137,26 @@ TEST(Catalogue, HasTheTermsOfTheMemo) {
 }
 
 TEST(Catalogue, HasZeroGainAndDriftEffects) {
-  // Findings name these ids, families and places, and scripts read them.
+  // Findings name these ids, families and components, and scripts read them.
   struct Row {
-    const char *id, *family, *place;
+    const char *id, *family, *component;
   };
-  for (const auto& [id, family, place] : {Row{"psfd-bias", "zero", "p-transducer"},
-                                          {"qcf-zero", "zero", "q-transducer"},
-                                          {"static-constant", "zero", "port"},
-                                          {"temp-offset", "zero", "thermometer"},
-                                          {"psfd-gain", "gain", "p-transducer"},
-                                          {"qcf-gain", "gain", "q-transducer"},
-                                          {"psfd-drift", "drift", "p-transducer"},
-                                          {"qcf-drift", "drift", "q-transducer"},
-                                          {"time-drift", "drift", "port"},
-                                          {"temp-drift", "drift", "thermometer"},
-                                          {"psfd-thermal", "thermal drift", "p-transducer"},
-                                          {"transducer-thermal", "thermal drift", "q-transducer"}}) {
+  for (const auto& [id, family, component] : {Row{"psfd-bias", "zero", "p-transducer"},
+                                              {"qcf-zero", "zero", "q-transducer"},
+                                              {"static-constant", "zero", "port"},
+                                              {"temp-offset", "zero", "thermometer"},
+                                              {"psfd-gain", "gain", "p-transducer"},
+                                              {"qcf-gain", "gain", "q-transducer"},
+                                              {"psfd-drift", "drift", "p-transducer"},
+                                              {"qcf-drift", "drift", "q-transducer"},
+                                              {"time-drift", "drift", "port"},
+                                              {"temp-drift", "drift", "thermometer"},
+                                              {"psfd-thermal", "thermal drift", "p-transducer"},
+                                              {"transducer-thermal", "thermal drift", "q-transducer"}}) {
     ASSERT_NE(effect_named(id), pcor::catalogue_size) << id;
     const EffectInfo& info = effect_info[effect_named(id)];
     EXPECT_EQ(info.family, family) << id;
-    EXPECT_EQ(place_of(info), place) << id;
+    EXPECT_EQ(component_of(info), component) << id;
   }
 }
 
@@ -263,7 +263,7 @@ TEST_P(EveryEffect, IsDocumented) {
   EXPECT_THAT(std::string(info.family), MatchesRegex("[A-Za-z]+( [a-z]+)*"));
   EXPECT_FALSE(info.formula.empty());
   EXPECT_FALSE(info.size.empty());
-  EXPECT_FALSE(info.look_alikes.empty());
+  EXPECT_FALSE(info.confounders.empty());
   EXPECT_FALSE(info.manoeuvre.empty());
   EXPECT_FALSE(info.source.empty());
   EXPECT_LT(static_cast<std::size_t>(info.location), pcor::location_count);
@@ -294,7 +294,7 @@ TEST_P(EveryEffect, ParametersHaveNameUnitAndBounds) {
 }
 
 TEST_P(EveryEffect, SimilarEffectsExist) {
-  for (const std::string& id : listed(GetParam().look_alikes)) {
+  for (const std::string& id : listed(GetParam().confounders)) {
     EXPECT_TRUE(effect_named(id) != pcor::catalogue_size || is_without_trace(id)) << id;
     EXPECT_NE(id, GetParam().id);
   }

@@ -143,12 +143,12 @@ TEST_F(FlightTest, DamagedHeaderUsesLittleTimeAndMemory) {
     std::ostringstream text;
     text << std::ifstream(path(), std::ios::binary).rdbuf();
     const std::string whole = text.str();
-    std::uniform_int_distribution<std::size_t> place(0, std::min(max_mutated, whole.size()) - 1);
+    std::uniform_int_distribution<std::size_t> position(0, std::min(max_mutated, whole.size()) - 1);
     for (int i = 0; i < mutations; ++i) {
       std::string damaged = whole;
       for (auto changes = 1 + random() % 4; changes > 0; --changes) {
         const auto kind = random() % 3;
-        damaged[place(random)] = static_cast<char>(kind == 0 ? 0xff : kind == 1 ? 0 : random() % 256);
+        damaged[position(random)] = static_cast<char>(kind == 0 ? 0xff : kind == 1 ? 0 : random() % 256);
       }
       std::ofstream(path(), std::ios::binary) << damaged;
       try {

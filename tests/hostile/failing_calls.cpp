@@ -123,15 +123,15 @@ std::FILE* fopen64(const char* path, const char* mode) {
 ssize_t read(int file, void* bytes, std::size_t count) {
   return fails(reading, "read") ? -1 : real(read, "read")(file, bytes, count);
 }
-ssize_t pread(int file, void* bytes, std::size_t count, off_t place) {
-  return fails(reading, "pread") ? -1 : real(pread, "pread")(file, bytes, count, place);
+ssize_t pread(int file, void* bytes, std::size_t count, off_t position) {
+  return fails(reading, "pread") ? -1 : real(pread, "pread")(file, bytes, count, position);
 }
 
 ssize_t write(int file, const void* bytes, std::size_t count) {
   return fails(writing, "write") ? -1 : real(write, "write")(file, bytes, count);
 }
-ssize_t pwrite(int file, const void* bytes, std::size_t count, off_t place) {
-  return fails(writing, "pwrite") ? -1 : real(pwrite, "pwrite")(file, bytes, count, place);
+ssize_t pwrite(int file, const void* bytes, std::size_t count, off_t position) {
+  return fails(writing, "pwrite") ? -1 : real(pwrite, "pwrite")(file, bytes, count, position);
 }
 ssize_t writev(int file, const iovec* parts, int count) {
   return fails(writing, "writev") ? -1 : real(writev, "writev")(file, parts, count);
@@ -158,9 +158,9 @@ int fclose(std::FILE* file) {
 }
 
 /// A time that does not pass: two runs write the same.
-std::time_t time(std::time_t* place) noexcept {
+std::time_t time(std::time_t* result) noexcept {
   constexpr std::time_t now = 1'300'000'000;
-  if (place != nullptr) *place = now;
+  if (result != nullptr) *result = now;
   return now;
 }
 

@@ -57,10 +57,10 @@ std::vector<TrialFlight> tried(const std::vector<TrialModel>& models, const pcor
 }
 
 double rms_between(const std::vector<double>& a, const std::vector<double>& b,
-                   const std::vector<std::size_t>& places) {
+                   const std::vector<std::size_t>& indices) {
   double squares = 0.0;
-  for (const std::size_t i : places) squares += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(squares / static_cast<double>(places.size()));
+  for (const std::size_t i : indices) squares += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(squares / static_cast<double>(indices.size()));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ TEST(EffectLocation, NamesResolveToTheirPlace) {
     EXPECT_TRUE(names.emplace(effect_location_info[i].name).second) << effect_location_info[i].name;
     EXPECT_FALSE(effect_location_info[i].unit.empty());
     EXPECT_FALSE(effect_location_info[i].adds_to.empty());
-    EXPECT_FALSE(effect_location_info[i].place.empty());
+    EXPECT_FALSE(effect_location_info[i].component.empty());
     EXPECT_EQ(&info_of(static_cast<EffectLocation>(i)), &effect_location_info[i]);
   }
   EXPECT_EQ(location_named("wing"), EffectLocation::count);
@@ -51,9 +51,9 @@ TEST(EffectInfo, ClockIsASeparatePlace) {
   EffectInfo info;
   info.family = "lag";
   info.location = EffectLocation::beam_speed;
-  EXPECT_EQ(place_of(info), "laser");
+  EXPECT_EQ(component_of(info), "laser");
   info.family = "clock";
-  EXPECT_EQ(place_of(info), "clock");
+  EXPECT_EQ(component_of(info), "clock");
 }
 
 TEST(EffectInfo, CountsNamedParametersAndInputs) {

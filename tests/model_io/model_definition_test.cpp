@@ -365,14 +365,14 @@ class ModelGenerator {
   }
 
   void add_effect(ModelDefinition& file, ModelEffect effect) {
-    const std::size_t place = effect_named(effect.id);
+    const std::size_t position = effect_named(effect.id);
     if (!effect.is_formula()) effect.scaling = {power(), power()};
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
       if (maybe()) continue;
       if (effect.is_formula()) {
         effect.parameters[i] = number();
       } else {
-        const ParameterInfo& info = effect_info[place].parameters[i];
+        const ParameterInfo& info = effect_info[position].parameters[i];
         effect.parameters[i] = between(info.lower, info.upper);
       }
     }
@@ -711,19 +711,19 @@ TEST(ModelDefinition, ArbitraryTextGivesAnErrorOnly) {
     std::string text = trial % 2 == 0 ? published_example + published_formula
                                       : write_model(ModelGenerator(random() % 100).model());
     for (std::size_t changes = 1 + below(4); changes > 0; --changes) {
-      const std::size_t place = below(text.size());
+      const std::size_t position = below(text.size());
       switch (below(4)) {
         case 0:
-          text[place] = letters[below(letters.size())];
+          text[position] = letters[below(letters.size())];
           break;
         case 1:
-          text.insert(place, 1, letters[below(letters.size())]);
+          text.insert(position, 1, letters[below(letters.size())]);
           break;
         case 2:
-          text.erase(place, 1 + below(30));
+          text.erase(position, 1 + below(30));
           break;
         default:
-          text.insert(below(text.size()), text.substr(place, below(60)));
+          text.insert(below(text.size()), text.substr(position, below(60)));
       }
     }
     EXPECT_THAT(parse_error_of(text),
@@ -741,7 +741,7 @@ TEST(ModelDefinition, DeepNestingIsRefused) {
 struct BadInput {
   std::string name;
   std::string text;  // added to the least model; the whole file where it begins with "format" or "\n"
-  std::string place;
+  std::string position;
   std::vector<std::string> names;
 };
 
@@ -753,7 +753,7 @@ TEST_P(BadInputTest, ErrorStatesPositionAndNames) {
   const BadInput& input = GetParam();
   const bool whole = input.text[0] == '\n' || input.text.rfind("format", 0) == 0;
   const std::optional<Error> error = parse_error_of(whole ? input.text : minimum + input.text);
-  EXPECT_THAT(error, IsError(Error::Code::definition, "m.toml:" + input.place));
+  EXPECT_THAT(error, IsError(Error::Code::definition, "m.toml:" + input.position));
   for (const std::string& name : input.names) EXPECT_THAT(error, IsError(Error::Code::definition, name));
 }
 

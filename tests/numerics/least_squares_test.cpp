@@ -43,7 +43,7 @@ TEST(LeastSquares, ErrorsIncludeAutocorrelation) {
   for (unsigned seed = 1; seed <= count; ++seed) {
     const Series s = made(seed);
     const LeastSquares fit = least_squares({std::vector<double>(s.x.size(), 1.0), s.x}, s.y, s.time, 1.0);
-    const Estimated slope = fit.coefficients[1];
+    const Estimate slope = fit.coefficients[1];
     if (std::abs(fit.coefficients[0].value - 2.0) < 2.0 * fit.coefficients[0].error) ++offsets;
     if (std::abs(slope.value - 0.5) < 2.0 * slope.error) ++slopes;
     // As if the samples were independent: the mean square of the sine is one half.
@@ -73,7 +73,7 @@ TEST(LeastSquares, UndeterminedCoefficientsAreMissing) {
 }
 
 TEST(LeastSquares, EstimatesAreCombinedByTheirErrors) {
-  const Estimated two = combined({{1.0, 0.1}, {1.1, 0.1}});
+  const Estimate two = combined({{1.0, 0.1}, {1.1, 0.1}});
   EXPECT_NEAR(two.value, 1.05, 1e-12);
   EXPECT_NEAR(two.error, 0.1 / std::sqrt(2.0), 1e-12);
   // Ten errors apart, they are known no better than they scatter: half of their distance.

@@ -25,7 +25,7 @@ TEST(OrderOfAll, EqualsTheOrderOfOneListForEachPartition) {
   values[4] = -0.0;
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
-  const std::vector<std::uint64_t> places{0, 1, 250, 499, 500, 1000, 1000};
+  const std::vector<std::uint64_t> indices{0, 1, 250, 499, 500, 1000, 1000};
   for (const std::size_t size : {1U, 2U, 3U}) {
     run_with_communicator(size, [&](Communicator& comm) {
       std::vector<double> own;  // the last member has no values
@@ -34,10 +34,10 @@ TEST(OrderOfAll, EqualsTheOrderOfOneListForEachPartition) {
       }
       const std::vector<double> found = values_at(comm, own, [&](std::uint64_t count) {
         EXPECT_EQ(count, values.size());
-        return places;
+        return indices;
       });
-      ASSERT_EQ(found.size(), places.size());
-      for (std::size_t k = 0; k < places.size(); ++k) EXPECT_EQ(found[k], sorted[places[k]]);
+      ASSERT_EQ(found.size(), indices.size());
+      for (std::size_t k = 0; k < indices.size(); ++k) EXPECT_EQ(found[k], sorted[indices[k]]);
     });
   }
 }

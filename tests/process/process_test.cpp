@@ -430,15 +430,15 @@ TEST_F(FilteredTemperature, IsNotFilteredAcrossGaps) {
         if (i < records * samples) state[Quantity::lams_temperature] = unfiltered[first + i];
         filter.compute(state, quality);
         if (i < filter.delay()) continue;
-        const std::size_t place = first + i - filter.delay();
+        const std::size_t position = first + i - filter.delay();
         const double expected = state[Quantity::filtered_lams_temperature];
         if (std::isnan(expected)) {
-          ASSERT_TRUE(std::isnan(together[place])) << place;
+          ASSERT_TRUE(std::isnan(together[position])) << position;
         } else {
-          ASSERT_NEAR(together[place], expected, 1e-4) << place;  // 32-bit floats of degC
+          ASSERT_NEAR(together[position], expected, 1e-4) << position;  // 32-bit floats of degC
         }
         // The bit is set at the sample that has no value.
-        ASSERT_EQ(flags[place] == static_cast<double>(Quality::filter_window_incomplete),
+        ASSERT_EQ(flags[position] == static_cast<double>(Quality::filter_window_incomplete),
                   std::isnan(expected));
       }
       first += records * samples;
@@ -464,9 +464,9 @@ TEST_F(FilteredTemperature, MissingSampleGivesAMissingResult) {
   }
   EXPECT_FALSE(std::isnan(filtered[30]));
   EXPECT_GE(flagged, 2U) << "the neighbours of a single missing sample";
-  std::size_t place = 0;
-  while (quality_info[place].bit != Quality::filter_window_incomplete) ++place;
-  EXPECT_EQ(summary.flagged[place], flagged);
+  std::size_t position = 0;
+  while (quality_info[position].bit != Quality::filter_window_incomplete) ++position;
+  EXPECT_EQ(summary.flagged[position], flagged);
 }
 
 // One sensor of a noisy flight is frozen for two minutes.

@@ -1139,10 +1139,10 @@ TEST(Chain, CompilesForAnotherScalarType) {
   }
 }
 
-// Sum at a place, and the contribution of a single effect.
+// Sum at a location, and the contribution of a single effect.
 
 TEST(Additions, EqualAConstantEffectAtTheSameLocation) {
-  // At every place: the chain with a formula of constant value is the chain with that amount added.
+  // At every location: the chain with a formula of constant value is the chain with that amount added.
   Model model = Truth().model();
   const Recorded recorded = full_record();
   for (std::size_t i = 0; i < pcor::location_count; ++i) {

@@ -335,7 +335,7 @@ TEST(Loop, ImpossibleClockSkewIsRefused) {
     for (const auto& [role, value] : level) roles.push_back(role);
     std::string error;
     EXPECT_FALSE(Loop::build(model, roles, 25.0, &error).has_value());
-    EXPECT_THAT(error, testing::HasSubstr("between -60 and 60 s"));
+    EXPECT_THAT(error, testing::HasSubstr("-60 to 60 s"));
   }
 }
 
@@ -368,7 +368,7 @@ TEST(Loop, WetThermometerDriesAfterACloud) {
     for (const auto& [role, value] : level) roles.push_back(role);
     std::string error;
     EXPECT_FALSE(Loop::build(model, roles, 25.0, &error).has_value());
-    EXPECT_THAT(error, testing::HasSubstr("0 and 600 s"));
+    EXPECT_THAT(error, testing::HasSubstr("0 to 600 s"));
   }
 }
 
@@ -901,22 +901,22 @@ TEST(LoopQuality, HasNoAirspeedOnTheGround) {
 }
 
 TEST(LoopQuality, FlagsAnEffectThatDividesByZero) {
-  const EffectLocation places[] = {EffectLocation::static_transducer, EffectLocation::static_line,
-                                   EffectLocation::total_line,        EffectLocation::pitot,
-                                   EffectLocation::static_defect,     EffectLocation::attack,
-                                   EffectLocation::recovery};
-  for (const EffectLocation place : places) {
+  const EffectLocation locations[] = {EffectLocation::static_transducer, EffectLocation::static_line,
+                                      EffectLocation::total_line,        EffectLocation::pitot,
+                                      EffectLocation::static_defect,     EffectLocation::attack,
+                                      EffectLocation::recovery};
+  for (const EffectLocation location : locations) {
     Model model = c130();
-    model.effects.push_back(formula(place, "1 / (static_pressure - 700)"));
+    model.effects.push_back(formula(location, "1 / (static_pressure - 700)"));
     Loop loop = build(model, level, 1.0);
     run(loop, level, 0.0);
     // The angle of attack is of use to LAMS alone here.
-    EXPECT_EQ(loop.quality().has(Quality::effect_input_missing), place != EffectLocation::attack)
-        << pcor::info_of(place).name;
-    EXPECT_TRUE(loop.quality().has(Quality::lams_missing) || place == EffectLocation::static_defect);
+    EXPECT_EQ(loop.quality().has(Quality::effect_input_missing), location != EffectLocation::attack)
+        << pcor::info_of(location).name;
+    EXPECT_TRUE(loop.quality().has(Quality::lams_missing) || location == EffectLocation::static_defect);
     for (const Quantity result : results) EXPECT_FALSE(std::isinf(loop.state()[result]));
     EXPECT_THAT(loop.state()[Quantity::corrected_airspeed],
-                place == EffectLocation::attack ? Not(IsNan()) : testing::Matcher<double>(IsNan()));
+                location == EffectLocation::attack ? Not(IsNan()) : testing::Matcher<double>(IsNan()));
   }
 }
 

@@ -34,7 +34,7 @@ struct DERTBL {
   std::string name;
   std::vector<std::string> depends;
   void (*compute)(DERTBL*);
-  std::vector<std::size_t> inputs{};  // places in the record
+  std::vector<std::size_t> inputs{};  // indices in the record
   std::size_t output = 0;
 };
 
@@ -45,8 +45,8 @@ struct Values {
 };
 std::vector<Values> record;
 
-float& sample(std::size_t place) {
-  return FeedBack == low_rate_feedback ? record[place].low : record[place].high[SampleOffset];
+float& sample(std::size_t position) {
+  return FeedBack == low_rate_feedback ? record[position].low : record[position].high[SampleOffset];
 }
 
 double sample_time() { return Second + static_cast<double>(SampleOffset) / static_cast<double>(high_rate); }
@@ -68,7 +68,7 @@ class Table {
     for (const std::string& name : raw) add(name);
     for (DERTBL& entry : derived_) entry.output = add(entry.name);
     for (DERTBL& entry : derived_) {
-      for (const std::string& name : entry.depends) entry.inputs.push_back(places_.at(name));
+      for (const std::string& name : entry.depends) entry.inputs.push_back(indices_.at(name));
     }
     for (DERTBL& entry : derived_) visit(entry);
   }
@@ -80,8 +80,8 @@ class Table {
     for (const FeedBackType rate : {low_rate_feedback, high_rate_feedback}) {
       FeedBack = rate;
       for (SampleOffset = 0; SampleOffset < (rate == low_rate_feedback ? 1 : high_rate); ++SampleOffset) {
-        for (const auto& [name, place] : places_) {
-          if (!is_derived(name)) sample(place) = raw(name, sample_time());
+        for (const auto& [name, position] : indices_) {
+          if (!is_derived(name)) sample(position) = raw(name, sample_time());
         }
         for (DERTBL* entry : compute_order_) entry->compute(entry);
       }
@@ -89,16 +89,16 @@ class Table {
     SampleOffset = 0;
   }
 
-  float low(const std::string& name) const { return record[places_.at(name)].low; }
+  float low(const std::string& name) const { return record[indices_.at(name)].low; }
   float high(const std::string& name, std::size_t offset) const {
-    return record[places_.at(name)].high[offset];
+    return record[indices_.at(name)].high[offset];
   }
   DERTBL& entry(const std::string& name) { return *find(name); }
 
  private:
   std::size_t add(const std::string& name) {
     record.push_back({});
-    return places_[name] = record.size() - 1;
+    return indices_[name] = record.size() - 1;
   }
   DERTBL* find(const std::string& name) {
     for (DERTBL& entry : derived_) {
@@ -116,7 +116,7 @@ class Table {
   }
 
   std::vector<DERTBL> derived_;
-  std::map<std::string, std::size_t> places_;
+  std::map<std::string, std::size_t> indices_;
   std::vector<DERTBL*> compute_order_;
 };
 

@@ -177,9 +177,9 @@ TEST(RateFilter, MissingSampleCausesASmallError) {
   RateFilter filter(25.0);
   std::vector<double> sine = around(filter, 25.0, [](double t) { return std::sin(0.5 * pi * t); });
   const double whole = rate_of(filter, sine);
-  for (const std::size_t place : {filter.before() - 1, filter.before() + 7, std::size_t{12}}) {
+  for (const std::size_t position : {filter.before() - 1, filter.before() + 7, std::size_t{12}}) {
     std::vector<double> holed = sine;
-    holed[place] = missing;
+    holed[position] = missing;
     EXPECT_NEAR(rate_of(filter, holed), whole, 0.002 * whole);
   }
 }

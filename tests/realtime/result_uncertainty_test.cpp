@@ -98,10 +98,10 @@ Model law() {
   return model;
 }
 
-double& parameter_at(Model& model, std::size_t place) {
+double& parameter_at(Model& model, std::size_t position) {
   for (ModelEffect& effect : model.effects) {
-    if (place < effect.parameters.size()) return effect.parameters[place];
-    place -= effect.parameters.size();
+    if (position < effect.parameters.size()) return effect.parameters[position];
+    position -= effect.parameters.size();
   }
   throw std::out_of_range("no such parameter");
 }
@@ -112,11 +112,11 @@ std::size_t parameter_count(const Model& model) {
   return count;
 }
 
-ModelUncertainty of_parameter(const Model& model, std::size_t place, double size) {
+ModelUncertainty of_parameter(const Model& model, std::size_t position, double size) {
   const std::size_t count = parameter_count(model);
   ModelUncertainty uncertainty;
   uncertainty.covariance.assign(count * count, 0.0);
-  uncertainty.covariance[place * count + place] = size * size;
+  uncertainty.covariance[position * count + position] = size * size;
   return uncertainty;
 }
 

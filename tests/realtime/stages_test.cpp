@@ -52,8 +52,8 @@ Quantities roles_without(const Quantities& excluded) {
   return roles;
 }
 
-bool is_in(const Quantities& quantities, std::size_t place) {
-  return std::find(quantities.begin(), quantities.end(), static_cast<Quantity>(place)) != quantities.end();
+bool is_in(const Quantities& quantities, std::size_t position) {
+  return std::find(quantities.begin(), quantities.end(), static_cast<Quantity>(position)) != quantities.end();
 }
 
 // A stage gives the same results for any values in quantities outside its declared inputs, and changes only

@@ -32,10 +32,10 @@ std::optional<Error> refusal_of_whole(const std::string& text) {
   return test::error_of([&] { read_intervals_text(text, "own.toml"); });
 }
 
-// The place in the file, line and column, and names.
+// Position in the file, line and column, and names.
 template <class... Names>
-auto IsRefusal(const std::string& place, const Names&... names) {
-  return test::IsError(Error::Code::definition, "own.toml:" + place, names...);
+auto IsRefusal(const std::string& position, const Names&... names) {
+  return test::IsError(Error::Code::definition, "own.toml:" + position, names...);
 }
 
 std::optional<Error> refusal(const std::string& text) { return refusal_of_whole(format + text); }

@@ -34,36 +34,36 @@ Residuals residuals(const ModelDefinition& model, const Reference& reference,
 ModelDefinition other_system() { return pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"); }
 
 std::vector<std::size_t> used(const Residuals& residuals) {
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (residuals.mask()[i] == Mask::none) places.push_back(i);
+    if (residuals.mask()[i] == Mask::none) indices.push_back(i);
   }
-  return places;
+  return indices;
 }
 
 double rms_of(const Residuals& residuals, const std::vector<double>& values) {
   double squares = 0.0;
-  const std::vector<std::size_t> places = used(residuals);
-  for (const std::size_t i : places) squares += values[i] * values[i];
-  return std::sqrt(squares / static_cast<double>(places.size()));
+  const std::vector<std::size_t> indices = used(residuals);
+  for (const std::size_t i : indices) squares += values[i] * values[i];
+  return std::sqrt(squares / static_cast<double>(indices.size()));
 }
 
 void expect_derivatives(const Residuals& tested) {
-  const std::vector<std::size_t> places = used(tested);
-  ASSERT_GT(places.size(), 500U);
+  const std::vector<std::size_t> indices = used(tested);
+  ASSERT_GT(indices.size(), 500U);
   std::vector<std::size_t> requested(tested.parameters().size());
   std::iota(requested.begin(), requested.end(), 0);
-  std::vector<double> values(places.size());
-  std::vector<double> derivatives(places.size() * requested.size());
+  std::vector<double> values(indices.size());
+  std::vector<double> derivatives(indices.size() * requested.size());
   const std::vector<double>& at = tested.parameters();
-  tested.evaluate(places.data(), places.size(), at.data(), requested, values.data(), derivatives.data());
+  tested.evaluate(indices.data(), indices.size(), at.data(), requested, values.data(), derivatives.data());
   const std::vector<double> all = tested.values(at.data());
-  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(values[i], all[places[i]], 1e-10);
+  for (std::size_t i = 0; i < indices.size(); ++i) EXPECT_NEAR(values[i], all[indices[i]], 1e-10);
   for (std::size_t k = 0; k < requested.size(); ++k) {
     // A centred difference over 3e-4 hPa: rounding leaves 1e-9 of the derivative, curvature less than 1e-6.
     double largest = 0.0;
-    for (std::size_t i = 0; i < places.size(); ++i)
-      largest = std::max(largest, std::abs(derivatives[k * places.size() + i]));
+    for (std::size_t i = 0; i < indices.size(); ++i)
+      largest = std::max(largest, std::abs(derivatives[k * indices.size() + i]));
     ASSERT_GT(largest, 0.0) << k;
     const double step = 3e-4 / largest;
     std::vector<double> moved = at;
@@ -71,9 +71,9 @@ void expect_derivatives(const Residuals& tested) {
     const std::vector<double> above = tested.values(moved.data());
     moved[k] = at[k] - step;
     const std::vector<double> below = tested.values(moved.data());
-    for (std::size_t i = 0; i < places.size(); i += 7) {
-      const double difference = (above[places[i]] - below[places[i]]) / (2.0 * step);
-      EXPECT_NEAR(derivatives[k * places.size() + i], difference, 1e-5 * largest) << k;
+    for (std::size_t i = 0; i < indices.size(); i += 7) {
+      const double difference = (above[indices[i]] - below[indices[i]]) / (2.0 * step);
+      EXPECT_NEAR(derivatives[k * indices.size() + i], difference, 1e-5 * largest) << k;
     }
   }
 }
@@ -154,15 +154,15 @@ TEST(Residuals, SensorResidualsEqualPressureResidualsToFirstOrder) {
     }
     const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model,
                            *pcor::lams_reference());
-    const std::vector<std::size_t> places = used(tested);
-    ASSERT_GT(places.size(), 500U);
-    std::vector<double> pressure(places.size());
-    std::vector<double> at_sensor(places.size());
+    const std::vector<std::size_t> indices = used(tested);
+    ASSERT_GT(indices.size(), 500U);
+    std::vector<double> pressure(indices.size());
+    std::vector<double> at_sensor(indices.size());
     const double* const at = tested.parameters().data();
-    tested.evaluate(places.data(), places.size(), at, {}, pressure.data(), nullptr);
-    tested.evaluate_at_sensor(places.data(), places.size(), at, {}, at_sensor.data(), nullptr);
+    tested.evaluate(indices.data(), indices.size(), at, {}, pressure.data(), nullptr);
+    tested.evaluate_at_sensor(indices.data(), indices.size(), at, {}, at_sensor.data(), nullptr);
     // The second-order part is 1 cm/s over the airspeed, 1e-4.
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < indices.size(); ++i)
       EXPECT_NEAR(at_sensor[i] / pressure[i], 1.0, 3e-4) << (with_recovery ? "recovery" : "ambient");
   }
 }
@@ -189,32 +189,32 @@ TEST(Masks, MissingOrWrongLaserIsExcluded) {
   const ModelDefinition model = laser_model();
   pcor::FlightSamples samples =
       pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
-  const std::vector<std::size_t> places = used(residuals(model, *pcor::lams_reference()));
+  const std::vector<std::size_t> indices = used(residuals(model, *pcor::lams_reference()));
   for (auto& [quantity, values] : samples.model.columns) {
     if (quantity != Quantity::lams_airspeed) continue;
-    values[places[100]] = std::nan("");
-    values[places[101]] += 30.0;
+    values[indices[100]] = std::nan("");
+    values[indices[101]] += 30.0;
   }
   const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model,
                          *pcor::lams_reference());
-  EXPECT_EQ(tested.mask()[places[100]], Mask::reference);
-  EXPECT_EQ(tested.mask()[places[101]], Mask::laser_unlocked);
-  EXPECT_EQ(tested.mask()[places[102]], Mask::none);
+  EXPECT_EQ(tested.mask()[indices[100]], Mask::reference);
+  EXPECT_EQ(tested.mask()[indices[101]], Mask::laser_unlocked);
+  EXPECT_EQ(tested.mask()[indices[102]], Mask::none);
 }
 
 TEST(Masks, MissingInputsAreMasked) {
   const ModelDefinition model = laser_model();
   pcor::FlightSamples samples =
       pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
-  const std::vector<std::size_t> places = used(residuals(model, *pcor::lams_reference()));
+  const std::vector<std::size_t> indices = used(residuals(model, *pcor::lams_reference()));
   for (auto& [quantity, values] : samples.model.columns) {
-    if (quantity == Quantity::static_pressure) values[places[200]] = std::nan("");
-    if (quantity == Quantity::attack_differential_pressure) values[places[201]] = std::nan("");
-    if (quantity == Quantity::recovery_temperature) values[places[202]] = std::nan("");
+    if (quantity == Quantity::static_pressure) values[indices[200]] = std::nan("");
+    if (quantity == Quantity::attack_differential_pressure) values[indices[201]] = std::nan("");
+    if (quantity == Quantity::recovery_temperature) values[indices[202]] = std::nan("");
   }
   const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model,
                          *pcor::lams_reference());
-  EXPECT_EQ(tested.mask()[places[200]], Mask::missing);
-  EXPECT_EQ(tested.mask()[places[201]], Mask::missing);
-  EXPECT_EQ(tested.mask()[places[202]], Mask::reference) << "the law needs no thermometer, the laser does";
+  EXPECT_EQ(tested.mask()[indices[200]], Mask::missing);
+  EXPECT_EQ(tested.mask()[indices[201]], Mask::missing);
+  EXPECT_EQ(tested.mask()[indices[202]], Mask::reference) << "the law needs no thermometer, the laser does";
 }

@@ -72,20 +72,21 @@ inline std::vector<double> residuals_of(const pcor::FlightSamples& flight, const
 inline double derivative_error(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model,
                                const pcor::Reference& reference, double step) {
   const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(flight), model, reference);
-  std::vector<std::size_t> places;
-  for (std::size_t i = 500; i + 500 < residuals.size(); i += 10) places.push_back(i);
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 500; i + 500 < residuals.size(); i += 10) indices.push_back(i);
   std::vector<double> parameters = residuals.parameters();
-  std::vector<double> values(places.size());
-  std::vector<double> derivatives(places.size());
-  residuals.evaluate(places.data(), places.size(), parameters.data(), {0}, values.data(), derivatives.data());
+  std::vector<double> values(indices.size());
+  std::vector<double> derivatives(indices.size());
+  residuals.evaluate(indices.data(), indices.size(), parameters.data(), {0}, values.data(),
+                     derivatives.data());
   parameters[0] += step;
   const std::vector<double> above = residuals.values(parameters.data());
   parameters[0] -= 2.0 * step;
   const std::vector<double> below = residuals.values(parameters.data());
   double error = 0.0;
   double largest = 0.0;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const double difference = (above[places[k]] - below[places[k]]) / (2.0 * step);
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    const double difference = (above[indices[k]] - below[indices[k]]) / (2.0 * step);
     error = std::max(error, std::abs(derivatives[k] - difference));
     largest = std::max(largest, std::abs(difference));
   }

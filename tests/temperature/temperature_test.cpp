@@ -636,7 +636,7 @@ const Item* item(const Report& report, const std::string& title) {
 TEST_F(Temperature, ReportHasOnlyTheUsedFlights) {
   const std::vector<fs::path> flights{fly(one_climb(), 1), fly(no_climb(), 2), fly(one_climb(), 3)};
   const TemperatureResult result = fit_temperature(flights, model(), of_degree(1));
-  ASSERT_THAT(result.flights[1].excluded, HasSubstr("climbs by"));
+  ASSERT_THAT(result.flights[1].excluded, HasSubstr("climbs and descents span"));
   const Report report = temperature_report(result);
 
   // A picture has the flights that were used, each of which is a separate stretch of time.
@@ -649,7 +649,7 @@ TEST_F(Temperature, ReportHasOnlyTheUsedFlights) {
   ASSERT_NE(table, nullptr);
   ASSERT_THAT(table->rows, SizeIs(3));
   for (const auto& row : table->rows) EXPECT_THAT(row, SizeIs(table->headers.size()));
-  EXPECT_THAT(table->rows[1].back(), AllOf(HasSubstr("left out"), HasSubstr("climbs by")));
+  EXPECT_THAT(table->rows[1].back(), AllOf(HasSubstr("excluded"), HasSubstr("climbs and descents span")));
 
   const auto* coefficients = item<ReportTable>(report, "Coefficients");
   ASSERT_NE(coefficients, nullptr);
@@ -664,10 +664,10 @@ TEST_F(Temperature, ReportHasOnlyTheUsedFlights) {
     EXPECT_EQ(bars->bars[i].value, result.corrections[i].correction);
     EXPECT_EQ(bars->bars[i].error, result.corrections[i].standard_error);
   }
-  EXPECT_NE(item<TimePanel>(report, "Height by GPS less the integral of the hydrostatic equation"), nullptr);
+  EXPECT_NE(item<TimePanel>(report, "GPS height minus the integral of the hydrostatic equation"), nullptr);
 
   const std::string html = report_html(report);
-  for (const char* word : {"flight1.nc", "flight3.nc", "left out", "too small", "Which degree"})
+  for (const char* word : {"flight1.nc", "flight3.nc", "excluded: ", "too small", "Which degree"})
     EXPECT_THAT(html, HasSubstr(word));
   const std::string body = html.substr(html.find("<body>"), html.find("id=\"data\"") - html.find("<body>"));
   EXPECT_THAT(body, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));

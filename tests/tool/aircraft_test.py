@@ -295,7 +295,7 @@ class OtherAircraft(unittest.TestCase):
         (self.path / "plain.toml").write_text(model.format(""))
         right = self.json("compare", "ncar.nc", "-m", "plain.toml", "--reference", "pressure:PSXC")
         self.assertEqual(stated["models"][0]["rms_hpa"], right["models"][0]["rms_hpa"])
-        self.assertIn("PSFD is taken as 'hPa'",
+        self.assertIn("PSFD is read in 'hPa'",
                       " ".join(note["text"] for note in stated.get("notes", [])) +
                       self.run_tool("process", "wrong.nc", "-m", "stated.toml", "-o", "w.nc").stdout)
 

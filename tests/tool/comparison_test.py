@@ -249,7 +249,7 @@ class Compare(ComparisonTest):
     def test_the_better_model_is_named(self):
         worse = self.model(lambda toml: with_a0(0.007)(toml).replace("equation 18\"", "worse\""), "worse.toml")
         text = self.done("compare", ONE, "-m", worse, "-m", self.model()).stdout
-        self.assertIn("rms has C-130 PSFD/QCF, equation 18.", text)
+        self.assertIn("C-130 PSFD/QCF, equation 18 has the smallest rms.", text)
 
     def test_an_excluded_regime_is_counted(self):
         everything, without = self.compare(), self.compare("--exclude", "turn")

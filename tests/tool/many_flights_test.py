@@ -417,7 +417,7 @@ class ModelsByDate(ManyFlightsTest):
         self.model("other", 'valid_to = "2003-12-31"')
         result = self.process()
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
-        self.assertRegex(result.stderr, "early, other fit alike")
+        self.assertRegex(result.stderr, "early, other match equally well")
         broken = self.models / "broken.toml"
         broken.write_text("no model")
         self.assertRegex(self.process().stderr, "broken.toml:1")

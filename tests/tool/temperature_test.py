@@ -678,7 +678,7 @@ class Options(TemperatureTest):
         self.assert_is_truth(climbs)
 
     def test_climb_rate_above_all_climbs_is_refused(self):
-        self.refuse("--min-climb-rate", "20", words=["one.nc", "climbs", "20 m/s"])
+        self.refuse("--min-climb-rate", "20", words=["one.nc", "climbs and descents span", "20 m/s"])
 
     def test_returning_flights_are_excluded(self):
         back = self.part(AND_BACK, "back.nc")
@@ -762,7 +762,7 @@ class BadHeight(TemperatureTest):
 
 class BadInput(TemperatureTest):
     def test_no_climb(self):
-        self.refuse(flights=(self.part(LEVEL),), words=["flight.nc", "climbs by", "m only", "300 m"])
+        self.refuse(flights=(self.part(LEVEL),), words=["flight.nc", "climbs and descents span", "300 m"])
 
     def test_pressure_that_rises_with_height(self):
         flight = self.edited(changed("PSFD", lambda p: numpy.nanmin(p) + numpy.nanmax(p) - p))

@@ -201,10 +201,9 @@ std::function<void()> add_add(CLI::App& program) {
       ->needs(formula)
       ->type_name("TEXT");
   command
-      ->add_option(
-          "--flight", options->flight,
-          "choose the variables that the effects need among those of this flight, and span the knots of "
-          "a surface over what it flew")
+      ->add_option("--flight", options->flight,
+                   "choose the variables that the effects need among those of this flight, and choose the "
+                   "knots of a surface from the range of this flight")
       ->type_name("IN.nc");
   add_common_options<Extension>(*command, options->common, false);
   add_examples(*command,

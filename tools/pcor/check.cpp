@@ -135,7 +135,7 @@ std::string next_step(const Checks& checks, const CheckArguments& options, bool 
   }
   if (inconsistent == 0 && has_model && count_of(checks, CheckVerdict::consistent) > 0) {
     return fmt::format("No check contradicts the model{}. To apply it: {} process {} -m {} -o corrected.nc",
-                       open > 0 ? fmt::format("; {} check{} cannot tell", open, open == 1 ? "" : "s") : "",
+                       open > 0 ? fmt::format("; {} check{} inconclusive", open, open == 1 ? "" : "s") : "",
                        program(), shell_path(options.flights.flights.front()), shell_path(options.model));
   }
   return pictures;

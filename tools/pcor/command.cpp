@@ -131,8 +131,8 @@ void deliver(const ModelDefinition& model, const std::string& output, const std:
   fmt::print("{}", write_model(model));
 }
 
-JsonResult::JsonResult(const CommonOptions& options) : place_(is_speaker() ? options.json : "") {
-  if (is_file(place_)) file_.emplace(place_);
+JsonResult::JsonResult(const CommonOptions& options) : destination_(is_speaker() ? options.json : "") {
+  if (is_file(destination_)) file_.emplace(destination_);
 }
 
 void JsonResult::write_text(const std::string& text) {
@@ -144,8 +144,9 @@ void JsonResult::write_text(const std::string& text) {
   stream << text;
   stream.close();
   if (!stream) {
-    throw Error(Error::Code::output,
-                fmt::format("{}: cannot write the JSON result; check the space and the permissions", place_));
+    throw Error(
+        Error::Code::output,
+        fmt::format("{}: cannot write the JSON result; check the space and the permissions", destination_));
   }
   file_->commit();
 }

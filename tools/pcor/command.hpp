@@ -93,13 +93,13 @@ class JsonResult {
   /// "choices". NaN becomes null. @throws Error if it cannot be written.
   template <class Result>
   void write(const Result& result) {
-    if (!place_.empty()) write_text(to_json(WithChoices<Result>{result, choices_of_this_run()}));
+    if (!destination_.empty()) write_text(to_json(WithChoices<Result>{result, choices_of_this_run()}));
   }
 
  private:
   void write_text(const std::string& text);
 
-  std::string place_;
+  std::string destination_;
   std::optional<AtomicFile> file_{};
 };
 

@@ -149,16 +149,16 @@ void print_in_full(const Comparison& comparison, const ChosenReferences& referen
 }
 
 /// Next step: the model with the smallest rms is applied or refitted.
-std::string next_step(const Comparison& comparison, const std::vector<ComparedModel>& contenders,
+std::string next_step(const Comparison& comparison, const std::vector<ComparedModel>& models,
                       const CompareArguments& options) {
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
-  const auto contender = std::find_if(contenders.begin(), contenders.end(),
-                                      [&best](const ComparedModel& each) { return each.name == best->name; });
-  const std::string& model = options.models[static_cast<std::size_t>(contender - contenders.begin())];
+  const auto compared = std::find_if(models.begin(), models.end(),
+                                     [&best](const ComparedModel& each) { return each.name == best->name; });
+  const std::string& model = options.models[static_cast<std::size_t>(compared - models.begin())];
   const std::string which =
-      comparison.models.size() > 1 ? fmt::format("The smallest rms has {}. ", best->name) : "";
+      comparison.models.size() > 1 ? fmt::format("{} has the smallest rms. ", best->name) : "";
   const std::string flights = advised_command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
     return fmt::format(
@@ -176,7 +176,7 @@ std::string next_step(const Comparison& comparison, const std::vector<ComparedMo
   return fmt::format("{}To refit its coefficients: {}", which, refit);
 }
 
-void print(const Comparison& comparison, const std::vector<ComparedModel>& contenders,
+void print(const Comparison& comparison, const std::vector<ComparedModel>& models,
            const ChosenReferences& references, const CompareArguments& options) {
   if (is_verbose())
     print_in_full(comparison, references, options);
@@ -189,7 +189,7 @@ void print(const Comparison& comparison, const std::vector<ComparedModel>& conte
   written.insert(written.end(),
                  {options.common.report, options.common.figures, options.table, options.common.json});
   say_written(written);
-  say("{}\n", next_step(comparison, contenders, options));
+  say("{}\n", next_step(comparison, models, options));
 }
 
 /// Adds the references of a model to the references of earlier models, without repetition.
@@ -205,11 +205,11 @@ void add_references(ChosenReferences& told, const ChosenReferences& own) {
 }
 
 /// Distinguishes models with the same name by their files.
-void name_by_file(std::vector<ComparedModel>& contenders, const std::vector<std::string>& files) {
+void name_by_file(std::vector<ComparedModel>& models, const std::vector<std::string>& files) {
   std::map<std::string, std::size_t> count;
-  for (const ComparedModel& contender : contenders) ++count[contender.name];
-  for (std::size_t i = 0; i < contenders.size(); ++i) {
-    if (count[contenders[i].name] > 1) contenders[i].name = files[i];
+  for (const ComparedModel& compared : models) ++count[compared.name];
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (count[models[i].name] > 1) models[i].name = files[i];
   }
 }
 
@@ -247,28 +247,28 @@ void describe(const ComparisonWithGps& self, Field& field) {
 }
 
 /// Mean error of delta-p of each model by GPS, if requested.
-Levels levels_by_gps(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
+Levels levels_by_gps(const FlightSet& flights, const std::vector<ComparedModel>& models,
                      const CompareArguments& options) {
-  Levels levels(contenders.size());
+  Levels levels(models.size());
   if (options.comparison.references.empty())
     return levels;  // all available references are used: GPS takes seconds
   const MaskOptions mask = mask_options(options.comparison);
-  for (std::size_t i = 0; i < contenders.size(); ++i)
-    levels[i] = level_by_gps(flights, contenders[i].model, contenders[i].references, mask);
+  for (std::size_t i = 0; i < models.size(); ++i)
+    levels[i] = level_by_gps(flights, models[i].model, models[i].references, mask);
   return levels;
 }
 
-void print(const Levels& levels, const std::vector<ComparedModel>& contenders) {
+void print(const Levels& levels, const std::vector<ComparedModel>& models) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
     if (!levels[i]) continue;
     constexpr double known = 1.0;  // hPa
     if (levels[i]->standard_error < known)
-      say("{}: by GPS the mean delta-p error is {:+.2f} +- {:.2f} hPa\n", contenders[i].name,
-          levels[i]->missing, levels[i]->standard_error);
+      say("{}: by GPS the mean delta-p error is {:+.2f} +- {:.2f} hPa\n", models[i].name, levels[i]->missing,
+          levels[i]->standard_error);
     else
       say("{}: GPS does not determine the mean delta-p error on these flights; it requires circles or "
           "reverse headings with --reference wind\n",
-          contenders[i].name);
+          models[i].name);
   }
 }
 
@@ -293,15 +293,15 @@ void run(const CompareArguments& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
-  std::vector<ComparedModel> contenders;
+  std::vector<ComparedModel> models;
   ChosenReferences references;  // references of all models, for printing
   for (const std::string& path : options.models) {
     const ModelDefinition model = read_model_for(path, flights, options.common);
     const ChosenReferences own = read_references(options.comparison.references, model, flights);
     add_references(references, own);
-    contenders.push_back({model.model.name, model, own.used});
+    models.push_back({model.model.name, model, own.used});
   }
-  name_by_file(contenders, options.models);
+  name_by_file(models, options.models);
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
   compare_options.separates_atmosphere = !options.comparison.references.empty();
@@ -314,9 +314,9 @@ void run(const CompareArguments& options) {
   {
     Progress bar("comparing", !options.common.quiet);
     compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    comparison = compare(flights, contenders, compare_options);
+    comparison = compare(flights, models, compare_options);
   }
-  const Levels levels = levels_by_gps(flights, contenders, options);
+  const Levels levels = levels_by_gps(flights, models, options);
   const bool has_wind = std::any_of(references.used.begin(), references.used.end(),
                                     [](const auto& reference) { return reference->name() == "wind"; });
   if (has_wind) {
@@ -338,17 +338,17 @@ void run(const CompareArguments& options) {
   if (wants_report(options.common))
     write_report_of_run(
         comparison_report(comparison),
-        {options.models, options.comparison.flights, {}, next_step(comparison, contenders, options)},
+        {options.models, options.comparison.flights, {}, next_step(comparison, models, options)},
         options.common);
   if (!options.table.empty()) write_flight_table(comparison, options.table);
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    if (levels[i]) result.levels.emplace_back(contenders[i].name, *levels[i]);
+    if (levels[i]) result.levels.emplace_back(models[i].name, *levels[i]);
   }
   json.write(result);
   together.appear();
   if (!wants_text(options.common)) return;
-  print(levels, contenders);
-  print(comparison, contenders, references, options);
+  print(levels, models);
+  print(comparison, models, references, options);
 }
 
 }  // namespace

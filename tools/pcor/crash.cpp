@@ -59,9 +59,11 @@ Busy what_is_busy() {
   const int count = backtrace(frames, max_frames);
   Busy found = Busy::other;
   for (int i = 0; i < count; ++i) {
-    Dl_info place{};
-    if (dladdr(frames[i], &place) == 0 || place.dli_fname == nullptr) continue;
-    const auto is = [&place](const char* name) { return std::strstr(place.dli_fname, name) != nullptr; };
+    Dl_info location{};
+    if (dladdr(frames[i], &location) == 0 || location.dli_fname == nullptr) continue;
+    const auto is = [&location](const char* name) {
+      return std::strstr(location.dli_fname, name) != nullptr;
+    };
     // Libraries for units and digests do not read flights, which may be damaged.
     if (is("/libudunits") || is("/libcrypto")) return Busy::library;
     if (is("/libhdf5") || is("/libnetcdf")) found = Busy::reader_of_flights;
@@ -119,10 +121,10 @@ CrashesExplained::CrashesExplained(int status) {
   what_is_busy();  // the first backtrace loads a library, which a signal handler must not do
   // Separate stack: the stack of the library may be exhausted.
   static std::byte stack[stack_bytes];
-  stack_t place{};
-  place.ss_sp = stack;
-  place.ss_size = sizeof stack;
-  sigaltstack(&place, nullptr);
+  stack_t alternate{};
+  alternate.ss_sp = stack;
+  alternate.ss_size = sizeof stack;
+  sigaltstack(&alternate, nullptr);
   for (std::size_t i = 0; i < crashes.size(); ++i)
     handle(crashes[i], explain, static_cast<int>(SA_RESETHAND), &earlier[i]);
   handle(SIGPROF, watch, SA_RESTART, nullptr);

@@ -65,7 +65,7 @@ ModelEffect formula_effect(const std::string& id, const std::string& formula, co
 }
 
 void require_known_variables(const ModelEffect& effect, const std::string& option,
-                             const std::vector<std::string>& variables, const std::string& place) {
+                             const std::vector<std::string>& variables, const std::string& where) {
   const auto formula = Formula::parse(effect.formula, effect.parameter_names);
   for (const std::string& name : formula->variables()) {
     if (quantity_named(name) != Quantity::count) continue;
@@ -73,7 +73,7 @@ void require_known_variables(const ModelEffect& effect, const std::string& optio
     const std::string meant = did_you_mean(name, variables);
     throw Error(Error::Code::variable,
                 fmt::format("{} '{}': {} is neither a variable of {} nor a quantity; {}", option,
-                            effect.formula, name, place, meant.empty() ? "correct the formula" : meant));
+                            effect.formula, name, where, meant.empty() ? "correct the formula" : meant));
   }
 }
 
@@ -96,7 +96,7 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
     variables.insert(variables.end(), of_one.begin(), of_one.end());
   std::sort(variables.begin(), variables.end());
   variables.erase(std::unique(variables.begin(), variables.end()), variables.end());
-  const std::string place = flights.size() == 1 ? flights.path(0).string() : "any of the flights";
+  const std::string where = flights.size() == 1 ? flights.path(0).string() : "any of the flights";
   std::vector<std::string> formulas = options.formulas;
   std::sort(formulas.begin(), formulas.end());
   std::size_t number = 0;
@@ -104,7 +104,7 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
     do ++number;
     while (!is_new(fmt::format("try-{}", number)));
     candidates.push_back(formula_effect(fmt::format("try-{}", number), formula, "--try"));
-    require_known_variables(candidates.back(), "--try", variables, place);
+    require_known_variables(candidates.back(), "--try", variables, where);
   }
   return candidates;
 }

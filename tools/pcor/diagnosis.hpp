@@ -31,9 +31,9 @@ std::string command_line(const CandidateOptions& options);
 ModelEffect formula_effect(const std::string& id, const std::string& formula, const std::string& option);
 
 /// Checks that every name in the formula of `option` is a quantity or one of `variables`, which belong to
-/// `place`. @throws Error with suggestions.
+/// `where`. @throws Error with suggestions.
 void require_known_variables(const ModelEffect& effect, const std::string& option,
-                             const std::vector<std::string>& variables, const std::string& place);
+                             const std::vector<std::string>& variables, const std::string& where);
 
 /// Adds to a what-if the commands that add its effects and refit, ready to be copied.
 /// @param fit the flights and options of the refit, as on a command line

@@ -27,8 +27,8 @@ const EffectWithoutTrace* find_without_trace(const std::string& id) {
 }
 
 const EffectInfo& find(const std::string& id) {
-  const std::size_t place = effect_named(id);
-  if (place < catalogue_size) return effect_info[place];
+  const std::size_t entry = effect_named(id);
+  if (entry < catalogue_size) return effect_info[entry];
   if (const EffectInfo* const surface = surface_named(id)) return *surface;
   std::vector<std::string> ids;
   for (const EffectInfo& info : surface_info) ids.emplace_back(info.id);
@@ -60,7 +60,7 @@ void describe(const CatalogueEntry& self, Field& field) {
   field("id", info.id, "id of the effect");
   field("title", info.title, "title of the effect");
   field("family", info.family, "group of its alternative shapes and locations");
-  field("place", place_of(info), "instrument component");
+  field("place", component_of(info), "instrument component");
   field("where", info_of(info.location).name, "stage of the measurement");
   field("unit", info_of(info.location).unit, "unit of the effect");
   field("formula", info.formula, "formula of the effect");
@@ -83,7 +83,7 @@ void describe(const CatalogueEntry& self, Field& field) {
   for (std::size_t i = 0; i < info.need_count(); ++i) needs.push_back(info_of(info.needs[i]).name);
   field("needs", needs, "roles and derived quantities that the effect reads");
   field("size", info.size, "typical size");
-  field("look_alikes", info.look_alikes, "confounded effects");
+  field("look_alikes", info.confounders, "confounded effects");
   field("manoeuvre", info.manoeuvre, "manoeuvre that separates the effect from them");
   field("source", info.source, "source of formula and size");
 }
@@ -115,7 +115,7 @@ void print_surface(const EffectInfo& info) {
 void print_one(const EffectInfo& info) {
   const EffectLocationInfo& location = info_of(info.location);
   say("{}: {}\n\n", info.id, info.title);
-  say("  family       {}\n  place        {}\n", info.family, place_of(info));
+  say("  family       {}\n  place        {}\n", info.family, component_of(info));
   say("  formula      {}  [{}]\n  acts on      {}\n", info.formula, location.unit, location.adds_to);
   for (std::size_t i = 0; i < info.parameter_count(); ++i) {
     const ParameterInfo& parameter = info.parameters[i];
@@ -131,7 +131,7 @@ void print_one(const EffectInfo& info) {
   if (info.constants != GasConstants::any) say("  only in      {}\n", text_of(info.constants));
   say("  needs        {}\n", names_of_needs(info));
   say("  size         {}\n", info.size);
-  say("  look-alikes  {}\n", info.look_alikes);
+  say("  confounders  {}\n", info.confounders);
   say("  separated by {}\n", info.manoeuvre);
   say("  source       {}\n", info.source);
   if (info.parameter_count() == 0) return print_surface(info);
@@ -154,11 +154,11 @@ void print_one(const EffectInfo& info) {
 void print_all() {
   say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what", "formula");
   for (const EffectInfo& info : effect_info) {
-    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, place_of(info),
+    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, component_of(info),
         info_of(info.location).name, info.title, info.formula);
   }
   for (const EffectInfo& info : surface_info) {
-    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, place_of(info),
+    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, component_of(info),
         info_of(info.location).name, info.title, info.formula);
   }
   say("\nKnown errors that no term of a model can describe\n\n");

@@ -90,7 +90,8 @@ std::vector<fs::path> models_in(const fs::path& folder) {
     throw Error(Error::Code::usage,
                 fmt::format("'{}' is a file; give a model with --model", folder.string()));
   if (!fs::is_directory(folder))
-    throw Error(Error::Code::file, fmt::format("there is no folder '{}'", folder.string()));
+    throw Error(Error::Code::file,
+                fmt::format("there is no folder '{}'; check the path of --models", folder.string()));
   std::vector<fs::path> models = files_in(folder);
   if (models.empty()) {
     throw Error(Error::Code::file,

@@ -60,9 +60,9 @@ void mind_signals() {
 void fill_closed_streams() {
   while (true) {
     // A read-only descriptor makes writes fail: output to closed streams is discarded.
-    const int place = open("/dev/null", O_RDONLY);
-    if (place > STDERR_FILENO) close(place);
-    if (place < 0 || place > STDERR_FILENO) return;
+    const int descriptor = open("/dev/null", O_RDONLY);
+    if (descriptor > STDERR_FILENO) close(descriptor);
+    if (descriptor < 0 || descriptor > STDERR_FILENO) return;
   }
 }
 

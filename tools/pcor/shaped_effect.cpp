@@ -54,8 +54,8 @@ void set_shape(ModelEffect& effect, const std::string& name, const std::string& 
     if (shape.name == name) {
       effect.parameters[i] = number_in(value, argument);
       if (effect.parameters[i] >= shape.lower && effect.parameters[i] <= shape.upper) return;
-      throw Error(Error::Code::usage, fmt::format("{}: {} = {} is out of range [{}, {}]", argument, name,
-                                                  value, shape.lower, shape.upper));
+      throw Error(Error::Code::usage, fmt::format("{}: {} = {} is outside [{}, {}]; give a value inside",
+                                                  argument, name, value, shape.lower, shape.upper));
     }
     shapes.push_back(shape.name);
   }
@@ -90,7 +90,7 @@ std::optional<ModelEffect> surface_argument(const std::string& argument, const F
   if (surface_named(id) == nullptr) return std::nullopt;
   if (flight == nullptr)
     throw Error(Error::Code::usage,
-                fmt::format("{}: the knots of a surface span what was flown; give --flight IN.nc", id));
+                fmt::format("{}: the knots of a surface are chosen from a flight; give --flight IN.nc", id));
   const auto the_flight = [flight](std::size_t) -> const Flight& { return *flight; };
   if (colon == std::string::npos) return surface_over(1, the_flight, model, id);
   constexpr std::string_view requested = "splines=";
@@ -99,8 +99,8 @@ std::optional<ModelEffect> surface_argument(const std::string& argument, const F
       shape.rfind(requested, 0) == 0 ? number_in(shape.substr(requested.size()), argument) : 0.0;
   if (!(splines >= SurfaceAxis::min_count && splines <= SurfaceAxis::max_count))
     throw Error(Error::Code::usage,
-                fmt::format("{}: '{}' shapes no surface; give splines= and a number from {} to {}", argument,
-                            shape, SurfaceAxis::min_count, SurfaceAxis::max_count));
+                fmt::format("{}: '{}' is not a key of a surface; give splines= and a number from {} to {}",
+                            argument, shape, SurfaceAxis::min_count, SurfaceAxis::max_count));
   return surface_over(1, the_flight, model, id, static_cast<std::size_t>(splines));
 }
 

@@ -50,7 +50,7 @@ inline bool operator<(const Note& a, const Note& b) {
 
 inline Note warning_note(std::string text) { return {Severity::warning, std::move(text)}; }
 
-/// Text for one line of output; before the text of a warning stands "warning: ".
+/// Text for one line of output, with the prefix "warning: " for a warning.
 std::string format_note(const Note& note);
 
 /// "Warning" or "Note", the label of a note in reports and long output.

@@ -186,7 +186,7 @@ struct ComparedModel {
 ///
 /// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
 /// no sample remains: the message lists the number of samples of each mask.
-Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& contenders,
+Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& models,
                    const CompareOptions& options = {});
 
 /// Writes the residuals of a flight to a netCDF file: for each model RESIDUAL_1, RESIDUAL_2 ..., delta-p of

@@ -52,7 +52,7 @@ struct DiagnoseOptions {
 };
 
 /// Coefficient estimated by the diagnosis.
-struct Estimate {
+struct CoefficientEstimate {
   std::string name;  ///< parameter, e.g. "tau"
   std::string unit;
   double value = 0.0;
@@ -61,7 +61,7 @@ struct Estimate {
 };
 
 template <class Field>
-void describe(const Estimate& self, Field& field) {
+void describe(const CoefficientEstimate& self, Field& field) {
   field("name", self.name, "name of the coefficient");
   field("unit", self.unit, "unit of the coefficient");
   field("value", self.value, "estimate", "see unit");
@@ -95,7 +95,7 @@ struct Alias {
   double correlation = 0.0;
   double chi2_less = 0.0;      ///< chi2 of the named effect minus chi2 of this one
   double size_to_usual = 0.0;  ///< coefficient divided by its typical size; 0 if unknown
-  std::vector<Estimate> estimates{};
+  std::vector<CoefficientEstimate> estimates{};
   /// Difference of the log marginal likelihoods, with the sign of `chi2_less`; includes the prior of either
   /// size.
   double log_likelihood_less = 0.0;
@@ -162,7 +162,7 @@ struct Finding {
   bool of_reference = false;  ///< true: acts on a compared system
   std::string system{};       ///< system, if several are compared: "PSFRD+QCFR"; otherwise empty
   std::string title;
-  std::vector<Estimate> estimates{};
+  std::vector<CoefficientEstimate> estimates{};
   /// Parameters absorbed by the model's coefficients: neutral in `effect`, fixed in a refit.
   std::vector<std::string> held{};
   double rms = 0.0;    ///< rms contribution to the residual over the samples used, hPa
@@ -188,7 +188,7 @@ struct Finding {
   /// Equally good shapes; an empty string is the shape of the catalogue.
   std::vector<std::string> variants{};
   /// Possible locations, e.g. "port", "other-system"; location of `effect` first.
-  std::vector<std::string> places{};
+  std::vector<std::string> components{};
   double probability = 1.0;  ///< posterior probability among the finding and its aliases, 0 to 1
   double times_usual = 0.0;  ///< size divided by the typical size; 0 if unknown
   /// Difference of corrected static pressure between this effect and its worst alias, rms hPa; 0 without
@@ -210,9 +210,9 @@ void describe(const Finding& self, Field& field) {
   field("effect", self.id(), "id of the missing effect");
   describe(self.effect, field);
   field("title", self.title, "title of the effect");
-  field("stderr", field.named(self.estimates, &Estimate::standard_error), "standard errors",
+  field("stderr", field.named(self.estimates, &CoefficientEstimate::standard_error), "standard errors",
         "unit of the coefficient");
-  field("units", field.named(self.estimates, &Estimate::unit), "units of the coefficients");
+  field("units", field.named(self.estimates, &CoefficientEstimate::unit), "units of the coefficients");
   field("estimates", self.estimates, "estimated coefficients");
   field("rms_hpa", self.rms, "contribution to the residual that the model does not absorb, rms");
   field("worst_hpa", self.worst, "largest contribution of the effect alone, with sign");
@@ -229,7 +229,7 @@ void describe(const Finding& self, Field& field) {
   field("family", self.family, "group of alternative shapes and locations");
   field("shape", self.shape, "detected shape; empty: the shape of the catalogue");
   field("variants", self.variants, "shapes that fit as well");
-  field("places", self.places, "possible instrument components");
+  field("places", self.components, "possible instrument components");
   field("times_usual", self.times_usual, "size divided by the typical size; 0 if unknown");
   field("probability", self.probability, "posterior probability among the effect and its aliases");
   field("advice", self.advice.sentence, "manoeuvre that would separate the effect from its aliases");
@@ -256,10 +256,10 @@ void describe(const AbsorbedEffect& self, Field& field) {
 struct UpperLimit {
   std::string effect;
   std::string title;
-  std::vector<Estimate> estimates{};  ///< estimated coefficients
-  std::vector<double> limits{};       ///< 95 % confidence limits of each coefficient's size, in its unit
-  double rms = 0.0;                   ///< contribution at the limit that the model does not absorb, hPa
-  std::string note{};  ///< e.g. "size needed to explain the residual is outside physical bounds"
+  std::vector<CoefficientEstimate> estimates{};  ///< estimated coefficients
+  std::vector<double> limits{};  ///< 95 % confidence limits of each coefficient's size, in its unit
+  double rms = 0.0;              ///< contribution at the limit that the model does not absorb, hPa
+  std::string note{};            ///< e.g. "size needed to explain the residual is outside physical bounds"
 };
 
 template <class Field>
@@ -300,7 +300,7 @@ struct EmpiricalPredictor {
   std::string sampling{};  ///< method of reduction to one value per record; empty if the file has one
   /// Possible locations according to references independent of the static ports, e.g. "port", "laser"; empty
   /// if undetermined.
-  std::vector<std::string> places{};
+  std::vector<std::string> components{};
   /// Location of the formula: the pitot if the total pressures show the same structure.
   EffectLocation location = EffectLocation::static_defect;
 };
@@ -317,7 +317,7 @@ void describe(const EmpiricalPredictor& self, Field& field) {
   field("slope_stderr", self.slope_error, "standard error of the slope", "hPa per unit");
   field("centre", self.centre, "mean of the variable", "see unit");
   field("formula", self.formula, "formula of a corresponding effect");
-  field("places", self.places, "possible instrument components; empty if undetermined");
+  field("places", self.components, "possible instrument components; empty if undetermined");
   field("sampling", self.sampling, "reduction to one value per record");
 }
 
@@ -401,7 +401,7 @@ struct Diagnosis {
   std::vector<NotTestable> not_testable{};
   /// Free coefficients of the model, refitted (see `residual_rms`), with names like "static-qp.a2", followed
   /// by those of the references' models.
-  std::vector<Estimate> own{};
+  std::vector<CoefficientEstimate> own{};
   std::size_t candidates = 0;  ///< number of effects tested
   double threshold = 0.0;      ///< chi2 threshold for a detection
   /// rms residual of the unchanged model, hPa, as in `compare` and `refit`.

@@ -13,7 +13,7 @@ namespace pcor {
 std::string verdict_text(const Diagnosis& diagnosis);
 
 /// Estimates with standard errors, both to two digits of the error: "tau = 0.151 ± 0.006 s".
-std::string estimates_text(const std::vector<Estimate>& estimates);
+std::string estimates_text(const std::vector<CoefficientEstimate>& estimates);
 
 /// Upper limits of the coefficients of an undetected effect: "|tau| < 0.12 s".
 std::string limits_text(const UpperLimit& limit);
@@ -26,7 +26,7 @@ std::string limits_text(const UpperLimit& limit);
 Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model,
                         const WhatIf* what_if = nullptr);
 
-/// Family, possible locations and relative size of an effect: "family: zero; place: p-transducer or
+/// Family, possible components and relative size of an effect: "family: zero; place: p-transducer or
 /// other-system; 15 times its usual size: ...".
 std::string kind_text(const Finding& finding);
 

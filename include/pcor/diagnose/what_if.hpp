@@ -29,7 +29,7 @@ struct WhatIfOptions {
   FlightSet holdout{};    ///< flights not used in any fit
   bool is_robust = true;  ///< true: outliers are down-weighted, as by the loss of a refit
   /// Coefficients of the model at the residual of the report; default: unchanged.
-  std::vector<Estimate> own{};
+  std::vector<CoefficientEstimate> own{};
 };
 
 /// Data of a flight for the what-if panel.

@@ -18,7 +18,7 @@ struct AdifDrift {
     info.needs = {Quantity::attack_ratio, Quantity::time, Quantity::count, Quantity::count};
     info.size =
         "slope 13.85 to 16.0 from flight to flight (C-130): 5 % of a ratio of 0.25 is 0.19 hPa at 700 hPa";
-    info.look_alikes = "static-alpha, transducer-thermal, lams-elevation, qcr-angle";
+    info.confounders = "static-alpha, transducer-thermal, lams-elevation, qcr-angle";
     info.manoeuvre = "angle of attack from pitch and vertical speed in a speed run";
     info.source = "NCAR memos AKRDC130 and PcorCalculation eq. 4-6; ARISTO memo table 2";
     info.example.inputs[0] = {Quantity::attack_ratio, -0.2};

@@ -18,7 +18,7 @@ struct AircraftStep {
     info.needs = {Quantity::date, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.size =
         "C-130 1.1 to 1.3 hPa between 2011 and 2016, of unknown cause; since is in days since 2000-01-01";
-    info.look_alikes = "static-constant, psfd-bias, qcf-zero, aircraft-change";
+    info.confounders = "static-constant, psfd-bias, qcf-zero, aircraft-change";
     info.manoeuvre =
         "level legs at one speed, attack and level in both flights, and the avionics pressure in both";
     info.source = "ARISTO memo sec. 4.1 and 4.4";

@@ -17,7 +17,7 @@ struct ClockSkew {
     info.needs = {Quantity::airspeed_rate, Quantity::count, Quantity::count, Quantity::count};
     info.memory = {Quantity::airspeed_rate, 0};
     info.size = "0.08 to 2 s between the clocks of one aircraft: 0.27 to 0.5 hPa/s in a speed run";
-    info.look_alikes = "qcf-lag, total-lag, temp-lag, lams-volume";
+    info.confounders = "qcf-lag, total-lag, temp-lag, lams-volume";
     info.manoeuvre = "both branches of a speed run; phase in a pitch manoeuvre";
     info.source = "NCAR quality-assurance notes, pitch manoeuvre";
     info.example.inputs[0] = {Quantity::airspeed_rate, 0.4};

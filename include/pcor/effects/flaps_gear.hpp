@@ -16,7 +16,7 @@ struct FlapsGear {
     info.needs = {Quantity::flaps, Quantity::count, Quantity::count, Quantity::count};
     info.scalings[0] = {0, 1};  // proportional to q
     info.size = "C-130 1.3 to 1.7 hPa with flaps at 50 % and more; GV unknown";
-    info.look_alikes = "static-alpha-quad, ground-effect, pcor-regime";
+    info.confounders = "static-alpha-quad, ground-effect, pcor-regime";
     info.manoeuvre = "level leg at one speed, repeated with flaps at 0 and 50 %";
     info.source = "NCAR nimbus, qcfrc.c (GOTHAAM); Cooper (2012) fig. 2";
     info.example.inputs[0] = {Quantity::flaps, 25.0};

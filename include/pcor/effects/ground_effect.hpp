@@ -19,7 +19,7 @@ struct GroundEffect {
     info.size =
         "below 0.5 hPa, and only within one span (C-130 40 m, GV 28 m) of the ground; a sample without "
         "height has no delta-p";
-    info.look_alikes = "flaps-gear";
+    info.confounders = "flaps-gear";
     info.manoeuvre = "fly-by of a tower or low pass at constant speed";
     info.source = "Gracey, NASA RP-1046; Haering, NASA TM-104316, 1995";
     info.example.inputs[0] = {Quantity::height_above_ground, 20.0};

@@ -18,7 +18,7 @@ struct HumidityError {
     info.size =
         "10 % where the pressure in the cavity of a mirror is 10 % off (GV); only where the model uses moist "
         "constants";
-    info.look_alikes = "humidity-neglected, temp-offset";
+    info.confounders = "humidity-neglected, temp-offset";
     info.manoeuvre = "descents followed by level flight";
     info.source = "NCAR memo FitCavityPressure; NCAR processing algorithms, note 20";
     info.example.inputs[0] = {Quantity::vapor_pressure, 20.0};

@@ -17,7 +17,7 @@ struct HumidityNeglected {
     info.needs = {Quantity::vapor_pressure, Quantity::count, Quantity::count, Quantity::count};
     info.size =
         "-0.1 to -0.65 hPa, most low, warm and fast; only where the model uses dry constants, and right at 1";
-    info.look_alikes = "temp-offset, lams-scale";
+    info.confounders = "temp-offset, lams-scale";
     info.manoeuvre = "leg in the boundary layer against one aloft at the same Mach number and attack";
     info.source = "Cooper (2012) eq. 13-17";
     info.example.inputs[0] = {Quantity::vapor_pressure, 20.0};

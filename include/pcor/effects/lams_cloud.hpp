@@ -16,7 +16,7 @@ struct LamsCloud {
     info.parameters[0] = {"error", "m/s", 0.0, -50.0, 0.0, -0.5};
     info.needs = {Quantity::liquid_water, Quantity::count, Quantity::count, Quantity::count};
     info.size = "-0.5 to -2 m/s: 0.5 to 2 hPa";
-    info.look_alikes = "temp-wetting";
+    info.confounders = "temp-wetting";
     info.manoeuvre = "entry into cloud and exit; several beams";
     info.source = "ARISTO memo sec. 5.2-5.3; Keeler et al., J. Atmos. Oceanic Technol. 4, 113 (1987)";
     info.example.inputs[0] = {Quantity::liquid_water, 0.3};

@@ -16,7 +16,7 @@ struct LamsElevation {
     info.parameters[0].doubt = 0.3;
     info.size =
         "pod pitch 1 deg (C-130), 3.5 deg (GV); survey 0.02 to 0.2 deg: 0.12 hPa for 0.5 deg at 6 deg";
-    info.look_alikes = "static-alpha, static-constant";
+    info.confounders = "static-alpha, static-constant";
     info.manoeuvre = "pitch manoeuvre with a second static pair";
     info.source = "Cooper (2012), Effect of LAMS orientation";
 

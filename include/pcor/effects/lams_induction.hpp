@@ -17,7 +17,7 @@ struct LamsInduction {
     info.size =
         "-0.5 to -2 m/s (GV, inboard-down beam at 20 m), -0.35 to -0.55 m/s (C-130); the constant part is "
         "lams-scale";
-    info.look_alikes = "lams-scale, lams-elevation, static-alpha";
+    info.confounders = "lams-scale, lams-elevation, static-alpha";
     info.manoeuvre = "other focus distances; reverse headings at two angles of attack";
     info.source = "NCAR wind uncertainty technical note sec. 2.4.6; ARISTO memo sec. 5";
     info.example.inputs[0] = {Quantity::attack, 4.0};

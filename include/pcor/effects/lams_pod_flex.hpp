@@ -18,7 +18,7 @@ struct LamsPodFlex {
     info.size =
         "0.1 to 0.5 deg, estimated; the part that follows the fuel needs the mass of the aircraft and stays "
         "in time-drift";
-    info.look_alikes = "load-factor, lams-elevation, time-drift";
+    info.confounders = "load-factor, lams-elevation, time-drift";
     info.manoeuvre = "circles, pitch manoeuvre; attitude sensor in the pod";
     info.source = "NCAR wind uncertainty technical note sec. 2.3-2.4";
     info.example.inputs[0] = {Quantity::normal_acceleration, 4.903325};

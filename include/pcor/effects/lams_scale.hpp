@@ -18,7 +18,7 @@ struct LamsScale {
     info.size =
         "calibration within 0.1 m/s; index of refraction 0.024 m/s at 700 hPa; the constant part of the flow "
         "ahead of the aircraft 0.004";
-    info.look_alikes = "static-mach2, static-qp, temp-offset, qcf-gain, lams-induction";
+    info.confounders = "static-mach2, static-qp, temp-offset, qcf-gain, lams-induction";
     info.manoeuvre = "reverse headings and circles only";
     info.source = "NCAR wind uncertainty technical note sec. 2.4.5";
     info.example.inputs[0] = {Quantity::lams_airspeed, 120.0};

@@ -22,7 +22,7 @@ struct LineHead {
     info.size =
         "0.12 hPa for each metre at sea level, 0.04 at 300 hPa, with the transducer at aft and below behind "
         "and under the port; the line lies in the cabin, so its air is at 290 K";
-    info.look_alikes = "load-factor, static-alpha, static-constant";
+    info.confounders = "load-factor, static-alpha, static-constant";
     info.manoeuvre = "acceleration at constant angle of attack";
     info.source = "hydrostatics of the line, dp = rho a h; estimate";
     info.example.inputs[0] = {Quantity::longitudinal_acceleration, 2.0};

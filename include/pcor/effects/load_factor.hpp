@@ -17,7 +17,7 @@ struct LoadFactor {
     info.needs = {Quantity::normal_acceleration, Quantity::count, Quantity::count, Quantity::count};
     info.scalings[0] = {0, 1};  // proportional to q
     info.size = "0.2 to 1 hPa for 0.4 g, estimated; King Air above 1.5 hPa in accelerated flight";
-    info.look_alikes = "static-alpha, static-lag, lams-pod-flex";
+    info.confounders = "static-alpha, static-lag, lams-pod-flex";
     info.manoeuvre = "pitch manoeuvre with two periods, 10 and 30 s; steady turn";
     info.source = "Rodi and Leon, Atmos. Meas. Tech. 5, 2569 (2012)";
     info.example.inputs[0] = {Quantity::normal_acceleration, 1.96133};

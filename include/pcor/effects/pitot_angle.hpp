@@ -18,7 +18,7 @@ struct PitotAngle {
     info.size =
         "below 0.2 % of q at 5 deg, below 1 % at 10 deg, always low: -0.12 and -0.6 hPa (C-130); axis is the "
         "angle of attack at which the pitot points into the wind";
-    info.look_alikes = "static-alpha-quad, static-beta-even, lams-elevation, qcr-angle";
+    info.confounders = "static-alpha-quad, static-beta-even, lams-elevation, qcr-angle";
     info.manoeuvre = "pitch and yaw manoeuvres to large angles; a second pitot pair";
     info.source = "Cooper (2012), footnote 3";
     info.example.inputs[0] = {Quantity::dynamic_pressure, 70.0};

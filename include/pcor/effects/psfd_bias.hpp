@@ -15,7 +15,7 @@ struct PsfdBias {
     info.parameters[0] = {"offset", "hPa", 0.0, -50.0, 50.0, 0.1};
     info.parameters[0].doubt = 0.1;
     info.size = "Paroscientific 0.1 hPa; the laser sees 7 to 35 % of it";
-    info.look_alikes = "static-constant, qcf-zero";
+    info.confounders = "static-constant, qcf-zero";
     info.manoeuvre =
         "airport pressure on the ramp; hydrostatic height in climbs; a second static and pitot pair";
     info.source = "Cooper (2012), Background";

@@ -16,7 +16,7 @@ struct PsfdDrift {
     info.parameters[0].doubt = 0.03;
     info.needs = {Quantity::time, Quantity::count, Quantity::count, Quantity::count};
     info.size = "estimated 0.03 hPa/h: a third of the bias of 0.1 hPa (Paroscientific) within an hour";
-    info.look_alikes = "time-drift, qcf-drift, psfd-thermal";
+    info.confounders = "time-drift, qcf-drift, psfd-thermal";
     info.manoeuvre =
         "level legs early and late at one speed, attack and level, with a second static and pitot pair";
     info.source = "estimate, from NCAR wind uncertainty technical note table 1";

@@ -16,7 +16,7 @@ struct PsfdGain {
     info.parameters[0].doubt = 0.0001;
     info.needs = {Quantity::static_pressure, Quantity::count, Quantity::count, Quantity::count};
     info.size = "0.1 hPa at 1000 hPa (Paroscientific): the laser sees 7 to 35 % of it";
-    info.look_alikes = "psfd-bias, static-constant, qcf-gain";
+    info.confounders = "psfd-bias, static-constant, qcf-gain";
     info.manoeuvre =
         "airport pressures at two levels; a second static and pitot pair from the ground to high up";
     info.source = "NCAR wind uncertainty technical note table 1";

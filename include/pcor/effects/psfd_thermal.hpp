@@ -16,7 +16,7 @@ struct PsfdThermal {
     info.parameters[1] = {"zero", "hPa", 0.0, -50.0, 50.0, 0.1};
     info.needs = {Quantity::transducer_temperature, Quantity::count, Quantity::count, Quantity::count};
     info.size = "estimated 0.01 to 0.03 hPa/K; zero is the error at 290 K";
-    info.look_alikes = "transducer-thermal, psfd-drift, psfd-bias";
+    info.confounders = "transducer-thermal, psfd-drift, psfd-bias";
     info.manoeuvre =
         "level legs early and late at one speed, attack and level, with a second static and pitot pair";
     info.source = "Haering, NASA TM-104316, 1995; estimate";

@@ -15,7 +15,7 @@ struct QcfDrift {
     info.parameters[0] = {"per_hour", "hPa/h", 0.0, -20.0, 20.0, 0.1};
     info.needs = {Quantity::time, Quantity::count, Quantity::count, Quantity::count};
     info.size = "estimated 0.1 hPa/h: a third of the zero of 0.34 hPa (Honeywell PPT) within an hour";
-    info.look_alikes = "time-drift, psfd-drift, transducer-thermal";
+    info.confounders = "time-drift, psfd-drift, transducer-thermal";
     info.manoeuvre =
         "level legs early and late at one speed, attack and level, with a second static and pitot pair; zero "
         "on the ramp before and after";

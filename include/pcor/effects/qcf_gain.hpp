@@ -15,7 +15,7 @@ struct QcfGain {
     info.parameters[0] = {"gain", "1", 0.0, -0.5, 0.5, 0.005};
     info.needs = {Quantity::dynamic_pressure, Quantity::count, Quantity::count, Quantity::count};
     info.size = "estimated 0.1 to 0.5 %: 0.06 to 0.35 hPa";
-    info.look_alikes = "lams-scale, temp-offset, static-qp, static-mach2, qcf-zero";
+    info.confounders = "lams-scale, temp-offset, static-qp, static-mach2, qcf-zero";
     info.manoeuvre = "a second static and pitot pair over a wide range of q: one laser alone cannot show it";
     info.source = "NCAR wind uncertainty technical note table 1";
     info.example.inputs[0] = {Quantity::dynamic_pressure, 70.0};

@@ -15,7 +15,7 @@ struct QcfLag {
     info.parameters[0] = {"tau", "s", 0.0, 0.0, 30.0, 0.1};
     info.needs = {Quantity::dynamic_pressure_rate, Quantity::count, Quantity::count, Quantity::count};
     info.size = "QCF answers in 0.05 s and is 0.02 s late: 0.03 hPa in a speed run of 0.3 m/s2";
-    info.look_alikes = "clock-skew, total-lag";
+    info.confounders = "clock-skew, total-lag";
     info.manoeuvre =
         "none with one laser: its clock does the same; a second differential transducer of another response";
     info.source = "NCAR wind uncertainty technical note sec. 2.2.3";

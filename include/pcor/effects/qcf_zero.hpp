@@ -15,7 +15,7 @@ struct QcfZero {
     info.parameters[0] = {"offset", "hPa", 0.0, -50.0, 50.0, 0.3};
     info.parameters[0].doubt = 0.3;
     info.size = "0.34 hPa typical, 0.68 at most (Honeywell PPT); Cooper (2012) has 0.05";
-    info.look_alikes = "static-constant, static-leak, temp-deice-heat, psfd-bias, qcf-gain";
+    info.confounders = "static-constant, static-leak, temp-deice-heat, psfd-bias, qcf-gain";
     info.manoeuvre = "zero on the ramp before taxi; a second static and pitot pair";
     info.source = "NCAR wind uncertainty technical note table 1; Cooper (2012), Background";
     info.example.parameters = {0.3};

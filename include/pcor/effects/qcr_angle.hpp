@@ -18,7 +18,7 @@ struct QcrAngle {
     info.size =
         "GV 0.44 hPa at 4 deg of attack, 0.9 hPa at 4 deg of sideslip; it moves delta-p only through the "
         "radome ratios";
-    info.look_alikes = "adif-drift, pitot-angle";
+    info.confounders = "adif-drift, pitot-angle";
     info.manoeuvre = "pitch and yaw manoeuvres";
     info.source = "NCAR processing algorithms sec. 4.3";
     info.example.inputs[0] = {Quantity::attack, 4.0};

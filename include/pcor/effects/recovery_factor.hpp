@@ -15,7 +15,7 @@ struct RecoveryFactorError {
     info.parameters[0] = {"da", "1", 0.0, -0.2, 0.2, 0.01};
     info.parameters[0].doubt = 0.005;
     info.size = "0.01 changes delta-p from LAMS by -0.017 hPa (C-130) to -0.11 hPa (GV)";
-    info.look_alikes = "temp-offset, static-qp, static-mach2";
+    info.confounders = "temp-offset, static-qp, static-mach2";
     info.manoeuvre = "speed run, both branches, at constant temperature";
     info.source = "Cooper, Recovery factor study, NCAR, October 2014";
 

@@ -19,7 +19,7 @@ struct RollStatic {
     info.needs = {Quantity::roll, Quantity::count, Quantity::count, Quantity::count};
     info.scalings[0] = {0, 1};  // proportional to q
     info.size = "0 to 0.3 hPa, estimated";
-    info.look_alikes = "lams-azimuth, static-beta-odd, horizontal-gradient";
+    info.confounders = "lams-azimuth, static-beta-odd, horizontal-gradient";
     info.manoeuvre = "circles to the left and to the right";
     info.source = "NCAR quality-assurance notes, circle manoeuvre";
     info.example.inputs[0] = {Quantity::roll, 30.0};

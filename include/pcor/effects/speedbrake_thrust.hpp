@@ -15,7 +15,7 @@ struct SpeedbrakeThrust {
     info.parameters[0] = {"defect", "hPa", 0.0, -50.0, 50.0, 0.5};
     info.needs = {Quantity::engine_torque, Quantity::count, Quantity::count, Quantity::count};
     info.size = "C-130 propwash 0.2 to 1 hPa at full torque, estimated";
-    info.look_alikes = "static-lag, horizontal-gradient, static-alpha";
+    info.confounders = "static-lag, horizontal-gradient, static-alpha";
     info.manoeuvre = "change of power at constant speed and weight: descent against climb at one airspeed";
     info.source = "NCAR memo Recommendation161121; Rodi and Leon, Atmos. Meas. Tech. 5, 2569 (2012)";
     info.example.inputs[0] = {Quantity::engine_torque, 80.0};

@@ -16,7 +16,7 @@ struct StaticAlpha {
     info.needs = {Quantity::attack_ratio, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.scalings[0] = {-1, 1};  // q instead of p
     info.size = "C-130 PSFD 0.0213, 1 hPa/deg at 700 hPa; PSFRD 0.0089";
-    info.look_alikes = "lams-elevation, pitot-angle, adif-drift";
+    info.confounders = "lams-elevation, pitot-angle, adif-drift";
     info.manoeuvre = "pitch manoeuvre, speed run";
     info.source = "Cooper (2012) eq. 18-19";
     info.example.inputs[0] = {Quantity::attack_ratio, -0.2};

@@ -16,7 +16,7 @@ struct StaticAlphaQuad {
     info.needs = {Quantity::dynamic_ratio, Quantity::attack, Quantity::static_pressure, Quantity::count};
     info.scalings[0] = {1, -1};  // p instead of q
     info.size = "C-130 0.00245 (PSFD), 0.00163 (PSFRD): 2.6 hPa at 4 deg, 700 hPa";
-    info.look_alikes = "flaps-gear, pitot-angle, lams-elevation";
+    info.confounders = "flaps-gear, pitot-angle, lams-elevation";
     info.manoeuvre = "pitch manoeuvre at two speeds; slow half of a speed run";
     info.source = "ARISTO memo eq. 10; NCAR processing algorithms eq. 4.4";
     info.example.inputs[0] = {Quantity::dynamic_ratio, 0.1};

@@ -16,7 +16,7 @@ struct StaticAttack {
     info.needs = {Quantity::attack, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.scalings[0] = {-1, 1};  // q instead of p
     info.size = "C-130 PSFD 0.00137/deg, PSFRD 0.0005/deg; GV 0.00215/deg";
-    info.look_alikes = "lams-elevation, pitot-angle, adif-drift";
+    info.confounders = "lams-elevation, pitot-angle, adif-drift";
     info.manoeuvre = "pitch manoeuvre, speed run";
     info.source = "NCAR processing algorithms eq. 4.4-4.5";
     info.example.inputs[0] = {Quantity::attack, 3.0};

@@ -16,7 +16,7 @@ struct StaticBetaEven {
     info.needs = {Quantity::sideslip, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.scalings[0] = {-1, 1};  // q instead of p
     info.size = "estimated 1e-5 to 4e-5 /deg2: -0.1 to -0.4 hPa at 4 deg";
-    info.look_alikes = "pitot-angle, lams-azimuth";
+    info.confounders = "pitot-angle, lams-azimuth";
     info.manoeuvre = "yaw manoeuvre, steady-heading sideslip";
     info.source = "Cooper (2012), text after eq. 20";
     info.example.inputs[0] = {Quantity::sideslip, 4.0};

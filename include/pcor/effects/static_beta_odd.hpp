@@ -16,7 +16,7 @@ struct StaticBetaOdd {
     info.needs = {Quantity::sideslip_ratio, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.scalings[0] = {-1, 1};  // q instead of p
     info.size = "C-130 -0.00177 (PSFD), -0.0008 (PSFRD): -0.37 hPa at 3.7 deg, 700 hPa";
-    info.look_alikes = "lams-azimuth";
+    info.confounders = "lams-azimuth";
     info.manoeuvre = "yaw manoeuvre";
     info.source = "Cooper (2012) eq. 19";
     info.example.inputs[0] = {Quantity::sideslip_ratio, 0.3};

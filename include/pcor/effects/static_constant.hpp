@@ -15,7 +15,7 @@ struct StaticConstant {
     info.parameters[0] = {"a0", "1", 0.0, -0.5, 0.5, 0.004};
     info.needs = {Quantity::static_pressure, Quantity::count, Quantity::count, Quantity::count};
     info.size = "C-130 0.004: 3 hPa at 700 hPa";
-    info.look_alikes = "psfd-bias, qcf-zero";
+    info.confounders = "psfd-bias, qcf-zero";
     info.manoeuvre = "an absolute reference; no manoeuvre does";
     info.source = "Cooper (2012) eq. 18-20";
     info.example.inputs[0] = {Quantity::static_pressure, 700.0};

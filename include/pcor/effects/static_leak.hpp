@@ -15,7 +15,7 @@ struct StaticLeak {
     info.parameters[0] = {"fraction", "1", 0.0, 0.0, 1.0, 0.0005};
     info.needs = {Quantity::cabin_pressure, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.size = "1e-4 to 1e-3, estimated: 0.06 to 0.55 hPa (GV at 250 hPa, cabin at 800)";
-    info.look_alikes = "qcf-zero, temp-deice-heat, static-constant";
+    info.confounders = "qcf-zero, temp-deice-heat, static-constant";
     info.manoeuvre = "level legs before and after the cabin pressure changes; leak check on the ground";
     info.source = "Gracey, NASA RP-1046; size estimated";
     info.example.inputs[0] = {Quantity::cabin_pressure, 800.0};

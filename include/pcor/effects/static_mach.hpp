@@ -15,7 +15,7 @@ struct StaticMach {
     info.parameters[0] = {"m1", "1", 0.0, -2.0, 2.0, 0.03};
     info.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.size = "C-130 0.015 to 0.037; GV -0.06, nearly cancelled by the other powers";
-    info.look_alikes =
+    info.confounders =
         "static-qp, static-mach2, static-mach3, lams-scale, temp-offset, recovery-factor, qcf-gain";
     info.manoeuvre = "speed run at two altitudes";
     info.source = "Cooper (2012) eq. 19-20";

@@ -15,7 +15,7 @@ struct StaticMach2 {
     info.parameters[0] = {"m2", "1", 0.0, -2.0, 2.0, 0.02};
     info.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.size = "C-130 0.019 (PSFD)";
-    info.look_alikes =
+    info.confounders =
         "static-qp, static-mach, static-mach3, lams-scale, temp-offset, recovery-factor, qcf-gain";
     info.manoeuvre = "speed run at two altitudes";
     info.source = "Cooper (2012) eq. 19-20";

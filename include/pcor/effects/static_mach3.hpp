@@ -15,7 +15,7 @@ struct StaticMach3 {
     info.parameters[0] = {"m3", "1", 0.0, -2.0, 2.0, -0.09};
     info.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.size = "GV -0.0875: -10 hPa at 250 hPa, Mach 0.78, nearly cancelled by static-qp";
-    info.look_alikes =
+    info.confounders =
         "static-qp, static-mach, static-mach2, lams-scale, temp-offset, recovery-factor, qcf-gain";
     info.manoeuvre = "speed run at two altitudes";
     info.source = "Cooper (2012) eq. 20; NCAR processing algorithms eq. 4.5";

@@ -15,7 +15,7 @@ struct StaticQp {
     info.parameters[0] = {"a2", "1", 0.0, -2.0, 2.0, 0.03};
     info.needs = {Quantity::dynamic_ratio, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.size = "C-130 0.031 (PSFD), 0.071 (PSFRD): 2.1 and 4.8 hPa at q 68 hPa";
-    info.look_alikes = "static-mach2, lams-scale, temp-offset, recovery-factor, qcf-gain";
+    info.confounders = "static-mach2, lams-scale, temp-offset, recovery-factor, qcf-gain";
     info.manoeuvre = "speed run at two altitudes";
     info.source = "Cooper (2012) eq. 18, 20";
     info.example.inputs[0] = {Quantity::dynamic_ratio, 0.1};

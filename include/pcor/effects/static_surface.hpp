@@ -20,7 +20,7 @@ constexpr EffectInfo surface_info_of(std::string_view id, std::string_view title
   info.formula = formula;
   info.needs = {Quantity::dynamic_pressure, angle, Quantity::mach, Quantity::count};
   info.size = "tenths of hPa where a law of a few terms was fitted; GOTEX 2004: 0.1 hPa rms";
-  info.look_alikes =
+  info.confounders =
       "static-alpha, static-alpha-quad, static-qp, static-beta-odd and all that varies with its axes";
   info.manoeuvre = "pitch and yaw manoeuvres at several speeds: only what was flown is determined";
   info.source = "tensor product of cubic B-splines with a curvature penalty (Eilers and Marx 1996)";

@@ -17,7 +17,7 @@ struct StaticTransonic {
     info.parameters[1] = {"onset", "1", 0.82, 0.7, 0.95, 0.82, true, {0.74, 0.8, 0.85, 0.91}};
     info.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
     info.size = "estimated 0.1 to 1 hPa on the GV from Mach 0.82 to 0.86";
-    info.look_alikes = "static-mach3, static-mach2, lams-fold";
+    info.confounders = "static-mach3, static-mach2, lams-fold";
     info.manoeuvre = "speed run past Mach 0.82 at high altitude; one Mach number at two angles of attack";
     info.source = "Haering, NASA TM-104316, 1995; Gracey, NASA RP-1046";
     info.example.inputs[0] = {Quantity::mach, 0.86};

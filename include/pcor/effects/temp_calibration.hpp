@@ -18,7 +18,7 @@ struct TempCalibration {
     info.parameters[2] = {"a2", "1/K", 0.0, -0.001, 0.001, 0.0001};
     info.needs = {Quantity::ambient_temperature, Quantity::count, Quantity::count, Quantity::count};
     info.size = "0.3 to 0.55 K and a slope to 0.01: 0.24 hPa/K (C-130), 0.42 hPa/K (GV)";
-    info.look_alikes =
+    info.confounders =
         "temp-offset, recovery-factor, lams-scale, qcf-gain, temp-deice-heat, humidity-neglected, "
         "horizontal-gradient, hydrostatic-t-gradient, gps-height";
     info.manoeuvre =

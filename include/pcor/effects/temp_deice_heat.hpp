@@ -20,7 +20,7 @@ struct TempDeiceHeat {
     info.parameters[0] = {"scale", "1", 0.0, 0.0, 20.0, 1.0};
     info.needs = {Quantity::static_pressure, Quantity::mach, Quantity::recovery_temperature, Quantity::count};
     info.size = "0.38 to 0.84 K over the envelope; less with the constants of the GV, for which scale is 0.6";
-    info.look_alikes = "temp-offset, qcf-zero, static-leak";
+    info.confounders = "temp-offset, qcf-zero, static-leak";
     info.manoeuvre = "heater off and on; two thermometers";
     info.source =
         "NCAR nimbus, atfh.c and initAC.c (Rosemount 102DB1CB): 10^(-1.7841 log10 Z - 1.4025), Z = 0.26959 p "

@@ -15,7 +15,7 @@ struct TempDrift {
     info.parameters[0] = {"per_hour", "K/h", 0.0, -20.0, 20.0, 0.1};
     info.needs = {Quantity::time, Quantity::count, Quantity::count, Quantity::count};
     info.size = "estimated 0.1 K/h: a third of the offset of 0.3 K within an hour";
-    info.look_alikes = "temp-offset, time-drift, qcf-drift";
+    info.confounders = "temp-offset, time-drift, qcf-drift";
     info.manoeuvre = "climbs and descents early and late, with GPS height; two thermometers";
     info.source = "estimate, from Cooper et al., Atmos. Meas. Tech. 7, 3215 (2014)";
     info.example.inputs[0] = {Quantity::time, 7200.0};

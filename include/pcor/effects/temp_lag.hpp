@@ -15,7 +15,7 @@ struct TempLag {
     info.parameters[0] = {"tau", "s", 0.0, 0.0, 120.0, 2.3};
     info.needs = {Quantity::recovery_temperature_rate, Quantity::count, Quantity::count, Quantity::count};
     info.size = "heated 2.3 s, unheated 0.03 and 0.45 s: 0.15 K at a climb of 10 m/s";
-    info.look_alikes = "static-lag, total-lag, clock-skew";
+    info.confounders = "static-lag, total-lag, clock-skew";
     info.manoeuvre = "both branches of a speed run; climb and descent through one level";
     info.source = "Cooper, Recovery factor study, NCAR, October 2014";
     info.example.inputs[0] = {Quantity::recovery_temperature_rate, -0.05};

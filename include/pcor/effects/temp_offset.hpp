@@ -18,7 +18,7 @@ struct TempOffset {
     info.parameters[0].doubt = 0.3;
     info.needs = {Quantity::recovery_temperature, Quantity::count, Quantity::count, Quantity::count};
     info.size = "0.3 to 0.55 K: 0.24 hPa/K (C-130), 0.42 hPa/K (GV)";
-    info.look_alikes =
+    info.confounders =
         "lams-scale, qcf-gain, temp-deice-heat, recovery-factor, humidity-neglected, horizontal-gradient";
     info.manoeuvre = "hydrostatic height in climbs and descents";
     info.source = "Cooper (2012), table of temperatures; Cooper et al., Atmos. Meas. Tech. 7, 3215 (2014)";

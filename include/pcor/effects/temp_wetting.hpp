@@ -17,7 +17,7 @@ struct TempWetting {
     info.needs = {Quantity::wetness, Quantity::count, Quantity::count, Quantity::count};
     info.memory = {Quantity::wetness, 1};
     info.size = "-0.5 to -2 K: -0.1 to -0.8 hPa, in cloud and until it is dry, 5 to 20 s later";
-    info.look_alikes = "lams-cloud";
+    info.confounders = "lams-cloud";
     info.manoeuvre = "passes through cloud with a radiometer";
     info.source = "Cooper (2012) item 6 and recommendation 5; ARISTO memo";
     info.example.inputs[0] = {Quantity::wetness, 0.6};

@@ -15,7 +15,7 @@ struct TimeDrift {
     info.parameters[0] = {"per_hour", "hPa/h", 0.0, -20.0, 20.0, 0.1};
     info.needs = {Quantity::time, Quantity::count, Quantity::count, Quantity::count};
     info.size = "0.1 hPa/h, estimated: zeros warm up, ports collect dirt";
-    info.look_alikes = "transducer-thermal, adif-drift";
+    info.confounders = "transducer-thermal, adif-drift";
     info.manoeuvre = "level legs early and late at one speed, attack and level";
     info.source = "estimate";
     info.example.inputs[0] = {Quantity::time, 7200.0};

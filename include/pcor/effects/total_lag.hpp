@@ -16,7 +16,7 @@ struct TotalLag {
     info.needs = {Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate, Quantity::count,
                   Quantity::count};
     info.size = "QCF answers in 0.05 s and is 0.02 s late: 0.1 hPa at a climb of 10 m/s";
-    info.look_alikes = "static-lag, clock-skew, temp-lag";
+    info.confounders = "static-lag, clock-skew, temp-lag";
     info.manoeuvre = "speed run, accelerating against decelerating";
     info.source = "NCAR wind uncertainty technical note sec. 2.2.3";
     info.example.inputs[0] = {Quantity::static_pressure_rate, -0.8};

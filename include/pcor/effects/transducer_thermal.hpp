@@ -16,7 +16,7 @@ struct TransducerThermal {
     info.parameters[1] = {"zero", "hPa", 0.0, -50.0, 50.0, 0.1};
     info.needs = {Quantity::transducer_temperature, Quantity::count, Quantity::count, Quantity::count};
     info.size = "estimated 0.01 to 0.03 hPa/K; zero is the error at 290 K";
-    info.look_alikes = "adif-drift, time-drift, qcf-zero";
+    info.confounders = "adif-drift, time-drift, qcf-zero";
     info.manoeuvre = "level legs early and late at one speed, attack and level";
     info.source = "Haering, NASA TM-104316, 1995; estimate";
     info.example.inputs[0] = {Quantity::transducer_temperature, 300.0};

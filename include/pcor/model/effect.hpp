@@ -42,7 +42,7 @@ struct EffectLocationInfo {
   std::string_view name;
   std::string_view unit;
   std::string_view adds_to;
-  std::string_view place;
+  std::string_view component;
 };
 
 inline constexpr std::array<EffectLocationInfo, location_count> effect_location_info{{
@@ -125,10 +125,13 @@ struct EffectExample {
 
 /// Metadata of an effect, read by the help, the documentation, the law tests, the refit and the diagnosis.
 ///
+/// The struct of an effect has `info()`, which returns this metadata, and
+///
 ///     template <class State, class P> static auto value(const State& state, const P* parameters)
 ///
-/// that returns the correction added at its location, from the recorded to the true value. It is linear in
-/// its parameters, except shape parameters, and zero at the neutral ones.
+/// which returns the correction at its location, true minus recorded value, in the unit of the location.
+/// `value` is linear in the parameters, except shape parameters, and zero at the neutral parameters. NaN in
+/// an input gives NaN.
 struct EffectInfo {
   std::string_view id;
   std::string_view title;
@@ -142,7 +145,7 @@ struct EffectInfo {
   /// Alternative scalings to test; unused entries are empty.
   std::array<Scaling, scaling_capacity> scalings{};
   std::string_view size;         ///< typical size, as text
-  std::string_view look_alikes;  ///< confounded effects
+  std::string_view confounders;  ///< confounded effects
   std::string_view manoeuvre;    ///< manoeuvre that separates it from them
   std::string_view source;
   EffectExample example{};
@@ -167,8 +170,8 @@ struct EffectInfo {
 
 /// Instrument component of an effect. A clock is a separate component, although it shifts the input of a
 /// location.
-constexpr std::string_view place_of(const EffectInfo& info) {
-  return info.family == "clock" ? info.family : info_of(info.location).place;
+constexpr std::string_view component_of(const EffectInfo& info) {
+  return info.family == "clock" ? info.family : info_of(info.location).component;
 }
 
 }  // namespace pcor

@@ -43,25 +43,25 @@ struct QualityInfo {
 
 inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::static_pressure_missing, "static_pressure_missing",
-     "no static pressure, or one beyond all flights: nothing is derived"},
+     "no static pressure, or outside the plausible range: nothing is derived"},
     {Quality::dynamic_pressure_missing, "dynamic_pressure_missing",
-     "no dynamic pressure, or one beyond all flights: nothing is derived"},
+     "no dynamic pressure, or outside the plausible range: nothing is derived"},
     {Quality::impossible_static_pressure, "impossible_static_pressure",
-     "static pressure below 1 hPa, or corrected beyond all flights: nothing is derived"},
+     "static pressure below 1 hPa, or outside the plausible range when corrected: nothing is derived"},
     {Quality::impossible_dynamic_pressure, "impossible_dynamic_pressure",
-     "dynamic pressure zero or below, as on the ground, or corrected beyond all flights: no Mach number, no "
-     "airspeed"},
+     "dynamic pressure zero or below, as on the ground, or outside the plausible range when corrected: no "
+     "Mach number, no airspeed"},
     {Quality::effect_input_missing, "effect_input_missing",
      "an input of the model's effects is missing: no delta-p, or no pressure to correct"},
     {Quality::impossible_radome_pressure, "impossible_radome_pressure",
      "radome dynamic pressure zero or below: no flow angles from the radome"},
     {Quality::temperature_missing, "temperature_missing",
-     "no temperature, or one beyond all flights: no airspeed"},
+     "no temperature, or outside the plausible range: no airspeed"},
     {Quality::dry_air_assumed, "dry_air_assumed", "no humidity: constants of dry air"},
     {Quality::humidity_limited, "humidity_limited",
      "vapour pressure below zero or above saturation: set to the limit"},
     {Quality::lams_missing, "lams_missing",
-     "no valid airspeed from LAMS, or one that leads beyond all flights"},
+     "no valid airspeed from LAMS, or its result is outside the plausible range"},
     {Quality::tapered, "tapered", "delta-p tapered at low dynamic pressure"},
     {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law"},
     {Quality::outside_domain, "outside_domain", "an input lies outside the domain of the law: extrapolated"},
@@ -71,7 +71,7 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
      "delta-p above the dynamic pressure, or below its negative, as on the ramp: no delta-p"},
     {Quality::filter_window_incomplete, "filter_window_incomplete",
-     "filter window incomplete, or its result beyond all flights: no filtered LAMS temperature"},
+     "filter window incomplete, or its result is outside the plausible range: no filtered LAMS temperature"},
     {Quality::no_airflow, "no_airflow",
      "dynamic pressure too low to distinguish airflow from noise, as on the ramp: no Mach number, no "
      "airspeed"},
@@ -80,7 +80,7 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::uneven_samples, "uneven_samples",
      "sample intervals differ from those of the rate: effects of rates of change are wrong"},
     {Quality::awaiting_later_samples, "awaiting_later_samples",
-     "later samples are awaited, after the start or a gap in real time: no results yet"},
+     "no results yet after the start or a gap in real time: the filter needs later samples"},
 }};
 
 /// Quality bits of one sample.

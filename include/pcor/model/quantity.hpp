@@ -222,7 +222,7 @@ constexpr bool facts_are_in_order() {
   }
   return true;
 }
-static_assert(facts_are_in_order(), "a quantity has its row of facts at its place in the enumeration");
+static_assert(facts_are_in_order(), "quantity_info must have the order of the enumeration");
 
 constexpr const QuantityInfo& info_of(Quantity quantity) { return quantity_info[index(quantity)]; }
 

@@ -39,6 +39,9 @@ struct Surface {
 
   std::size_t parameter_count() const { return axes[0].count * axes[1].count; }
 
+  /// Value of the surface at (x, y), hPa: dynamic pressure (hPa) times the sum of B_i(x) B_j(y) c_ij, with
+  /// c_ij in the order of `coefficients`, the second axis varying fastest. Outside the envelope x and y are
+  /// set to its edge, so the pressure coefficient is constant there. NaN gives NaN.
   template <class S, class P>
   Promoted<S, P> value(const S& x, const S& y, const S& dynamic_pressure, const P* coefficients) const {
     using R = Promoted<S, P>;
@@ -53,14 +56,14 @@ struct Surface {
     return sum * R(dynamic_pressure);
   }
 
-  /// The values of the B-splines of an axis at x, which is brought to the nearest knot. NaN stays.
+  /// Values of the cubic B-splines of an axis at x; x outside the axis is set to its end. NaN gives NaN.
   template <class S>
   static std::array<S, SurfaceAxis::max_count> splines(const SurfaceAxis& axis, const S& x) {
     const S inside = select(x < S(axis.lower), S(axis.lower), select(x > S(axis.upper), S(axis.upper), x));
-    const S place = (inside - S(axis.lower)) * S(1.0 / axis.step());
+    const S position = (inside - S(axis.lower)) * S(1.0 / axis.step());
     std::array<S, SurfaceAxis::max_count> values{};
     for (std::size_t i = 0; i < axis.count; ++i) {
-      const S from = place - S(static_cast<double>(i) - 1.0);  // the middle of spline i
+      const S from = position - S(static_cast<double>(i) - 1.0);  // the middle of spline i
       const S distance = select(from < S(0.0), S(-from), from);
       const S left = S(2.0) - distance;
       const S near = S(2.0 / 3.0) + distance * distance * (S(0.5) * distance - S(1.0));

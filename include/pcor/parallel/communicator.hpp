@@ -34,13 +34,13 @@ class Communicator {
   ///
   /// @param state must be equal on all ranks, such as a digest of the coefficients and of the position in the
   /// work
-  /// @throws Error if ranks called `fail` instead: the error of the lowest place, then of the lowest rank.
+  /// @throws Error if ranks called `fail` instead: the error of the lowest `order`, then of the lowest rank.
   /// Error if the ranks are in different states.
   std::vector<std::string> gather(const std::string& own, std::uint64_t state = 0);
 
   /// Fails while the other ranks gather; all throw the same error and may continue after it.
-  /// @param place order of the error in a serial run: 0 before any flight, then by flight
-  [[noreturn]] void fail(const Error& error, std::size_t place);
+  /// @param order of the error in a serial run: 0 before any flight, then by flight
+  [[noreturn]] void fail(const Error& error, std::size_t order);
 
   /// Last call of a rank, with or without an error, so that other ranks do not wait for it. No gather is
   /// possible after it, or after that of another rank.

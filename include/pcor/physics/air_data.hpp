@@ -9,14 +9,15 @@ namespace pcor {
 ///
 ///     h = T*/T - 1 = ((p+q)/p)^(R_a/c_p) - 1 = M^2 (gamma - 1)/2 = v^2/(2 c_p T)
 ///
-/// `q` is the impact pressure of compressible flow, pt - p. Result: 1. Domain: p > 0, anything else gives
-/// NaN; below zero where q is. Source: memo eq. 5-7.
+/// `q` is the impact pressure of compressible flow, pt - p. Result: 1, with the sign of q. Domain: p > 0;
+/// anything else, and NaN in an argument, gives NaN. Source: memo eq. 5-7.
 template <class S>
 S dynamic_heating(const S& p, const S& q, const MoistAir<S>& air) {
   return select(p > S(0.0), power_less_one(q, p, air.poisson_exponent), missing<S>());
 }
 
-/// Mach number of air of which `dynamic_heating` is `heating`: M = (h 2 c_v/R_a)^(1/2). NaN below zero.
+/// Mach number for a `heating` from `dynamic_heating`: M = (h 2 c_v/R_a)^(1/2). Result: 1. Domain: h >= 0;
+/// anything else gives NaN. Source: memo eq. 7.
 template <class S>
 S mach_number_from_heating(const S& heating, const MoistAir<S>& air) {
   using std::sqrt;
@@ -40,15 +41,14 @@ S mach_number(const S& p, const S& q, const MoistAir<S>& air) {
 ///
 ///     q = p [ (1 + M^2 (gamma-1)/2)^(c_p/R_a) - 1 ]
 ///
-/// Domain: p > 0, M >= 0. Source: memo eq. 6.
+/// Domain: p > 0, M >= 0, not checked; NaN gives NaN. Source: memo eq. 6.
 template <class S>
 S dynamic_pressure_from_mach(const S& p, const S& mach, const MoistAir<S>& air) {
   const S temperature_ratio = S(1.0) + mach * mach * (air.heat_capacity_ratio - S(1.0)) * S(0.5);
   return p * (power(temperature_ratio, S(1.0) / air.poisson_exponent) - S(1.0));
 }
 
-/// The ratio of dynamic to static pressure of air that moves at `airspeed` (m/s) with temperature
-/// `temperature` (K):
+/// Ratio of dynamic to static pressure at true airspeed `airspeed` (m/s) and ambient `temperature` (K):
 ///
 ///     chi = (1 + v^2/(2 c_p T))^(c_p/R_a) - 1 = q/p
 ///
@@ -60,38 +60,40 @@ S pressure_ratio_of_airspeed(const S& airspeed, const S& temperature, const Mois
   return select(temperature > S(0.0), ratio, missing<S>());
 }
 
-/// Dynamic pressure of air at static pressure `p` that moves at `airspeed` (m/s) with `temperature` (K), in
-/// the unit of `p`: q = p chi. Domain: p > 0, T > 0. Source: memo eq. 8.
+/// Dynamic pressure at static pressure `p`, true airspeed `airspeed` (m/s) and ambient `temperature` (K), in
+/// the unit of `p`: q = p chi. Domain: p > 0, not checked; T > 0, anything else gives NaN. Source: memo
+/// eq. 8.
 template <class S>
 S dynamic_pressure_from_airspeed(const S& p, const S& airspeed, const S& temperature,
                                  const MoistAir<S>& air) {
   return p * pressure_ratio_of_airspeed(airspeed, temperature, air);
 }
 
-/// Speed of sound, m/s: (gamma R_a T)^(1/2). Domain: T >= 0 K; below it NaN.
+/// Speed of sound, m/s: (gamma R_a T)^(1/2), with `temperature` T in K. Domain: T >= 0 K; anything else gives
+/// NaN.
 template <class S>
 S speed_of_sound(const S& temperature, const MoistAir<S>& air) {
   using std::sqrt;
   return sqrt(air.heat_capacity_ratio * air.gas_constant * temperature);
 }
 
-/// True airspeed, m/s: v = M (gamma R_a T)^(1/2), with the ambient `temperature` in K. Source: memo before
-/// eq. 6.
+/// True airspeed, m/s: v = M (gamma R_a T)^(1/2), with the ambient `temperature` T in K. Domain: T >= 0 K;
+/// anything else, and NaN in an argument, gives NaN. Source: memo before eq. 6.
 template <class S>
 S true_airspeed(const S& mach, const S& temperature, const MoistAir<S>& air) {
   return mach * speed_of_sound(temperature, air);
 }
 
-/// True airspeed, m/s, of air of which `dynamic_heating` is `heating`, with the ambient `temperature` in K:
-/// v = (2 c_p T h)^(1/2). NaN if the product is below zero. Source: memo eq. 5.
+/// True airspeed, m/s, for a `heating` h from `dynamic_heating` and the ambient `temperature` T in K:
+/// v = (2 c_p T h)^(1/2). NaN if T h is below zero or NaN. Source: memo eq. 5.
 template <class S>
 S true_airspeed_from_heating(const S& heating, const S& temperature, const MoistAir<S>& air) {
   using std::sqrt;
   return sqrt(S(2.0) * air.specific_heat_pressure * temperature * heating);
 }
 
-/// Temperature where the air is brought to rest, K: T* = T + v^2/(2 c_p) = T (1 + M^2 (gamma-1)/2).
-/// Source: memo eq. 5.
+/// Stagnation temperature, K, at ambient `temperature` T (K) and Mach number M:
+/// T* = T + v^2/(2 c_p) = T (1 + M^2 (gamma-1)/2). NaN gives NaN. Source: memo eq. 5.
 template <class S>
 S stagnation_temperature(const S& temperature, const S& mach, const MoistAir<S>& air) {
   return temperature * (S(1.0) + mach * mach * (air.heat_capacity_ratio - S(1.0)) * S(0.5));

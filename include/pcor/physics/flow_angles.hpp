@@ -4,7 +4,7 @@
 
 namespace pcor {
 
-/// The calibration of a radome's differential pressure ports as a flow angle:
+/// Calibration of the differential pressure ports of a radome, which gives a flow angle:
 ///
 ///     angle = offset + ratio (slope + slope_mach M)     [deg]
 ///
@@ -18,13 +18,13 @@ struct RadomeCalibration {
   constexpr bool is_calibrated() const { return slope != 0.0 || slope_mach != 0.0; }
   constexpr bool needs_mach() const { return slope_mach != 0.0; }
 
-  /// The flow angle, deg. NaN if the ratio is NaN.
+  /// Flow angle, deg. NaN if the ratio or the Mach number is NaN, also with a zero `slope_mach`.
   template <class S>
   S operator()(const S& ratio, const S& mach) const {
     return S(offset) + ratio * (S(slope) + S(slope_mach) * mach);
   }
 
-  /// The flow angle, deg, of a calibration without Mach number.
+  /// Flow angle, deg, without the term of the Mach number. NaN if the ratio is NaN.
   template <class S>
   S operator()(const S& ratio) const {
     return S(offset) + ratio * S(slope);

@@ -57,7 +57,7 @@ S vapor_pressure_over_ice(const S& temperature) {
 }
 
 /// Saturation vapour pressure over a chilled mirror at `temperature` in K, hPa: over ice below the ice point,
-/// over water from it on. Domain and accuracy are those of the two laws. Source: Murphy and Koop (2005).
+/// otherwise over water. Domain and accuracy are those of the two laws. Source: Murphy and Koop (2005).
 template <class S>
 S saturation_vapor_pressure(const S& temperature) {
   return select(temperature < S(constants::ice_point), vapor_pressure_over_ice(temperature),
@@ -74,23 +74,23 @@ S enhancement_factor(const S& temperature, const S& pressure) {
   return S(1.0) + S(1e-5) * pressure * (S(4.923) + temperature * (S(-0.0325) + S(5.84e-5) * temperature));
 }
 
-/// Vapour pressure, hPa, from the dew point (K) in air at `pressure` (hPa): over water at any temperature, as
-/// NCAR's DPXC is given. Accuracy of `vapor_pressure_over_water`; NaN gives NaN.
+/// Vapour pressure, hPa, from the dew point (K) in air at `pressure` (hPa): over water at any temperature,
+/// which is the convention of NCAR's DPXC. Accuracy of `vapor_pressure_over_water`; NaN gives NaN.
 template <class S>
 S vapor_pressure_from_dew_point(const S& dew_point, const S& pressure) {
   return vapor_pressure_over_water(dew_point) * enhancement_factor(dew_point, pressure);
 }
 
 /// Vapour pressure, hPa, from the temperature of a chilled mirror (K) in air at `pressure` (hPa). Below the
-/// ice point the mirror is taken to carry ice: at -20 deg C that is 18 % less than for a dew point. NaN gives
-/// NaN.
+/// ice point the mirror is assumed to carry ice: at -20 deg C the result is 18 % lower than for a dew point.
+/// NaN gives NaN.
 template <class S>
 S vapor_pressure_from_frost_point(const S& frost_point, const S& pressure) {
   return saturation_vapor_pressure(frost_point) * enhancement_factor(frost_point, pressure);
 }
 
-/// Mixing ratio of water vapour, kg/kg: r = eps e/(p - e), both pressures in one unit, 0 <= e < p.
-/// Source: memo before eq. 13.
+/// Mixing ratio of water vapour, kg/kg: r = eps e/(p - e), both pressures in one unit. Domain: 0 <= e < p,
+/// not checked; NaN gives NaN. Source: memo before eq. 13.
 template <class S>
 S mixing_ratio(const S& vapor_pressure, const S& pressure) {
   return S(constants::molar_mass_ratio) * vapor_pressure / (pressure - vapor_pressure);

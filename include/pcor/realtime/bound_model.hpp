@@ -104,9 +104,9 @@ class BoundModel {
 
   /// True if the effect is linear in this coefficient, and zero if all such coefficients are zero.
   bool is_linear(std::size_t effect, std::size_t parameter) const {
-    const std::size_t place = effects_[effect].effect;
-    if (place == Term::is_surface) return true;
-    return place < catalogue_size && !effect_info[place].parameters[parameter].shape;
+    const std::size_t entry = effects_[effect].effect;
+    if (entry == Term::is_surface) return true;
+    return entry < catalogue_size && !effect_info[entry].parameters[parameter].shape;
   }
 
   /// Surface of effect number `effect` of the model; null for other effects.
@@ -214,7 +214,7 @@ class BoundModel {
   }
 
   std::vector<Term> effects_;  // order of the model
-  std::vector<Term> terms_;    // what acts, by place
+  std::vector<Term> terms_;    // by location
   std::array<std::size_t, location_count + 1> where_begin_{};
   std::bitset<location_count> acting_;  // true for each location with a term
   std::vector<BoundFormula> formulas_;

@@ -265,10 +265,10 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   };
   if (!arithmetic_keeps_nan()) {
     return fail(
-        "this program is compiled with fast mathematics, which loses the NaN of missing values: leave out "
-        "-ffast-math, -ffinite-math-only and pragmas of that kind");
+        "this program is compiled with fast mathematics, which loses the NaN of missing values; remove "
+        "-ffast-math, -ffinite-math-only and similar pragmas");
   }
-  if (!(rate > 0.0 && is_finite(rate))) return fail("the rate of a loop is above zero samples in a second");
+  if (!(rate > 0.0 && is_finite(rate))) return fail("the rate of the loop is not a number above 0 samples/s");
   if (with == CorrectWith::lams && !chain->has_lams()) {
     return fail("correction with LAMS needs the role 'lams_airspeed'");
   }
@@ -276,12 +276,12 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   for (const std::string& name : chain->extra_names()) loop.add_variable(name);
   constexpr double longest = 60.0;  // s, the bounds of clock-skew
   if (!(std::abs(chain->time_of(Quantity::airspeed_rate)) <= longest)) {
-    return fail("the coefficient 'seconds' of clock-skew is between -60 and 60 s");
+    return fail("the coefficient 'seconds' of clock-skew is outside -60 to 60 s");
   }
   if (chain->derives(Quantity::wetness)) {
     const double drying = chain->time_of(Quantity::wetness);
     if (!(drying >= 0.0 && drying <= Wetness::longest))
-      return fail("the coefficient 'drying' of temp-wetting is between 0 and 600 s");
+      return fail("the coefficient 'drying' of temp-wetting is outside 0 to 600 s");
     loop.wetness_.emplace(rate, drying);
   }
   loop.frozen_.emplace(*chain, rate);

@@ -102,9 +102,9 @@ class ModelBinder {
 
   bool add_catalogued(const ModelEffect& effect) {
     const std::string who = "effect " + quote(effect.id);
-    const std::size_t place = effect_named(effect.id);
-    if (place == catalogue_size) return fail(Code::unknown_effect, "", "there is no " + who);
-    const EffectInfo& info = effect_info[place];
+    const std::size_t entry = effect_named(effect.id);
+    if (entry == catalogue_size) return fail(Code::unknown_effect, "", "there is no " + who);
+    const EffectInfo& info = effect_info[entry];
     if (!require_count(effect, info.parameter_count())) return false;
     if (bound_.is_within_reach(info.location)) {
       if (!require_place(info.location, who)) return false;
@@ -114,7 +114,7 @@ class ModelBinder {
       }
     }
     Term term;
-    term.effect = place;
+    term.effect = entry;
     term.location = info.location;
     term.scaling = effect.scaling;
     add_effect(term, effect);
@@ -220,21 +220,21 @@ class ModelBinder {
   void add_term(const Term& term) {
     const auto end = static_cast<std::ptrdiff_t>(bound_.begin_of(term.location, 1));
     bound_.terms_.insert(bound_.terms_.begin() + end, term);
-    const auto place = static_cast<std::size_t>(term.location);
-    for (std::size_t next = place + 1; next <= location_count; ++next) ++bound_.where_begin_[next];
-    bound_.acting_.set(place);
+    const auto location = static_cast<std::size_t>(term.location);
+    for (std::size_t next = location + 1; next <= location_count; ++next) ++bound_.where_begin_[next];
+    bound_.acting_.set(location);
   }
 
   // Element of a further variable, added if the name is new. False if the capacity is exhausted.
-  bool find_extra(const std::string& name, Quantity& place) {
+  bool find_extra(const std::string& name, Quantity& quantity) {
     std::vector<std::string>& names = bound_.extra_names_;
     const auto found = std::find(names.begin(), names.end(), name);
     const auto number = static_cast<std::size_t>(found - names.begin());
     if (number == extra_capacity) return false;
-    place = extra_quantity(number);
+    quantity = extra_quantity(number);
     if (found == names.end()) {
       names.push_back(name);
-      bound_.recorded_.set(index(place));
+      bound_.recorded_.set(index(quantity));
     }
     return true;
   }

@@ -95,7 +95,7 @@ class NimbusSystem {
         return fail("a formula of the model needs the input '" + extra + "'");
       }
     }
-    std::vector<Input> places;
+    std::vector<Input> bound;
     for (const std::string& name : inputs) {
       Quantity quantity = quantity_named(name);
       if (quantity == Quantity::count) {
@@ -107,9 +107,9 @@ class NimbusSystem {
       } else if (!is_role(quantity)) {
         return fail("the input '" + name + "' is derived, not recorded");
       }
-      places.push_back({quantity, zero_of(quantity)});
+      bound.push_back({quantity, zero_of(quantity)});
     }
-    inputs_ = std::move(places);
+    inputs_ = std::move(bound);
     low_ = {std::move(low), low_rate};
     high_ = {std::move(high), high_rate};
     reset();
@@ -226,9 +226,9 @@ inline std::string default_key(const std::string& prefix, const ModelEffect& eff
   std::string name = std::to_string(number);
   if (number < effect.parameter_names.size()) {
     name = effect.parameter_names[number];
-  } else if (const std::size_t place = effect_named(effect.id);
-             place != catalogue_size && number < effect_info[place].parameter_count()) {
-    name = effect_info[place].parameters[number].name;
+  } else if (const std::size_t entry = effect_named(effect.id);
+             entry != catalogue_size && number < effect_info[entry].parameter_count()) {
+    name = effect_info[entry].parameters[number].name;
   }
   return prefix + "." + effect.id + "." + name;
 }

@@ -93,8 +93,8 @@ class RateFilter {
 
   /// Fills missing samples of a window. False if there are no values for this.
   bool fill(const double* sample, std::size_t earlier, std::size_t later) noexcept {
-    const auto at = [&](std::size_t place) {
-      return sample[static_cast<std::ptrdiff_t>(place) - static_cast<std::ptrdiff_t>(before_)];
+    const auto at = [&](std::size_t position) {
+      return sample[static_cast<std::ptrdiff_t>(position) - static_cast<std::ptrdiff_t>(before_)];
     };
     // Samples at or next to the central one, then all on either side up to a long gap.
     const std::size_t begin = before_ - std::min(before_, earlier);
@@ -112,9 +112,10 @@ class RateFilter {
     }
     if (first == last) return false;
     // An extrapolation this far from the data is not meaningful.
-    const double place = static_cast<double>(before_) - shift_;
+    const double position = static_cast<double>(before_) - shift_;
     const auto reach = static_cast<double>(bridge_);
-    if (place < static_cast<double>(first) - reach || place > static_cast<double>(last) + reach) return false;
+    if (position < static_cast<double>(first) - reach || position > static_cast<double>(last) + reach)
+      return false;
     double* const filled = filled_.data() + weights_.size();
     std::size_t known = first;
     for (std::size_t k = first; k <= last; ++k) {
@@ -134,8 +135,8 @@ class RateFilter {
     return true;
   }
 
-  /// Adds `scale` times the weights of the value at `place`, in samples from the central one.
-  void add_value(double place, double width, double scale) {
+  /// Adds `scale` times the weights of the value at `position`, in samples from the central one.
+  void add_value(double position, double width, double scale) {
     constexpr double pi = 180.0 * constants::radians_per_degree;
     std::vector<double> taper(weights_.size());
     std::vector<double> value(weights_.size());
@@ -143,7 +144,7 @@ class RateFilter {
     double sum = 0.0;
     double first_moment = 0.0;
     const auto from_place = [&](std::size_t k) {
-      return static_cast<double>(k) - static_cast<double>(before_) - place;
+      return static_cast<double>(k) - static_cast<double>(before_) - position;
     };
     for (std::size_t k = 0; k < weights_.size(); ++k) {
       const double from = from_place(k);

@@ -178,8 +178,8 @@ class ResultUncertainty final : public Functor {
     double shape = 0.0;  // derivative of the effect's value for this sample
   };
 
-  /// The uncertain coefficients that act at one place.
-  struct Place {
+  /// Uncertain coefficients that act at one location.
+  struct LocationTerms {
     EffectLocation location;
     std::size_t begin;
     std::size_t end;
@@ -219,8 +219,8 @@ class ResultUncertainty final : public Functor {
       add_surfaces(uncertainty.covariance);
     }
     Quantities read_at_ports;
-    for (std::size_t place = 0; place < location_count; ++place) {
-      const auto location = static_cast<EffectLocation>(place);
+    for (std::size_t number = 0; number < location_count; ++number) {
+      const auto location = static_cast<EffectLocation>(number);
       if (location != EffectLocation::static_defect && !is_before_ports(location)) continue;
       for (const Quantity read : chain_->read_at(location)) {
         read_at_ports = joined({read_at_ports, MeasuredQuantities::sources(*chain_, read)});
@@ -278,8 +278,8 @@ class ResultUncertainty final : public Functor {
   void add_coefficients(const std::vector<double>& covariance) {
     const std::size_t count = chain_->parameters().size();
     std::vector<std::size_t> order;
-    for (std::size_t place = 0; place < location_count; ++place) {
-      const auto location = static_cast<EffectLocation>(place);
+    for (std::size_t number = 0; number < location_count; ++number) {
+      const auto location = static_cast<EffectLocation>(number);
       if (location == EffectLocation::beam_elevation || location == EffectLocation::beam_azimuth ||
           location == EffectLocation::beam_speed)
         continue;
@@ -296,7 +296,7 @@ class ResultUncertainty final : public Functor {
           coefficients_.push_back(coefficient(effect, first, next, parameter, std::sqrt(variance)));
         }
       }
-      if (order.size() > begin) places_.push_back({location, begin, order.size()});
+      if (order.size() > begin) terms_by_location_.push_back({location, begin, order.size()});
     }
     for (const std::size_t i : order) {
       for (const std::size_t j : order) covariance_.push_back(covariance[i * count + j]);
@@ -453,16 +453,16 @@ class ResultUncertainty final : public Functor {
       if (chain_->location_of(each.effect) == EffectLocation::humidity && is_missing(each.shape))
         each.shape = 0.0;
     }
-    for (Place& place : places_) {
-      const Quantity source = source_of(place.location);
+    for (LocationTerms& terms : terms_by_location_) {
+      const Quantity source = source_of(terms.location);
       Changes changes;
       if (source != Quantity::count) changes = response(state, source, step_of(source));
-      add(changes, place.location, 1.0);
+      add(changes, terms.location, 1.0);
       changes.static_defect *= fraction;
-      place.by_amount = sensitivity.of(changes);
+      terms.by_amount = sensitivity.of(changes);
     }
-    for (const Place& a : places_) {
-      for (const Place& b : places_) {
+    for (const LocationTerms& a : terms_by_location_) {
+      for (const LocationTerms& b : terms_by_location_) {
         const double both = shared(a, b);
         for (std::size_t i = 0; i < variance.size(); ++i) {
           // A missing effect is irrelevant to a result that does not depend on it.
@@ -483,8 +483,8 @@ class ResultUncertainty final : public Functor {
     for (double& each : variance) each = each < 0.0 ? 0.0 : each;
   }
 
-  // The covariance of the amounts that are added at two places, in this sample.
-  double shared(const Place& a, const Place& b) const noexcept {
+  // Covariance of the amounts that are added at two locations, in this sample.
+  double shared(const LocationTerms& a, const LocationTerms& b) const noexcept {
     double sum = 0.0;
     for (std::size_t i = a.begin; i < a.end; ++i) {
       const double* const row = covariance_.data() + i * coefficients_.size();
@@ -556,7 +556,7 @@ class ResultUncertainty final : public Functor {
   double static_defect_ratio_;
   std::vector<std::size_t> at_ports_;  // effects before and at them
   std::vector<Coefficient> coefficients_;
-  std::vector<Place> places_;
+  std::vector<LocationTerms> terms_by_location_;
   std::vector<double> covariance_;  // covariance of the coefficients, in their order
   std::vector<FlatOutside> surfaces_;
   std::vector<Noise> noises_;

@@ -82,7 +82,7 @@ struct Scenario {
     double roll = by_default;       ///< deg, positive
     double angle = by_default;      ///< change of heading, deg, to starboard
     double flaps = by_default;      ///< percent
-    std::string place{};            ///< position in the file, for messages
+    std::string position{};         ///< position in the file, for messages
   };
 
   /// Error of a sensor.
@@ -150,7 +150,7 @@ struct Scenario {
     std::string of{};        ///< variable that causes an "unknown" effect
     std::string location{};  ///< target of an "unknown" effect: static, total, lams or temperature
     std::string shape{};     ///< shape of an "unknown" effect: linear, quadratic, step or sine
-    std::string place{};     ///< position in the file, for messages
+    std::string position{};  ///< position in the file, for messages
   };
 
   /// Spikes in a variable.

@@ -87,7 +87,7 @@ void describe(const TemperatureFit& self, Field& field) {
 struct DegreeChoice {
   int degree = -1;        ///< -1: no correction
   double deviance = 0.0;  ///< -2 ln L of all flights minus its value without correction
-  /// -2 ln L of flights left out of the fit, minus its value without correction: the sum over flights, and
+  /// -2 ln L of held-out flights, minus its value without correction: the sum over flights, and
   /// its standard error from their scatter. NaN for fewer than three flights.
   double held_out = 0.0;
   double held_out_error = 0.0;
@@ -97,7 +97,7 @@ template <class Field>
 void describe(const DegreeChoice& self, Field& field) {
   field("degree", self.degree, "degree of the correction; -1: no correction");
   field("deviance", self.deviance, "-2 ln L minus its value without correction");
-  field("held_out", self.held_out, "the same for flights left out of the fit");
+  field("held_out", self.held_out, "the same for held-out flights");
   field("held_out_stderr", self.held_out_error, "its standard error");
 }
 

@@ -121,8 +121,8 @@ class HeightReference final : public Reference {
         height_evidence(flight, height.values, static_pressures_of(flight, model_));
     if (evidence.kind == HeightEvidence::Kind::pressure_altitude) {
       throw Error(Error::Code::variable,
-                  fmt::format("{}: {} is a pressure altitude and no height of GPS: {}; a fit to it would be "
-                              "circular; name a height of GPS as altitude in the table [variables] of the "
+                  fmt::format("{}: {} is a pressure altitude, not a GPS height: {}; a fit to it would be "
+                              "circular; name a GPS height as altitude in the table [variables] of the "
                               "model, or use another reference",
                               flight.path().string(), height.variable, to_string(evidence)));
     }

@@ -65,8 +65,9 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
                        [](double value) { return Jet(value); });
       for (std::size_t d = 0; d < width; ++d) {
         const Direction& direction = directions[first + d];
-        const auto place = std::lower_bound(requested.begin(), requested.end(), direction.parameter);
-        const std::vector<Parts<double>>& slope = slopes[static_cast<std::size_t>(place - requested.begin())];
+        const auto position = std::lower_bound(requested.begin(), requested.end(), direction.parameter);
+        const std::vector<Parts<double>>& slope =
+            slopes[static_cast<std::size_t>(position - requested.begin())];
         for (std::size_t k = 0; k < span.size(); ++k) {
           const double rate = direction.rate[span.first + k];
           if (rate == 0.0) continue;  // the slope may be missing there

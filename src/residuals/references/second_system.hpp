@@ -32,7 +32,7 @@ class SecondSystemOnSamples : public ReferenceOnSamples {
  protected:
   /// The system's model, and the model under comparison.
   const ModelOnSamples& law() const { return own_; }
-  const ModelOnSamples& held_against() const { return model_; }
+  const ModelOnSamples& compared_model() const { return model_; }
   /// Parameters of the system's model, among all.
   template <class S>
   const S* own_of(const S* parameters) const {

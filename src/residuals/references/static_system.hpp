@@ -17,7 +17,7 @@ class StaticSystemOnSamples final : public SecondSystemOnSamples {
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     std::vector<double> corrected(block.count);
-    held_against().corrected_static_pressure(block.model, block.count, parameters, corrected.data());
+    compared_model().corrected_static_pressure(block.model, block.count, parameters, corrected.data());
     law().corrected_static_pressure(block.reference, block.count, own_of(parameters), out);
     for (std::size_t i = 0; i < block.count; ++i) out[i] -= corrected[i];
   }
@@ -29,7 +29,7 @@ class StaticSystemOnSamples final : public SecondSystemOnSamples {
       State<Jet> state;
       State<Jet> own_state;
       out[i] = law().corrected_static_pressure(samples[i], own_parameters, own_state) -
-               held_against().corrected_static_pressure(samples[i], parameters, state);
+               compared_model().corrected_static_pressure(samples[i], parameters, state);
     }
   }
 };

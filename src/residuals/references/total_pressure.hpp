@@ -17,7 +17,7 @@ class TotalPressureOnSamples final : public SecondSystemOnSamples {
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     std::vector<double> total(block.count);
-    held_against().total_pressure(block.model, block.count, parameters, total.data());
+    compared_model().total_pressure(block.model, block.count, parameters, total.data());
     law().total_pressure(block.reference, block.count, own_of(parameters), out);
     for (std::size_t i = 0; i < block.count; ++i) out[i] -= total[i];
   }
@@ -27,7 +27,7 @@ class TotalPressureOnSamples final : public SecondSystemOnSamples {
     const Jet* const own_parameters = own_of(parameters);
     for (std::size_t i = 0; i < count; ++i) {
       out[i] = law().total_pressure(samples[i], own_parameters) -
-               held_against().total_pressure(samples[i], parameters);
+               compared_model().total_pressure(samples[i], parameters);
     }
   }
 };

@@ -181,14 +181,14 @@ class WindReference final : public Reference {
     if (heading.values.empty() || ground.speed.values.empty()) {
       throw Error(Error::Code::variable,
                   flight.path().string() +
-                      ": no true heading and ground velocity with units (THDG, GGSPD, GGTRK and the like), "
+                      ": no true heading and ground velocity with units (for example THDG, GGSPD, GGTRK), "
                       "which the reference wind requires; name them in the table [variables] of the model");
     }
     for (const Jump& jump : ground.jumps)
-      notes.push_back(format_jump(ground.speed.variable, jump, time, "m/s") + ", which are left out");
+      notes.push_back(format_jump(ground.speed.variable, jump, time, "m/s") + ", which are excluded");
     for (const Jump& jump : ground.against_position)
       notes.push_back(format_jump(ground.speed.variable + " against the positions", jump, time, "m/s") +
-                      ", which are left out");
+                      ", which are excluded");
     ModelSamples samples;
     const auto add = [&samples](Quantity quantity, RecordedSeries& series) {
       samples.columns.emplace_back(quantity, std::move(series.values));
