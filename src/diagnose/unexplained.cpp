@@ -142,8 +142,9 @@ std::vector<std::string> computed_variables(const FlightSet& files, const std::s
 
 /// Moves variables whose changes are correlated with those of the residual to `variables` if they may be its
 /// cause, otherwise to the list in `found`.
-void sort_correlated(const Analysis& analysis, std::vector<std::pair<TestedVariable, ChangeSlope>> correlated,
-                     std::uint64_t seed, std::vector<TestedVariable>& variables, Unexplained& found) {
+void sort_correlated(const Analysis& analysis,
+                     std::vector<std::pair<TestedVariable, ChangeSlope>>& correlated, std::uint64_t seed,
+                     std::vector<TestedVariable>& variables, Unexplained& found) {
   if (correlated.empty()) return;
   StructureTest test(analysis.share(), analysis.bins(), analysis.columns_of(analysis.result().chosen),
                      analysis.residuals(), analysis.noise(), seed);
@@ -182,7 +183,7 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
       variables.push_back(std::move(variable));
     }
   }
-  sort_correlated(analysis, std::move(correlated), options.seed, variables, found);
+  sort_correlated(analysis, correlated, options.seed, variables, found);
   return variables;
 }
 

@@ -69,7 +69,7 @@ ReportTable flight_table(const TemperatureResult& result) {
   table.caption =
       "Rms of GPS height minus integral, about its mean in each segment and an estimate of the slope of "
       "isobars: the remainder with the correction is noise and the drift of the integral.";
-  table.headers = {"flight",      "samples",       "stretches",    "coldest, °C",
+  table.headers = {"flight",      "samples",       "segments",     "coldest, °C",
                    "warmest, °C", "rms before, m", "rms after, m", ""};
   for (const FlightHeights& flight : result.flights) {
     if (!flight.excluded.empty()) {

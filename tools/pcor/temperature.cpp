@@ -50,7 +50,7 @@ TemperatureOptions temperature_options(const TemperatureArguments& options) {
 }
 
 void print_flights(const TemperatureResult& result) {
-  say("{:<28} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10}\n", "flight", "samples", "stretches", "coldest",
+  say("{:<28} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10}\n", "flight", "samples", "segments", "coldest",
       "warmest", "rms before", "rms after");
   for (const FlightHeights& flight : result.flights) {
     if (!flight.excluded.empty()) {
