@@ -51,7 +51,7 @@ NoiseFloor min_noise(const FlightResiduals& flight) {
 struct Pairing {
   const ComparedModel& compared;
   const Reference& reference;
-  std::size_t rank = 0;  // of the model by name
+  std::size_t rank = 0;  // position of the model in the order of names
 };
 
 /// All models that have one reference, in the order in which they are given.

@@ -17,10 +17,10 @@ namespace {
 constexpr std::size_t min_samples = 20;
 constexpr std::size_t min_runs = 50;         // minimum number of runs to estimate their usual length
 constexpr std::size_t neighbours = 20;       // runs on either side
-constexpr std::size_t longest_excluded = 2;  // of the neighbours
-constexpr double min_over_near = 20.0;       // length of a frozen run over the mean of its neighbours
-constexpr double min_over_median = 5.0;      // over the median, if the series is noisy around the run
-constexpr double min_over_90th = 10.0;       // over the 90th percentile, otherwise
+constexpr std::size_t longest_excluded = 2;  // number of neighbours
+constexpr double min_over_near = 20.0;       // ratio of a frozen run to the mean length of its neighbours
+constexpr double min_over_median = 5.0;      // ratio to the median, if the series is noisy around the run
+constexpr double min_over_90th = 10.0;       // ratio to the 90th percentile, otherwise
 constexpr double noisy = 3.0;                // second difference, in steps of resolution
 constexpr std::size_t noise_window = 300;    // samples on either side
 constexpr std::size_t max_listed = 3;        // segments in a text

@@ -267,7 +267,7 @@ class Attributes(ChangedTest):
         for word in ("yes", "1", "t", " true", 1):
             with self.subTest(word):
                 self.refused("process", self.packed(word), "-m", PUBLISHED, "-o", self.path / "out.nc",
-                             words=["_Unsigned of PSFD", "true or false"])
+                             words=["_Unsigned of PSFD", "expected true or false"])
                 (self.path / "changed.nc").unlink()
         self.done("process", self.packed("True"), "-m", PUBLISHED, "-o", self.path / "out.nc")
 

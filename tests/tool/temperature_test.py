@@ -762,7 +762,7 @@ class BadHeight(TemperatureTest):
 
 class BadInput(TemperatureTest):
     def test_no_climb(self):
-        self.refuse(flights=(self.part(LEVEL),), words=["flight.nc", "climbs and descents span", "300 m"])
+        self.refuse(flights=(self.part(LEVEL),), words=["flight.nc", "climbs and descents span", "needs 300 m"])
 
     def test_pressure_that_rises_with_height(self):
         flight = self.edited(changed("PSFD", lambda p: numpy.nanmin(p) + numpy.nanmax(p) - p))

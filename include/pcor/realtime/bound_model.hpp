@@ -214,7 +214,7 @@ class BoundModel {
   }
 
   std::vector<Term> effects_;  // order of the model
-  std::vector<Term> terms_;    // by location
+  std::vector<Term> terms_;    // terms in the order of locations
   std::array<std::size_t, location_count + 1> where_begin_{};
   std::bitset<location_count> acting_;  // true for each location with a term
   std::vector<BoundFormula> formulas_;
