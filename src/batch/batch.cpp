@@ -29,8 +29,11 @@ Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWi
   require(Quantity::time);
   for (const Rate& each : rates) require(each.rate);
   if (with == CorrectWith::lams && !chain->has_lams()) {
-    throw Error(Error::Code::model,
-                fmt::format("model '{}': correction with LAMS needs the role 'lams_airspeed'", model.name));
+    throw Error(
+        Error::Code::model,
+        fmt::format("model '{}': correction with LAMS needs the role 'lams_airspeed': name its variable in "
+                    "the table [variables]",
+                    model.name));
   }
   return std::move(*chain);
 }

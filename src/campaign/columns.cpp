@@ -229,14 +229,14 @@ void complete(const CandidateModels& set, bool two_systems, const std::vector<st
 }
 
 /// Amounts that the candidates on the model's system add at its locations, per unit of each coefficient.
-AddedEffects effects_of(const CandidateModels& set, std::size_t reference, const System& own,
+AddedEffects effects_of(const CandidateModels& set, std::size_t reference, const System& system,
                         const FlightSamples& samples, const std::vector<std::size_t>& used) {
   AddedEffects effects;
-  for (std::size_t location = own.first_location; location < own.end; ++location)
+  for (std::size_t location = system.first_location; location < system.end; ++location)
     effects.amounts_of_model.push_back(location);
   effects.at.resize(set.first_column(set.candidates.size()), 0);
   for (const Evaluation& each :
-       evaluations_of(set, reference, false, own.locations(), samples.model, samples)) {
+       evaluations_of(set, reference, false, system.locations(), samples.model, samples)) {
     for (std::size_t p = 0; p < each.width; ++p)
       effects.at[each.first_column + p] = static_cast<std::size_t>(each.location);
   }
@@ -247,7 +247,7 @@ AddedEffects effects_of(const CandidateModels& set, std::size_t reference, const
     Eigen::MatrixXf added = Eigen::MatrixXf::Zero(as_index(all.size()), columns);
     put_candidates(
         chain_of(set.extended.model, inputs.roles), inputs,
-        evaluations_of(set, reference, false, own.locations(), inputs, samples), all, Eigen::MatrixXd(),
+        evaluations_of(set, reference, false, system.locations(), inputs, samples), all, Eigen::MatrixXd(),
         [](std::size_t, const State<double>&) {}, added);
     complete(set, false, used, added);
     return -added.unaryExpr([](float amount) { return std::isfinite(amount) ? amount : 0.0F; })
@@ -258,8 +258,8 @@ AddedEffects effects_of(const CandidateModels& set, std::size_t reference, const
 
 /// Columns of wind in hPa: the change of the airspeed, without gusts, in units of that by the static
 /// pressure.
-/// @param own number of coefficients of the model
-void put_wind_columns(const GpsRows& rows, const std::vector<std::size_t>& used, Eigen::Index own,
+/// @param model_columns number of coefficients of the model
+void put_wind_columns(const GpsRows& rows, const std::vector<std::size_t>& used, Eigen::Index model_columns,
                       FlightColumns& columns) {
   const Eigen::Index size = as_index(rows.time.size());
   for (const std::size_t i : used) {
@@ -270,27 +270,27 @@ void put_wind_columns(const GpsRows& rows, const std::vector<std::size_t>& used,
     const Eigen::RowVectorXf along =
         (per_speed * (rows.east[i] * rows.rows.row(row) + rows.north[i] * rows.rows.row(size + row)))
             .cast<float>();
-    columns.base.row(row).head(own) = along.head(own);
+    columns.base.row(row).head(model_columns) = along.head(model_columns);
     for (Eigen::Index c = 0; c < columns.candidates.cols(); ++c) {
       float& value = columns.candidates(row, c);
-      if (std::isfinite(value)) value = along[own + c];
+      if (std::isfinite(value)) value = along[model_columns + c];
     }
   }
 }
 
 /// The whitened rows of a flight against wind or height, and the columns of wind in hPa.
-void put_gps(GpsKind kind, const CandidateModels& set, const System& own, const LinearRows& rows,
+void put_gps(GpsKind kind, const CandidateModels& set, const System& system, const LinearRows& rows,
              FlightColumns& columns) {
   const FlightSamples& samples = *columns.samples;
-  const AddedEffects effects = effects_of(set, columns.reference, own, samples, rows.used());
+  const AddedEffects effects = effects_of(set, columns.reference, system, samples, rows.used());
   const auto rows_at = [&](double warmer) {
-    return gps_rows(kind, samples, own.model, rows.used(), rows.residuals().parameters().data(), own.free,
-                    effects, warmer);
+    return gps_rows(kind, samples, system.model, rows.used(), rows.residuals().parameters().data(),
+                    system.free, effects, warmer);
   };
   const GpsRows found = rows_at(0.0);
-  const Eigen::Index free = as_index(own.free.size());
+  const Eigen::Index free = as_index(system.free.size());
   std::vector<double> usual;
-  for (std::size_t k = 0; k < own.free.size(); ++k) usual.push_back(set.base[k].usual);
+  for (std::size_t k = 0; k < system.free.size(); ++k) usual.push_back(set.base[k].usual);
   columns.is_by_gps = true;
   if (kind == GpsKind::wind) put_wind_columns(found, rows.used(), free, columns);
   if (found.defect.rows() == 0) return;
@@ -356,13 +356,13 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
                            const CandidateModels& set, std::size_t reference, const MaskOptions& mask,
                            double first_part) {
   const std::vector<System> systems = systems_of(model, set, reference);
-  const System& own = systems.front();
+  const System& model_system = systems.front();
   std::shared_ptr<const Reference> compared_with = set.references[reference];
   if (systems.size() > 1) compared_with = compared_with->with_model(systems.back().model);
   const std::optional<GpsKind> kind = gps_kind(*compared_with);
   const bool is_wind = kind == GpsKind::wind;  // its residuals contain gusts, as their derivatives do
-  const LinearRows rows(Residuals(extended, own.model, *compared_with, mask), own.model, *compared_with,
-                        {is_wind ? Inputs::none : Inputs::noise_free, {}, first_part});
+  const LinearRows rows(Residuals(extended, model_system.model, *compared_with, mask), model_system.model,
+                        *compared_with, {is_wind ? Inputs::none : Inputs::noise_free, {}, first_part});
   const Residuals& residuals = rows.residuals();
   const double* const start = residuals.parameters().data();
   const bool of_neighbours = residuals.reach() > 0;
@@ -399,7 +399,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
     columns.quantities.emplace_back(quantity, std::vector<double>(residuals.size(), nan));
   Eigen::Index next = 0;  // next evaluated column
   for (const System& system : systems) {
-    const bool is_own = &system == &own;
+    const bool is_own = &system == &model_system;
     const std::size_t first = is_own ? 0 : set.base_of_others[reference];
     for (std::size_t c = 0; c < system.free.size() && !is_wind; ++c, ++next) {
       for (std::size_t k = 0; k < used.size(); ++k)
@@ -425,7 +425,8 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   }
   complete(set, systems.size() > 1, used, columns.candidates);
   // With other references first, heights are the climbs of minutes, whose noise is that of any residual.
-  if (is_wind || (kind && gps_kind(*set.references.front()))) put_gps(*kind, set, own, rows, columns);
+  if (is_wind || (kind && gps_kind(*set.references.front())))
+    put_gps(*kind, set, model_system, rows, columns);
   for (const Quantity quantity : {Quantity::corrected_mach, Quantity::ambient_temperature})
     columns.quantities.emplace_back(quantity, residuals.quantity(quantity, start));
   columns.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, start);

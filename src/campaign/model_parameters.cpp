@@ -31,7 +31,7 @@ std::vector<std::size_t> free_parameters(const ModelDefinition& model) {
 }
 
 EffectLocation location_of(const ModelEffect& effect) {
-  return effect.is_formula() ? effect.location : effect_info[effect_named(effect.id)].location;
+  return effect.is_formula() ? effect.location : effect_named(effect.id)->location;
 }
 
 }  // namespace pcor::internal

@@ -101,7 +101,7 @@ struct WhiteFlight {
   std::vector<Eigen::Index> bin{};
 };
 
-/// Whitens the columns of each own flight. @param noise likewise, each of one flight alone
+/// Whitens the columns of each local flight. @param noise likewise, each of one flight alone
 /// @param white rows of flights that need no whitening; empty for the others
 WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
                            const std::vector<Eigen::MatrixXd>& columns,

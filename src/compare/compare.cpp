@@ -221,7 +221,7 @@ void add_variances(std::size_t model, const FlightPartition& share,
   BinnedFlights flights;
   for (std::size_t f = 0; f < parts.size(); ++f) {
     static const BinnedResidual none;
-    const BinnedResidual& own = share.owns(f) ? records[f][model].residual : none;
+    const BinnedResidual& own = share.is_local(f) ? records[f][model].residual : none;
     flights.bins.push_back(own.bins());
     flights.residuals.push_back(own.means());
     flights.reference.push_back(0);

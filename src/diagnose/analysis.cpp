@@ -169,7 +169,7 @@ std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std
 
 void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
-    if (!share_.owns(f)) continue;
+    if (!share_.is_local(f)) continue;
     FlightColumns& flight = this->flight(f);
     std::size_t count = 0;
     const std::vector<double> predicted = added(f, groups, estimate);
@@ -266,7 +266,7 @@ void Analysis::find_search(const std::vector<std::size_t>& chosen) {
   scores_ = std::make_unique<WhitenedSystem>(whiten(binned_.columns, true));
   white_noise_.assign(binned_.bins.size(), {});
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
-    if (!share_.owns(f)) continue;
+    if (!share_.is_local(f)) continue;
     const Eigen::MatrixXd& rows = scores_->rows[f];
     white_noise_[f] = rows.rightCols(1) - rows.leftCols(coefficients_.size()) * coefficients_;
   }
@@ -281,7 +281,7 @@ void Analysis::take_out_common_noise(WhitenedSystem& scores) const {
   if (further_.empty()) return;
   std::vector<Eigen::VectorXd> left = white_noise_;
   for (std::size_t later = flights_.size(); later < binned_.bins.size(); ++later) {
-    if (!share_.owns(later) || flight(later).is_by_gps) continue;
+    if (!share_.is_local(later) || flight(later).is_by_gps) continue;
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
       if (flight(earlier).file == flight(later).file && flight(earlier).window == flight(later).window)
         internal::take_out_common_noise(binned_.bins, earlier, later, left, scores);

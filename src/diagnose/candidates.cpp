@@ -95,7 +95,7 @@ std::vector<double> tried_values(const EffectInfo& info, const ParameterInfo& sh
 std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector<double>& dates) {
   std::vector<Candidate> variants;
   if (candidate.effect.is_formula()) return variants;
-  const EffectInfo& info = effect_info[effect_named(candidate.effect.id)];
+  const EffectInfo& info = *effect_named(candidate.effect.id);
   for (std::size_t i = 0; i < info.parameter_count(); ++i) {
     const bool remembers = info.memory.of != Quantity::count && info.memory.parameter == i;
     if (!info.parameters[i].shape || remembers) continue;
@@ -188,7 +188,7 @@ void add_derived_ones(CandidateSet& set, bool two_systems) {
     all.push_back(candidate);
     if (candidate.effect.is_formula()) continue;
     if (two_systems && is_built_alike(location_of(candidate.effect))) derive().is_shared = true;
-    const EffectInfo& info = effect_info[effect_named(candidate.effect.id)];
+    const EffectInfo& info = *effect_named(candidate.effect.id);
     if (info.memory.of == Quantity::count) continue;
     const ParameterInfo& over = info.parameters[info.memory.parameter];
     for (const double time : over.tried) {
@@ -233,7 +233,7 @@ std::vector<BaseCoefficient> base_of(const ModelDefinition& model) {
   for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
     const ModelEffect& effect = model.model.effects[e];
     const std::vector<std::string> names = parameter_names(effect);
-    const EffectInfo* const info = effect.is_formula() ? nullptr : &effect_info[effect_named(effect.id)];
+    const EffectInfo* const info = effect.is_formula() ? nullptr : effect_named(effect.id);
     for (std::size_t p = 0; p < names.size(); ++p, ++number) {
       if (!std::binary_search(free.begin(), free.end(), number)) continue;
       base.push_back({effect.id + "." + names[p],

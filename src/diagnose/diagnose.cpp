@@ -67,7 +67,7 @@ EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefi
       }
       continue;
     }
-    for (const Quantity need : effect_info[effect_named(finding.effect.id)].needs) {
+    for (const Quantity need : effect_named(finding.effect.id)->needs) {
       if (need != Quantity::count) read_with_angles(need);
     }
   }
@@ -82,7 +82,7 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::V
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(analysis);
   std::vector<FlightDiagnosis> flights(analysis.flights().size());
   for (std::size_t f = 0; f < flights.size(); ++f) {
-    if (!analysis.share().owns(f)) continue;
+    if (!analysis.share().is_local(f)) continue;
     const FlightColumns& columns = analysis.flights()[f];
     FlightDiagnosis& flight = flights[f];
     flight.samples = columns.samples;
@@ -269,9 +269,9 @@ void overrule(Diagnosis& diagnosis, const std::string& variable) {
 void note_unnamed_inputs(const FlightSet& files, const ModelDefinition& model, Diagnosis& diagnosis) {
   if (diagnosis.unexplained.variables.empty()) return;
   for (const NotTestable& effect : diagnosis.not_testable) {
-    const std::size_t known = effect_named(effect.effect);
-    if (known == catalogue_size) continue;
-    for (const Quantity input : effect_info[known].needs) {
+    const EffectInfo* const info = effect_named(effect.effect);
+    if (info == nullptr) continue;
+    for (const Quantity input : info->needs) {
       if (!is_role(input) || model.variables.count(input) != 0) continue;
       const std::string role(info_of(input).name);
       const auto variables =
@@ -432,7 +432,7 @@ std::string id_on_other_system(const std::string& system, const std::string& nam
   return "reference:" + (system.empty() ? "" : system + ":") + name;
 }
 
-std::string places_text(const EmpiricalPredictor& variable) {
+std::string component_text(const EmpiricalPredictor& variable) {
   const std::string formula =
       variable.formula.empty() ? ""
                                : fmt::format("; the formula is written as added to the {} pressure",

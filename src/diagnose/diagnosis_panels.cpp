@@ -80,9 +80,8 @@ std::vector<std::string> inputs_of(const ModelEffect& effect) {
         inputs.push_back(quantity == Quantity::count ? variable_column(name) : column_of(quantity));
       }
     }
-  } else if (const std::size_t entry = effect_named(effect.id); entry < catalogue_size) {
-    for (std::size_t i = 0; i < effect_info[entry].need_count(); ++i)
-      inputs.push_back(column_of(effect_info[entry].needs[i]));
+  } else if (const EffectInfo* const info = effect_named(effect.id)) {
+    for (std::size_t i = 0; i < info->need_count(); ++i) inputs.push_back(column_of(info->needs[i]));
   }
   std::stable_partition(inputs.begin(), inputs.end(),
                         [](const std::string& name) { return name != pressure; });

@@ -24,19 +24,18 @@ struct Law {
 };
 
 Law law_of(const ModelEffect& effect) {
-  const std::size_t entry = effect_named(effect.id);
-  if (effect.is_formula() || entry == catalogue_size) {
+  const EffectInfo* const info = effect_named(effect.id);
+  if (effect.is_formula() || info == nullptr) {
     return {effect.formula, effect.unit, std::string(info_of(effect.location).adds_to), "", "", "",
             effect.source};
   }
-  const EffectInfo& info = effect_info[entry];
-  return {std::string(info.formula),
-          std::string(info_of(info.location).unit),
-          std::string(info_of(info.location).adds_to),
-          std::string(info.size),
-          std::string(info.confounders),
-          std::string(info.manoeuvre),
-          std::string(info.source)};
+  return {std::string(info->formula),
+          std::string(info_of(info->location).unit),
+          std::string(info_of(info->location).adds_to),
+          std::string(info->size),
+          std::string(info->confounders),
+          std::string(info->manoeuvre),
+          std::string(info->source)};
 }
 
 std::string times_usual(double ratio) { return ratio_text(ratio) + " times the usual size"; }

@@ -236,7 +236,7 @@ double static_change(const Analysis& analysis, const std::vector<Candidate>& can
 double static_risk(const Analysis& analysis, const std::vector<Candidate>& candidates, std::size_t winner,
                    const std::vector<std::size_t>& chosen, const std::vector<Alias>& aliases) {
   if (aliases.empty()) return 0.0;
-  const Eigen::VectorXd own = static_estimate(analysis, candidates, chosen);
+  const Eigen::VectorXd estimate = static_estimate(analysis, candidates, chosen);
   double risk = 0.0;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     const bool is_alias = std::any_of(aliases.begin(), aliases.end(), [&](const Alias& alias) {
@@ -248,7 +248,7 @@ double static_risk(const Analysis& analysis, const std::vector<Candidate>& candi
     const Eigen::VectorXd other = static_estimate(analysis, candidates, instead);
     const auto difference = [&](std::size_t f) {
       std::vector<double> values = analysis.added(f, instead, other);
-      const std::vector<double> by_own = analysis.added(f, chosen, own);
+      const std::vector<double> by_own = analysis.added(f, chosen, estimate);
       for (std::size_t i = 0; i < values.size(); ++i) values[i] -= by_own[i];
       return values;
     };
@@ -274,16 +274,16 @@ struct Added {
 void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
              const Eigen::VectorXd& estimate, const Candidate& candidate, Finding& finding) {
   const auto of_flights = analysis.whole_share().of_each_flight<Added>([&](std::size_t f) {
-    Added own;
-    if (!candidate.is_measured_by(analysis.flight(f).reference)) return own;
+    Added of_flight;
+    if (!candidate.is_measured_by(analysis.flight(f).reference)) return of_flight;
     const std::vector<double> added = analysis.added_by(f, chosen, which, estimate);
     for (const std::size_t record : analysis.bins(f).records()) {
-      own.sum.add(added[record]);
-      if (std::abs(added[record]) <= std::abs(own.worst)) continue;
-      own.worst = added[record];
-      own.worst_time = analysis.flight(f).samples->time[record];
+      of_flight.sum.add(added[record]);
+      if (std::abs(added[record]) <= std::abs(of_flight.worst)) continue;
+      of_flight.worst = added[record];
+      of_flight.worst_time = analysis.flight(f).samples->time[record];
     }
-    return own;
+    return of_flight;
   });
   SquareSum sum;
   for (std::size_t f = 0; f < of_flights.size(); ++f) {
@@ -310,7 +310,7 @@ std::string shape_of(const Candidate& candidate) {
   const Scaling& scaling = candidate.effect.scaling;
   if (!scaling.is_none())
     return fmt::format("times p^{} q^{}", scaling.static_pressure, scaling.dynamic_pressure);
-  const EffectInfo& info = effect_info[effect_named(candidate.effect.id)];
+  const EffectInfo& info = *effect_named(candidate.effect.id);
   std::string text;
   for (std::size_t i = 0; i < info.parameter_count(); ++i) {
     if (!info.parameters[i].shape) continue;
@@ -323,29 +323,29 @@ std::string shape_of(const Candidate& candidate) {
 
 std::string component_of(const Candidate& candidate) {
   if (candidate.is_of_reference()) return "other-system";
-  const std::size_t known = effect_named(candidate.effect.id);
-  return std::string(known < catalogue_size ? pcor::component_of(effect_info[known])
-                                            : info_of(candidate.effect.location).component);
+  const EffectInfo* const info = effect_named(candidate.effect.id);
+  return std::string(info != nullptr ? pcor::component_of(*info)
+                                     : info_of(candidate.effect.location).component);
 }
 
 /// Family, locations, shapes, size and probability of a finding.
 void describe(const std::vector<Candidate>& candidates, std::size_t winner, const std::vector<Rival>& rivals,
               Finding& finding) {
-  const Candidate& own = candidates[winner];
-  const std::size_t known = effect_named(own.effect.id);
-  if (known < catalogue_size) finding.family = std::string(effect_info[known].family);
-  finding.shape = shape_of(own);
-  finding.shape_beyond_model = shape_beyond_model(own);
-  finding.components = {component_of(own)};
+  const Candidate& winning = candidates[winner];
+  if (const EffectInfo* const info = effect_named(winning.effect.id))
+    finding.family = std::string(info->family);
+  finding.shape = shape_of(winning);
+  finding.shape_beyond_model = shape_beyond_model(winning);
+  finding.components = {component_of(winning)};
   // Whether the shapes of the catalogue are exact is unknown: both assumptions count the same.
   struct Weights {
     double exact = 1.0;
     double uncertain = 1.0;
   };
-  std::map<std::string, Weights> weights{{own.id, {}}};
+  std::map<std::string, Weights> weights{{winning.id, {}}};
   for (const Rival& rival : rivals) {
     const Candidate& candidate = candidates[rival.group];
-    if (candidate.id == own.id) finding.variants.push_back(shape_of(candidate));
+    if (candidate.id == winning.id) finding.variants.push_back(shape_of(candidate));
     const std::string component = component_of(candidate);
     if (std::find(finding.components.begin(), finding.components.end(), component) ==
         finding.components.end())
@@ -360,7 +360,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
     const Weights& weight = weights[id];
     return 0.5 * (weight.exact / sum.exact + weight.uncertain / sum.uncertain);
   };
-  finding.probability = probability_of(own.id);
+  finding.probability = probability_of(winning.id);
   for (Alias& alias : finding.aliases) alias.probability = probability_of(alias.effect);
   for (const CoefficientEstimate& estimate : finding.estimates) {
     if (estimate.typical != 0.0)
@@ -482,13 +482,14 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
     effect.remaining = analysis.search().remaining(g);
     // Coefficients with large columns in the fit to the effect's columns.
     const Eigen::MatrixXd& information = analysis.scores().information;
-    const Eigen::Index own = analysis.base() + analysis.groups()[g].first;
+    const Eigen::Index column = analysis.base() + analysis.groups()[g].first;
     const Eigen::MatrixXd normal = information.topLeftCorner(analysis.base(), analysis.base());
     if (analysis.base() == 0) continue;
-    const Eigen::VectorXd solution = least_norm_solution(normal, information.col(own).head(analysis.base()));
+    const Eigen::VectorXd solution =
+        least_norm_solution(normal, information.col(column).head(analysis.base()));
     for (Eigen::Index b = 0; b < analysis.base(); ++b) {
       const double size = std::abs(solution[b]) * std::sqrt(normal(b, b));
-      if (size > notable * std::sqrt(information(own, own)))
+      if (size > notable * std::sqrt(information(column, column)))
         effect.by.push_back(base[static_cast<std::size_t>(b)].name);
     }
     absorbed.push_back(std::move(effect));

@@ -19,8 +19,8 @@ constexpr std::size_t min_with_flaps_out = 60;  // samples
 
 bool looks_like_flaps(const ModelEffect& effect) {
   if (effect.is_formula()) return false;
-  const auto& info = effect_info[effect_named(effect.id)];
-  const auto& flaps = effect_info[effect_named(flaps_effect)];
+  const auto& info = *effect_named(effect.id);
+  const auto& flaps = *effect_named(flaps_effect);
   return info.confounders.find(flaps_effect) != std::string_view::npos ||
          flaps.confounders.find(effect.id) != std::string_view::npos;
 }
@@ -130,7 +130,7 @@ void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std:
     Finding& finding = diagnosis.findings.emplace_back(findings[i]);
     if (!finding.aliases.empty()) finding.advice.sentence = general_advice(finding.id(), finding.effect);
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f) {
-      if (!test.share().owns(f)) continue;
+      if (!test.share().is_local(f)) continue;
       FlightDiagnosis& flight = diagnosis.flights[f];
       flight.added.push_back(test.added_by(f, chosen, i, estimate));
       flight.evidence.push_back(evidence_along(test, f, evidence[i]));

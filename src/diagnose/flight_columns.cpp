@@ -76,7 +76,7 @@ TeamColumns columns_of_entries(const FlightPartition& share,
                                                         return outline_of(own[entry]);
                                                       })};
   for (std::size_t entry = 0; entry < own.size(); ++entry) {
-    if (share.owns(entry)) columns.flights[entry] = std::move(own[entry]);
+    if (share.is_local(entry)) columns.flights[entry] = std::move(own[entry]);
   }
   return columns;
 }

@@ -21,7 +21,7 @@ struct MeanOffset {
 /// (Satterthwaite 1946, Biometrics Bulletin 2, 110). A step that the model explains is not reported. All
 /// flights are against one reference.
 ///
-/// @param columns of the model, in bins, of each own flight; @param residuals likewise, hPa; @param noise
+/// @param columns of the model, in bins, of each local flight; @param residuals likewise, hPa; @param noise
 /// likewise
 /// @return one step per flight; chance 1 if there is no other flight. If there are two flights, only the
 /// second has a step, because both differ by the same amount.

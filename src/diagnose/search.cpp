@@ -302,7 +302,7 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
   weight(rest) = -pseudo_solution(scores_->information(rest, rest), imitated);
   std::vector<Eigen::VectorXd> rows(scores_->rows.size());
   for (std::size_t f = 0; f < rows.size(); ++f) {
-    if (scores_->share.owns(f)) rows[f] = scores_->rows[f].leftCols(columns) * weight;
+    if (scores_->share.is_local(f)) rows[f] = scores_->rows[f].leftCols(columns) * weight;
   }
   return rows;
 }
@@ -329,7 +329,7 @@ std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen
   coefficients(indices_of(chosen, groups_, base_)) = fit(chosen).estimate;
   std::vector<Eigen::VectorXd> result(scores_->rows.size());
   for (std::size_t f = 0; f < result.size(); ++f) {
-    if (scores_->share.owns(f)) result[f] = scores_->left(f, coefficients);
+    if (scores_->share.is_local(f)) result[f] = scores_->left(f, coefficients);
   }
   return result;
 }

@@ -86,9 +86,9 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
 }
 
 std::string general_advice(const std::string& id, const ModelEffect& effect) {
-  const std::size_t entry = effect_named(effect.id);
-  if (entry == catalogue_size) return "";
-  return fmt::format("manoeuvres that separate {} in general: {}", id, effect_info[entry].manoeuvre);
+  const EffectInfo* const info = effect_named(effect.id);
+  if (info == nullptr) return "";
+  return fmt::format("manoeuvres that separate {} in general: {}", id, info->manoeuvre);
 }
 
 bool is_separated(const SeparationProblem& rivalry) {

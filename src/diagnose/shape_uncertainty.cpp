@@ -55,10 +55,9 @@ Eigen::VectorXd rate_of(const Eigen::VectorXd& effect, const Binning& bins) {
 bool has_uncertain_shape(const ModelEffect& effect) {
   const EffectLocation location = location_of(effect);
   if (location != EffectLocation::static_defect && location != EffectLocation::pitot) return false;
-  const std::size_t known = effect_named(effect.id);
-  if (known == catalogue_size) return true;
-  const auto& inputs = effect_info[known].needs;
-  return std::none_of(inputs.begin(), inputs.end(),
+  const EffectInfo* const info = effect_named(effect.id);
+  if (info == nullptr) return true;
+  return std::none_of(info->needs.begin(), info->needs.end(),
                       [](Quantity input) { return input == Quantity::time || input == Quantity::date; });
 }
 
@@ -91,7 +90,7 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
     });
     const Eigen::RowVectorXd mean = sums.transpose() / sum;
     for (std::size_t f = 0; f < flights.size(); ++f) {
-      if (!share.owns(f)) continue;
+      if (!share.is_local(f)) continue;
       const Eigen::VectorXd effect = effect_on(f);
       const Eigen::MatrixXd varying = factors_of(*flights[f], binned.bins[f], effect, rms).rowwise() - mean;
       auto columns = result[f].middleCols(shape_columns * e, shape_columns);

@@ -78,8 +78,8 @@ bool StepDates::refine(const std::vector<Finding>& findings) {
 std::vector<double> dates_of(const std::vector<ModelEffect>& effects) {
   std::vector<double> dates;
   for (const ModelEffect& effect : effects) {
-    const std::size_t known = effect.is_formula() ? catalogue_size : effect_named(effect.id);
-    if (known == catalogue_size || effect_info[known].needs[0] != Quantity::date) continue;
+    const EffectInfo* const info = effect.is_formula() ? nullptr : effect_named(effect.id);
+    if (info == nullptr || info->needs[0] != Quantity::date) continue;
     dates.push_back(effect.parameters[1]);
   }
   put_in_order(dates);

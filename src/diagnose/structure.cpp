@@ -77,7 +77,7 @@ std::vector<Eigen::VectorXd> left_of(const WhitenedSystem& scores) {
                                                    scores.information.col(width).head(width));
   std::vector<Eigen::VectorXd> left(scores.rows.size());
   for (std::size_t f = 0; f < left.size(); ++f) {
-    if (scores.share.owns(f)) left[f] = scores.left(f, solution);
+    if (scores.share.is_local(f)) left[f] = scores.left(f, solution);
   }
   return left;
 }
@@ -120,7 +120,7 @@ StructureTest::StructureTest(const FlightPartition& share, const std::vector<Bin
     for (std::size_t f = 0; f < bins.size(); ++f) {
       flights.whitening.emplace_back(bins[f], left, f);
       flights.model.emplace_back();
-      if (share.owns(f)) flights.model[f] = scores.rows[f].leftCols(width);
+      if (share.is_local(f)) flights.model[f] = scores.rows[f].leftCols(width);
     }
     flights.determinant = share.sum_of_each_flight<double>(
         [&flights](std::size_t f) { return flights.whitening[f].log_determinant(); });

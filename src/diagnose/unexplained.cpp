@@ -253,7 +253,7 @@ std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& te
     const auto known = std::find_if(flights.begin(), flights.end(), [&flight](const FlightColumns& other) {
       return other.file == flight.file;
     });
-    if (known == flights.end() || !analysis.whole_share().owns(f)) continue;
+    if (known == flights.end() || !analysis.whole_share().is_local(f)) continue;
     const auto position = static_cast<std::size_t>(known - flights.begin());
     for (std::size_t k = 0; k < variables.size(); ++k) {
       columns.col(references * as_index(k) + as_index(flight.reference)) = bins.means(line_in(

@@ -40,18 +40,18 @@ VariableValues::VariableValues(const FlightPartition& share,
   const auto sums = share.sum_of_each_flight<ValueSums>([&](std::size_t flight) {
     std::vector<double>& values = values_[flight];
     values = values_of(flight);
-    ValueSums own;
-    own.missing = values.size();
+    ValueSums part;
+    part.missing = values.size();
     values.erase(std::remove_if(values.begin(), values.end(), [](double x) { return !std::isfinite(x); }),
                  values.end());
-    own.count = values.size();
-    own.missing -= own.count;
+    part.count = values.size();
+    part.missing -= part.count;
     for (const double value : values) {
-      own.sum += value;
-      own.minimum = std::min(own.minimum, value);
-      own.maximum = std::max(own.maximum, value);
+      part.sum += value;
+      part.minimum = std::min(part.minimum, value);
+      part.maximum = std::max(part.maximum, value);
     }
-    return own;
+    return part;
   });
   count_ = sums.count;
   missing_ = sums.missing;
@@ -60,9 +60,9 @@ VariableValues::VariableValues(const FlightPartition& share,
   maximum_ = sums.maximum;
   mean_ = sums.sum / static_cast<double>(count_);
   const auto squares = share.sum_of_each_flight<double>([this](std::size_t flight) {
-    double own = 0.0;
-    for (const double value : values_[flight]) own += (value - mean_) * (value - mean_);
-    return own;
+    double sum = 0.0;
+    for (const double value : values_[flight]) sum += (value - mean_) * (value - mean_);
+    return sum;
   });
   deviation_ = std::sqrt(squares / static_cast<double>(count_));
 }
@@ -86,9 +86,9 @@ std::vector<double> VariableValues::distinct(std::size_t maximum) const {
 }
 
 std::vector<double> VariableValues::quantiles(std::size_t number) const {
-  std::vector<double> own;
-  for (const std::vector<double>& values : values_) own.insert(own.end(), values.begin(), values.end());
-  return values_at(share_.comm(), std::move(own), [number](std::uint64_t count) {
+  std::vector<double> local;
+  for (const std::vector<double>& values : values_) local.insert(local.end(), values.begin(), values.end());
+  return values_at(share_.comm(), std::move(local), [number](std::uint64_t count) {
     std::vector<std::uint64_t> requested;
     for (std::size_t k = 0; k < number; ++k) {
       const double part = static_cast<double>(k) / static_cast<double>(number - 1);

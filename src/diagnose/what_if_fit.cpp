@@ -129,7 +129,7 @@ std::vector<Eigen::VectorXd> WhatIfFit::weights_at(const Eigen::VectorXd& values
   for (std::size_t first = 0, last = 0; first < weights.size(); first = last) {
     std::vector<Eigen::VectorXd> left;
     for (; last < weights.size() && binned_.reference[last] == binned_.reference[first]; ++last) {
-      if (share.owns(last)) left.emplace_back(binned_.residuals[last] - binned_.columns[last] * values);
+      if (share.is_local(last)) left.emplace_back(binned_.residuals[last] - binned_.columns[last] * values);
     }
     const double deviation = robust_deviation(share.comm(), left);
     for (std::size_t f = first; f < last; ++f)

@@ -107,8 +107,8 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
                   const std::vector<std::size_t>& requested, const FitFlight* fitted = nullptr) {
   const Residuals& residuals = rows.residuals();
   const FlightSamples& samples = residuals.samples();
-  const std::vector<double> before = residuals.values(own_parameters(residuals, task, task.start).data());
-  const std::vector<double> after = residuals.values(own_parameters(residuals, task, values).data());
+  const std::vector<double> before = residuals.values(flight_parameters(residuals, task, task.start).data());
+  const std::vector<double> after = residuals.values(flight_parameters(residuals, task, values).data());
   const NoiseFloor noise = noise_of_flight(samples, masked(after, residuals.mask(), Mask::none));
   Compared result;
   const auto add = [&](const std::vector<std::size_t>& part, bool held) {

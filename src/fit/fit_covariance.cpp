@@ -134,7 +134,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   std::vector<std::vector<StageScores>> stages(main.count());  // one for each local flight, first reference
   Eigen::Index first = 0;
   for (const FitEquations& each : equations) {
-    const Eigen::Index own = as_index(each.parameters.size());
+    const Eigen::Index width = as_index(each.parameters.size());
     const Eigen::VectorXd& values = each.solution.values;
     const ScaledLoss loss(task.options.loss, each.solution.deviation);
     for (FitFlights* const flights : each.flights->joint()) {
@@ -144,7 +144,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
       std::vector<Eigen::MatrixXd> doubted;
       std::vector<Eigen::Index> doubt_places;  // indices of the uncertainties of this reference
       if (!flights->doubt().empty()) {
-        doubted = flights->of_own([&](std::size_t flight, const FitFlight& fit) {
+        doubted = flights->of_local([&](std::size_t flight, const FitFlight& fit) {
           return flights->weighted(flight, fit.by_doubts(flights->bins(flight), flights->doubt(), values));
         });
       }
@@ -153,10 +153,10 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
       const auto scores_of = [&](std::size_t flight) {
         FlightScores scores{{},
                             Eigen::MatrixXd::Zero(fitted, fitted),
-                            Eigen::MatrixXd::Zero(own, by_misfit.cols()),
-                            Eigen::MatrixXd::Zero(own, by_doubt.cols())};
+                            Eigen::MatrixXd::Zero(width, by_misfit.cols()),
+                            Eigen::MatrixXd::Zero(width, by_doubt.cols())};
         scores.blocks.assign(blocks.count(flight),
-                             {Eigen::MatrixXd::Zero(own, size), Eigen::VectorXd::Zero(own)});
+                             {Eigen::MatrixXd::Zero(width, size), Eigen::VectorXd::Zero(width)});
         const std::vector<double>& time = flights->bins(flight).time();
         if (time.empty()) return scores;
         const FitRows rows = flights->rows(flight, values, loss);
@@ -167,7 +167,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
           slope += (rho[1] + 2.0 * innovation * innovation * rho[2]) / static_cast<double>(time.size());
         }
         const Eigen::MatrixXd columns = rows.without_offsets(rows.columns, weight);
-        const Eigen::MatrixXd left = columns.middleCols(first, own);
+        const Eigen::MatrixXd left = columns.middleCols(first, width);
         const Eigen::MatrixXd weighted = flights->weighted(flight, weight.asDiagonal() * left);
         if (&each == &last) {
           const Eigen::MatrixXd joint = joined(
@@ -194,15 +194,15 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
       for (const FlightScores& flight :
            main.share().of_each_flight<FlightScores>(scores_of, digest_of(values))) {
         score += flight.covariance;
-        by_misfit.middleRows(first, own) += flight.misfit;
-        by_doubt.middleRows(first, own) += flight.doubt;
+        by_misfit.middleRows(first, width) += flight.misfit;
+        by_doubt.middleRows(first, width) += flight.doubt;
         for (const BlockSums& sums : flight.blocks) {
-          block->derivatives.middleRows(first, own) += sums.derivatives;
-          block++->score.segment(first, own) += sums.score;
+          block->derivatives.middleRows(first, width) += sums.derivatives;
+          block++->score.segment(first, width) += sums.score;
         }
       }
     }
-    first += own;
+    first += width;
   }
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   for (const BlockSums& block : excluded) derivatives += block.derivatives;
@@ -229,16 +229,16 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   if (varying.empty()) return found;
   const Eigen::MatrixXd inverse = scaled_inverse(derivatives(varying, varying));
   const Eigen::MatrixXd carried = -inverse * derivatives(varying, Eigen::all).rightCols(size - fitted);
-  Eigen::MatrixXd own =
+  Eigen::MatrixXd covariance =
       inverse * score(varying, varying) * inverse.transpose() + carried * doubt * carried.transpose();
-  found.by_noise(varying, varying) = own;
+  found.by_noise(varying, varying) = covariance;
   if (misfit.variance.size() > 0) {
     const Eigen::MatrixXd moved = inverse * by_misfit(varying, Eigen::all);
-    own += moved * misfit.variance.asDiagonal() * moved.transpose();
+    covariance += moved * misfit.variance.asDiagonal() * moved.transpose();
   }
-  found.by_flights(varying, varying) = own;
+  found.by_flights(varying, varying) = covariance;
   const Eigen::MatrixXd by_one = -inverse * by_doubt(varying, Eigen::all);
-  own += by_one * by_one.transpose();
+  covariance += by_one * by_one.transpose();
   found.doubts = doubts;
   found.by_doubt = Eigen::MatrixXd::Zero(fitted, by_one.cols());
   found.by_doubt(varying, Eigen::all) = by_one;
@@ -246,7 +246,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   for (std::size_t a = 0; a < varying.size(); ++a) {
     for (std::size_t b = 0; b < varying.size(); ++b)
       found.matrix(varying[a], varying[b]) =
-          0.5 * (own(as_index(a), as_index(b)) + own(as_index(b), as_index(a)));
+          0.5 * (covariance(as_index(a), as_index(b)) + covariance(as_index(b), as_index(a)));
     for (Eigen::Index b = fitted; b < size; ++b)
       found.matrix(varying[a], b) = found.matrix(b, varying[a]) = across(as_index(a), b - fitted);
   }

@@ -41,7 +41,7 @@ std::vector<Alike> alike_in(const FitTask& task) {
 Eigen::MatrixXd by_requested(
     const Residuals& residuals, const FitTask& task, const Eigen::VectorXd& parameters,
     const std::vector<std::size_t>& requested,
-    const std::function<Eigen::MatrixXd(const double* own, const std::vector<std::size_t>& known)>&
+    const std::function<Eigen::MatrixXd(const double* coefficients, const std::vector<std::size_t>& known)>&
         evaluate) {
   const std::vector<Alike> alike = alike_in(task);
   std::vector<std::size_t> known;
@@ -54,7 +54,7 @@ Eigen::MatrixXd by_requested(
     columns.push_back(k);
   }
   columns.push_back(requested.size());
-  const Eigen::MatrixXd rows = evaluate(own_parameters(residuals, task, parameters).data(), known);
+  const Eigen::MatrixXd rows = evaluate(flight_parameters(residuals, task, parameters).data(), known);
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows.rows(), as_index(requested.size()) + 1);
   all(Eigen::all, columns) = rows;
   return all;
@@ -66,21 +66,21 @@ std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
   return task.shares_system ? residuals.parameters().size() : parameter_count(task.model.model);
 }
 
-Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
-                               const Eigen::VectorXd& parameters) {
+Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& task,
+                                  const Eigen::VectorXd& parameters) {
   const std::vector<double>& file = residuals.parameters();
-  Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(file.data(), as_index(file.size()));
+  Eigen::VectorXd coefficients = Eigen::Map<const Eigen::VectorXd>(file.data(), as_index(file.size()));
   const Eigen::Index shared = as_index(shared_parameters(residuals, task));
-  own.head(shared) = parameters.head(shared);
-  for (const Alike& alike : alike_in(task)) own[as_index(alike.position)] = alike.neutral;
-  return own;
+  coefficients.head(shared) = parameters.head(shared);
+  for (const Alike& alike : alike_in(task)) coefficients[as_index(alike.position)] = alike.neutral;
+  return coefficients;
 }
 
 Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
                        const Eigen::VectorXd& parameters) {
   Residuals residuals(std::move(samples), task.model, task.reference, std::vector<Mask>());
   residuals.set_mask(
-      residuals.masks_at(own_parameters(residuals, task, parameters).data(), task.options.mask));
+      residuals.masks_at(flight_parameters(residuals, task, parameters).data(), task.options.mask));
   return residuals;
 }
 
@@ -100,9 +100,10 @@ Residuals masked_by(std::vector<Mask>& mask, std::shared_ptr<const FlightSamples
 Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
                                  const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
                                  const std::vector<std::size_t>& requested) {
-  const Eigen::MatrixXd all = by_requested(
-      rows.residuals(), task, parameters, requested,
-      [&](const double* own, const auto& known) { return rows.evaluate(samples, own, known, true); });
+  const Eigen::MatrixXd all = by_requested(rows.residuals(), task, parameters, requested,
+                                           [&](const double* coefficients, const auto& known) {
+                                             return rows.evaluate(samples, coefficients, known, true);
+                                           });
   return all.leftCols(as_index(requested.size())).colwise().mean().transpose();
 }
 
@@ -115,23 +116,23 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
             task.reference, {Inputs::recorded, setup.requested, task.options.training_share, setup.regimes}),
       static_pressure_(rows_.samples().model.find(Quantity::static_pressure)) {
   if (!moving_) return;
-  const Eigen::VectorXd own = own_parameters(residuals(), task, parameters);
+  const Eigen::VectorXd coefficients = flight_parameters(residuals(), task, parameters);
   // The high-rate airspeed remains that of the input model.
   FastSeries& speed = moving_->model.along_beam;
   if (speed.in_record == 1 && !speed.values.empty())
-    speed.values = airspeed_along_beam(task.model, moving_->model, own.data());
-  find_moving_columns(task.model.model, own.data(), moving_->time, moving_->step, moving_->model);
+    speed.values = airspeed_along_beam(task.model, moving_->model, coefficients.data());
+  find_moving_columns(task.model.model, coefficients.data(), moving_->time, moving_->step, moving_->model);
 }
 
 bool FitFlight::masks_change_at(const Eigen::VectorXd& parameters) const {
-  const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);
-  return residuals().masks_at(own.data(), task_->options.mask) != residuals().mask();
+  const Eigen::VectorXd coefficients = flight_parameters(residuals(), *task_, parameters);
+  return residuals().masks_at(coefficients.data(), task_->options.mask) != residuals().mask();
 }
 
 Binning FitFlight::bins(const Eigen::VectorXd& parameters, std::size_t& spikes) const {
   const FlightSamples& flight = rows_.samples();
-  const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);
-  const Eigen::VectorXd residual = rows_.evaluate(kept(), own.data(), {});
+  const Eigen::VectorXd coefficients = flight_parameters(residuals(), *task_, parameters);
+  const Eigen::VectorXd residual = rows_.evaluate(kept(), coefficients.data(), {});
   std::vector<double> series(flight.time.size(), nan);
   for (std::size_t i = 0; i < kept().size(); ++i) series[kept()[i]] = residual[as_index(i)];
   spikes = 0;
@@ -147,8 +148,9 @@ Binning FitFlight::bins(const Eigen::VectorXd& parameters, std::size_t& spikes) 
 
 Eigen::MatrixXd FitFlight::rows(const Binning& bins, const Eigen::VectorXd& parameters,
                                 const std::vector<std::size_t>& requested) const {
-  return by_requested(residuals(), *task_, parameters, requested,
-                      [&](const double* own, const auto& known) { return rows_.means(bins, own, known); });
+  return by_requested(
+      residuals(), *task_, parameters, requested,
+      [&](const double* coefficients, const auto& known) { return rows_.means(bins, coefficients, known); });
 }
 
 Eigen::MatrixXd FitFlight::by_offsets(const Binning& bins) const {
@@ -163,14 +165,15 @@ Eigen::MatrixXd FitFlight::by_offsets(const Binning& bins) const {
 
 Eigen::MatrixXd FitFlight::by_doubts(const Binning& bins, const ReferenceDoubt& doubt,
                                      const Eigen::VectorXd& parameters) const {
-  const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);
-  return rows_.bin_means(bins, doubt.columns(residuals().shared_samples(), kept(), own.data()));
+  const Eigen::VectorXd coefficients = flight_parameters(residuals(), *task_, parameters);
+  return rows_.bin_means(bins, doubt.columns(residuals().shared_samples(), kept(), coefficients.data()));
 }
 
 Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) const {
-  const Eigen::MatrixXd rows = by_requested(
-      residuals(), *task_, parameters, setup_->requested,
-      [&](const double* own, const auto& known) { return rows_.evaluate(kept(), own, known, true); });
+  const Eigen::MatrixXd rows = by_requested(residuals(), *task_, parameters, setup_->requested,
+                                            [&](const double* coefficients, const auto& known) {
+                                              return rows_.evaluate(kept(), coefficients, known, true);
+                                            });
   TriangularFactor factor(rows.cols());
   factor.add(rows, Eigen::VectorXd::Ones(rows.rows()));
   return factor.factor();

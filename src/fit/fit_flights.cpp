@@ -143,7 +143,7 @@ void FitFlights::visit(const std::function<void(std::size_t, const FitFlight&)>&
       });
 }
 
-std::vector<Eigen::MatrixXd> FitFlights::of_own(
+std::vector<Eigen::MatrixXd> FitFlights::of_local(
     const std::function<Eigen::MatrixXd(std::size_t, const FitFlight&)>& make) {
   std::vector<Eigen::MatrixXd> own(count());
   share().attempt(
@@ -155,7 +155,7 @@ std::vector<Eigen::VectorXd> FitFlights::of_bins(
     const std::function<Eigen::VectorXd(std::size_t)>& make) const {
   std::vector<Eigen::VectorXd> own;
   for (std::size_t flight = 0; flight < count(); ++flight) {
-    if (share().owns(flight)) own.push_back(make(flight));
+    if (share().is_local(flight)) own.push_back(make(flight));
   }
   return own;
 }

@@ -35,8 +35,8 @@ struct FitSetup {
 std::size_t shared_parameters(const Residuals& residuals, const FitTask& task);
 
 /// Residual parameters: from the fit where included, otherwise from their file.
-Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
-                               const Eigen::VectorXd& parameters);
+Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& task,
+                                  const Eigen::VectorXd& parameters);
 
 /// The residuals of a flight, with the masks at these parameters of the fit.
 Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
@@ -138,8 +138,8 @@ struct Reduction {
 
 /// The flights of a fit. Passes over them run several flights at a time, and each member of a team passes
 /// over its own; results are added in the order of the flights, so they do not depend on the number of
-/// threads or members. Residuals and derivatives of the own flights in bins stay in memory; the set keeps the
-/// samples within its memory.
+/// threads or members. Residuals and derivatives of the local flights in bins stay in memory; the set keeps
+/// the samples within its memory.
 ///
 /// Derivatives of residuals other than static pressure, which hardly change and are slow to compute, and
 /// those at common pressures stay fixed until the flights are prepared again.
@@ -196,8 +196,8 @@ class FitFlights {
         digest_of(parameters));
   }
 
-  /// Matrices of the own flights from their samples; empty for the others.
-  std::vector<Eigen::MatrixXd> of_own(
+  /// Matrices of the local flights from their samples; empty for the others.
+  std::vector<Eigen::MatrixXd> of_local(
       const std::function<Eigen::MatrixXd(std::size_t flight, const FitFlight& fit)>& make);
 
   const FlightPartition& share() const { return task_.flights.share(); }
@@ -223,7 +223,8 @@ class FitFlights {
   void weigh(const Eigen::VectorXd& parameters);
 
   /// Also estimates the noise of each reference.
-  /// @param misfit misfit of the law in the bins of an own flight, hPa, excluded from the noise; may be empty
+  /// @param misfit misfit of the law in the bins of an local flight, hPa, excluded from the noise; may be
+  /// empty
   void measure_noise(const Eigen::VectorXd& parameters,
                      const std::function<Eigen::VectorXd(std::size_t flight)>& misfit = {});
 
@@ -253,7 +254,7 @@ class FitFlights {
 
  private:
   void visit(const std::function<void(std::size_t flight, const FitFlight& fit)>& work);
-  /// Vectors of the own flights from their bins.
+  /// Vectors of the local flights from their bins.
   std::vector<Eigen::VectorXd> of_bins(const std::function<Eigen::VectorXd(std::size_t flight)>& make) const;
   void prepare(std::size_t flight, const FitFlight& fit);
   void evaluate(std::size_t flight, const FitFlight& fit);

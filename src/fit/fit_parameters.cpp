@@ -27,7 +27,7 @@ void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition
       parameter.fixed = !fitted || file.fit(e, p).fixed;
       if (effect.is_surface()) parameter.unit = "1";
       if (effect.is_formula()) continue;
-      const EffectInfo& info = effect_info[effect_named(effect.id)];
+      const EffectInfo& info = *effect_named(effect.id);
       parameter.unit = info.parameters[p].unit;
       parameter.neutral = info.parameters[p].neutral;
       parameter.typical = std::abs(info.parameters[p].typical);

@@ -105,7 +105,7 @@ class GpsSolver {
 
   Part part_of(GpsKind kind, const FitFlight& fit, FlightState& state, bool with_noise,
                bool with_outliers) const {
-    const Eigen::VectorXd own = own_parameters(fit.residuals(), task_, values_);
+    const Eigen::VectorXd own = flight_parameters(fit.residuals(), task_, values_);
     const FlightSamples& samples = fit.residuals().samples();
     Part part;
     const GpsRows rows =

@@ -177,7 +177,7 @@ double variance_between(const std::vector<FlightMean>& flights) {
 }  // namespace
 
 std::vector<Eigen::MatrixXd> binned_states(FitFlights& flights) {
-  return flights.of_own([&](std::size_t flight, const FitFlight& fit) {
+  return flights.of_local([&](std::size_t flight, const FitFlight& fit) {
     const Binning& bins = flights.bins(flight);
     Eigen::MatrixXd result = Eigen::MatrixXd::Constant(as_index(bins.size()), states, nan);
     const auto series = states_of(fit.residuals().samples());

@@ -7,14 +7,14 @@
 
 namespace pcor::internal {
 
-/// States of the flights in the bins of each own flight, NaN if unknown.
+/// States of the flights in the bins of each local flight, NaN if unknown.
 std::vector<Eigen::MatrixXd> binned_states(FitFlights& flights);
 
 /// The bumps of the misfit at given states.
 class MisfitBasis {
  public:
   MisfitBasis() = default;
-  /// Finds mean and deviation of each state over all flights. @param states of the own flights, in bins
+  /// Finds mean and deviation of each state over all flights. @param states of the local flights, in bins
   MisfitBasis(const FlightPartition& share, const std::vector<Eigen::MatrixXd>& states);
 
   static Eigen::Index count();

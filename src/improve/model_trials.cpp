@@ -27,7 +27,7 @@ std::vector<double> neutral_of(const ModelEffect& effect) {
   std::vector<double> parameters(effect.parameters.size(), 0.0);
   if (effect.is_formula()) return parameters;
   parameters = neutral_effect(effect.id).parameters;
-  const EffectInfo& info = effect_info[effect_named(effect.id)];
+  const EffectInfo& info = *effect_named(effect.id);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (info.parameters[i].shape) parameters[i] = effect.parameters[i];
   }

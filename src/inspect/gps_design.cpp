@@ -39,7 +39,7 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
   std::vector<double> deviations;
   for (const ModelEffect& effect : model.model.effects) {
     if (effect.is_formula()) return std::nullopt;
-    const EffectInfo& info = effect_info[effect_named(effect.id)];
+    const EffectInfo& info = *effect_named(effect.id);
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
       const Eigen::Index position = as_index(deviations.size());
       const bool by_attack = effect.id == "static-alpha" || effect.id == "static-attack";

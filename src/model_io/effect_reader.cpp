@@ -84,7 +84,7 @@ class EffectReader final : TomlReader {
     if (!given.axes || !given.coefficients)
       fail(*given.id->node,
            fmt::format("surface {} lacks its knots or coefficients; give {}", quote(id), requested));
-    if (effect_named(id) != catalogue_size)
+    if (effect_named(id) != nullptr)
       fail(given.axes->position, fmt::format("effect {} has its formula in the catalogue; remove 'axes' and "
                                              "'coefficients', or choose another id",
                                              quote(id)));
@@ -124,7 +124,8 @@ class EffectReader final : TomlReader {
   }
 
   ModelEffect catalogue_effect(const std::string& id, const EffectEntries& given) const {
-    if (effect_named(id) == catalogue_size) {
+    const EffectInfo* const info = effect_named(id);
+    if (info == nullptr) {
       fail(*given.id->node,
            fmt::format(
                "there is no effect {} in the catalogue; {} Or give a formula for a user-defined effect",
@@ -140,9 +141,8 @@ class EffectReader final : TomlReader {
     ModelEffect effect = neutral_effect(id);
     if (given.scaling) effect.scaling = scaling(*given.scaling);
     if (given.parameters) {
-      const EffectInfo& info = effect_info[effect_named(id)];
       each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry& entry) {
-        effect.parameters[i] = possible(entry, info.parameters[i]);
+        effect.parameters[i] = possible(entry, info->parameters[i]);
       });
     }
     return effect;
@@ -192,7 +192,7 @@ class EffectReader final : TomlReader {
   }
 
   ModelEffect formula_effect(const std::string& id, const EffectEntries& given) const {
-    if (effect_named(id) != catalogue_size) {
+    if (effect_named(id) != nullptr) {
       fail(given.formula->position,
            fmt::format("effect {} has its formula in the catalogue; remove 'formula', or give a new id",
                        quote(id)));
@@ -326,7 +326,7 @@ class EffectReader final : TomlReader {
     if (given.parameters) {
       each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry&) { is_given[i] = true; });
     }
-    const EffectInfo& info = effect_info[effect_named(effect.id)];
+    const EffectInfo& info = *effect_named(effect.id);
     for (std::size_t i = 0; i < fit.size(); ++i) {
       if (info.parameters[i].shape && !is_given[i]) fit[i].fixed = true;
     }
@@ -336,7 +336,7 @@ class EffectReader final : TomlReader {
   void check_bounds(const Bounds& bounds, const ModelEffect& effect, std::size_t number,
                     const Entry& entry) const {
     if (effect.is_formula()) return;
-    const ParameterInfo& info = effect_info[effect_named(effect.id)].parameters[number];
+    const ParameterInfo& info = effect_named(effect.id)->parameters[number];
     if (bounds.lower >= info.lower && bounds.upper <= info.upper) return;
     fail(entry,
          fmt::format("the bounds of {} exceed the bounds of the catalogue; give bounds within [{}, {}]",

@@ -90,29 +90,27 @@ Bounds ModelDefinition::bounds(std::size_t effect, std::size_t parameter) const 
   const std::optional<Bounds> own = fit(effect, parameter).bounds;
   if (own) return *own;
   const ModelEffect& which = model.effects[effect];
-  const std::size_t entry = effect_named(which.id);
-  if (which.is_formula() || entry == catalogue_size) return {};
-  const ParameterInfo& info = effect_info[entry].parameters[parameter];
-  return {info.lower, info.upper};
+  const EffectInfo* const info = effect_named(which.id);
+  if (which.is_formula() || info == nullptr) return {};
+  return {info->parameters[parameter].lower, info->parameters[parameter].upper};
 }
 
 std::vector<std::string> parameter_names(const ModelEffect& effect) {
   if (effect.is_formula()) return effect.parameter_names;
   neutral_effect(effect.id);
-  return names_of_parameters(effect_info[effect_named(effect.id)]);
+  return names_of_parameters(*effect_named(effect.id));
 }
 
 ModelEffect neutral_effect(std::string_view id) {
-  const std::size_t entry = effect_named(id);
-  if (entry == catalogue_size) {
+  const EffectInfo* const info = effect_named(id);
+  if (info == nullptr) {
     throw Error(Error::Code::usage, fmt::format("there is no effect {} in the catalogue; {}", quote(id),
                                                 suggestion_text(id, names_of(effect_info, &EffectInfo::id))));
   }
   ModelEffect effect;
   effect.id = id;
-  const EffectInfo& info = effect_info[entry];
-  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
-    effect.parameters.push_back(info.parameters[i].neutral);
+  for (std::size_t i = 0; i < info->parameter_count(); ++i) {
+    effect.parameters.push_back(info->parameters[i].neutral);
   }
   return effect;
 }

@@ -257,7 +257,7 @@ class Writer {
   // Whether a shape has its default value, which the file omits.
   static bool is_usual_shape(const ModelEffect& effect, std::size_t parameter) {
     if (effect.is_formula()) return false;
-    const ParameterInfo& info = effect_info[effect_named(effect.id)].parameters[parameter];
+    const ParameterInfo& info = effect_named(effect.id)->parameters[parameter];
     const double value = effect.parameters[parameter];
     return info.shape && value == info.typical && std::signbit(value) == std::signbit(info.typical);
   }

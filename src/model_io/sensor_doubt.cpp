@@ -19,7 +19,7 @@ bool has_effect(const ModelDefinition& model, std::string_view id) {
 }  // namespace
 
 std::string SensorDoubt::name() const {
-  return effect + "." + std::string(effect_info[effect_named(effect)].parameters[parameter].name);
+  return effect + "." + std::string(effect_named(effect)->parameters[parameter].name);
 }
 
 bool has_doubt(std::string_view coefficient) {
@@ -37,7 +37,7 @@ std::vector<SensorDoubt> doubts_of(const ModelDefinition& model,
   std::vector<SensorDoubt> doubts;
   for (const std::string_view id : effects) {
     if (has_effect(model, id) || (id == "temp-offset" && has_effect(model, calibration_id))) continue;
-    const EffectInfo& info = effect_info[effect_named(id)];
+    const EffectInfo& info = *effect_named(id);
     for (std::size_t p = 0; p < parameter_capacity; ++p) {
       if (!(info.parameters[p].doubt > 0.0)) continue;
       SensorDoubt doubt{std::string(id), p, info.parameters[p].doubt};

@@ -42,7 +42,7 @@ class FlightPartition {
   FlightPartition(Communicator& comm, const std::vector<std::uint64_t>& sizes);
 
   std::size_t flights() const { return owner_.size(); }
-  bool owns(std::size_t flight) const { return owner_[flight] == comm_->rank(); }
+  bool is_local(std::size_t flight) const { return owner_[flight] == comm_->rank(); }
   std::size_t own() const { return own_; }
   Communicator& comm() const { return *comm_; }
 
@@ -96,7 +96,7 @@ class FlightPartition {
     };
     const auto how = threads > 1 ? std::launch::async : std::launch::deferred;
     for (std::size_t flight = 0; flight < flights(); ++flight) {
-      if (!owns(flight) || !chosen(flight)) continue;
+      if (!is_local(flight) || !chosen(flight)) continue;
       std::optional<decltype(read(flight))> input;
       try {
         input = part_of(read, flight);
@@ -128,7 +128,7 @@ class FlightPartition {
     return gather_flights<Part>(
         [&](std::vector<Part>& parts) {
           for (std::size_t flight = 0; flight < parts.size(); ++flight) {
-            if (owns(flight)) parts[flight] = part_of(make, flight);
+            if (is_local(flight)) parts[flight] = part_of(make, flight);
           }
         },
         state);
@@ -158,7 +158,7 @@ class FlightPartition {
       std::vector<Part> own;
       some.attempt([&] {
         for (std::size_t k = 0; k < some.flights(); ++k) {
-          if (some.owns(k)) own.push_back(part_of(make, first + k));
+          if (some.is_local(k)) own.push_back(part_of(make, first + k));
         }
       });
       some.gather(std::move(own), 0, [&](std::size_t k, Part part) { add(first + k, std::move(part)); });
@@ -180,7 +180,7 @@ class FlightPartition {
   std::vector<Part> own_of(std::vector<Part>& parts) const {
     std::vector<Part> own;
     for (std::size_t flight = 0; flight < parts.size(); ++flight) {
-      if (owns(flight)) own.push_back(std::move(parts[flight]));
+      if (is_local(flight)) own.push_back(std::move(parts[flight]));
     }
     return own;
   }

@@ -157,7 +157,7 @@ void Processing::leave_out_noise(Quantity rate, const SignalBand& band) {
   if (!(band.rate_noise > signal)) return;
   for (ModelEffect& effect : file_.model.effects) {
     if (effect.is_formula()) continue;
-    const EffectInfo& info = effect_info[effect_named(effect.id)];
+    const EffectInfo& info = *effect_named(effect.id);
     const bool reads = std::find(info.needs.begin(), info.needs.end(), rate) != info.needs.end();
     double& time = effect.parameters[0];
     if (!reads || time == info.parameters[0].neutral) continue;

@@ -168,7 +168,7 @@ bool reads_flaps(const ModelEffect& effect, const std::string& variable) {
         formula->variables().begin(), formula->variables().end(),
         [&](const std::string& name) { return name == variable || quantity_named(name) == Quantity::flaps; });
   }
-  const auto& needs = effect_info[effect_named(effect.id)].needs;
+  const auto& needs = effect_named(effect.id)->needs;
   return std::find(needs.begin(), needs.end(), Quantity::flaps) != needs.end();
 }
 

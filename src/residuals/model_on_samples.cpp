@@ -69,12 +69,11 @@ std::vector<bool> ModelOnSamples::linear() const {
   std::vector<bool> linear;
   const bool has_minimum = std::isfinite(model_.policy.minimum);
   for (const ModelEffect& effect : model_.effects) {
-    const std::size_t entry = effect_named(effect.id);
-    const bool is = !has_minimum && !effect.is_formula() && entry != catalogue_size &&
-                    effect_info[entry].location == EffectLocation::static_defect;
+    const EffectInfo* const info = effect_named(effect.id);
+    const bool is = !has_minimum && !effect.is_formula() && info != nullptr &&
+                    info->location == EffectLocation::static_defect;
     for (std::size_t p = 0; p < effect.parameters.size(); ++p)
-      linear.push_back((effect.is_surface() && !has_minimum) ||
-                       (is && !effect_info[entry].parameters[p].shape));
+      linear.push_back((effect.is_surface() && !has_minimum) || (is && !info->parameters[p].shape));
   }
   linear.resize(linear.size() + model_.additions.size(), false);
   return linear;
@@ -103,7 +102,7 @@ double ModelOnSamples::step_of(std::size_t parameter) const {
   for (const ModelEffect& effect : model_.effects) {
     if (parameter < first + effect.parameters.size()) {
       if (effect.is_surface()) return 0.001;
-      const double typical = effect_info[effect_named(effect.id)].parameters[parameter - first].typical;
+      const double typical = effect_named(effect.id)->parameters[parameter - first].typical;
       return 0.1 * std::abs(typical);
     }
     first += effect.parameters.size();

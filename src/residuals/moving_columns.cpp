@@ -11,8 +11,8 @@
 
 namespace pcor::internal {
 Memory memory_of(const ModelEffect& effect) {
-  const std::size_t known = effect_named(effect.id);
-  return known < catalogue_size ? effect_info[known].memory : Memory{};
+  const EffectInfo* const info = effect_named(effect.id);
+  return info != nullptr ? info->memory : Memory{};
 }
 
 std::vector<double> wetness_of(const std::vector<double>& liquid_water, const std::vector<double>& time,

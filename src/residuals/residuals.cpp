@@ -106,8 +106,8 @@ const std::vector<bool>& Residuals::is_linear() const { return implementation_->
 const std::vector<Mask>& Residuals::mask() const { return implementation_->mask; }
 
 std::vector<Mask> Residuals::masks_at(const double* parameters, const MaskOptions& options) const {
-  const Implementation& own = *implementation_;
-  return find_masks({samples(), own.model, *own.reference, values(parameters)}, options);
+  const Implementation& impl = *implementation_;
+  return find_masks({samples(), impl.model, *impl.reference, values(parameters)}, options);
 }
 
 void Residuals::set_mask(std::vector<Mask> mask) { implementation_->mask = std::move(mask); }
@@ -119,34 +119,34 @@ std::array<std::size_t, mask_count> Residuals::mask_counts() const {
 }
 
 std::vector<double> Residuals::values(const double* parameters) const {
-  const Implementation& own = *implementation_;
+  const Implementation& impl = *implementation_;
   std::vector<double> result(size());
   std::vector<std::size_t> all(size());
   std::iota(all.begin(), all.end(), 0);
-  const ColumnsAt columns(own.model, *own.samples, parameters);
-  own.reference->residuals({columns.inputs(), own.reference_columns, all.data(), size()}, parameters,
-                           result.data());
+  const ColumnsAt columns(impl.model, *impl.samples, parameters);
+  impl.reference->residuals({columns.inputs(), impl.reference_columns, all.data(), size()}, parameters,
+                            result.data());
   return result;
 }
 
 void Residuals::evaluate(const std::size_t* samples, std::size_t count, const double* parameters,
                          const std::vector<std::size_t>& requested, double* residual,
                          double* derivatives) const {
-  const Implementation& own = *implementation_;
+  const Implementation& impl = *implementation_;
   std::vector<double> store;
   std::vector<double> reference_store;
-  const std::vector<Batch::Input> inputs = own.model.gathered(samples, count, parameters, store);
+  const std::vector<Batch::Input> inputs = impl.model.gathered(samples, count, parameters, store);
   const std::vector<Batch::Input> reference_inputs =
-      gathered(own.reference_columns, samples, count, reference_store);
-  own.reference->residuals({inputs, reference_inputs, samples, count}, parameters, residual);
+      gathered(impl.reference_columns, samples, count, reference_store);
+  impl.reference->residuals({inputs, reference_inputs, samples, count}, parameters, residual);
 
-  const std::size_t of_model = own.model.parameters().size();
+  const std::size_t of_model = impl.model.parameters().size();
   std::vector<std::size_t> curved;  // indices in `requested`
   std::vector<LinearColumn> by_model;
   std::vector<LinearColumn> by_reference;
   for (std::size_t k = 0; k < requested.size(); ++k) {
     double* const column = derivatives + k * count;
-    if (!own.linear[requested[k]]) {
+    if (!impl.linear[requested[k]]) {
       curved.push_back(k);
     } else if (requested[k] < of_model) {
       by_model.push_back({requested[k], column});
@@ -154,31 +154,31 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
       by_reference.push_back({requested[k] - of_model, column});
     }
   }
-  own.model.differentiate_linear(inputs, count, parameters, by_model);
+  impl.model.differentiate_linear(inputs, count, parameters, by_model);
   for (const LinearColumn& each : by_model) {
     for (std::size_t i = 0; i < count; ++i) each.derivatives[i] = -each.derivatives[i];
   }
   if (!by_reference.empty()) {
-    own.reference->model()->differentiate_linear(reference_inputs, count, parameters + of_model,
-                                                 by_reference);
+    impl.reference->model()->differentiate_linear(reference_inputs, count, parameters + of_model,
+                                                  by_reference);
   }
-  differentiate(count, {parameters, parameters + own.parameters.size()}, requested, curved, derivatives,
-                [&](const Jet* dual, Jet* out) { own.reference->residuals(samples, count, dual, out); });
+  differentiate(count, {parameters, parameters + impl.parameters.size()}, requested, curved, derivatives,
+                [&](const Jet* dual, Jet* out) { impl.reference->residuals(samples, count, dual, out); });
 }
 
 void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count, const double* parameters,
                                    const std::vector<std::size_t>& requested, double* residual,
                                    double* derivatives) const {
-  const Implementation& own = *implementation_;
-  const NoisySensor* const sensor = own.reference->sensor();
+  const Implementation& impl = *implementation_;
+  const NoisySensor* const sensor = impl.reference->sensor();
   if (sensor == nullptr) return evaluate(samples, count, parameters, requested, residual, derivatives);
-  const std::vector<double>& recorded = *own.samples->model.find(sensor->quantity());
-  const std::vector<double>& sensitivity = own.sensitivity();
+  const std::vector<double>& recorded = *impl.samples->model.find(sensor->quantity());
+  const std::vector<double>& sensitivity = impl.sensitivity();
   sensor->predict(samples, count, parameters, residual);
   for (std::size_t i = 0; i < count; ++i)
     residual[i] = sensitivity[samples[i]] * (recorded[samples[i]] - residual[i]);
   // In some coefficients delta-p is linear, and the reading depends on them through delta-p alone.
-  const std::vector<bool> linear = own.model.linear();
+  const std::vector<bool> linear = impl.model.linear();
   std::vector<std::size_t> curved;  // indices in `requested`
   std::vector<LinearColumn> by_defect;
   for (std::size_t k = 0; k < requested.size(); ++k) {
@@ -189,15 +189,15 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
   }
   if (!by_defect.empty()) {
     std::vector<double> store;
-    own.model.differentiate_linear(own.model.gathered(samples, count, parameters, store), count, parameters,
-                                   by_defect);
+    impl.model.differentiate_linear(impl.model.gathered(samples, count, parameters, store), count, parameters,
+                                    by_defect);
     std::vector<double> slope(count);
     sensor->differentiate_by_defect(samples, count, parameters, slope.data());
     for (const LinearColumn& each : by_defect) {
       for (std::size_t i = 0; i < count; ++i) each.derivatives[i] *= slope[i];
     }
   }
-  differentiate(count, {parameters, parameters + own.parameters.size()}, requested, curved, derivatives,
+  differentiate(count, {parameters, parameters + impl.parameters.size()}, requested, curved, derivatives,
                 [&](const Jet* dual, Jet* out) { sensor->predict(samples, count, dual, out); });
   for (std::size_t k = 0; k < requested.size(); ++k) {
     for (std::size_t i = 0; i < count; ++i) derivatives[k * count + i] *= -sensitivity[samples[i]];
@@ -227,9 +227,9 @@ std::optional<std::pair<Quantity, std::vector<double>>> Residuals::predicted_sen
 }
 
 std::shared_ptr<const FlightSamples> Residuals::at_common_pressures() const {
-  const Implementation& own = *implementation_;
-  if (own.reference->model() == nullptr) return nullptr;
-  auto result = std::make_shared<FlightSamples>(*own.samples);
+  const Implementation& impl = *implementation_;
+  if (impl.reference->model() == nullptr) return nullptr;
+  auto result = std::make_shared<FlightSamples>(*impl.samples);
   for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
     std::vector<double>& ours = *result->model.find(pressure);
     std::vector<double>& theirs = *result->reference.find(pressure);
@@ -248,11 +248,11 @@ std::vector<double> Residuals::target_defect(const double* parameters) const {
 }
 
 std::vector<double> Residuals::quantity(Quantity quantity, const double* parameters) const {
-  const Implementation& own = *implementation_;
+  const Implementation& impl = *implementation_;
   std::vector<double> result(size(), nan);
-  if (!own.model.batch().finds(quantity)) return result;
-  const ColumnsAt columns(own.model, *own.samples, parameters);
-  own.model.batch().run(columns.inputs(), {{quantity, result.data()}}, size(), parameters);
+  if (!impl.model.batch().finds(quantity)) return result;
+  const ColumnsAt columns(impl.model, *impl.samples, parameters);
+  impl.model.batch().run(columns.inputs(), {{quantity, result.data()}}, size(), parameters);
   return result;
 }
 

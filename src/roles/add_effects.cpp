@@ -38,7 +38,7 @@ std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
 EffectFit fit_of(const ModelEffect& effect) {
   EffectFit fit(effect.parameters.size());
   if (effect.is_formula()) return fit;
-  const EffectInfo& info = effect_info[effect_named(effect.id)];
+  const EffectInfo& info = *effect_named(effect.id);
   for (std::size_t i = 0; i < fit.size(); ++i) fit[i].fixed = info.parameters[i].shape;
   return fit;
 }
@@ -53,7 +53,7 @@ void add(ModelDefinition& file, ModelEffect effect) {
                             one_line(file.model.name), quote(effect.id)));
   }
   if (effect.is_formula()) {
-    if (effect_named(effect.id) != catalogue_size) {
+    if (effect_named(effect.id) != nullptr) {
       throw Error(Error::Code::usage,
                   fmt::format("effect {} has its formula in the catalogue; give the new formula another id",
                               quote(effect.id)));

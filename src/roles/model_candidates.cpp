@@ -80,7 +80,7 @@ std::string reasons_of(const std::vector<ModelCandidate>& laws) {
   reasons.reserve(laws.size());
   for (const ModelCandidate& law : laws) {
     const std::string name = law.path.stem().string();
-    reasons.push_back(!law.is_in_time      ? fmt::format("{} is of another time", name)
+    reasons.push_back(!law.is_in_time      ? fmt::format("{} is valid for other dates", name)
                       : !law.lacks.empty() ? fmt::format("{} needs {}", name, fmt::join(law.lacks, " and "))
                                            : fmt::format("{}: {}", name, law.why_not));
   }

@@ -118,7 +118,7 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
 void note_excluded(const ModelInput& input, const RejectedCounts& excluded, Notes& notes) {
   const auto note = [&](std::size_t samples, const std::string& where) {
     if (samples == 0) return;
-    notes.push_back(fmt::format("{} {}, and {} taken as missing",
+    notes.push_back(fmt::format("{} {}, and {} treated as missing",
                                 samples == 1 ? fmt::format("a sample of {} lies", input.variable)
                                              : fmt::format("{} samples of {} lie", samples, input.variable),
                                 where, samples == 1 ? "is" : "are"));

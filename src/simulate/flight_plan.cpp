@@ -22,7 +22,7 @@ constexpr double hold_rate = 3.0;           // m/s, for the return to a height
 class Plan {
  public:
   explicit Plan(const Scenario& scenario)
-      : pilot_(scenario), held_height_(scenario.atmosphere.ground_height), held_speed_(0.0) {
+      : pilot_(scenario), commanded_height_(scenario.atmosphere.ground_height), commanded_speed_(0.0) {
     std::size_t steps = 0;
     for (const Leg& leg : scenario.legs) {
       steps = pilot_.truth().size();
@@ -74,11 +74,11 @@ class Plan {
     const double lift_off = pilot_.aircraft().lift_off_speed;
     while (pilot_.speed() < lift_off) pilot_.step({0.0, runway_acceleration, 0.0, 0.0, leg.flaps}, leg);
     pilot_.set_on_ground(false);
-    held_height_ = leg.altitude;
-    held_speed_ = leg.speed;
+    commanded_height_ = leg.altitude;
+    commanded_speed_ = leg.speed;
     do {
       Command command = hold(leg.rate);
-      command.acceleration = pilot_.towards_speed(held_speed_, 1.0);
+      command.acceleration = pilot_.towards_speed(commanded_speed_, 1.0);
       command.flaps = pilot_.speed() < pilot_.aircraft().min_speed ? leg.flaps : 0.0;
       pilot_.step(command, leg);
     } while (!arrived());
@@ -86,7 +86,7 @@ class Plan {
 
   void change_height(const Leg& leg) {
     take_speed(leg);
-    held_height_ = leg.altitude;
+    commanded_height_ = leg.altitude;
     do {
       pilot_.step(hold(leg.rate), leg);
     } while (!arrived());
@@ -135,9 +135,9 @@ class Plan {
 
   // Slow, fast, slow again, then the speed that was before.
   void speed_run(const Leg& leg) {
-    const double before = held_speed_;
+    const double before = commanded_speed_;
     for (const double speed : {leg.low, leg.high, leg.low, before}) {
-      held_speed_ = speed;
+      commanded_speed_ = speed;
       do {
         pilot_.step(hold(hold_rate, leg.rate), leg);
       } while (!at_speed());
@@ -160,9 +160,9 @@ class Plan {
   void land(const Leg& leg) {
     constexpr double brakes = 1.5;      // m/s2, estimate
     constexpr double touch_down = 0.5;  // m
-    held_speed_ = leg.speed;
-    held_height_ = pilot_.height_of_ground();
-    while (pilot_.height() - held_height_ > touch_down) {
+    commanded_speed_ = leg.speed;
+    commanded_height_ = pilot_.height_of_ground();
+    while (pilot_.height() - commanded_height_ > touch_down) {
       Command command = hold(leg.rate);
       // Decelerates in level flight first, until flaps can be extended.
       if (pilot_.speed() < pilot_.aircraft().min_speed + 5.0) command.flaps = leg.flaps;
@@ -170,7 +170,7 @@ class Plan {
     }
     pilot_.set_on_ground(true);
     while (pilot_.speed() > 0.0) {
-      Command command{pilot_.towards_height(held_height_, hold_rate), -brakes, 0.0, 0.0, leg.flaps};
+      Command command{pilot_.towards_height(commanded_height_, hold_rate), -brakes, 0.0, 0.0, leg.flaps};
       pilot_.step(command, leg);
     }
   }
@@ -181,9 +181,9 @@ class Plan {
 
   Command hold(double rate, double acceleration = usual_acceleration) {
     Command command;
-    command.vertical_acceleration = pilot_.towards_height(held_height_, rate);
-    command.acceleration = pilot_.towards_speed(held_speed_, acceleration);
-    command.flaps = held_flaps_;
+    command.vertical_acceleration = pilot_.towards_height(commanded_height_, rate);
+    command.acceleration = pilot_.towards_speed(commanded_speed_, acceleration);
+    command.flaps = commanded_flaps_;
     return command;
   }
 
@@ -192,25 +192,25 @@ class Plan {
   }
 
   void take_speed(const Leg& leg) {
-    if (!std::isnan(leg.speed)) held_speed_ = leg.speed;
-    held_flaps_ = std::isnan(leg.flaps) ? 0.0 : leg.flaps;
+    if (!std::isnan(leg.speed)) commanded_speed_ = leg.speed;
+    commanded_flaps_ = std::isnan(leg.flaps) ? 0.0 : leg.flaps;
   }
 
   // Reaches the speed and flaps of a leg before it counts.
   void settle(const Leg& leg) {
     take_speed(leg);
-    while (!at_speed() || !arrived() || std::abs(pilot_.flaps() - held_flaps_) > 0.5)
+    while (!at_speed() || !arrived() || std::abs(pilot_.flaps() - commanded_flaps_) > 0.5)
       pilot_.step(hold(hold_rate), leg);
   }
 
-  bool at_speed() const { return std::abs(pilot_.speed() - held_speed_) < 0.2; }
+  bool at_speed() const { return std::abs(pilot_.speed() - commanded_speed_) < 0.2; }
   bool arrived() const {
-    return std::abs(pilot_.height() - held_height_) < 2.0 && std::abs(pilot_.vertical_speed()) < 0.3;
+    return std::abs(pilot_.height() - commanded_height_) < 2.0 && std::abs(pilot_.vertical_speed()) < 0.3;
   }
 
   Pilot pilot_;
   std::vector<LegSteps> legs_;
-  double held_height_, held_speed_, held_flaps_ = 0.0;
+  double commanded_height_, commanded_speed_, commanded_flaps_ = 0.0;
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ std::string remedy(const ModelDefinition& model, const Flight& flight) {
     const auto named = model.variables.find(role);
     if (named == model.variables.end()) continue;
     if (!model.model.moist) return "give the model [humidity] moist = true";
-    return fmt::format("{} has no vapour in it: name another humidity in the model's [variables]",
+    return fmt::format("{} contains no water vapour: name another humidity in the model's [variables]",
                        named->second);
   }
   const VariableNaming& family = family_of(model, flight);

@@ -386,7 +386,7 @@ HeightEquations height_equations(const std::vector<HeightRecord>& records, const
   const FlightPartition share(workers.comm, sizes);
   const auto each = share.gather_flights<HeightEquations>([&](std::vector<HeightEquations>& parts) {
     parallel_for(records.size(), workers.threads, [&](std::size_t i) {
-      if (share.owns(i)) parts[i] = height_equations(records[i], noise, prior);
+      if (share.is_local(i)) parts[i] = height_equations(records[i], noise, prior);
     });
   });
   HeightEquations sum;

@@ -81,7 +81,7 @@ TEST(Candidates, AreTheCatalogueEffectsMissingFromTheModel) {
   for (const Candidate& candidate : set.candidates) effects += candidate.is_variant ? 0 : 1;
   EXPECT_EQ(effects + set.not_testable.size() + 3, pcor::catalogue_size);
   for (const Candidate& candidate : set.candidates) {
-    const pcor::EffectInfo& info = pcor::effect_info[pcor::effect_named(candidate.effect.id)];
+    const pcor::EffectInfo& info = *pcor::effect_named(candidate.effect.id);
     EXPECT_FALSE(candidate.tested.empty());
     for (const pcor::internal::CandidateParameter& parameter : candidate.tested) {
       EXPECT_FALSE(info.parameters[parameter.index].shape);

@@ -127,7 +127,7 @@ TEST(Separation, WorstRivalDeterminesThePlan) {
 
 TEST(Separation, CatalogueAdvisesIfNoRegimeHelps) {
   const ModelEffect lag = neutral_effect("static-lag");
-  const std::string manoeuvre(effect_info[effect_named("static-lag")].manoeuvre);
+  const std::string manoeuvre(effect_named("static-lag")->manoeuvre);
   const SeparationProblem rivalry = rivalry_of(rows_of(100, 1.0), 5.0);
   const std::vector<FlownRegime> alike{regime_of(Regime::pitch_manoeuvre, rows_of(100, 1.0, 8))};
   for (const std::vector<FlownRegime>& regimes : {alike, std::vector<FlownRegime>{}}) {

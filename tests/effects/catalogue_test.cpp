@@ -22,6 +22,7 @@ using pcor::effect_named;
 using pcor::EffectInfo;
 using pcor::Formula;
 using pcor::FormulaError;
+using pcor::index_of;
 using pcor::Quantity;
 using pcor::State;
 using testing::MatchesRegex;
@@ -31,7 +32,7 @@ namespace {
 using Parameters = std::vector<double>;
 
 double value(const EffectInfo& info, const State<double>& state, const Parameters& parameters) {
-  return effect_functions<double, double>[effect_named(info.id)](state, parameters.data());
+  return effect_functions<double, double>[index_of(*effect_named(info.id))](state, parameters.data());
 }
 
 // Random inputs of flight and parameters, within the bounds of the parameters.
@@ -111,10 +112,11 @@ TEST(Catalogue, IdsAreUniqueAndResolve) {
   std::set<std::string> ids;
   for (std::size_t i = 0; i < pcor::catalogue_size; ++i) {
     EXPECT_TRUE(ids.emplace(effect_info[i].id).second) << effect_info[i].id;
-    EXPECT_EQ(effect_named(effect_info[i].id), i);
+    EXPECT_EQ(effect_named(effect_info[i].id), &effect_info[i]);
+    EXPECT_EQ(index_of(effect_info[i]), i);
   }
-  EXPECT_EQ(effect_named("static"), pcor::catalogue_size);
-  EXPECT_EQ(effect_named(""), pcor::catalogue_size);
+  EXPECT_EQ(effect_named("static"), nullptr);
+  EXPECT_EQ(effect_named(""), nullptr);
 }
 
 TEST(Catalogue, HasTheTermsOfTheMemo) {
@@ -128,8 +130,8 @@ TEST(Catalogue, HasTheTermsOfTheMemo) {
                                       {"static-mach3", "m3"},
                                       {"static-beta-odd", "b1"},
                                       {"static-beta-even", "b2"}}) {
-    ASSERT_NE(effect_named(id), pcor::catalogue_size) << id;
-    const EffectInfo& info = effect_info[effect_named(id)];
+    ASSERT_NE(effect_named(id), nullptr) << id;
+    const EffectInfo& info = *effect_named(id);
     EXPECT_EQ(info.parameter_count(), 1U);
     EXPECT_EQ(info.parameters[0].name, parameter);
     EXPECT_EQ(info.location, pcor::EffectLocation::static_defect);
@@ -153,8 +155,8 @@ TEST(Catalogue, HasZeroGainAndDriftEffects) {
                                               {"temp-drift", "drift", "thermometer"},
                                               {"psfd-thermal", "thermal drift", "p-transducer"},
                                               {"transducer-thermal", "thermal drift", "q-transducer"}}) {
-    ASSERT_NE(effect_named(id), pcor::catalogue_size) << id;
-    const EffectInfo& info = effect_info[effect_named(id)];
+    ASSERT_NE(effect_named(id), nullptr) << id;
+    const EffectInfo& info = *effect_named(id);
     EXPECT_EQ(info.family, family) << id;
     EXPECT_EQ(component_of(info), component) << id;
   }
@@ -222,11 +224,11 @@ TEST(Catalogue, ListsEachPressureCalibrationOnce) {
                          "lams-dropout",
                          "ground-return",
                          "propeller-inflow"}) {
-    EXPECT_NE(effect_named(id) != pcor::catalogue_size, is_without_trace(id)) << id;
+    EXPECT_NE(effect_named(id) != nullptr, is_without_trace(id)) << id;
   }
   for (const char* id : {"static-constant", "static-qp", "static-mach2", "static-mach3", "static-attack",
                          "time-drift", "aircraft-step"})
-    EXPECT_NE(effect_named(id), pcor::catalogue_size) << id;
+    EXPECT_NE(effect_named(id), nullptr) << id;
 }
 
 TEST(Catalogue, ExplainsUndetectableEffects) {
@@ -246,9 +248,9 @@ TEST(Catalogue, SumsToEquation18) {
   state[Quantity::static_pressure] = 700;
   state[Quantity::dynamic_ratio] = 67.6 / 700;
   state[Quantity::attack_ratio] = -0.318;
-  const double sum = value(effect_info[effect_named("static-constant")], state, {.004127875}) +
-                     value(effect_info[effect_named("static-alpha")], state, {.021279816}) +
-                     value(effect_info[effect_named("static-qp")], state, {.030849643});
+  const double sum = value(*effect_named("static-constant"), state, {.004127875}) +
+                     value(*effect_named("static-alpha"), state, {.021279816}) +
+                     value(*effect_named("static-qp"), state, {.030849643});
   EXPECT_NEAR(sum, 2.8895 - 4.7369 + 2.0854, 2e-4);
   EXPECT_NEAR(sum, 0.24, 0.006);
 }
@@ -295,7 +297,7 @@ TEST_P(EveryEffect, ParametersHaveNameUnitAndBounds) {
 
 TEST_P(EveryEffect, SimilarEffectsExist) {
   for (const std::string& id : listed(GetParam().confounders)) {
-    EXPECT_TRUE(effect_named(id) != pcor::catalogue_size || is_without_trace(id)) << id;
+    EXPECT_TRUE(effect_named(id) != nullptr || is_without_trace(id)) << id;
     EXPECT_NE(id, GetParam().id);
   }
 }
@@ -421,7 +423,7 @@ TEST_P(EveryEffect, CompilesForAnotherScalarType) {
   for (std::size_t i = 0; i < info.need_count(); ++i) numbers[info.needs[i]] = Physics(state[info.needs[i]]);
   const std::vector<Physics> coefficients(parameters.begin(), parameters.end());
   const Physics result =
-      effect_functions<Physics, Physics>[effect_named(info.id)](numbers, coefficients.data());
+      effect_functions<Physics, Physics>[index_of(*effect_named(info.id))](numbers, coefficients.data());
   EXPECT_EQ(result.value(), value(info, state, parameters));
 }
 

@@ -334,7 +334,7 @@ TEST(Refit, PriorLimitsUndeterminedAddedEffects) {
                                               "static-mach2", "static-mach3"}),
                                  options));
   for (const char* const id : {"static-mach", "static-mach2", "static-mach3"}) {
-    const pcor::EffectInfo& info = pcor::effect_info[pcor::effect_named(id)];
+    const pcor::EffectInfo& info = *pcor::effect_named(id);
     const double prior = 3.0 * std::abs(info.parameters[0].typical);
     const pcor::FittedParameter& parameter = found.at(fmt::format("{}.{}", id, info.parameters[0].name));
     EXPECT_LT(std::abs(parameter.value), 2.0 * prior) << id;

@@ -130,7 +130,7 @@ TEST(TwoSystems, CommonPartKeepsPriorError) {
   for (std::size_t p = 0; p < 3; ++p) {
     const pcor::FittedParameter& parameter = fit.parameters[p];
     const std::string effect = parameter.name.substr(0, parameter.name.find('.'));
-    const double typical = pcor::effect_info[pcor::effect_named(effect)].parameters[0].typical;
+    const double typical = pcor::effect_named(effect)->parameters[0].typical;
     // The difference, known to a few per cent of that error, adds very little.
     EXPECT_NEAR(parameter.standard_error, typical / std::sqrt(2.0), 0.05 * typical) << parameter.name;
   }

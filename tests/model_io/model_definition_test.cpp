@@ -365,14 +365,13 @@ class ModelGenerator {
   }
 
   void add_effect(ModelDefinition& file, ModelEffect effect) {
-    const std::size_t position = effect_named(effect.id);
     if (!effect.is_formula()) effect.scaling = {power(), power()};
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
       if (maybe()) continue;
       if (effect.is_formula()) {
         effect.parameters[i] = number();
       } else {
-        const ParameterInfo& info = effect_info[position].parameters[i];
+        const ParameterInfo& info = effect_named(effect.id)->parameters[i];
         effect.parameters[i] = between(info.lower, info.upper);
       }
     }
@@ -392,7 +391,7 @@ class ModelGenerator {
   }
 
   Bounds range_within(const ModelEffect& effect, std::size_t number) {
-    const ParameterInfo& info = effect_info[effect_named(effect.id)].parameters[number];
+    const ParameterInfo& info = effect_named(effect.id)->parameters[number];
     const double a = between(info.lower, info.upper), b = between(info.lower, info.upper);
     return a == b ? Bounds{info.lower, info.upper} : Bounds{std::min(a, b), std::max(a, b)};
   }

@@ -31,7 +31,7 @@ std::vector<std::uint64_t> loads(std::size_t members, const std::vector<std::uin
     std::size_t own = 0;
     const std::lock_guard lock(counting);
     for (std::size_t flight = 0; flight < sizes.size(); ++flight) {
-      if (!share.owns(flight)) continue;
+      if (!share.is_local(flight)) continue;
       ++owners[flight];
       ++own;
       load[comm.rank()] += sizes[flight];

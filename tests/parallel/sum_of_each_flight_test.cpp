@@ -81,8 +81,8 @@ TEST(SharesOfEntries, BelongToTheOwnersOfTheirFlights) {
     ASSERT_EQ(entries.flights(), flight_of_each.size());
     std::size_t own = 0;
     for (std::size_t entry = 0; entry < flight_of_each.size(); ++entry) {
-      EXPECT_EQ(entries.owns(entry), flights.owns(flight_of_each[entry]));
-      own += entries.owns(entry) ? 1 : 0;
+      EXPECT_EQ(entries.is_local(entry), flights.is_local(flight_of_each[entry]));
+      own += entries.is_local(entry) ? 1 : 0;
     }
     EXPECT_EQ(entries.own(), own);
   });

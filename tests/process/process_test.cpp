@@ -201,12 +201,12 @@ TEST_F(Process, ImpossibleValuesAreMissing) {
   EXPECT_THAT(summary.notes,
               testing::IsSupersetOf(
                   {"2 samples of PSFD lie outside -2000 to 2000 hPa, which is impossible, and "
-                   "are taken as missing",
-                   "a sample of PSFD lies above 1e30, which marks missing values, and is taken as missing",
+                   "are treated as missing",
+                   "a sample of PSFD lies above 1e30, which marks missing values, and is treated as missing",
                    "a sample of QCF lies outside the range that the file states as valid, and "
-                   "is taken as missing",
+                   "is treated as missing",
                    "a sample of TTRR lies outside 100 to 1000 K, which is impossible, and is "
-                   "taken as missing"}));
+                   "treated as missing"}));
 }
 
 TEST_F(Process, KeepsTheTotalPressure) {

@@ -993,7 +993,7 @@ TEST(Build, RequiresBothPressures) {
 
 TEST(Build, UnknownEffectIsRefused) {
   EXPECT_EQ(error_of(with(truth.model(), catalogued("static-beauty", {1})), truth.recorded()),
-            "there is no effect 'static-beauty'");
+            "there is no effect 'static-beauty' in the catalogue; correct the id, or give a formula");
   EXPECT_EQ(error_of(with(truth.model(), catalogued("static-qp", {1, 2})), truth.recorded()),
             "effect 'static-qp' takes 1 parameter(s), not 2");
 }

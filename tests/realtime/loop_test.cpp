@@ -335,7 +335,7 @@ TEST(Loop, ImpossibleClockSkewIsRefused) {
     for (const auto& [role, value] : level) roles.push_back(role);
     std::string error;
     EXPECT_FALSE(Loop::build(model, roles, 25.0, &error).has_value());
-    EXPECT_THAT(error, testing::HasSubstr("is outside -60 to 60 s"));
+    EXPECT_THAT(error, testing::HasSubstr("give -60 to 60 s"));
   }
 }
 
@@ -368,7 +368,7 @@ TEST(Loop, WetThermometerDriesAfterACloud) {
     for (const auto& [role, value] : level) roles.push_back(role);
     std::string error;
     EXPECT_FALSE(Loop::build(model, roles, 25.0, &error).has_value());
-    EXPECT_THAT(error, testing::HasSubstr("is outside 0 to 600 s"));
+    EXPECT_THAT(error, testing::HasSubstr("give 0 to 600 s"));
   }
 }
 
@@ -751,7 +751,9 @@ TEST(LoopLams, IsRefusedWithoutLaserAirspeed) {
   recorded.erase(Quantity::lams_airspeed);
   std::string error;
   EXPECT_FALSE(Loop::build(c130(), roles(recorded), 1.0, &error, CorrectWith::lams));
-  EXPECT_EQ(error, "correction with LAMS needs the role 'lams_airspeed'");
+  EXPECT_EQ(
+      error,
+      "correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");
   EXPECT_FALSE(Loop::build(c130(), roles(recorded), 1.0, nullptr, CorrectWith::lams));
 }
 

@@ -574,8 +574,9 @@ TEST(NimbusSystem, FailedInstallationKeepsTheInstalledModel) {
   EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure", "static_pressure"}),
             "two inputs are 'static_pressure'");
   EXPECT_THAT(error_of({}, {"static_pressure"}), testing::HasSubstr("dynamic_pressure"));
-  EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure"}, pcor::CorrectWith::lams),
-            "correction with LAMS needs the role 'lams_airspeed'");
+  EXPECT_EQ(
+      error_of({}, {"static_pressure", "dynamic_pressure"}, pcor::CorrectWith::lams),
+      "correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");
   Model model;
   pcor::ModelEffect thrust;
   thrust.id = "my-thrust";

@@ -60,7 +60,7 @@ TEST_F(DryAir, IgnoresTheHumidityOfTheModel) {
   // The driest air below 5 km, 0.05 hPa at 540 hPa, makes 0.07 m in 2 km; steps of an archived flight are
   // rounded to 1 mm.
   EXPECT_THAT(trouble(climb_from(1000.0, 0.07), moist_), IsEmpty());
-  EXPECT_THAT(trouble(climb_from(1000.0, 0.001), moist_), HasSubstr("EDPC has no vapour in it"));
+  EXPECT_THAT(trouble(climb_from(1000.0, 0.001), moist_), HasSubstr("EDPC contains no water vapour"));
 }
 
 TEST_F(DryAir, ListsHumidityVariables) {

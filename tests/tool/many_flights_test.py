@@ -432,7 +432,7 @@ class ModelsByDate(ManyFlightsTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         done, left = json.loads(result.stdout)["flights"]
         self.assertEqual((done["state"], left["state"]), ("processed", "unreadable"))
-        self.assertRegex(left["reason"], "early is of another time")
+        self.assertRegex(left["reason"], "early is valid for other dates")
 
     def test_a_law_for_other_flights_is_refused(self):
         self.model("late", 'valid_from = "2004-01-01"\nin_processing = true')

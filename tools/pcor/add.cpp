@@ -81,7 +81,7 @@ void print(const ModelDefinition& model, const ModelDefinition& extended, const 
   say("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
   for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i) {
     const ModelEffect& effect = extended.model.effects[i];
-    const EffectInfo* info = effect.is_formula() ? nullptr : &effect_info[effect_named(effect.id)];
+    const EffectInfo* info = effect.is_formula() ? nullptr : effect_named(effect.id);
     const std::vector<std::string> names = parameter_names(effect);
     std::vector<std::string> start;
     if (effect.is_surface()) {

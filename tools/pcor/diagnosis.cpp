@@ -156,7 +156,7 @@ void print_unexplained(const Unexplained& unexplained) {
   }
   if (!unexplained.variables.empty()) {
     const EmpiricalPredictor& first = unexplained.variables.front();
-    say("{}\n", places_text(first));
+    say("{}\n", component_text(first));
   }
   for (const FlightOffset& step : unexplained.steps) {
     say("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight, std::abs(step.size),

@@ -27,8 +27,7 @@ const EffectWithoutTrace* find_without_trace(const std::string& id) {
 }
 
 const EffectInfo& find(const std::string& id) {
-  const std::size_t entry = effect_named(id);
-  if (entry < catalogue_size) return effect_info[entry];
+  if (const EffectInfo* const effect = effect_named(id)) return *effect;
   if (const EffectInfo* const surface = surface_named(id)) return *surface;
   std::vector<std::string> ids;
   for (const EffectInfo& info : surface_info) ids.emplace_back(info.id);

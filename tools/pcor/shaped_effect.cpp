@@ -46,7 +46,7 @@ void set_shape(ModelEffect& effect, const std::string& name, const std::string& 
     effect.scaling.dynamic_pressure = power_in(value, argument);
     return;
   }
-  const EffectInfo& info = effect_info[effect_named(effect.id)];
+  const EffectInfo& info = *effect_named(effect.id);
   std::vector<std::string_view> shapes;
   for (std::size_t i = 0; i < info.parameter_count(); ++i) {
     if (!info.parameters[i].shape) continue;
@@ -69,7 +69,7 @@ void set_shape(ModelEffect& effect, const std::string& name, const std::string& 
 std::string argument_of(const ModelEffect& effect) {
   std::vector<std::string> shapes;
   if (!effect.is_formula()) {
-    const EffectInfo& info = effect_info[effect_named(effect.id)];
+    const EffectInfo& info = *effect_named(effect.id);
     for (std::size_t i = 0; i < info.parameter_count(); ++i) {
       const ParameterInfo& parameter = info.parameters[i];
       if (parameter.shape && effect.parameters[i] != parameter.typical)

@@ -322,7 +322,7 @@ void describe(const EmpiricalPredictor& self, Field& field) {
 }
 
 /// Clause on the location of the cause, without full stop.
-std::string places_text(const EmpiricalPredictor& variable);
+std::string component_text(const EmpiricalPredictor& variable);
 
 /// Bias of a flight relative to the others.
 struct FlightOffset {

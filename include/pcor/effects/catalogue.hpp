@@ -146,12 +146,18 @@ template <class S, class P>
 inline constexpr auto effect_functions =
     detail::functions_of_effects<S, P>(static_cast<const Catalogue*>(nullptr));
 
-/// Index of the effect `id` in the catalogue, or `catalogue_size` if unknown.
-constexpr std::size_t effect_named(std::string_view id) {
-  for (std::size_t i = 0; i < catalogue_size; ++i) {
-    if (effect_info[i].id == id) return i;
+/// Metadata of the effect `id` of the catalogue; null if there is no effect with that id.
+constexpr const EffectInfo* effect_named(std::string_view id) {
+  for (const EffectInfo& info : effect_info) {
+    if (info.id == id) return &info;
   }
-  return catalogue_size;
+  return nullptr;
+}
+
+/// Index of an effect of the catalogue in `effect_info` and `effect_functions`.
+/// @param info element of `effect_info`
+constexpr std::size_t index_of(const EffectInfo& info) {
+  return static_cast<std::size_t>(&info - effect_info.data());
 }
 
 }  // namespace pcor

@@ -116,12 +116,12 @@ class BoundModel {
   }
 
   /// Value of effect number `effect` of the model for a state after `Chain::measure`, in the unit of its
-  /// location. Zero for an effect on the laser's beam if there is no laser. @param own the coefficients of
-  /// this effect only
+  /// location. Zero for an effect on the laser's beam if there is no laser. @param parameters the
+  /// coefficients of this effect only
   template <class S, class P>
-  Promoted<S, P> effect_value(std::size_t effect, const State<S>& state, const P* own) const {
+  Promoted<S, P> effect_value(std::size_t effect, const State<S>& state, const P* parameters) const {
     const Term& term = effects_[effect];
-    return is_within_reach(term.location) ? value(term, state, own) : Promoted<S, P>(0.0);
+    return is_within_reach(term.location) ? value(term, state, parameters) : Promoted<S, P>(0.0);
   }
 
  protected:
@@ -191,21 +191,21 @@ class BoundModel {
   }
 
   template <class S, class P>
-  Promoted<S, P> value(const Term& term, const State<S>& state, const P* own) const {
+  Promoted<S, P> value(const Term& term, const State<S>& state, const P* parameters) const {
     if (term.effect < catalogue_size) {
-      const Promoted<S, P> value = effect_functions<S, P>[term.effect](state, own);
+      const Promoted<S, P> value = effect_functions<S, P>[term.effect](state, parameters);
       return term.scaling.is_none() ? value : scaled(value, term.scaling, state);
     }
-    if (term.effect == Term::is_addition) return Promoted<S, P>(*own);
+    if (term.effect == Term::is_addition) return Promoted<S, P>(*parameters);
     if (term.effect == Term::is_surface) {
       const Surface& surface = surfaces_[term.formula];
       return surface.value(state[surface.axes[0].quantity], state[surface.axes[1].quantity],
-                           state[Quantity::dynamic_pressure], own);
+                           state[Quantity::dynamic_pressure], parameters);
     }
     const BoundFormula& bound = formulas_[term.formula];
     std::array<S, formula_variable_capacity> variables;
     for (std::size_t i = 0; i < bound.variables.size(); ++i) variables[i] = state[bound.variables[i]];
-    return bound.formula.value(variables.data(), own);
+    return bound.formula.value(variables.data(), parameters);
   }
 
   template <class R, class S>

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -259,29 +260,36 @@ inline std::optional<Loop> Loop::build(const Model& model, const std::vector<Qua
 inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
                                        CorrectWith with, const ModelUncertainty& uncertainty,
                                        const ShortestPeriods& periods, LaserFilter filter) {
-  const auto fail = [error](const char* why) {
-    if (error != nullptr) *error = why;
+  const auto fail = [error](std::string why) {
+    if (error != nullptr) *error = std::move(why);
     return std::nullopt;
+  };
+  const auto text_of = [](double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%g", value);
+    return std::string(text.data());
   };
   if (!arithmetic_keeps_nan()) {
     return fail(
         "this program is compiled with fast mathematics, which loses the NaN of missing values; remove "
         "-ffast-math, -ffinite-math-only and similar pragmas");
   }
-  if (!(rate > 0.0 && is_finite(rate))) return fail("the rate of the loop is not a number above 0 samples/s");
+  if (!(rate > 0.0 && is_finite(rate)))
+    return fail("the rate of the loop is " + text_of(rate) + " samples/s; give a number above 0");
   if (with == CorrectWith::lams && !chain->has_lams()) {
-    return fail("correction with LAMS needs the role 'lams_airspeed'");
+    return fail(
+        "correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");
   }
   Loop loop(rate);
   for (const std::string& name : chain->extra_names()) loop.add_variable(name);
   constexpr double longest = 60.0;  // s, the bounds of clock-skew
-  if (!(std::abs(chain->time_of(Quantity::airspeed_rate)) <= longest)) {
-    return fail("the coefficient 'seconds' of clock-skew is outside -60 to 60 s");
+  if (const double skew = chain->time_of(Quantity::airspeed_rate); !(std::abs(skew) <= longest)) {
+    return fail("the coefficient 'seconds' of clock-skew is " + text_of(skew) + " s; give -60 to 60 s");
   }
   if (chain->derives(Quantity::wetness)) {
     const double drying = chain->time_of(Quantity::wetness);
     if (!(drying >= 0.0 && drying <= Wetness::longest))
-      return fail("the coefficient 'drying' of temp-wetting is outside 0 to 600 s");
+      return fail("the coefficient 'drying' of temp-wetting is " + text_of(drying) + " s; give 0 to 600 s");
     loop.wetness_.emplace(rate, drying);
   }
   loop.frozen_.emplace(*chain, rate);

@@ -102,20 +102,22 @@ class ModelBinder {
 
   bool add_catalogued(const ModelEffect& effect) {
     const std::string who = "effect " + quote(effect.id);
-    const std::size_t entry = effect_named(effect.id);
-    if (entry == catalogue_size) return fail(Code::unknown_effect, "", "there is no " + who);
-    const EffectInfo& info = effect_info[entry];
-    if (!require_count(effect, info.parameter_count())) return false;
-    if (bound_.is_within_reach(info.location)) {
-      if (!require_place(info.location, who)) return false;
-      for (std::size_t i = 0; i < info.need_count(); ++i) {
-        if (is_at_hand(info.needs[i], info.location)) continue;
-        if (!require(info.needs[i], who)) return false;
+    const EffectInfo* const info = effect_named(effect.id);
+    if (info == nullptr) {
+      return fail(Code::unknown_effect, "",
+                  "there is no " + who + " in the catalogue; correct the id, or give a formula");
+    }
+    if (!require_count(effect, info->parameter_count())) return false;
+    if (bound_.is_within_reach(info->location)) {
+      if (!require_location(info->location, who)) return false;
+      for (std::size_t i = 0; i < info->need_count(); ++i) {
+        if (is_at_hand(info->needs[i], info->location)) continue;
+        if (!require(info->needs[i], who)) return false;
       }
     }
     Term term;
-    term.effect = entry;
-    term.location = info.location;
+    term.effect = index_of(*info);
+    term.location = info->location;
     term.scaling = effect.scaling;
     add_effect(term, effect);
     return true;
@@ -160,7 +162,7 @@ class ModelBinder {
   }
 
   bool bind_variables(BoundModel::BoundFormula& bound, EffectLocation location, const std::string& who) {
-    if (!require_place(location, who)) return false;
+    if (!require_location(location, who)) return false;
     for (const std::string& name : bound.formula.variables()) {
       Quantity quantity = quantity_named(name);
       if (quantity == Quantity::count && !find_extra(name, quantity)) {
@@ -182,7 +184,7 @@ class ModelBinder {
   }
 
   // Checks that the quantity corrected by an effect is computed.
-  bool require_place(EffectLocation location, const std::string& who) {
+  bool require_location(EffectLocation location, const std::string& who) {
     if (location == EffectLocation::radome) return require(Quantity::radome_dynamic_pressure, who);
     if (location == EffectLocation::attack_ratio) return require(Quantity::attack_ratio, who);
     if (location == EffectLocation::ambient_temperature && !bound_.has_temperature()) {

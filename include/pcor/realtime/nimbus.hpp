@@ -226,9 +226,9 @@ inline std::string default_key(const std::string& prefix, const ModelEffect& eff
   std::string name = std::to_string(number);
   if (number < effect.parameter_names.size()) {
     name = effect.parameter_names[number];
-  } else if (const std::size_t entry = effect_named(effect.id);
-             entry != catalogue_size && number < effect_info[entry].parameter_count()) {
-    name = effect_info[entry].parameters[number].name;
+  } else if (const EffectInfo* const info = effect_named(effect.id);
+             info != nullptr && number < info->parameter_count()) {
+    name = info->parameters[number].name;
   }
   return prefix + "." + effect.id + "." + name;
 }

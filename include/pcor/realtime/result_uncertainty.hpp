@@ -173,7 +173,7 @@ class ResultUncertainty final : public Functor {
     std::size_t number;  // index among the coefficients of its effect
     bool is_linear;
     // Coefficients of its effect: if linear, one for this coefficient and zero for the others.
-    std::vector<double> own;
+    std::vector<double> coefficients;
     double step;         // its standard uncertainty
     double shape = 0.0;  // derivative of the effect's value for this sample
   };
@@ -331,23 +331,23 @@ class ResultUncertainty final : public Functor {
                           double step) const {
     const double* const all = chain_->parameters().data();
     Coefficient made{effect, parameter - first, chain_->is_linear(effect, parameter - first), {}, step};
-    made.own.assign(all + first, all + next);
+    made.coefficients.assign(all + first, all + next);
     if (!made.is_linear) return made;
-    for (std::size_t i = 0; i < made.own.size(); ++i) {
-      if (chain_->is_linear(effect, i)) made.own[i] = i == made.number ? 1.0 : 0.0;
+    for (std::size_t i = 0; i < made.coefficients.size(); ++i) {
+      if (chain_->is_linear(effect, i)) made.coefficients[i] = i == made.number ? 1.0 : 0.0;
     }
     return made;
   }
 
   double shape_of(Coefficient& coefficient, const State<double>& state) const noexcept {
-    double* const own = coefficient.own.data();
-    if (coefficient.is_linear) return chain_->effect_value(coefficient.effect, state, own);
-    const double value = own[coefficient.number];
-    own[coefficient.number] = value + coefficient.step;
-    const double above = chain_->effect_value(coefficient.effect, state, own);
-    own[coefficient.number] = value - coefficient.step;
-    const double below = chain_->effect_value(coefficient.effect, state, own);
-    own[coefficient.number] = value;
+    double* const coefficients = coefficient.coefficients.data();
+    if (coefficient.is_linear) return chain_->effect_value(coefficient.effect, state, coefficients);
+    const double value = coefficients[coefficient.number];
+    coefficients[coefficient.number] = value + coefficient.step;
+    const double above = chain_->effect_value(coefficient.effect, state, coefficients);
+    coefficients[coefficient.number] = value - coefficient.step;
+    const double below = chain_->effect_value(coefficient.effect, state, coefficients);
+    coefficients[coefficient.number] = value;
     return (above - below) / (2.0 * coefficient.step);
   }
 
