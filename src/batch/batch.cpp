@@ -83,6 +83,17 @@ bool Batch::finds(Quantity quantity) const {
 
 void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& outputs, std::size_t samples,
                 const double* parameters) const {
+  run(inputs, outputs, {}, samples, parameters);
+}
+
+void Batch::differentiate(const std::vector<Input>& inputs, const std::vector<Derivative>& derivatives,
+                          std::size_t samples, const double* parameters) const {
+  run(inputs, {}, derivatives, samples, parameters);
+}
+
+void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& outputs,
+                const std::vector<Derivative>& derivatives, std::size_t samples,
+                const double* parameters) const {
   for (const Quantity needed : chain_.inputs()) {
     const bool given = std::any_of(inputs.begin(), inputs.end(),
                                    [needed](const Input& input) { return input.quantity == needed; });
@@ -100,6 +111,7 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
     }
     requested.set(index(output.quantity));
   }
+  if (!derivatives.empty()) requested.set(index(Quantity::static_defect));
   BatchJob job;
   job.chain = &chain_;
   job.with = with_;
@@ -113,6 +125,21 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
   job.outputs = outputs.data();
   job.output_count = outputs.size();
   job.samples = samples;
+  std::vector<std::vector<double>> coefficients;
+  std::vector<BatchDerivative> columns;
+  for (const Derivative& each : derivatives) {
+    if (!chain_.is_defect_linear(each.effect, each.parameter)) {
+      throw Error(
+          Error::Code::usage,
+          fmt::format("the static defect is not linear in coefficient {} of effect {}; differentiate it "
+                      "by automatic derivatives",
+                      each.parameter, each.effect));
+    }
+    coefficients.push_back(chain_.unit_coefficients(each.effect, each.parameter, job.parameters));
+    columns.push_back({each.effect, each.parameter, coefficients.back().data(), each.values});
+  }
+  job.derivatives = columns.data();
+  job.derivative_count = columns.size();
   static const BatchKernel fastest = batch_kernels().front();
   fastest(job);
 }

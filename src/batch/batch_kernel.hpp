@@ -10,6 +10,15 @@
 
 namespace pcor::internal {
 
+/// Derivative of the static defect with respect to a coefficient in which it is linear.
+struct BatchDerivative {
+  std::size_t effect = 0;
+  std::size_t parameter = 0;  ///< index in the effect
+  const double* coefficients =
+      nullptr;  ///< of the effect: 1 for this one, 0 for others in which it is linear
+  double* values = nullptr;
+};
+
 /// Arguments of a kernel: plain pointers, because its code may be compiled for another processor than the
 /// rest.
 struct BatchJob {
@@ -21,6 +30,8 @@ struct BatchJob {
   std::size_t input_count = 0;
   const Batch::Output* outputs = nullptr;
   std::size_t output_count = 0;
+  const BatchDerivative* derivatives = nullptr;
+  std::size_t derivative_count = 0;
   std::size_t samples = 0;
 };
 
@@ -34,6 +45,32 @@ extern const BatchKernel run_batch_avx512;
 
 /// The kernels that this processor can run, the fastest first.
 std::vector<BatchKernel> batch_kernels();
+
+/// Stores the derivatives of `count` samples, from the state after the static defect.
+template <class Pack>
+void store_derivatives(const BatchJob& job, const State<Pack>& state, std::size_t at, std::size_t count) {
+  const Chain& chain = *job.chain;
+  const Pack factor =
+      select(is_missing(state[Quantity::static_defect]), missing<Pack>(), chain.taper_fraction(state));
+  const Surface* surface = nullptr;
+  std::array<Pack, SurfaceAxis::max_count> by_x;
+  std::array<Pack, SurfaceAxis::max_count> by_y;
+  for (std::size_t i = 0; i < job.derivative_count; ++i) {
+    const BatchDerivative& each = job.derivatives[i];
+    const Surface* const of_effect = chain.surface_of(each.effect);
+    if (of_effect != nullptr && of_effect != surface) {
+      by_x = Surface::splines(of_effect->axes[0], state[of_effect->axes[0].quantity]);
+      by_y = Surface::splines(of_effect->axes[1], state[of_effect->axes[1].quantity]);
+      surface = of_effect;
+    }
+    const Pack value = of_effect != nullptr ? by_x[each.parameter / of_effect->axes[1].count] *
+                                                  by_y[each.parameter % of_effect->axes[1].count] *
+                                                  state[Quantity::dynamic_pressure]
+                                            : chain.effect_value(each.effect, state, each.coefficients);
+    // A taper that ends in zero needs no input of the effect.
+    select(factor == Pack(0.0), Pack(0.0), factor * value).store(each.values + at, count);
+  }
+}
 
 /// The chain over all samples of a job, `Pack::size` at a time.
 template <class Pack>
@@ -53,6 +90,7 @@ void run_batch_in(const BatchJob& job) {
     for (std::size_t i = 0; i < job.output_count; ++i) {
       state[job.outputs[i].quantity].store(job.outputs[i].values + at, count);
     }
+    if (job.derivative_count > 0) store_derivatives(job, state, at, count);
   }
 }
 

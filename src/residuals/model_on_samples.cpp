@@ -67,15 +67,11 @@ std::vector<double> ModelOnSamples::parameters_of_columns() const {
 
 std::vector<bool> ModelOnSamples::linear() const {
   std::vector<bool> linear;
-  const bool has_minimum = std::isfinite(model_.policy.minimum);
-  for (const ModelEffect& effect : model_.effects) {
-    const EffectInfo* const info = effect_named(effect.id);
-    const bool is = !has_minimum && !effect.is_formula() && info != nullptr &&
-                    info->location == EffectLocation::static_defect;
-    for (std::size_t p = 0; p < effect.parameters.size(); ++p)
-      linear.push_back((effect.is_surface() && !has_minimum) || (is && !info->parameters[p].shape));
+  for (std::size_t effect = 0; effect < chain().effect_count(); ++effect) {
+    for (std::size_t p = 0; p < chain().parameter_count_of(effect); ++p)
+      linear.push_back(chain().is_defect_linear(effect, p));
   }
-  linear.resize(linear.size() + model_.additions.size(), false);
+  linear.resize(parameters().size(), false);
   return linear;
 }
 
@@ -96,34 +92,17 @@ void ModelOnSamples::total_pressure(const std::vector<Batch::Input>& inputs, std
   for (std::size_t i = 0; i < count; ++i) out[i] += dynamic[i];
 }
 
-/// Step of a linear parameter that changes delta-p by tenths of hPa.
-double ModelOnSamples::step_of(std::size_t parameter) const {
-  std::size_t first = 0;
-  for (const ModelEffect& effect : model_.effects) {
-    if (parameter < first + effect.parameters.size()) {
-      if (effect.is_surface()) return 0.001;
-      const double typical = effect_named(effect.id)->parameters[parameter - first].typical;
-      return 0.1 * std::abs(typical);
-    }
-    first += effect.parameters.size();
-  }
-  return 0.0;
-}
-
 void ModelOnSamples::differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
                                           const double* parameters,
                                           const std::vector<LinearColumn>& requested) const {
   if (requested.empty()) return;
-  std::vector<double> defect(count);
-  batch_.run(inputs, {{Quantity::static_defect, defect.data()}}, count, parameters);
-  std::vector<double> moved(parameters, parameters + this->parameters().size());
-  for (const auto& [parameter, derivatives] : requested) {
-    moved[parameter] += step_of(parameter);
-    batch_.run(inputs, {{Quantity::static_defect, derivatives}}, count, moved.data());
-    const double scale = 1.0 / (moved[parameter] - parameters[parameter]);
-    for (std::size_t i = 0; i < count; ++i) derivatives[i] = scale * (derivatives[i] - defect[i]);
-    moved[parameter] = parameters[parameter];
+  std::vector<Batch::Derivative> derivatives;
+  for (const auto& [parameter, column] : requested) {
+    std::size_t effect = chain().effect_count() - 1;
+    while (chain().first_parameter_of(effect) > parameter) --effect;
+    derivatives.push_back({effect, parameter - chain().first_parameter_of(effect), column});
   }
+  batch_.differentiate(inputs, derivatives, count, parameters);
 }
 
 bool ModelOnSamples::is_missing_needed(std::size_t sample) const {

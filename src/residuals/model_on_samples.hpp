@@ -118,8 +118,6 @@ class ModelOnSamples {
     }
   }
 
-  double step_of(std::size_t parameter) const;
-
   Model model_;
   Batch batch_;
   std::vector<Batch::Input> columns_;

@@ -286,6 +286,72 @@ TEST(Batch, CoefficientsCanBeReplaced) {
               testing::Pointwise(testing::NanSensitiveDoubleEq(), expected.at(Quantity::static_defect)));
 }
 
+/// Compares derivatives of the static defect with differences: a step of a coefficient in which it is linear,
+/// and of any size, gives the derivative.
+void expect_derivatives_of(const Model& model, std::size_t effect) {
+  constexpr std::size_t count = 2000;
+  const Arrays recorded = random_samples(count, gv_roles);
+  const std::vector<Batch::Input> inputs = inputs_of(recorded);
+  const Batch batch(model, gv_roles);
+  const Chain& chain = batch.chain();
+  std::vector<double> defect(count);
+  batch.run(inputs, {{Quantity::static_defect, defect.data()}}, count);
+  for (std::size_t parameter = 0; parameter < chain.parameter_count_of(effect); ++parameter) {
+    std::vector<double> found(count);
+    const std::vector<Batch::Derivative> derivatives{{effect, parameter, found.data()}};
+    if (!chain.is_defect_linear(effect, parameter)) {
+      EXPECT_THAT(test::error_of([&] { batch.differentiate(inputs, derivatives, count); }),
+                  test::IsError(Error::Code::usage, "not linear"));
+      continue;
+    }
+    batch.differentiate(inputs, derivatives, count);
+    std::vector<double> moved = chain.parameters();
+    constexpr double step = 1e-4;
+    moved[chain.first_parameter_of(effect) + parameter] += step;
+    std::vector<double> stepped(count);
+    batch.run(inputs, {{Quantity::static_defect, stepped.data()}}, count, moved.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(std::isnan(found[i]), std::isnan(defect[i])) << i;
+      // A step may make the defect larger than the dynamic pressure.
+      if (std::isnan(stepped[i]) || std::isnan(found[i])) continue;
+      // The difference of two defects is rounded to 1e-13 hPa, over the step of 1e-4.
+      const double difference = (stepped[i] - defect[i]) / step;
+      ASSERT_NEAR(found[i], difference, 1e-8 + 1e-9 * std::abs(difference))
+          << model.effects[effect].id << " " << parameter << " of sample " << i;
+    }
+  }
+}
+
+TEST(Batch, DerivativesEqualDifferencesForEveryEffectAtTheStaticPorts) {
+  std::size_t tested = 0;
+  for (const EffectInfo& info : effect_info) {
+    if (info.location != EffectLocation::static_defect) continue;
+    Model model = gv();
+    ModelEffect& effect = model.effects.emplace_back();
+    effect.id = std::string(info.id);
+    effect.scaling = {1, -1};
+    for (std::size_t i = 0; i < info.parameter_count(); ++i)
+      effect.parameters.push_back(info.parameters[i].neutral + 0.5 * info.parameters[i].typical);
+    std::optional<Chain> chain = Chain::build(model, gv_roles, nullptr);
+    if (!chain || chain->derives(Quantity::static_pressure_rate) || chain->derives(Quantity::time)) continue;
+    ++tested;
+    expect_derivatives_of(model, model.effects.size() - 1);
+  }
+  EXPECT_GE(tested, 8U);
+}
+
+TEST(Batch, DerivativesOfSurfaceAreItsSplines) {
+  Model model = gv();
+  ModelEffect effect;
+  effect.id = "surface";
+  effect.surface = Surface{{{{Quantity::attack, -1.0, 8.0, 5}, {Quantity::mach, 0.2, 0.8, 7}}}};
+  effect.parameters.assign(effect.surface->parameter_count(), 0.0);
+  for (std::size_t i = 0; i < effect.parameters.size(); ++i)
+    effect.parameters[i] = 1e-3 * static_cast<double>(i % 5);
+  model.effects.push_back(effect);
+  expect_derivatives_of(model, model.effects.size() - 1);
+}
+
 // Wider registers have separate kernels.
 Arrays in_kernel(BatchKernel kernel, const Batch& batch, const Arrays& recorded, std::size_t count) {
   Arrays found;

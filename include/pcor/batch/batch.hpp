@@ -32,6 +32,15 @@ class Batch {
     double* values = nullptr;
   };
 
+  /// Destination of the derivatives of the static defect with respect to a coefficient, hPa per its unit, one
+  /// for each sample.
+  struct Derivative {
+    std::size_t effect = 0;     ///< index of the effect in the model
+    std::size_t parameter = 0;  ///< index of the coefficient in the effect; the defect must be linear in it
+                                ///< (`Chain::is_defect_linear`)
+    double* values = nullptr;
+  };
+
   /// Prepares `model` for samples in which the quantities `recorded` are known.
   /// @throws Error if the model cannot be used on them.
   Batch(const Model& model, const std::vector<Quantity>& recorded, CorrectWith with = CorrectWith::model);
@@ -49,6 +58,12 @@ class Batch {
   void run(const std::vector<Input>& inputs, const std::vector<Output>& outputs, std::size_t samples,
            const double* parameters = nullptr) const;
 
+  /// Derivatives of the static defect with respect to coefficients in which it is linear, at the coefficients
+  /// `parameters`; exact, NaN where the static defect is. Inputs and outputs as in `run`.
+  /// @throws Error as `run` does, and if the static defect is not linear in a coefficient.
+  void differentiate(const std::vector<Input>& inputs, const std::vector<Derivative>& derivatives,
+                     std::size_t samples, const double* parameters = nullptr) const;
+
  private:
   struct StageInfo {
     std::bitset<state_capacity> reads;
@@ -56,6 +71,8 @@ class Batch {
   };
 
   std::string to_string(Quantity quantity) const;
+  void run(const std::vector<Input>& inputs, const std::vector<Output>& outputs,
+           const std::vector<Derivative>& derivatives, std::size_t samples, const double* parameters) const;
 
   Chain chain_;
   CorrectWith with_;

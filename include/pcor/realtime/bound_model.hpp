@@ -83,10 +83,12 @@ class BoundModel {
 
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
 
-  /// Number of effects of the model; location of each and index of its first coefficient in `parameters`.
+  /// Number of effects of the model; location of each, index of its first coefficient in `parameters`, and
+  /// number of its coefficients.
   std::size_t effect_count() const { return effects_.size(); }
   EffectLocation location_of(std::size_t effect) const { return effects_[effect].location; }
   std::size_t first_parameter_of(std::size_t effect) const { return effects_[effect].first_parameter; }
+  std::size_t parameter_count_of(std::size_t effect) const { return effects_[effect].parameter_count; }
 
   /// Time constant, s, of a quantity computed from earlier samples (`EffectInfo::memory`): the coefficient of
   /// the effect; without such an effect, as for a formula, its neutral value.
@@ -107,6 +109,19 @@ class BoundModel {
     const std::size_t entry = effects_[effect].effect;
     if (entry == Term::is_surface) return true;
     return entry < catalogue_size && !effect_info[entry].parameters[parameter].shape;
+  }
+
+  /// Coefficients at which the value of an effect is its derivative with respect to a coefficient in which it
+  /// is linear: 1 for this one, 0 for others in which it is linear. @param parameter index in the effect
+  /// @param parameters all coefficients, in the order of `parameters()`
+  std::vector<double> unit_coefficients(std::size_t effect, std::size_t parameter,
+                                        const double* parameters) const {
+    parameters += first_parameter_of(effect);
+    std::vector<double> coefficients(parameters, parameters + parameter_count_of(effect));
+    for (std::size_t i = 0; i < coefficients.size(); ++i) {
+      if (is_linear(effect, i)) coefficients[i] = i == parameter ? 1.0 : 0.0;
+    }
+    return coefficients;
   }
 
   /// Surface of effect number `effect` of the model; null for other effects.
@@ -158,6 +173,7 @@ class BoundModel {
     std::size_t effect = is_formula;
     std::size_t formula = 0;
     std::size_t first_parameter = 0;
+    std::size_t parameter_count = 0;
     EffectLocation location = EffectLocation::static_defect;
     Scaling scaling{};
   };

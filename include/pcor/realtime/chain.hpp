@@ -227,6 +227,13 @@ class Chain : public BoundModel {
         state, flags, Quality::lams_missing);
   }
 
+  /// True if delta-p of the model is exactly linear in a coefficient: one of an effect at the static ports
+  /// (`is_linear`), if the policy has no minimum of delta-p.
+  bool is_defect_linear(std::size_t effect, std::size_t parameter) const {
+    return location_of(effect) == EffectLocation::static_defect && is_linear(effect, parameter) &&
+           !has_minimum();
+  }
+
   /// Taper factor of the effects at the static ports: 1 without a taper.
   template <class S>
   S taper_fraction(const State<S>& state) const {

@@ -203,6 +203,7 @@ class ModelBinder {
 
   void add_effect(Term term, const ModelEffect& effect) {
     term.first_parameter = bound_.parameters_.size();
+    term.parameter_count = effect.parameters.size();
     bound_.parameters_.insert(bound_.parameters_.end(), effect.parameters.begin(), effect.parameters.end());
     bound_.effects_.push_back(term);
     if (bound_.is_within_reach(term.location)) add_term(term);

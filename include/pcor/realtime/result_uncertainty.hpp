@@ -287,13 +287,12 @@ class ResultUncertainty final : public Functor {
       for (std::size_t effect = 0; effect < chain_->effect_count(); ++effect) {
         if (chain_->location_of(effect) != location) continue;
         const std::size_t first = chain_->first_parameter_of(effect);
-        const std::size_t next =
-            effect + 1 < chain_->effect_count() ? chain_->first_parameter_of(effect + 1) : count;
+        const std::size_t next = first + chain_->parameter_count_of(effect);
         for (std::size_t parameter = first; parameter < next; ++parameter) {
           const double variance = covariance[parameter * count + parameter];
           if (!(variance > 0.0)) continue;
           order.push_back(parameter);
-          coefficients_.push_back(coefficient(effect, first, next, parameter, std::sqrt(variance)));
+          coefficients_.push_back(coefficient(effect, parameter - first, std::sqrt(variance)));
         }
       }
       if (order.size() > begin) terms_by_location_.push_back({location, begin, order.size()});
@@ -327,14 +326,14 @@ class ResultUncertainty final : public Functor {
     }
   }
 
-  Coefficient coefficient(std::size_t effect, std::size_t first, std::size_t next, std::size_t parameter,
-                          double step) const {
+  Coefficient coefficient(std::size_t effect, std::size_t parameter, double step) const {
     const double* const all = chain_->parameters().data();
-    Coefficient made{effect, parameter - first, chain_->is_linear(effect, parameter - first), {}, step};
-    made.coefficients.assign(all + first, all + next);
-    if (!made.is_linear) return made;
-    for (std::size_t i = 0; i < made.coefficients.size(); ++i) {
-      if (chain_->is_linear(effect, i)) made.coefficients[i] = i == made.number ? 1.0 : 0.0;
+    Coefficient made{effect, parameter, chain_->is_linear(effect, parameter), {}, step};
+    if (made.is_linear) {
+      made.coefficients = chain_->unit_coefficients(effect, parameter, all);
+    } else {
+      const double* const first = all + chain_->first_parameter_of(effect);
+      made.coefficients.assign(first, first + chain_->parameter_count_of(effect));
     }
     return made;
   }
