@@ -447,13 +447,16 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
 }  // namespace
 
 ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const ModelDefinition& model,
-                                              const References& references, const RefitOptions& options) {
+                                              const References& references, const RefitOptions& options,
+                                              std::vector<SurfaceRoughness>& surfaces) {
   if (std::any_of(references.begin(), references.end(),
                   [](const auto& reference) { return is_by_gps(*reference); }))
     return refit(flights, model, references, options).model;
   require_sense(flights, references, options);
   FitTask task = task_of(model, references, options, flights);
+  if (!surfaces.empty()) task.surfaces = surfaces;
   const Fitted fitted = fit_in_stages(task);
+  surfaces = task.surfaces;
   ModelDefinition result = model;
   Eigen::Index p = 0;
   for (ModelEffect& effect : result.model.effects) {

@@ -1,6 +1,7 @@
 #include "improve/surface_offer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include <pcor/base/error.hpp>
@@ -36,6 +37,7 @@ TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, cons
   const std::vector<TrialFlight> outline =
       try_models(flights, {models.without, models.with}, references, options);
   std::vector<TrialModel> trials;
+  std::array<std::vector<SurfaceRoughness>, 2> surfaces;  // of the block before
   for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
     without_block.alike = models.without.alike;
@@ -44,8 +46,11 @@ TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, cons
       if (flight.first_reference && flight.fitted.size() >= held_out_blocks)
         without_block.mask.intervals->exclude.push_back(block_of(flight, block));
     }
-    for (const TrialModel* const model : {&models.without, &models.with})
-      trials.push_back({fitted_coefficients(flights, model->file, references, without_block), model->alike});
+    const std::array<const TrialModel*, 2> both{&models.without, &models.with};
+    for (std::size_t k = 0; k < both.size(); ++k) {
+      trials.push_back({fitted_coefficients(flights, both[k]->file, references, without_block, surfaces[k]),
+                        both[k]->alike});
+    }
   }
   std::vector<TrialFlight> tried = try_models(flights, trials, references, options);
   const std::size_t per_reference = tried.size() / references.size();
