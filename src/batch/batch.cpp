@@ -83,17 +83,17 @@ bool Batch::finds(Quantity quantity) const {
 
 void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& outputs, std::size_t samples,
                 const double* parameters) const {
-  run(inputs, outputs, {}, samples, parameters);
+  compute(inputs, outputs, {}, samples, parameters);
 }
 
 void Batch::differentiate(const std::vector<Input>& inputs, const std::vector<Derivative>& derivatives,
                           std::size_t samples, const double* parameters) const {
-  run(inputs, {}, derivatives, samples, parameters);
+  compute(inputs, {}, derivatives, samples, parameters);
 }
 
-void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& outputs,
-                const std::vector<Derivative>& derivatives, std::size_t samples,
-                const double* parameters) const {
+void Batch::compute(const std::vector<Input>& inputs, const std::vector<Output>& outputs,
+                    const std::vector<Derivative>& derivatives, std::size_t samples,
+                    const double* parameters) const {
   for (const Quantity needed : chain_.inputs()) {
     const bool given = std::any_of(inputs.begin(), inputs.end(),
                                    [needed](const Input& input) { return input.quantity == needed; });
@@ -128,15 +128,22 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
   std::vector<std::vector<double>> coefficients;
   std::vector<BatchDerivative> columns;
   for (const Derivative& each : derivatives) {
-    if (!chain_.is_defect_linear(each.effect, each.parameter)) {
+    const bool is_known =
+        each.effect < chain_.effect_count() && each.parameter < chain_.parameter_count_of(each.effect);
+    if (!is_known || !chain_.is_defect_linear(each.effect, each.parameter)) {
       throw Error(
           Error::Code::usage,
-          fmt::format("the static defect is not linear in coefficient {} of effect {}; differentiate it "
-                      "by automatic derivatives",
-                      each.parameter, each.effect));
+          fmt::format(
+              "the static defect is not linear in coefficient {} of effect {}: give a coefficient of an "
+              "effect at the static ports that is neither a shape nor of a formula, in a model without "
+              "a minimum",
+              each.parameter, each.effect));
     }
+    BatchDerivative& column = columns.emplace_back();
+    column = {each.effect, each.parameter, nullptr, each.values};
+    if (chain_.surface_of(each.effect) != nullptr) continue;
     coefficients.push_back(chain_.unit_coefficients(each.effect, each.parameter, job.parameters));
-    columns.push_back({each.effect, each.parameter, coefficients.back().data(), each.values});
+    column.coefficients = coefficients.back().data();
   }
   job.derivatives = columns.data();
   job.derivative_count = columns.size();

@@ -52,22 +52,22 @@ void store_derivatives(const BatchJob& job, const State<Pack>& state, std::size_
   const Chain& chain = *job.chain;
   const Pack factor =
       select(is_missing(state[Quantity::static_defect]), missing<Pack>(), chain.taper_fraction(state));
-  const Surface* surface = nullptr;
+  const Surface* last_surface = nullptr;
   std::array<Pack, SurfaceAxis::max_count> by_x;
   std::array<Pack, SurfaceAxis::max_count> by_y;
   for (std::size_t i = 0; i < job.derivative_count; ++i) {
     const BatchDerivative& each = job.derivatives[i];
-    const Surface* const of_effect = chain.surface_of(each.effect);
-    if (of_effect != nullptr && of_effect != surface) {
-      by_x = Surface::splines(of_effect->axes[0], state[of_effect->axes[0].quantity]);
-      by_y = Surface::splines(of_effect->axes[1], state[of_effect->axes[1].quantity]);
-      surface = of_effect;
+    const Surface* const surface = chain.surface_of(each.effect);
+    if (surface != nullptr && surface != last_surface) {
+      by_x = Surface::splines(surface->axes[0], state[surface->axes[0].quantity]);
+      by_y = Surface::splines(surface->axes[1], state[surface->axes[1].quantity]);
+      last_surface = surface;
     }
-    const Pack value = of_effect != nullptr ? by_x[each.parameter / of_effect->axes[1].count] *
-                                                  by_y[each.parameter % of_effect->axes[1].count] *
-                                                  state[Quantity::dynamic_pressure]
-                                            : chain.effect_value(each.effect, state, each.coefficients);
-    // A taper that ends in zero needs no input of the effect.
+    const Pack value = surface != nullptr ? by_x[each.parameter / surface->axes[1].count] *
+                                                by_y[each.parameter % surface->axes[1].count] *
+                                                state[Quantity::dynamic_pressure]
+                                          : chain.effect_value(each.effect, state, each.coefficients);
+    // Where the taper is zero, the derivative is zero even if an input of the effect is missing.
     select(factor == Pack(0.0), Pack(0.0), factor * value).store(each.values + at, count);
   }
 }

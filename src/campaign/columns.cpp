@@ -399,8 +399,8 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
     columns.quantities.emplace_back(quantity, std::vector<double>(residuals.size(), nan));
   Eigen::Index next = 0;  // next evaluated column
   for (const System& system : systems) {
-    const bool is_own = &system == &model_system;
-    const std::size_t first = is_own ? 0 : set.base_of_others[reference];
+    const bool is_of_model = &system == &model_system;
+    const std::size_t first = is_of_model ? 0 : set.base_of_others[reference];
     for (std::size_t c = 0; c < system.free.size() && !is_wind; ++c, ++next) {
       for (std::size_t k = 0; k < used.size(); ++k)
         columns.base(as_index(used[k]), as_index(first + c)) = static_cast<float>(-found(as_index(k), next));
@@ -408,15 +408,15 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
     const Eigen::Index locations = of_neighbours ? 0 : as_index(system.locations().size());
     const auto by_location = found.middleCols(next, locations);
     next += locations;
-    const ModelSamples& inputs = is_own ? rows.inputs().model : rows.inputs().reference;
-    const Model& with_all = is_own ? set.extended.model : set.others[reference]->model;
+    const ModelSamples& inputs = is_of_model ? rows.inputs().model : rows.inputs().reference;
+    const Model& with_all = is_of_model ? set.extended.model : set.others[reference]->model;
     const std::vector<Evaluation> evaluations =
-        evaluations_of(set, reference, !is_own, system.locations(), extended->model, *extended);
+        evaluations_of(set, reference, !is_of_model, system.locations(), extended->model, *extended);
     put_candidates(
         chain_of(with_all, inputs.roles), inputs, evaluations, needed, by_location,
         [&](std::size_t sample, const State<double>& state) {
           for (auto& [quantity, values] : columns.quantities) {
-            if (is_own) values[sample] = state[quantity];
+            if (is_of_model) values[sample] = state[quantity];
           }
         },
         columns.candidates);

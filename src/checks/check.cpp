@@ -210,7 +210,7 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
   std::size_t done = 0;
   auto parts = flights.share().of_each_flight<FlightPart>([&](std::size_t number) {
     FlightPart part = part_of(flights, number, model, options);
-    if (options.progress) options.progress(++done, flights.share().own());
+    if (options.progress) options.progress(++done, flights.share().local_count());
     return part;
   });
   flights.require_unchanged();

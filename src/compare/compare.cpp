@@ -356,7 +356,7 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
   flights.require_one_aircraft();
   const auto tell = [&, done = std::size_t{0}]() mutable {
     ++done;
-    if (options.progress) options.progress(done, fields.size() * flights.share().own());
+    if (options.progress) options.progress(done, fields.size() * flights.share().local_count());
   };
   const std::function<void()> progress = tell;
   Comparison result = compare_with(fields.front().pairings, flights, options, progress);

@@ -248,8 +248,8 @@ double static_risk(const Analysis& analysis, const std::vector<Candidate>& candi
     const Eigen::VectorXd other = static_estimate(analysis, candidates, instead);
     const auto difference = [&](std::size_t f) {
       std::vector<double> values = analysis.added(f, instead, other);
-      const std::vector<double> by_own = analysis.added(f, chosen, estimate);
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] -= by_own[i];
+      const std::vector<double> by_winner = analysis.added(f, chosen, estimate);
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] -= by_winner[i];
       return values;
     };
     risk = std::max(risk, rms_of(analysis.share(), difference));

@@ -91,7 +91,7 @@ TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const 
   const auto read = [&](std::size_t entry) {
     const std::size_t file = file_of_each[entry];
     const std::size_t r = entry / count;
-    if (r == 0 && options.progress) options.progress(++done, files.share().own());
+    if (r == 0 && options.progress) options.progress(++done, files.share().local_count());
     SamplesOfFlight samples = files.samples(file, set.extended, *set.references[0], options.mask);
     if (r > 0) {
       auto further = std::make_shared<FlightSamples>(*samples);

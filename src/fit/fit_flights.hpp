@@ -223,7 +223,7 @@ class FitFlights {
   void weigh(const Eigen::VectorXd& parameters);
 
   /// Also estimates the noise of each reference.
-  /// @param misfit misfit of the law in the bins of an local flight, hPa, excluded from the noise; may be
+  /// @param misfit misfit of the law in the bins of a local flight, hPa, excluded from the noise; may be
   /// empty
   void measure_noise(const Eigen::VectorXd& parameters,
                      const std::function<Eigen::VectorXd(std::size_t flight)>& misfit = {});

@@ -105,11 +105,11 @@ class GpsSolver {
 
   Part part_of(GpsKind kind, const FitFlight& fit, FlightState& state, bool with_noise,
                bool with_outliers) const {
-    const Eigen::VectorXd own = flight_parameters(fit.residuals(), task_, values_);
+    const Eigen::VectorXd coefficients = flight_parameters(fit.residuals(), task_, values_);
     const FlightSamples& samples = fit.residuals().samples();
     Part part;
     const GpsRows rows =
-        gps_rows(kind, samples, task_.model, fit.kept(), own.data(), requested_, {}, warmer_);
+        gps_rows(kind, samples, task_.model, fit.kept(), coefficients.data(), requested_, {}, warmer_);
     part.samples = static_cast<std::size_t>(rows.defect.rows());
     part.defects = rows.defect.transpose() * rows.defect;
     if (part.samples == 0) return part;

@@ -141,13 +141,16 @@ Fitted at_start(const FitTask& task, const std::vector<std::vector<std::size_t>>
   return fitted;
 }
 
-/// The size of surfaces and their coefficients, in turn. The noise hardly changes after three rounds.
+/// The sizes of surfaces and their coefficients, in turn. The noise hardly changes after three rounds. The
+/// coefficients are always those of the last sizes.
 void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
   constexpr int max_rounds = 6;
   constexpr int noise_rounds = 3;
-  for (int round = 0;
-       round < max_rounds && find_roughness(flights, solution, task.surfaces, round < noise_rounds); ++round)
+  for (int round = 0; round < max_rounds; ++round) {
+    const bool has_changed = find_roughness(flights, solution, task.surfaces, round < noise_rounds);
     solution = solve(flights, std::move(solution), flights.setup().requested);
+    if (!has_changed) break;
+  }
 }
 
 Fitted fit_in_stages(FitTask& task) {

@@ -32,7 +32,7 @@ std::vector<std::vector<FittedParameter>> refit_per_flight(const FlightSet& flig
     } catch (const Error& error) {
       if (error.code() == Error::Code::file) throw;
     }
-    if (options.progress) options.progress(++done, share.own());
+    if (options.progress) options.progress(++done, share.local_count());
     return found;
   });
 }

@@ -37,7 +37,8 @@ TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, cons
   const std::vector<TrialFlight> outline =
       try_models(flights, {models.without, models.with}, references, options);
   std::vector<TrialModel> trials;
-  std::array<std::vector<SurfaceRoughness>, 2> surfaces;  // of the block before
+  // Priors of the block before, where the search for those of the next block starts.
+  std::array<std::vector<SurfaceRoughness>, 2> surfaces;
   for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
     without_block.alike = models.without.alike;

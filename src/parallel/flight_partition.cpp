@@ -6,7 +6,7 @@
 namespace pcor::internal {
 
 FlightPartition::FlightPartition(std::size_t flights)
-    : comm_(&serial_communicator()), owner_(flights, 0), own_(flights) {}
+    : comm_(&serial_communicator()), owner_(flights, 0), local_count_(flights) {}
 
 FlightPartition::FlightPartition(Communicator& comm, const std::vector<std::uint64_t>& sizes)
     : comm_(&comm), owner_(sizes.size(), 0) {
@@ -20,7 +20,7 @@ FlightPartition::FlightPartition(Communicator& comm, const std::vector<std::uint
     owner_[flight] = static_cast<std::size_t>(minimum - load.begin());
     *minimum += std::max<std::uint64_t>(sizes[flight], 1);
   }
-  own_ = static_cast<std::size_t>(std::count(owner_.begin(), owner_.end(), comm.rank()));
+  local_count_ = static_cast<std::size_t>(std::count(owner_.begin(), owner_.end(), comm.rank()));
 }
 
 FlightPartition FlightPartition::of_entries(const std::vector<std::size_t>& flight_of_each) const {
@@ -28,14 +28,15 @@ FlightPartition FlightPartition::of_entries(const std::vector<std::size_t>& flig
   share.comm_ = comm_;
   for (std::size_t entry = 0; entry < share.flights(); ++entry)
     share.owner_[entry] = owner_[flight_of_each[entry]];
-  share.own_ = static_cast<std::size_t>(std::count(share.owner_.begin(), share.owner_.end(), comm_->rank()));
+  share.local_count_ =
+      static_cast<std::size_t>(std::count(share.owner_.begin(), share.owner_.end(), comm_->rank()));
   return share;
 }
 
 FlightPartition FlightPartition::with(const FlightPartition& more) const {
   FlightPartition share = *this;
   share.owner_.insert(share.owner_.end(), more.owner_.begin(), more.owner_.end());
-  share.own_ += more.own_;
+  share.local_count_ += more.local_count_;
   return share;
 }
 

@@ -43,7 +43,7 @@ class FlightPartition {
 
   std::size_t flights() const { return owner_.size(); }
   bool is_local(std::size_t flight) const { return owner_[flight] == comm_->rank(); }
-  std::size_t own() const { return own_; }
+  std::size_t local_count() const { return local_count_; }
   Communicator& comm() const { return *comm_; }
 
   /// The share of a list whose entries are each of one of these flights, as is a flight against one of
@@ -75,7 +75,7 @@ class FlightPartition {
     std::vector<Part> parts(flights());
     attempt([&] { visit(parts); });
     if (comm_->size() > 1) {
-      gather(own_of(parts), state,
+      gather(local_parts_of(parts), state,
              [&parts](std::size_t flight, Part part) { parts[flight] = std::move(part); });
     }
     return parts;
@@ -177,7 +177,7 @@ class FlightPartition {
   }
 
   template <class Part>
-  std::vector<Part> own_of(std::vector<Part>& parts) const {
+  std::vector<Part> local_parts_of(std::vector<Part>& parts) const {
     std::vector<Part> own;
     for (std::size_t flight = 0; flight < parts.size(); ++flight) {
       if (is_local(flight)) own.push_back(std::move(parts[flight]));
@@ -201,7 +201,7 @@ class FlightPartition {
 
   Communicator* comm_;
   std::vector<std::size_t> owner_;
-  std::size_t own_ = 0;
+  std::size_t local_count_ = 0;
 };
 
 /// Partition of the flights of these files, by their sizes on the first rank. An unreadable file is reported

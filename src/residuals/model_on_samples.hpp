@@ -39,8 +39,8 @@ class ModelOnSamples {
   /// Parameters of the file.
   const std::vector<double>& parameters() const { return chain().parameters(); }
 
-  /// True for each parameter in which delta-p is exactly linear and which changes no other result: parameters
-  /// of catalogue effects at the static ports, if delta-p has no lower limit.
+  /// True for each parameter in which delta-p is exactly linear and which changes no other result: linear
+  /// coefficients of catalogue effects and of surfaces at the static ports, if delta-p has no minimum.
   std::vector<bool> linear() const;
 
   /// Evaluates the chain for one sample up to delta-p of the model.
@@ -89,7 +89,9 @@ class ModelOnSamples {
   void corrected_static_pressure(const std::vector<Batch::Input>& inputs, std::size_t count,
                                  const double* parameters, double* out) const;
 
-  /// Derivatives of delta-p of a block with respect to linear parameters, hPa per unit.
+  /// Derivatives of delta-p of a block, hPa per unit. @param requested parameters for which `linear()` is
+  /// true
+  /// @throws Error as `Batch::differentiate`
   void differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
                             const double* parameters, const std::vector<LinearColumn>& requested) const;
 

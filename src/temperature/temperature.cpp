@@ -77,7 +77,7 @@ class TemperatureCalibration {
     std::size_t done = 0;
     auto parts = flights_.share().of_each_flight<FlightHeightRecord>([&](std::size_t number) {
       FlightHeightRecord part = read_heights(flights_, number, model_, options_);
-      if (options_.progress) options_.progress(++done, flights_.share().own());
+      if (options_.progress) options_.progress(++done, flights_.share().local_count());
       return part;
     });
     std::string first_trouble;

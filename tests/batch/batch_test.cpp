@@ -286,70 +286,230 @@ TEST(Batch, CoefficientsCanBeReplaced) {
               testing::Pointwise(testing::NanSensitiveDoubleEq(), expected.at(Quantity::static_defect)));
 }
 
-/// Compares derivatives of the static defect with differences: a step of a coefficient in which it is linear,
-/// and of any size, gives the derivative.
-void expect_derivatives_of(const Model& model, std::size_t effect) {
-  constexpr std::size_t count = 2000;
-  const Arrays recorded = random_samples(count, gv_roles);
-  const std::vector<Batch::Input> inputs = inputs_of(recorded);
-  const Batch batch(model, gv_roles);
+/// Every quantity that an effect at the static ports reads, over a range in which the effects act.
+Arrays samples_of_all_inputs(std::size_t count) {
+  struct Range {
+    Quantity quantity;
+    double lower, upper;
+  };
+  constexpr Range ranges[] = {{Quantity::static_pressure, 400, 900},
+                              {Quantity::dynamic_pressure, 20, 250},
+                              {Quantity::radome_dynamic_pressure, 20, 250},
+                              {Quantity::attack_differential_pressure, -20, 20},
+                              {Quantity::sideslip_differential_pressure, -8, 8},
+                              {Quantity::attack, -2, 8},
+                              {Quantity::sideslip, -4, 4},
+                              {Quantity::time, 0, 9000},
+                              {Quantity::date, 4000, 4600},
+                              {Quantity::normal_acceleration, 5, 15},
+                              {Quantity::longitudinal_acceleration, -1, 1},
+                              {Quantity::roll, -30, 30},
+                              {Quantity::flaps, 0, 40},
+                              {Quantity::engine_torque, 10, 90},
+                              {Quantity::height_above_ground, 5, 100},
+                              {Quantity::recovery_temperature, 240, 300},
+                              {Quantity::vapor_pressure, 0.5, 3},
+                              {Quantity::static_pressure_rate, -1, 1}};
+  std::mt19937_64 random(1976);
+  Arrays arrays;
+  for (const Range& range : ranges) {
+    std::uniform_real_distribution<double> value(range.lower, range.upper);
+    for (std::size_t i = 0; i < count; ++i)
+      arrays[range.quantity].push_back(i % 97 == index(range.quantity) % 97 ? nan : value(random));
+  }
+  return arrays;
+}
+
+std::vector<Quantity> quantities_of(const Arrays& arrays) {
+  std::vector<Quantity> quantities;
+  for (const auto& [quantity, values] : arrays) quantities.push_back(quantity);
+  return quantities;
+}
+
+/// Runs a kernel for all derivatives of a model in which delta-p is linear, together with delta-p.
+std::vector<double> defect_and_derivatives(BatchKernel kernel, const Batch& batch, const Arrays& recorded,
+                                           std::vector<std::vector<double>>& found) {
+  const std::size_t count = recorded.begin()->second.size();
   const Chain& chain = batch.chain();
   std::vector<double> defect(count);
-  batch.run(inputs, {{Quantity::static_defect, defect.data()}}, count);
-  for (std::size_t parameter = 0; parameter < chain.parameter_count_of(effect); ++parameter) {
-    std::vector<double> found(count);
-    const std::vector<Batch::Derivative> derivatives{{effect, parameter, found.data()}};
-    if (!chain.is_defect_linear(effect, parameter)) {
-      EXPECT_THAT(test::error_of([&] { batch.differentiate(inputs, derivatives, count); }),
-                  test::IsError(Error::Code::usage, "not linear"));
-      continue;
-    }
-    batch.differentiate(inputs, derivatives, count);
-    std::vector<double> moved = chain.parameters();
-    constexpr double step = 1e-4;
-    moved[chain.first_parameter_of(effect) + parameter] += step;
-    std::vector<double> stepped(count);
-    batch.run(inputs, {{Quantity::static_defect, stepped.data()}}, count, moved.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      EXPECT_EQ(std::isnan(found[i]), std::isnan(defect[i])) << i;
-      // A step may make the defect larger than the dynamic pressure.
-      if (std::isnan(stepped[i]) || std::isnan(found[i])) continue;
-      // The difference of two defects is rounded to 1e-13 hPa, over the step of 1e-4.
-      const double difference = (stepped[i] - defect[i]) / step;
-      ASSERT_NEAR(found[i], difference, 1e-8 + 1e-9 * std::abs(difference))
-          << model.effects[effect].id << " " << parameter << " of sample " << i;
+  const std::vector<Batch::Input> inputs = inputs_of(recorded);
+  const Batch::Output output{Quantity::static_defect, defect.data()};
+  std::vector<std::vector<double>> coefficients;
+  std::vector<BatchDerivative> derivatives;
+  for (std::size_t effect = 0; effect < chain.effect_count(); ++effect) {
+    for (std::size_t p = 0; p < chain.parameter_count_of(effect); ++p) {
+      if (!chain.is_defect_linear(effect, p)) continue;
+      coefficients.push_back(chain.unit_coefficients(effect, p, chain.parameters().data()));
+      derivatives.push_back({effect, p, nullptr, nullptr});
     }
   }
+  found.assign(derivatives.size(), std::vector<double>(count));
+  for (std::size_t k = 0; k < derivatives.size(); ++k) {
+    derivatives[k].values = found[k].data();
+    if (chain.surface_of(derivatives[k].effect) == nullptr)
+      derivatives[k].coefficients = coefficients[k].data();
+  }
+  BatchJob job;
+  job.chain = &chain;
+  job.parameters = chain.parameters().data();
+  job.runs.fill(true);
+  job.inputs = inputs.data();
+  job.input_count = inputs.size();
+  job.outputs = &output;
+  job.output_count = 1;
+  job.derivatives = derivatives.data();
+  job.derivative_count = derivatives.size();
+  job.samples = count;
+  kernel(job);
+  return defect;
+}
+
+/// Compares derivatives of delta-p with differences, in every kernel: a step of any size of a coefficient in
+/// which delta-p is linear gives the derivative. @return derivatives that differ from zero
+std::size_t expect_derivatives_of(const Model& model, const Arrays& recorded) {
+  const Batch batch(model, quantities_of(recorded));
+  const Chain& chain = batch.chain();
+  const std::size_t count = recorded.begin()->second.size();
+  std::size_t differ = 0;
+  for (const BatchKernel kernel : batch_kernels()) {
+    std::vector<std::vector<double>> found;
+    const std::vector<double> defect = defect_and_derivatives(kernel, batch, recorded, found);
+    auto column = found.begin();
+    for (std::size_t effect = 0; effect < chain.effect_count(); ++effect) {
+      for (std::size_t p = 0; p < chain.parameter_count_of(effect); ++p) {
+        if (!chain.is_defect_linear(effect, p)) continue;
+        std::vector<double> moved = chain.parameters();
+        constexpr double step = 1e-4;
+        moved[chain.first_parameter_of(effect) + p] += step;
+        std::vector<double> stepped(count);
+        batch.run(inputs_of(recorded), {{Quantity::static_defect, stepped.data()}}, count, moved.data());
+        double squares = 0.0;
+        for (std::size_t i = 0; i < count; ++i) {
+          EXPECT_EQ(std::isnan((*column)[i]), std::isnan(defect[i])) << i;
+          // A step may make delta-p larger than the dynamic pressure.
+          if (std::isnan(stepped[i]) || std::isnan(defect[i])) continue;
+          // The difference of two values of delta-p is rounded to 1e-13 hPa, over the step of 1e-4.
+          const double difference = (stepped[i] - defect[i]) / step;
+          EXPECT_NEAR((*column)[i], difference, 1e-8 + 1e-8 * std::abs(difference))
+              << model.effects[effect].id << " " << p << " of sample " << i;
+          squares += difference * difference;
+        }
+        if (squares > 0.0) ++differ;
+        ++column;
+      }
+    }
+  }
+  return differ / batch_kernels().size();
 }
 
 TEST(Batch, DerivativesEqualDifferencesForEveryEffectAtTheStaticPorts) {
-  std::size_t tested = 0;
+  const Arrays recorded = samples_of_all_inputs(500);
+  std::size_t linear = 0;
   for (const EffectInfo& info : effect_info) {
     if (info.location != EffectLocation::static_defect) continue;
     Model model = gv();
+    model.policy = {};
     ModelEffect& effect = model.effects.emplace_back();
     effect.id = std::string(info.id);
     effect.scaling = {1, -1};
-    for (std::size_t i = 0; i < info.parameter_count(); ++i)
-      effect.parameters.push_back(info.parameters[i].neutral + 0.5 * info.parameters[i].typical);
-    std::optional<Chain> chain = Chain::build(model, gv_roles, nullptr);
-    if (!chain || chain->derives(Quantity::static_pressure_rate) || chain->derives(Quantity::time)) continue;
-    ++tested;
-    expect_derivatives_of(model, model.effects.size() - 1);
+    for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+      const ParameterInfo& parameter = info.parameters[i];
+      effect.parameters.push_back(parameter.shape ? 0.6 * parameter.neutral : 0.01 * parameter.typical);
+      if (!parameter.shape) ++linear;
+    }
+    EXPECT_EQ(expect_derivatives_of(model, recorded),
+              gv().effects.size() +
+                  static_cast<std::size_t>(std::count_if(
+                      info.parameters.begin(),
+                      info.parameters.begin() + static_cast<std::ptrdiff_t>(info.parameter_count()),
+                      [](const ParameterInfo& each) { return !each.shape; })))
+        << info.id;
   }
-  EXPECT_GE(tested, 8U);
+  EXPECT_GE(linear, 18U);
 }
 
-TEST(Batch, DerivativesOfSurfaceAreItsSplines) {
+TEST(Batch, DerivativesOfSurfacesBesideOtherEffects) {
+  const Arrays recorded = samples_of_all_inputs(300);
   Model model = gv();
-  ModelEffect effect;
-  effect.id = "surface";
-  effect.surface = Surface{{{{Quantity::attack, -1.0, 8.0, 5}, {Quantity::mach, 0.2, 0.8, 7}}}};
-  effect.parameters.assign(effect.surface->parameter_count(), 0.0);
-  for (std::size_t i = 0; i < effect.parameters.size(); ++i)
-    effect.parameters[i] = 1e-3 * static_cast<double>(i % 5);
-  model.effects.push_back(effect);
-  expect_derivatives_of(model, model.effects.size() - 1);
+  ModelEffect formula;
+  formula.id = "fairing";
+  formula.formula = "0.01 * attack";
+  model.effects.push_back(formula);
+  std::size_t coefficients = gv().effects.size();
+  for (const std::size_t count : {5U, 7U}) {
+    ModelEffect surface;
+    surface.id = "surface-" + std::to_string(count);
+    surface.surface = Surface{{{{Quantity::attack, -1.0, 7.0, count}, {Quantity::mach, 0.2, 0.7, 6}}}};
+    for (std::size_t i = 0; i < surface.surface->parameter_count(); ++i)
+      surface.parameters.push_back(1e-4 * static_cast<double>(i % 5));
+    coefficients += surface.parameters.size();
+    model.effects.push_back(surface);
+    model.effects.push_back({"static-constant", {0.001}});
+    model.effects.back().id = count == 5 ? "static-mach" : "static-mach2";
+    ++coefficients;
+  }
+  EXPECT_EQ(expect_derivatives_of(model, recorded), coefficients);
+}
+
+TEST(Batch, DerivativesUseTheGivenCoefficients) {
+  // A shape other than that of the model changes the derivative by the amplitude.
+  const Arrays recorded = samples_of_all_inputs(50);
+  Model model = gv();
+  const EffectInfo& info = *effect_named("static-transonic");
+  ModelEffect effect{std::string(info.id)};
+  std::size_t amplitude = info.parameter_count();
+  std::size_t shape = amplitude;
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+    effect.parameters.push_back(info.parameters[i].shape ? 0.6 : 0.01);
+    (info.parameters[i].shape ? shape : amplitude) = i;
+  }
+  model.effects = {effect};
+  const Batch batch(model, quantities_of(recorded));
+  const auto sum_with = [&](double at) {
+    std::vector<double> parameters = effect.parameters;
+    parameters[shape] = at;
+    std::vector<double> found(50);
+    batch.differentiate(inputs_of(recorded), {{0, amplitude, found.data()}}, 50, parameters.data());
+    double sum = 0.0;
+    for (const double value : found) sum += std::isnan(value) ? 0.0 : std::abs(value);
+    return sum;
+  };
+  EXPECT_GT(sum_with(0.3), 1.01 * sum_with(0.6));
+}
+
+TEST(Batch, DerivativesThatDoNotExistAreRefused) {
+  const Arrays recorded = samples_of_all_inputs(10);
+  std::vector<double> found(10);
+  const auto expect_refused = [&](const Model& model, std::size_t effect, std::size_t parameter) {
+    const Batch batch(model, quantities_of(recorded));
+    EXPECT_THAT(test::error_of([&] {
+                  batch.differentiate(inputs_of(recorded), {{effect, parameter, found.data()}}, 10);
+                }),
+                test::IsError(Error::Code::usage, "linear"));
+  };
+  const std::size_t effects = gv().effects.size();
+  expect_refused(gv(), effects, 0);
+  expect_refused(gv(), 0, 1);
+  Model with_minimum = gv();
+  with_minimum.policy.minimum = 0.5;
+  expect_refused(with_minimum, 0, 0);
+  Model with_others = gv();
+  ModelEffect formula;
+  formula.id = "fairing";
+  formula.formula = "k * attack";
+  formula.parameter_names = {"k"};
+  formula.parameters = {0.01};
+  with_others.effects.push_back(formula);
+  with_others.effects.push_back({"psfd-bias", {0.1}});
+  expect_refused(with_others, effects, 0);
+  expect_refused(with_others, effects + 1, 0);
+  Arrays incomplete = recorded;
+  const Batch batch(gv(), quantities_of(recorded));
+  incomplete.erase(Quantity::attack);
+  EXPECT_THAT(test::error_of([&] {
+                batch.differentiate(inputs_of(incomplete), {{0, 0, found.data()}}, 10);
+              }),
+              test::IsError(Error::Code::variable, "'attack'"));
 }
 
 // Wider registers have separate kernels.

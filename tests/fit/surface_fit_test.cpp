@@ -15,6 +15,7 @@
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/realtime/loop.hpp>
 #include <pcor/roles/add_effects.hpp>
+#include "fit/fitted_coefficients.hpp"
 #include "fit/surface_roughness.hpp"
 #include "support/synthetic_samples.hpp"
 
@@ -116,6 +117,33 @@ TEST(SurfaceFit, CorrectLawGivesASmallSurface) {
   // 0.3/sqrt(600) = 0.012 hPa; three terms of the law add 0.02 hPa.
   EXPECT_LT(surface.surfaces.front().degrees_of_freedom, 8.0);
   EXPECT_LT(true_error(surface, plan(22, made::equation_18)), 0.05);
+}
+
+TEST(SurfaceFit, StartOfThePriorDoesNotMatter) {
+  RefitOptions options;
+  options.trust_reference = true;
+  const auto coefficients = [&](unsigned seed, std::vector<internal::SurfaceRoughness>& surfaces) {
+    const ModelDefinition fitted =
+        internal::fitted_coefficients({made::shared(plan(seed, with_bump))}, law_with_surface(),
+                                      made::pressure_reference(), options, surfaces);
+    return fitted.model.effects.back().parameters;
+  };
+  std::vector<internal::SurfaceRoughness> from_default;
+  const std::vector<double> expected = coefficients(11, from_default);
+  ASSERT_EQ(from_default.size(), 1U);
+  EXPECT_GT(from_default.front().degrees_of_freedom, 1.0);
+  std::vector<internal::SurfaceRoughness> from_another;
+  coefficients(12, from_another);
+  const std::vector<double> found = coefficients(11, from_another);
+  // Sizes are found to a step of a quarter of a decade, and the inflation to 20 %: a tenth of the bump.
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 0.0008) << i;
+  // A start far away.
+  std::vector<internal::SurfaceRoughness> from_afar = from_default;
+  from_afar.front().size = 0.001;
+  from_afar.front().coefficient = 0.001;
+  from_afar.front().inflation = 100.0;
+  const std::vector<double> afar = coefficients(11, from_afar);
+  for (std::size_t i = 0; i < afar.size(); ++i) EXPECT_NEAR(afar[i], expected[i], 0.0008) << i;
 }
 
 TEST(SurfaceFit, StatesAnErrorThatCoversTheTruth) {

@@ -36,7 +36,7 @@ std::vector<std::uint64_t> loads(std::size_t members, const std::vector<std::uin
       ++own;
       load[comm.rank()] += sizes[flight];
     }
-    EXPECT_EQ(share.own(), own);
+    EXPECT_EQ(share.local_count(), own);
   });
   EXPECT_THAT(owners, Each(1));
   return load;

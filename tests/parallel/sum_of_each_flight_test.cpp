@@ -84,7 +84,7 @@ TEST(SharesOfEntries, BelongToTheOwnersOfTheirFlights) {
       EXPECT_EQ(entries.is_local(entry), flights.is_local(flight_of_each[entry]));
       own += entries.is_local(entry) ? 1 : 0;
     }
-    EXPECT_EQ(entries.own(), own);
+    EXPECT_EQ(entries.local_count(), own);
   });
 }
 

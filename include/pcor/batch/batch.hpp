@@ -58,9 +58,12 @@ class Batch {
   void run(const std::vector<Input>& inputs, const std::vector<Output>& outputs, std::size_t samples,
            const double* parameters = nullptr) const;
 
-  /// Derivatives of the static defect with respect to coefficients in which it is linear, at the coefficients
-  /// `parameters`; exact, NaN where the static defect is. Inputs and outputs as in `run`.
-  /// @throws Error as `run` does, and if the static defect is not linear in a coefficient.
+  /// Derivatives of delta-p of the model, hPa per unit of the coefficient, with respect to coefficients in
+  /// which it is linear, at the coefficients `parameters`. They include the taper, and are exact; NaN where
+  /// delta-p is. Inputs as for `run`; `values` must not overlap an input or those of another derivative. May
+  /// be called by several threads concurrently.
+  /// @throws Error if an input is missing, or if delta-p is not linear in a coefficient or has no such
+  /// coefficient.
   void differentiate(const std::vector<Input>& inputs, const std::vector<Derivative>& derivatives,
                      std::size_t samples, const double* parameters = nullptr) const;
 
@@ -71,8 +74,9 @@ class Batch {
   };
 
   std::string to_string(Quantity quantity) const;
-  void run(const std::vector<Input>& inputs, const std::vector<Output>& outputs,
-           const std::vector<Derivative>& derivatives, std::size_t samples, const double* parameters) const;
+  void compute(const std::vector<Input>& inputs, const std::vector<Output>& outputs,
+               const std::vector<Derivative>& derivatives, std::size_t samples,
+               const double* parameters) const;
 
   Chain chain_;
   CorrectWith with_;

@@ -111,13 +111,15 @@ class BoundModel {
     return entry < catalogue_size && !effect_info[entry].parameters[parameter].shape;
   }
 
-  /// Coefficients at which the value of an effect is its derivative with respect to a coefficient in which it
-  /// is linear: 1 for this one, 0 for others in which it is linear. @param parameter index in the effect
-  /// @param parameters all coefficients, in the order of `parameters()`
+  /// Coefficients of an effect at which its value is its derivative with respect to a coefficient in which it
+  /// is linear: 1 for this one, 0 for others in which it is linear. Allocates: for construction, not for the
+  /// sample loop.
+  /// @param effect below `effect_count` @param parameter below `parameter_count_of` the effect
+  /// @param parameters coefficients of all effects, in the order of `parameters()`
   std::vector<double> unit_coefficients(std::size_t effect, std::size_t parameter,
                                         const double* parameters) const {
-    parameters += first_parameter_of(effect);
-    std::vector<double> coefficients(parameters, parameters + parameter_count_of(effect));
+    const double* const first = parameters + first_parameter_of(effect);
+    std::vector<double> coefficients(first, first + parameter_count_of(effect));
     for (std::size_t i = 0; i < coefficients.size(); ++i) {
       if (is_linear(effect, i)) coefficients[i] = i == parameter ? 1.0 : 0.0;
     }
@@ -131,12 +133,12 @@ class BoundModel {
   }
 
   /// Value of effect number `effect` of the model for a state after `Chain::measure`, in the unit of its
-  /// location. Zero for an effect on the laser's beam if there is no laser. @param parameters the
+  /// location. Zero for an effect on the laser's beam if there is no laser. @param coefficients the
   /// coefficients of this effect only
   template <class S, class P>
-  Promoted<S, P> effect_value(std::size_t effect, const State<S>& state, const P* parameters) const {
+  Promoted<S, P> effect_value(std::size_t effect, const State<S>& state, const P* coefficients) const {
     const Term& term = effects_[effect];
-    return is_within_reach(term.location) ? value(term, state, parameters) : Promoted<S, P>(0.0);
+    return is_within_reach(term.location) ? value(term, state, coefficients) : Promoted<S, P>(0.0);
   }
 
  protected:
@@ -207,21 +209,21 @@ class BoundModel {
   }
 
   template <class S, class P>
-  Promoted<S, P> value(const Term& term, const State<S>& state, const P* parameters) const {
+  Promoted<S, P> value(const Term& term, const State<S>& state, const P* coefficients) const {
     if (term.effect < catalogue_size) {
-      const Promoted<S, P> value = effect_functions<S, P>[term.effect](state, parameters);
+      const Promoted<S, P> value = effect_functions<S, P>[term.effect](state, coefficients);
       return term.scaling.is_none() ? value : scaled(value, term.scaling, state);
     }
-    if (term.effect == Term::is_addition) return Promoted<S, P>(*parameters);
+    if (term.effect == Term::is_addition) return Promoted<S, P>(*coefficients);
     if (term.effect == Term::is_surface) {
       const Surface& surface = surfaces_[term.formula];
       return surface.value(state[surface.axes[0].quantity], state[surface.axes[1].quantity],
-                           state[Quantity::dynamic_pressure], parameters);
+                           state[Quantity::dynamic_pressure], coefficients);
     }
     const BoundFormula& bound = formulas_[term.formula];
     std::array<S, formula_variable_capacity> variables;
     for (std::size_t i = 0; i < bound.variables.size(); ++i) variables[i] = state[bound.variables[i]];
-    return bound.formula.value(variables.data(), parameters);
+    return bound.formula.value(variables.data(), coefficients);
   }
 
   template <class R, class S>

@@ -266,7 +266,7 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   };
   const auto text_of = [](double value) {
     std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%g", value);
+    std::snprintf(text.data(), text.size(), "%.9g", value);
     return std::string(text.data());
   };
   if (!arithmetic_keeps_nan()) {
@@ -275,7 +275,7 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
         "-ffast-math, -ffinite-math-only and similar pragmas");
   }
   if (!(rate > 0.0 && is_finite(rate)))
-    return fail("the rate of the loop is " + text_of(rate) + " samples/s; give a number above 0");
+    return fail("the rate of the loop is " + text_of(rate) + " samples/s; give a finite number above 0");
   if (with == CorrectWith::lams && !chain->has_lams()) {
     return fail(
         "correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");

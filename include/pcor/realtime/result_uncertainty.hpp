@@ -172,7 +172,8 @@ class ResultUncertainty final : public Functor {
     std::size_t effect;
     std::size_t number;  // index among the coefficients of its effect
     bool is_linear;
-    // Coefficients of its effect: if linear, one for this coefficient and zero for the others.
+    // Coefficients of its effect: if linear, one for this coefficient and zero for the others in which it is
+    // linear.
     std::vector<double> coefficients;
     double step;         // its standard uncertainty
     double shape = 0.0;  // derivative of the effect's value for this sample
