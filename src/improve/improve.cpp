@@ -149,7 +149,8 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   loop.flights = fmt::format("{}", fmt::join(names, ", "));
   Improvement improvement = loop.run(model);
   all.require_unchanged();
-  descend(improvement.model, model, "improved on", flights.title());
+  const bool has_added = improvement.model.model.effects.size() > model.model.effects.size();
+  descend(improvement.model, model, has_added ? "improved on" : "fitted to", flights.title());
   return improvement;
 }
 

@@ -34,8 +34,10 @@ const EffectInfo& find(const std::string& id) {
   for (const EffectInfo& info : effect_info) ids.emplace_back(info.id);
   for (const EffectWithoutTrace& effect : effects_without_trace) ids.emplace_back(effect.id);
   const std::string hint = did_you_mean(id, ids);
-  throw Error(Error::Code::usage, fmt::format("there is no effect '{}'{}{} to list them: {} effects", id,
-                                              hint.empty() ? ";" : "; ", hint, program()));
+  throw Error(Error::Code::usage,
+              fmt::format("the catalogue has no effect '{}' (a formula is in the [[effect]] "
+                          "of its model){}{} to list the catalogue: {} effects",
+                          id, hint.empty() ? ";" : "; ", hint, program()));
 }
 
 std::string names_of_needs(const EffectInfo& info) {

@@ -181,13 +181,18 @@ void say_notes(Notes notes) {
     say("\n");
     return;
   }
+  bool is_cut = false;
   for (std::size_t i = 0; i < std::min(notes.size(), max_notes); ++i) {
     const std::string note = format_note(notes[i]);
     std::string_view rest = note;
     const std::string_view line = take_line(rest, max_width, false);
     say("note {}: {}{}\n", i + 1, line, rest.empty() ? "." : " ...");
+    is_cut = is_cut || !rest.empty();
   }
-  if (notes.size() > max_notes) say("more notes: {} (add --verbose)\n", notes.size() - max_notes);
+  if (notes.size() > max_notes)
+    say("more notes: {} (add --verbose)\n", notes.size() - max_notes);
+  else if (is_cut)
+    say("(add --verbose for the notes in full)\n");
 }
 
 namespace {
