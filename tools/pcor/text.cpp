@@ -181,18 +181,16 @@ void say_notes(Notes notes) {
     say("\n");
     return;
   }
-  bool is_cut = false;
+  bool is_cut = false;  // a note before
   for (std::size_t i = 0; i < std::min(notes.size(), max_notes); ++i) {
     const std::string note = format_note(notes[i]);
     std::string_view rest = note;
     const std::string_view line = take_line(rest, max_width, false);
-    say("note {}: {}{}\n", i + 1, line, rest.empty() ? "." : " ...");
+    const char* const ending = rest.empty() ? "." : is_cut ? " ..." : " ... (in full with --verbose)";
+    say("note {}: {}{}\n", i + 1, line, ending);
     is_cut = is_cut || !rest.empty();
   }
-  if (notes.size() > max_notes)
-    say("more notes: {} (add --verbose)\n", notes.size() - max_notes);
-  else if (is_cut)
-    say("(add --verbose for the notes in full)\n");
+  if (notes.size() > max_notes) say("more notes: {} (add --verbose)\n", notes.size() - max_notes);
 }
 
 namespace {
