@@ -44,7 +44,7 @@ class Lineage(unittest.TestCase):
     def test_fitted_model_has_a_new_name(self):
         self.assertEqual(self.model("first.toml")["name"], f"{NAME}, fitted to {FLIGHT}")
         self.assertEqual(self.model("second.toml")["name"], f"{NAME}, fitted to {FLIGHT} and 1 more")
-        self.assertEqual(self.model("best.toml")["name"], f"{NAME}, improved on {FLIGHT}")
+        self.assertEqual(self.model("best.toml")["name"], f"{NAME}, fitted to {FLIGHT}")
 
     def test_source_states_only_the_last_fit(self):
         for name in ("first.toml", "second.toml", "best.toml"):
