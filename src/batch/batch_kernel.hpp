@@ -13,9 +13,8 @@ namespace pcor::internal {
 /// Derivative of the static defect with respect to a coefficient in which it is linear.
 struct BatchDerivative {
   std::size_t effect = 0;
-  std::size_t parameter = 0;  ///< index in the effect
-  const double* coefficients =
-      nullptr;  ///< of the effect: 1 for this one, 0 for others in which it is linear
+  std::size_t parameter = 0;             ///< index in the effect
+  const double* coefficients = nullptr;  ///< `BoundModel::unit_coefficients`; null for a surface
   double* values = nullptr;
 };
 
