@@ -119,7 +119,9 @@ double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& var
 /// derivatives.
 Eigen::VectorXd variances_of(const Heights& heights, double rms) {
   constexpr int max_rounds = 500;
-  constexpr double maximum = 5.0;  // relative to the rms of the residual
+  // Relative to the rms of the residual. A misfit is a part of the residual, and heights of alternating signs,
+  // which a narrow feature requires, would otherwise make the slope of the law uncertain by several times it.
+  constexpr double maximum = 1.0;
   const auto square = [](double size) { return size * size; };
   Eigen::VectorXd variance = Eigen::VectorXd::Constant(states * bumps, square(0.3 * rms));
   for (int round = 0; round < max_rounds; ++round) {

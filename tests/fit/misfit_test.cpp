@@ -18,6 +18,12 @@ double curved(double p, double q, double ratio, double time) {
   return made::equation_18(p, q, ratio, time) + 0.8 * std::exp(-state * state);
 }
 
+/// A law that lacks a narrow peak at small angles of attack.
+double peaked(double p, double q, double ratio, double time) {
+  const double state = (ratio + 0.31) / 0.02;
+  return made::equation_18(p, q, ratio, time) + 0.5 * std::exp(-state * state);
+}
+
 RefitResult fit(double (*defect)(double, double, double, double)) {
   std::vector<std::shared_ptr<const FlightSamples>> flights;
   for (unsigned seed = 1; seed <= 3; ++seed) {
@@ -71,4 +77,15 @@ TEST(Misfit, MisfitEqualsTheSizeOfAMissingTerm) {
     EXPECT_GT(wrong.parameters[p].standard_error, right.parameters[p].standard_error);
     EXPECT_GE(wrong.parameters[p].standard_error, wrong.parameters[p].noise_error);
   }
+}
+
+// The stated error of the slope times its spread was 2.8 times the rms of the residual.
+TEST(Misfit, NarrowPeakDoesNotMakeTheSlopeUncertainByMoreThanTheResidual) {
+  const RefitResult result = fit(peaked);
+  constexpr double pressure = 700.0;  // hPa, mean
+  constexpr double spread = 0.09;     // standard deviation of the ratio
+  const FittedParameter& slope = result.parameters[1];
+  ASSERT_EQ(slope.name, "static-alpha.a1");
+  EXPECT_LT(slope.standard_error * spread * pressure, result.rms);
+  EXPECT_GT(slope.standard_error, slope.noise_error);
 }
