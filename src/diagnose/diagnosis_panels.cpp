@@ -56,9 +56,10 @@ ReportTable variables_table(const Unexplained& unexplained) {
       "variables explains as much if the residuals are shifted in time or have random signs.";
   table.headers = {"variable", "share", "linear share", "slope", "hPa per", "p", "formula", "what"};
   for (const EmpiricalPredictor& variable : unexplained.variables) {
-    table.rows.push_back({variable.name, percent(variable.r2), percent(variable.linear_r2),
-                          with_error(variable.slope, variable.slope_error), variable.unit,
-                          probability(variable.p_value), variable.formula, variable.description});
+    table.rows.push_back(
+        {variable.name, percent(variable.r2), percent(variable.linear_r2),
+         variable.slope_error > 0.0 ? with_error(variable.slope, variable.slope_error) : "not linear",
+         variable.unit, probability(variable.p_value), variable.formula, variable.description});
   }
   return table;
 }

@@ -140,6 +140,11 @@ void add_commands(WhatIf& what_if, const std::string& model, const std::string& 
 
 std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p); }
 
+std::string slope_of(const EmpiricalPredictor& variable) {
+  return variable.slope_error > 0.0 ? fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error)
+                                    : "not linear";
+}
+
 void print_unexplained(const Unexplained& unexplained) {
   if (!unexplained.significant) return;
   say("\nunexplained residual: {:.3f} hPa rms (p {}), including {:.3f} hPa of slow drift{}{}\n",
@@ -151,8 +156,7 @@ void print_unexplained(const Unexplained& unexplained) {
   }
   for (const EmpiricalPredictor& variable : unexplained.variables) {
     say("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit, variable.r2,
-        probability(variable.p_value), fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error),
-        variable.formula, variable.description);
+        probability(variable.p_value), slope_of(variable), variable.formula, variable.description);
   }
   if (!unexplained.variables.empty()) {
     const EmpiricalPredictor& first = unexplained.variables.front();

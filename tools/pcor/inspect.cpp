@@ -248,6 +248,13 @@ void print_short(const Inspection& flight) {
       models.empty() ? "no published one" : fmt::format("{}", fmt::join(models, ", ")));
 }
 
+std::string validity_of(const LawInfo& law) {
+  if (law.valid_from.empty() && law.valid_to.empty()) return "states no dates of validity";
+  if (law.valid_from.empty()) return fmt::format("valid until {}, start not stated", law.valid_to);
+  if (law.valid_to.empty()) return fmt::format("valid from {}", law.valid_from);
+  return fmt::format("valid from {} to {}", law.valid_from, law.valid_to);
+}
+
 void print_in_full(const Inspection& flight) {
   print_roles(flight);
   print_candidates(flight);
@@ -261,7 +268,7 @@ void print_in_full(const Inspection& flight) {
         !law.lacks.empty()     ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
         : !law.is_in_time      ? "; valid for another time"
         : !law.why_not.empty() ? "; " + law.why_not
-                               : "; matches the flight's pressures and its date");
+                               : "; matches the flight's pressures, " + validity_of(law.model.law));
   }
 }
 
