@@ -17,6 +17,8 @@
 #include "model_io/sensor_doubt.hpp"
 #include "process/copied_variables.hpp"
 #include "process/origin.hpp"
+#include "residuals/masks.hpp"
+#include "residuals/samples.hpp"
 #include "roles/fast_series.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -113,6 +115,22 @@ void Processing::find_frozen_sensors() {
     note(options_.keep_frozen ? "readings of frozen sensors are corrected, too; PCORFLAG marks them"
                               : "readings of frozen sensors are treated as missing; --keep-frozen uses them");
   }
+}
+
+/// Marks records with extended flaps unless an effect describes them: laws are fitted with flaps in.
+void Processing::find_flaps() {
+  if (options_.correct_with == CorrectWith::lams || changes_no_pressure(file_, options_)) return;
+  const std::string variable = read_role(flight_, file_, Quantity::flaps).variable;
+  const std::vector<ModelEffect>& effects = file_.model.effects;
+  if (std::any_of(effects.begin(), effects.end(),
+                  [&](const ModelEffect& effect) { return reads_flaps(effect, variable); }))
+    return;
+  flaps_ = flaps_extended(flight_, file_);
+  if (flaps_.empty()) return;
+  note(
+      "flaps extended in {} records{}: no effect of the model describes them, and delta-p can be wrong by 1 "
+      "hPa and more; PCORFLAG marks these records as outside_domain",
+      std::count(flaps_.begin(), flaps_.end(), true), variable.empty() ? ", inferred from the lift" : "");
 }
 
 void Processing::choose_rate() {
@@ -415,6 +433,7 @@ void Processing::note_sample() {
   QualityFlags quality = loop_->quality();
   const std::size_t record = noted_++ / static_cast<std::size_t>(summary_.rate);
   quality.set(!frozen_.empty() && frozen_[record], Quality::sensor_frozen);
+  quality.set(!flaps_.empty() && flaps_[record], Quality::outside_domain);
   double bits = 0.0;
   if (quality.bits() != 0) {
     for (std::size_t i = 0; i < quality_info.size(); ++i) {
@@ -492,6 +511,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   note_archive();
   choose_inputs();
   find_frozen_sensors();
+  find_flaps();
   choose_rate();
   note_uncertainty();
   const FileDescription description = describe();

@@ -71,6 +71,7 @@ class Processing {
   void choose_chain();
   void choose_inputs();
   void find_frozen_sensors();
+  void find_flaps();
   void choose_rate();
   ShortestPeriods choose_periods();
   void leave_out_noise(Quantity rate, const SignalBand& band);
@@ -106,6 +107,7 @@ class Processing {
   std::optional<DelayLine> filtered_;  // later still; and the quality bits, one of which is the filter's
   double sample_step_ = 1.0;           // s
   std::vector<bool> frozen_;           // records in which any sensor is frozen; empty: none
+  std::vector<bool> flaps_;            // records outside the law by extended flaps; empty: none
   std::size_t noted_ = 0;              // samples of which results are available
   std::map<Quantity, std::string> output_names_;
   ProcessSummary summary_;

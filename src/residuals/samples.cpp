@@ -262,6 +262,22 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
   return samples;
 }
 
+std::vector<bool> internal::flaps_extended(const Flight& flight, const ModelDefinition& model) {
+  FlightSamples samples;
+  samples.aircraft = flight.aircraft();
+  samples.step = flight.time().step;
+  samples.time = record_times(flight);
+  if (read_role(flight, model, Quantity::flaps).values.empty()) {
+    samples.model = read_model_columns(flight, model, false, samples.time, samples.notes);
+    samples.motion = read_motion(flight, model, samples);
+  }
+  read_flaps(flight, model, MaskOptions().min_airspeed, samples);
+  std::vector<bool> extended = std::move(samples.flaps_by_lift);
+  for (const double percent : samples.flaps) extended.push_back(percent > flaps_in);
+  if (std::find(extended.begin(), extended.end(), true) == extended.end()) return {};
+  return extended;
+}
+
 FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, const Reference& reference,
                            const MaskOptions& options) {
   FlightSamples samples;

@@ -14,4 +14,9 @@ namespace pcor::internal {
 ModelSamples read_model_columns(const Flight& flight, const ModelDefinition& model, bool with_laser,
                                 const std::vector<double>& time, Notes& notes);
 
+/// Marks the records with flaps extended by more than `flaps_in`, by the recorded flaps, otherwise inferred
+/// from the lift. Empty if there is no such record, or if the flaps are unknown.
+/// @throws Error as `read_model_columns`
+std::vector<bool> flaps_extended(const Flight& flight, const ModelDefinition& model);
+
 }  // namespace pcor::internal

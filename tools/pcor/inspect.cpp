@@ -51,7 +51,7 @@ std::string reference_for(const Inspection& flight, const ModelCandidate& law) {
   return references.empty() ? "" : references.back();
 }
 
-/// Up to three commands to paste, in order, that produce a corrected flight and a report.
+/// Up to three commands to paste, in order, that test a model and produce a corrected flight with a report.
 std::vector<std::string> next_commands(const InspectArguments& options, const Inspection& flight) {
   const std::string stamp =
       options.timestamp_alignment == "begin" ? "" : " --time-stamp " + options.timestamp_alignment;
@@ -83,12 +83,12 @@ std::vector<std::string> next_commands(const InspectArguments& options, const In
   // A fit corrects a corrected pair further only if the flight determines the level.
   const bool determines_level = flight.by_gps && flight.by_gps->level < 1.0;
   if (reference.empty() || (flight.is_corrected && !determines_level)) {
-    commands.push_back(command("process", flight, model + corrected));
     commands.push_back(reference.empty()
                            ? command("check", flight, model + stamp + " --report check.html")
                            : command("compare", flight,
                                      fmt::format("{}{} --reference {} --report compare.html", model, stamp,
                                                  shell_quote(flight.references.back()))));
+    commands.push_back(command("process", flight, model + corrected));
   } else {
     commands.push_back(
         command("refit", flight, model + stamp + reference + " -o fitted.toml --report refit.html"));
