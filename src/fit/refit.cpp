@@ -153,8 +153,7 @@ void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
   }
 }
 
-/// @param has_priors true: the surfaces of the task have the priors of an earlier fit, and keep them
-Fitted fit_in_stages(FitTask& task, bool has_priors = false) {
+Fitted fit_in_stages(FitTask& task) {
   const std::vector<std::vector<std::size_t>> stages =
       fit_stages(task.parameters, task.options.stages, task.model.model.name);
   Fitted fitted = at_start(task, stages);
@@ -163,7 +162,7 @@ Fitted fit_in_stages(FitTask& task, bool has_priors = false) {
   for (int round = 0; round < max_masks; ++round) {
     fitted.flights = std::make_unique<FitFlights>(task, fitted.setup());
     solution = solve(*fitted.flights, std::move(solution), fitted.parameters);
-    if (!task.surfaces.empty() && !has_priors) fit_surfaces(task, *fitted.flights, solution);
+    if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution);
     // The masks are those of the solution, so that the start does not decide.
     if (!fitted.flights->masks_change_at(solution.values)) break;
   }
@@ -459,7 +458,7 @@ ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const Mo
   require_sense(flights, references, options);
   FitTask task = task_of(model, references, options, flights);
   if (!surfaces.empty()) task.surfaces = surfaces;
-  const Fitted fitted = fit_in_stages(task, !surfaces.empty());
+  const Fitted fitted = fit_in_stages(task);
   surfaces = task.surfaces;
   ModelDefinition result = model;
   Eigen::Index p = 0;

@@ -37,7 +37,7 @@ TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, cons
   const std::vector<TrialFlight> outline =
       try_models(flights, {models.without, models.with}, references, options);
   std::vector<TrialModel> trials;
-  // Priors of the surfaces, from the fit without the first block: a fifth of the samples hardly changes them.
+  // Priors of the block before, where the search for those of the next block starts.
   std::array<std::vector<SurfaceRoughness>, 2> surfaces;
   for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
