@@ -530,6 +530,26 @@ TEST(LoopInterval, NominalIntervalSetsNoBit) {
   }
 }
 
+// With a lag the filter was reset 96 samples before the uneven step passed it.
+TEST(LoopInterval, UnevenStepInterruptsTheLaserFilterAtTheSameSamplesWithALag) {
+  const auto missing_times = [](const Model& model) {
+    Loop loop = build(model, level, 1.0);
+    std::vector<double> gaps;
+    for (const double time : steps({{300, 1.0}, {1, 1.2}, {300, 1.0}})) {
+      run(loop, level, time);
+      const State<double>& state = loop.state();
+      if (state[Quantity::time] > 150.0 && std::isnan(state[Quantity::filtered_lams_temperature]))
+        gaps.push_back(state[Quantity::time]);
+    }
+    return gaps;
+  };
+  const std::vector<double> expected = missing_times(c130());
+  EXPECT_FALSE(expected.empty());
+  Model lagging = c130();
+  lagging.effects.push_back({"qcf-lag", {0.5}});
+  EXPECT_EQ(missing_times(lagging), expected);
+}
+
 TEST(LoopInterval, FlagsTheDelayOfTheFilter) {
   const Lagged lagged = run_lagged(1.0, steps({{20, 1.0}, {1, 100.0}, {20, 1.0}}));
   for (std::size_t i = 0; i < lagged.defects.size(); ++i) {
@@ -728,6 +748,32 @@ TEST(LoopLams, CorrectsAndFlagsValidSamples) {
   run(with_lams, unlocked, 1.0);
   expect_same(with_lams, with_model);
   EXPECT_EQ(own_bits(with_lams), bits({Quality::lams_missing}));
+}
+
+// Delta-p of a sample depended on the sideslip of the sample before.
+TEST(Loop, EffectOnTheAttackRatioReadsTheSideslipOfItsOwnSample) {
+  Model model = c130();
+  ModelEffect effect;
+  effect.id = "of-the-user";
+  effect.location = EffectLocation::attack_ratio;
+  effect.formula = "c * sideslip";
+  effect.parameter_names = {"c"};
+  effect.parameters = {0.01};
+  model.effects.push_back(effect);
+  const Sample turned = with(level, {{Quantity::sideslip_differential_pressure, 20.0}});
+  Loop after_another = build(model, level, 1.0), alone = build(model, level, 1.0);
+  run(after_another, level, 0.0);
+  run(after_another, turned, 1.0);
+  run(alone, turned, 1.0);
+  EXPECT_EQ(after_another.state()[Quantity::static_defect], alone.state()[Quantity::static_defect]);
+  EXPECT_FALSE(std::isnan(alone.state()[Quantity::static_defect]));
+
+  model.effects.back().formula = "c * attack";
+  std::vector<Quantity> recorded;
+  for (const auto& each : level) recorded.push_back(each.first);
+  pcor::BindingError error;
+  EXPECT_FALSE(pcor::Chain::build(model, recorded, &error)) << "attack is derived from this ratio";
+  EXPECT_EQ(error.code, pcor::BindingError::Code::circular_dependency);
 }
 
 TEST(Loop, LaserFilterCanBeOmitted) {

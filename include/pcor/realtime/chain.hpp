@@ -131,7 +131,8 @@ class Chain : public BoundModel {
   /// each other through the constants of moist air and the limit of saturation over water, so they are solved
   /// together. An ambient temperature derived from the recovery temperature is calibrated here. If the
   /// corrected dynamic pressure is below the minimum of the policy, as on the ramp, Mach number and airspeed
-  /// would be noise and are NaN; the temperature, hardly affected by such a flow, is kept. An implausible
+  /// would be noise and are NaN; the temperature, hardly affected by such a flow, is kept if both corrected
+  /// pressures are known. An implausible
   /// Mach number indicates an impossible pair of pressures.
   template <class S, class P, class Flags>
   void air(State<S>& state, const P* parameters, Flags& flags) const {
@@ -331,12 +332,13 @@ class Chain : public BoundModel {
   template <class S, class P, class Flags>
   void flow_angles(State<S>& state, const P* parameters, Flags& flags) const {
     if (needs(Quantity::attack_ratio) || needs(Quantity::sideslip_ratio)) radome_ratios(state, flags);
+    // Before the attack ratio, whose effects may depend on the sideslip.
+    if (derives(Quantity::sideslip)) {
+      state[Quantity::sideslip] = radome_angle(sideslip_radome_, Quantity::sideslip_ratio, state);
+    }
     add(EffectLocation::attack_ratio, Quantity::attack_ratio, state, parameters);
     if (derives(Quantity::attack)) {
       state[Quantity::attack] = radome_angle(attack_radome_, Quantity::attack_ratio, state);
-    }
-    if (derives(Quantity::sideslip)) {
-      state[Quantity::sideslip] = radome_angle(sideslip_radome_, Quantity::sideslip_ratio, state);
     }
   }
 

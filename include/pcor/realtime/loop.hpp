@@ -62,7 +62,7 @@ enum class LaserFilter { with, without };
 class Loop {
  public:
   /// A loop at `rate` samples in a second. A step of more than one and a half samples is a gap.
-  explicit Loop(double rate) : clock_(rate), max_step_(1.5 / rate) {}
+  explicit Loop(double rate) : clock_(rate), filter_clock_(rate), max_step_(1.5 / rate) {}
 
   /// Creates a loop that runs `model` on the roles `recorded`: delta-p, corrected pressures, Mach number,
   /// humidity, ambient temperature, airspeed, and, if the laser airspeed is recorded, results of LAMS,
@@ -148,13 +148,12 @@ class Loop {
       if (wetness_) wetness_->reset();
       if (frozen_) frozen_->reset();
       clock_.reset();
+      filter_clock_.reset();
+      filter_time_ = missing<double>();
       uneven_ = 0;
     } else {
       step = time - previous_time_;
-      if (clock_.is_uneven(step)) {
-        if (look_ahead_) uneven_ = look_ahead_->window();
-        if (low_pass_ != nullptr) low_pass_->reset();
-      }
+      if (clock_.is_uneven(step) && look_ahead_) uneven_ = look_ahead_->window();
     }
     started_ = true;
     previous_time_ = time;
@@ -169,10 +168,18 @@ class Loop {
       return;
     }
     if (frozen_) quality_.set((*frozen_)(state_), Quality::sensor_frozen);
+    if (low_pass_ != nullptr) reset_filter_at_uneven_step();
     for (const auto& functor : functors_) functor->compute(state_, quality_);
   }
 
  private:
+  // The filter sees the samples that leave the look-ahead.
+  void reset_filter_at_uneven_step() noexcept {
+    const double step = state_[Quantity::time] - filter_time_;
+    if (!is_missing(step) && filter_clock_.is_uneven(step)) low_pass_->reset();
+    filter_time_ = state_[Quantity::time];
+  }
+
   std::string to_string(Quantity quantity) const {
     return index(quantity) < quantity_count ? std::string(info_of(quantity).name)
                                             : extra_names_[extra_number(quantity)];
@@ -182,6 +189,7 @@ class Loop {
   std::optional<Wetness> wetness_;
   std::optional<FrozenWatch> frozen_;
   SampleClock clock_;
+  SampleClock filter_clock_;
   std::size_t uneven_ = 0;       // remaining runs whose rates of change include uneven samples
   LowPass* low_pass_ = nullptr;  // one of the functors
   std::vector<std::unique_ptr<Functor>> functors_;
@@ -190,6 +198,7 @@ class Loop {
   QualityFlags quality_;
   double max_step_;
   double previous_time_ = missing<double>();
+  double filter_time_ = missing<double>();  // of the sample before in the filter
   bool started_ = false;
 };
 

@@ -22,7 +22,7 @@ struct BindingError {
     parameter_count,
     formula,              ///< it cannot be read, or uses too many variables
     role_missing,         ///< `quantity` is a role without a variable
-    circular_dependency,  ///< `quantity` is known only after delta-p
+    circular_dependency,  ///< `quantity` is known only after delta-p, or after the effect
   };
 
   Code code = Code::unknown_effect;
@@ -169,6 +169,12 @@ class ModelBinder {
         return fail(Code::formula, "",
                     "the formulas of the model use more than " + std::to_string(extra_capacity) +
                         " further variables");
+      }
+      if (location == EffectLocation::attack_ratio && quantity == Quantity::attack &&
+          !bound_.recorded(quantity)) {
+        return fail(Code::circular_dependency, who,
+                    "needs 'attack', which is derived from the ratio that it corrects; use 'attack_ratio'",
+                    quantity);
       }
       if (!is_at_hand(quantity, location) && !require(quantity, who)) return false;
       bound.variables.push_back(quantity);
