@@ -13,13 +13,13 @@
 #include <cstdlib>
 #include <iterator>
 #include <limits>
-#include <regex>
 #include <set>
 #include <unordered_map>
 
 #include "flight/absent_variable.hpp"
 #include "flight/current_input.hpp"
 #include "flight/flight_file.hpp"
+#include "flight/registration.hpp"
 #include "flight/status_flags.hpp"
 #include "flight/time_source.hpp"
 
@@ -128,16 +128,6 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
     variable.refusal = error;
   }
   return variable;
-}
-
-/// The first word of a text that is a registration of civil aircraft: "N677F", "G-LUXE", "D-ADLR". Empty
-/// without a registration.
-std::string registration_in(const std::string& text) {
-  static const std::regex of_usa(R"(\bN[1-9][0-9]{1,4}[A-Z]{0,2}\b)");
-  static const std::regex of_others(R"(\b(([CDFGI]|HB|OE|OH|OO|PH|SE|TF|VH)-[A-Z]{3,4})\b)");
-  std::smatch found;
-  if (std::regex_search(text, found, of_usa) || std::regex_search(text, found, of_others)) return found.str();
-  return {};
 }
 
 // Median; for an even count the lower of the two middle values. Changes the order of the values.

@@ -257,8 +257,9 @@ class IcarttFile::Reader {
         char* end = nullptr;
         const double value = std::strtod(at, &end);
         const bool is_last = &variable == &file_.variables_.back();
+        const bool is_empty = end == at;
         while (*end == ' ' || *end == '\t' || *end == '\r') ++end;
-        if (end == at || (*end != ',' && !(is_last && *end == '\0')))
+        if (is_empty || (*end != ',' && !(is_last && *end == '\0')))
           fail(fmt::format("{} numbers with commas between them are required here", file_.variables_.size()));
         const bool is_missing =
             std::find(variable.missing.begin(), variable.missing.end(), value) != variable.missing.end();

@@ -65,7 +65,8 @@ int NetcdfOutput::add_variable(const std::string& name, netCDF::NcType type,
   // A thousand records a chunk, and no more of them in memory than a block needs.
   constexpr std::size_t max_elements = 1 << 16, max_records = records_per_block / 4, slots = 101;
   std::vector<std::size_t> chunk{1};
-  for (std::size_t i = 1; i < dimensions.size(); ++i) chunk.push_back(dimensions[i].getSize());
+  for (std::size_t i = 1; i < dimensions.size(); ++i)
+    chunk.push_back(std::max<std::size_t>(dimensions[i].getSize(), 1));
   chunk[0] = std::clamp<std::size_t>(max_elements / elements(chunk), 1, max_records);
   variable.setChunking(NcVar::nc_CHUNKED, chunk);
   variable.setChunkCache(2 * elements(chunk) * type.getSize(), slots, 1);

@@ -12,7 +12,8 @@
 namespace pcor::internal {
 namespace {
 
-constexpr unsigned long all_bits = 0xFF'FF'FF'FFUL;
+constexpr unsigned long all_bits = ~0UL;
+constexpr double largest_span = 9007199254740992.0;  // 2^53, up to which a double holds all whole numbers
 
 /// Whether a meaning, for example "data_bad_or_missing", marks an unusable sample.
 bool says_unusable(const std::string& meaning) {
@@ -25,16 +26,18 @@ bool says_unusable(const std::string& meaning) {
   return !says("_not_") && std::any_of(unusable.begin(), unusable.end(), says);
 }
 
-/// Number of values of the integer type with this maximum; 0 above 32 bits.
+/// Number of values of the integer type with this maximum; at most `largest_span`, which is also that of
+/// floating-point types.
 double span_of(double maximum) {
   const double bits = std::log2(maximum + 1.0);
-  return bits <= 32.0 ? std::exp2(8.0 * std::ceil(bits / 8.0)) : 0.0;
+  return bits <= 32.0 ? std::exp2(8.0 * std::ceil(bits / 8.0)) : largest_span;
 }
 
-/// The bits of a number of a type of that span, also of one that is written as if it had a sign.
+/// The bits of a number of a type of that span, also of one that is written as if it had a sign. Nullopt for
+/// a number that is not whole or, in a type of the largest span, negative.
 std::optional<unsigned long> bits_of(double number, double span) {
-  const double positive = number < 0.0 ? number + span : number;
-  if (!(positive >= 0.0 && positive < span)) return std::nullopt;
+  const double positive = number < 0.0 && span < largest_span ? number + span : number;
+  if (!(positive >= 0.0 && positive < span) || positive != std::floor(positive)) return std::nullopt;
   return static_cast<unsigned long>(positive);
 }
 

@@ -11,6 +11,7 @@
 #include <pcor/base/suggest.hpp>
 #include <pcor/base/utc.hpp>
 #include "base/quoting.hpp"
+#include "flight/registration.hpp"
 #include "roles/plausible_pressure.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
@@ -153,7 +154,8 @@ bool is_of_aircraft(const ModelDefinition& file, const Flight& flight) {
   const std::string& model = file.model.aircraft;
   const std::string aircraft = flight.aircraft();
   if (model.empty() || aircraft.empty()) return false;
-  return model.find(aircraft) != std::string::npos || aircraft.find(model) != std::string::npos;
+  const std::string registration = registration_in(aircraft);
+  return model == aircraft || (!registration.empty() && registration_in(model) == registration);
 }
 
 }  // namespace pcor::internal

@@ -37,8 +37,8 @@ void note_excluded(const ModelInput& input, const RejectedCounts& excluded, Note
 /// Cautions about a law that was made for another time or aircraft than the flight.
 Notes notes_on_law(const Flight& flight, const ModelDefinition& file);
 
-/// Whether a model belongs to the flight's aircraft, by the registration in both: "C-130 N130AR" and
-/// "N130AR". False if one of them states no registration.
+/// Whether a model belongs to the flight's aircraft: both state the same registration, as "C-130 N130AR" and
+/// "N130AR" do, or the same text. "C-130" alone is not the aircraft "C-130 N130AR".
 bool is_of_aircraft(const ModelDefinition& file, const Flight& flight);
 
 }  // namespace pcor::internal

@@ -865,6 +865,8 @@ TEST_F(FlightTest, FlagsOfAnyTypeAreInterpreted) {
     file.numbers(flagged("FILLED", NC_BYTE, {-127, 0, 1, 3}, {2, 1}), "missing_value", NC_BYTE, {-127});
     flagged("EMPTY", NC_BYTE, {0, 1, 2, 3}, {1, 0});
     flagged("HUGE", NC_INT64, {0, 1, 2, 3}, {1, 1e300});
+    flagged("WIDE", NC_INT64, {1, 2, 3, -2}, {1, 2});
+    flagged("REAL", NC_DOUBLE, {1, 2, 3, 2.5}, {1, 2});
     file.values(file.variable("FAST", NC_FLOAT, {file.time_dimension, fast}), {1, 2, 3, 4, 5, 6, 7, 8});
     const int of_records = file.variable("FAST_FLAG", NC_INT, {file.time_dimension});
     file.values(of_records, {0, 1, 0, 1});
@@ -876,6 +878,8 @@ TEST_F(FlightTest, FlagsOfAnyTypeAreInterpreted) {
   EXPECT_THAT(read("FILLED"), ElementsAre(1, 2, IsNan(), IsNan())) << "no flag is stored where the fill is";
   EXPECT_THAT(read("EMPTY"), ElementsAre(1, 2, 3, 4));
   EXPECT_THAT(read("HUGE"), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(read("WIDE"), ElementsAre(1, IsNan(), IsNan(), 4)) << "a negative number has no bits";
+  EXPECT_THAT(read("REAL"), ElementsAre(1, IsNan(), IsNan(), 4)) << "neither has a fraction";
   EXPECT_THAT(read("FAST"), ElementsAre(1, 2, IsNan(), IsNan(), 5, 6, IsNan(), IsNan()));
 }
 

@@ -434,6 +434,24 @@ TEST_F(FlightWriterTest, UncopyableVariablesAreReportedInAdvance) {
   EXPECT_FALSE(FlightWriter(output, NewFlight{midnight}, {}).can_copy("PSFD")) << "there is no input";
 }
 
+// A division by the size of a record ended the program.
+TEST_F(FlightWriterTest, VariableWithASecondUnlimitedDimensionOfLengthZeroIsCopied) {
+  {
+    NetcdfMaker maker(input);
+    maker.time({100, 101});
+    maker.series("PSFD", "hPa", {850, 851});
+    int bins = 0;
+    ASSERT_EQ(nc_def_dim(maker.id(), "bins", NC_UNLIMITED, &bins), NC_NOERR);
+    maker.variable("EMPTY", NC_FLOAT, {maker.time_dimension, bins});
+  }
+  const Flight flight(input);
+  FlightWriter writer(output, flight, {});
+  if (writer.can_copy("EMPTY")) writer.copy("EMPTY");
+  writer.copy("PSFD");
+  writer.finish();
+  EXPECT_THAT(Written(output).values("PSFD"), ElementsAre(850, 851));
+}
+
 /// HDF5 has attributes that netCDF does not write, such as a text for a missing number, optional filters,
 /// and texts of a fixed length and long doubles, both of which netCDF assumes to be variable-length texts
 /// and reads into a buffer that is too small.

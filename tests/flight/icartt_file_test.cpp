@@ -77,6 +77,8 @@ TEST_F(Icartt, ErrorNamesTheLine) {
   };
   EXPECT_THAT(refusal(head + values + "47079, 850\n"),
               test::IsError(Error::Code::file, "flight.ict:28", "4"));
+  EXPECT_THAT(refusal(head + "47076, 850, , 0.3\n"), test::IsError(Error::Code::file, "flight.ict:25", "4"))
+      << "a blank was read as 0";
   EXPECT_THAT(refusal(head + "47076, 850, x, 0.3\n"), test::IsError(Error::Code::file, "flight.ict:25", "4"));
   EXPECT_THAT(refusal("25, 2110\n"), test::IsError(Error::Code::file, "flight.ict:1", "2110"));
   EXPECT_THAT(refusal("25, 1001\nDoe\n"), test::IsError(Error::Code::file, "flight.ict:3"));

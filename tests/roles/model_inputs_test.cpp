@@ -1,0 +1,37 @@
+#include "roles/model_inputs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <pcor/flight/flight.hpp>
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace pcor::internal {
+namespace {
+
+bool is_of_same_aircraft(const std::string& model, const std::string& platform) {
+  const test::TemporaryDirectory folder;
+  const std::filesystem::path path = folder.path() / "flight.nc";
+  {
+    test::NetcdfMaker maker(path);
+    maker.time({100, 101});
+    maker.series("PSFD", "hPa", {850, 851});
+    maker.text(NC_GLOBAL, "platform", platform);
+  }
+  ModelDefinition file;
+  file.model.aircraft = model;
+  return is_of_aircraft(file, Flight(path));
+}
+
+// A part of the name was enough: the law of N130AR corrected any C-130, without a warning.
+TEST(ModelInputs, AircraftIsRecognisedByItsRegistration) {
+  EXPECT_TRUE(is_of_same_aircraft("C-130 N130AR", "N130AR"));
+  EXPECT_TRUE(is_of_same_aircraft("C-130 N130AR", "NSF/NCAR C-130 (N130AR)"));
+  EXPECT_TRUE(is_of_same_aircraft("C-130H, 4X-FBB", "4X-FBB"));
+  EXPECT_TRUE(is_of_same_aircraft("my aircraft", "my aircraft"));
+  for (const char* const platform : {"C-130", "N130", "N", "N130A", "N677F", ""})
+    EXPECT_FALSE(is_of_same_aircraft("C-130 N130AR", platform)) << platform;
+}
+
+}  // namespace
+}  // namespace pcor::internal
