@@ -54,12 +54,14 @@ std::string coefficients_text(const ModelDefinition& model) {
   return text;
 }
 
+bool is_neutral(const ModelEffect& effect) {
+  return !effect.is_formula() && effect.parameters == neutral_effect(effect.id).parameters;
+}
+
 bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options) {
   const std::vector<ModelEffect>& effects = model.model.effects;
   return options.correct_with == CorrectWith::model &&
-         std::all_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
-           return !effect.is_formula() && effect.parameters == neutral_effect(effect.id).parameters;
-         });
+         std::all_of(effects.begin(), effects.end(), is_neutral);
 }
 
 std::vector<std::pair<std::string, std::string>> origin_attributes(const std::filesystem::path& input,

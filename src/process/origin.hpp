@@ -21,6 +21,9 @@ std::string options_text(const ProcessOptions& options);
 /// Coefficients of a model with stated standard errors: "static-qp.a2 = 0.0308 +- 0.0012; ...".
 std::string coefficients_text(const ModelDefinition& model);
 
+/// Whether an effect of the catalogue changes nothing: its coefficients are neutral.
+bool is_neutral(const ModelEffect& effect);
+
 /// Whether a model changes no pressure: all its coefficients are neutral.
 bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options);
 

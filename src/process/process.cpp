@@ -117,20 +117,34 @@ void Processing::find_frozen_sensors() {
   }
 }
 
-/// Marks records with extended flaps unless an effect describes them: laws are fitted with flaps in.
+/// Marks records with extended flaps unless an effect describes them: laws are usually fitted with flaps in.
 void Processing::find_flaps() {
-  if (options_.correct_with == CorrectWith::lams || changes_no_pressure(file_, options_)) return;
-  const std::string variable = read_role(flight_, file_, Quantity::flaps).variable;
-  const std::vector<ModelEffect>& effects = file_.model.effects;
-  if (std::any_of(effects.begin(), effects.end(),
-                  [&](const ModelEffect& effect) { return reads_flaps(effect, variable); }))
+  if (changes_no_pressure(file_, options_)) return;
+  std::optional<std::vector<bool>> extended;
+  std::string variable;
+  try {
+    variable = read_role(flight_, file_, Quantity::flaps).variable;
+    const std::vector<ModelEffect>& effects = file_.model.effects;
+    if (std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
+          return !is_neutral(effect) && reads_flaps(effect, variable);
+        }))
+      return;
+    extended = flaps_extended(flight_, file_);
+  } catch (const Error& error) {  // of a variable that no result needs
+    note("flaps are unknown: {}", error.what());
     return;
-  flaps_ = flaps_extended(flight_, file_);
-  if (flaps_.empty()) return;
-  note(
-      "flaps extended in {} records{}: no effect of the model describes them, and delta-p can be wrong by 1 "
-      "hPa and more; PCORFLAG marks these records as outside_domain",
-      std::count(flaps_.begin(), flaps_.end(), true), variable.empty() ? ", inferred from the lift" : "");
+  }
+  if (!extended) {
+    note(
+        "flaps are not recorded and the lift does not determine them: records with extended flaps have no "
+        "quality bit");
+  } else if (std::find(extended->begin(), extended->end(), true) != extended->end()) {
+    summary_.notes.push_back(warning_note(fmt::format(
+        "flaps are extended in some records{}, and no effect of the model describes them: delta-p may be "
+        "wrong there, and PCORFLAG has the bit outside_domain",
+        variable.empty() ? " (inferred from the lift)" : "")));
+    flaps_ = std::move(*extended);
+  }
 }
 
 void Processing::choose_rate() {

@@ -161,6 +161,11 @@ std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& 
 }
 
 bool reads_flaps(const ModelEffect& effect, const std::string& variable) {
+  if (effect.is_surface()) {
+    const auto& axes = effect.surface->axes;
+    return std::any_of(axes.begin(), axes.end(),
+                       [](const SurfaceAxis& axis) { return axis.quantity == Quantity::flaps; });
+  }
   if (effect.is_formula()) {
     const auto formula = Formula::parse(effect.formula, effect.parameter_names);
     if (!formula) return false;

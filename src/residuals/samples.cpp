@@ -262,19 +262,26 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
   return samples;
 }
 
-std::vector<bool> internal::flaps_extended(const Flight& flight, const ModelDefinition& model) {
+std::optional<std::vector<bool>> internal::flaps_extended(const Flight& flight,
+                                                          const ModelDefinition& model) {
   FlightSamples samples;
   samples.aircraft = flight.aircraft();
   samples.step = flight.time().step;
   samples.time = record_times(flight);
-  if (read_role(flight, model, Quantity::flaps).values.empty()) {
-    samples.model = read_model_columns(flight, model, false, samples.time, samples.notes);
-    samples.motion = read_motion(flight, model, samples);
+  const auto read = [&](Quantity role) { return read_role(flight, model, role).values; };
+  for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure,
+                              Quantity::recovery_temperature, Quantity::ambient_temperature}) {
+    if (std::vector<double> values = read(role); !values.empty())
+      samples.model.columns.emplace_back(role, std::move(values));
   }
+  samples.motion.airspeed = measured_airspeed(samples.model);
+  samples.motion.vertical_speed = read(Quantity::vertical_speed);
+  samples.motion.roll = read(Quantity::roll);
+  samples.motion.attack = read(Quantity::attack);
   read_flaps(flight, model, MaskOptions().min_airspeed, samples);
+  if (samples.flaps.empty() && samples.flaps_by_lift.empty()) return std::nullopt;
   std::vector<bool> extended = std::move(samples.flaps_by_lift);
   for (const double percent : samples.flaps) extended.push_back(percent > flaps_in);
-  if (std::find(extended.begin(), extended.end(), true) == extended.end()) return {};
   return extended;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,11 @@ namespace pcor::internal {
 ModelSamples read_model_columns(const Flight& flight, const ModelDefinition& model, bool with_laser,
                                 const std::vector<double>& time, Notes& notes);
 
-/// Marks the records with flaps extended by more than `flaps_in`, by the recorded flaps, otherwise inferred
-/// from the lift. Empty if there is no such record, or if the flaps are unknown.
-/// @throws Error as `read_model_columns`
-std::vector<bool> flaps_extended(const Flight& flight, const ModelDefinition& model);
+/// Marks the records with flaps extended by more than `flaps_in`: by the recorded flaps, also on the ground,
+/// otherwise inferred from the lift (`find_flaps_by_lift`), where slow records of the take-off and the
+/// landing are not marked. Nullopt if the flaps are neither recorded nor determined by the lift.
+/// @param model names the static and the dynamic pressure of the flight; other roles are optional
+/// @throws Error if a variable cannot be read
+std::optional<std::vector<bool>> flaps_extended(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

@@ -553,6 +553,8 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
   EXPECT_EQ(outside(unchanged, 50.0), 0U);
   ModelDefinition describes_flaps = model;
   describes_flaps.model.effects.push_back(neutral_effect("flaps-gear"));
+  EXPECT_EQ(outside(describes_flaps, 50.0), records - extended_from) << "an effect of zero describes nothing";
+  describes_flaps.model.effects.back().parameters = {1.5};
   EXPECT_EQ(outside(describes_flaps, 50.0), 0U);
 }
 

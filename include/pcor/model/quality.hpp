@@ -50,7 +50,7 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
      "static pressure below 1 hPa, or outside the plausible range when corrected: nothing is derived"},
     {Quality::impossible_dynamic_pressure, "impossible_dynamic_pressure",
      "dynamic pressure zero or below, as on the ground, or outside the plausible range when corrected: no "
-     "Mach number, no airspeed"},
+     "Mach number, nothing derived from it"},
     {Quality::effect_input_missing, "effect_input_missing",
      "an input of the model's effects is missing: no delta-p, or no pressure to correct"},
     {Quality::impossible_radome_pressure, "impossible_radome_pressure",
@@ -64,7 +64,8 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
      "no valid airspeed from LAMS, or its result is outside the plausible range"},
     {Quality::tapered, "tapered", "delta-p tapered at low dynamic pressure"},
     {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law"},
-    {Quality::outside_domain, "outside_domain", "an input lies outside the domain of the law: extrapolated"},
+    {Quality::outside_domain, "outside_domain",
+     "an input lies outside the domain of the law, or the flaps are extended: extrapolated"},
     {Quality::after_gap, "after_gap", "near a gap: effects of rates of change have too few neighbours"},
     {Quality::corrected_with_lams, "corrected_with_lams",
      "pressures corrected with LAMS, not with the model"},
@@ -74,7 +75,7 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
      "filter window incomplete, or its result is outside the plausible range: no filtered LAMS temperature"},
     {Quality::no_airflow, "no_airflow",
      "dynamic pressure too low to distinguish airflow from noise, as on the ramp: no Mach number, no "
-     "airspeed"},
+     "airspeed, and without a taper no delta-p"},
     {Quality::sensor_frozen, "sensor_frozen",
      "a sensor is frozen, constant for much longer than its noise permits: dependent results are wrong"},
     {Quality::uneven_samples, "uneven_samples",

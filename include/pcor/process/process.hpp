@@ -97,7 +97,7 @@ void describe(const ProcessSummary& self, Field& field) {
 ///
 /// ATLAMSF is ATLAMS without periods under 3 s (`LowPass`), each value at the time of its sample: the delay
 /// of the loop is compensated, also for the bit `filter_window_incomplete`. The filter does not extend across
-/// gaps: at 25 Hz the first and last 0.8 s of a contiguous segment have no value.
+/// gaps: at 25 Hz the first and last 0.4 s of a contiguous segment have no value.
 ///
 /// If the model states uncertainties (`uncertainty_of`), `PCOR_uncertainty`, `PSXC_uncertainty`,
 /// `QCXC_uncertainty`, `ATX_uncertainty` and `TASX_uncertainty` are written with their results, which name
@@ -112,7 +112,9 @@ void describe(const ProcessSummary& self, Field& field) {
 /// The loop runs at the higher rate of the two pressures; other inputs are resampled to it
 /// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit. The same
 /// holds for a frozen sensor, detected as in comparisons and fits from its whole series at one sample per
-/// record. Except for such a series, memory does not depend on the length of the flight.
+/// record. Records with extended flaps, recorded or inferred from the lift, have the bit `outside_domain`
+/// unless an effect of the model depends on the flaps; notes state this, or that the flaps are unknown.
+/// Except for the series of these two tests, memory does not depend on the length of the flight.
 ///
 /// @throws Error, and leaves `output` unchanged, if the flight or a variable of the model cannot be read, a
 /// unit is unknown, the model cannot be used, an uncertainty is requested that the model does not state, a
