@@ -142,7 +142,8 @@ System system_of(ModelDefinition model, const CandidateModels& set, bool of_refe
 /// Computes the columns of the candidates of one system at some samples: the amount that each coefficient
 /// adds at its location, through the chain of the system.
 /// @param at_places for each location the derivative of the residual with respect to an amount added there,
-/// at these samples; if empty, the columns are the added amounts with the sign inverted
+/// at these samples; if empty, the columns are the added amounts with the sign inverted. Where it is zero,
+/// the columns are zero, even if an input has no value
 /// @param see receives the state of each sample
 template <class See>
 void put_candidates(const Chain& chain, const ModelSamples& inputs,
@@ -166,7 +167,7 @@ void put_candidates(const Chain& chain, const ModelSamples& inputs,
       const double by_this_location = by_location.cols() == 0 ? 1.0 : by_location(as_index(k), each.location);
       for (std::size_t p = 0; p < each.width; ++p)
         columns(as_index(sample), as_index(each.first_column + p)) =
-            static_cast<float>(-by_this_location * value.v[as_index(p)]);
+            by_this_location == 0.0 ? 0.0F : static_cast<float>(-by_this_location * value.v[as_index(p)]);
     }
     see(sample, state);
   }

@@ -471,7 +471,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
   result.time = samples.time;
   result.warmth.resize(size, 0.0);
   result.thickness = thickness_of(air);
-  result.is_break.resize(size, true);
+  result.is_break.resize(size, false);
   result.rise.resize(size, 0.0);
   ModelSamples calm = samples.model;
   low_pass_angles(calm, samples.step);
@@ -505,6 +505,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
     const double by_recovery = -temperature * heating / (1.0 + heating);
     result.warmth[i] = 1.0 / temperature;
     const bool is_continuous = last < size && samples.time[i] - samples.time[last] < 3.5 * samples.step;
+    result.is_break[i] = !is_continuous;
     if (is_continuous) {
       const double fall = air.gas_constant[i] / constants::standard_gravity;
       const double step = -fall * (logarithm[i] - logarithm[last]);
@@ -516,7 +517,6 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
       height[count + recovery] += 0.5 * calm_step * (by_recovery + recovery_before);
       height[columns] += mean * step + warmer * (step - calm_step);
       result.rise[i] = mean * calm_step;
-      result.is_break[i] = false;
     }
     before = by;
     recovery_before = by_recovery;

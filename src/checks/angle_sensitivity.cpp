@@ -5,6 +5,7 @@
 
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/geodesy.hpp>
+#include "base/phrasing.hpp"
 #include "checks/flown.hpp"
 
 namespace pcor::internal {
@@ -133,6 +134,16 @@ Estimate all_of(const std::vector<AngleSensitivity>& manoeuvres, Estimate AngleS
   return combined(estimates);
 }
 
+/// Names of the references that manoeuvres used, the first one first: "LAMS and GPS height".
+std::string references_of(const std::vector<AngleSensitivity>& manoeuvres) {
+  std::vector<std::string> names;
+  for (const AngleSensitivity& each : manoeuvres) {
+    if (std::find(names.begin(), names.end(), each.reference.name) == names.end())
+      names.emplace_back(each.reference.name);
+  }
+  return join_list(names);
+}
+
 ReportTable table_of(const std::vector<AngleSensitivity>& manoeuvres, const AngleCheck& check) {
   ReportTable table{
       fmt::format("Each {}", info_of(check.regime).name),
@@ -170,18 +181,18 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   std::vector<AngleSensitivity> manoeuvres;
   bool has_reference = false;
   for (const Flown& each : flown) {
+    bool has_too_few = false;
     for (const AngleReference& reference : check.references) {
       const std::vector<double> residual = reference.residual(each);
       if (residual.empty()) continue;
       has_reference = true;
       AngleSensitivity one = sensitivity_of(each, reference, residual, check);
-      if (std::isfinite(one.slope.value)) {
-        manoeuvres.push_back(std::move(one));
-      } else {
-        result.notes.push_back(each.location() + ": too few values in this manoeuvre");
-      }
+      has_too_few = !std::isfinite(one.slope.value);
+      if (has_too_few) continue;
+      manoeuvres.push_back(std::move(one));
       break;
     }
+    if (has_too_few) result.notes.push_back(each.location() + ": too few values in this manoeuvre");
   }
   if (!has_reference) {
     const std::string height = height_problem(flown.front().flight->air);
@@ -191,7 +202,6 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
                     info_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
   }
   if (manoeuvres.empty()) return not_flown(flights, check.regime, result.notes);
-  const AngleSensitivity& first = manoeuvres.front();
   const Estimate slope = all_of(manoeuvres, &AngleSensitivity::slope);
   const Estimate bend = all_of(manoeuvres, &AngleSensitivity::bend);
   std::vector<double> swings;
@@ -205,21 +215,25 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   std::vector<TestStatistic> numbers{judged(across, min_swing_change, "hPa", "change across the swing")};
   result.finding = fmt::format(
       "Over {} {}{} the residual against {} changes by {} of {}, {} from one end of the swing to the other.",
-      manoeuvres.size(), info_of(check.regime).name, manoeuvres.size() == 1 ? "" : "s", first.reference.name,
-      with_error(slope, "hPa/deg", 3), check.angle, with_error(across, "hPa"));
+      manoeuvres.size(), info_of(check.regime).name, manoeuvres.size() == 1 ? "" : "s",
+      references_of(manoeuvres), with_error(slope, "hPa/deg", 3), check.angle, with_error(across, "hPa"));
   if (check.with_square) {
     numbers.push_back(judged(bent, min_swing_change, "hPa", "quadratic part at the end of the swing"));
     result.finding += fmt::format(" With its square the residual changes by {}, {} at the end of the swing.",
                                   with_error(bend, "hPa/deg2", 4), with_error(bent, "hPa"));
   }
   decide(std::move(numbers), result);
-  if (first.reference.residual == from_second_system && !first.flown.flight->second_corrected) {
+  const auto uncorrected =
+      std::find_if(manoeuvres.begin(), manoeuvres.end(), [](const AngleSensitivity& each) {
+        return each.reference.residual == from_second_system && !each.flown.flight->second_corrected;
+      });
+  if (uncorrected != manoeuvres.end()) {
     if (result.verdict == CheckVerdict::inconsistent)
       withhold("the second system is uncorrected, and the slope may be its error", result);
     result.notes.push_back(
         fmt::format("{} is uncorrected, and the slope may be its error; --reference static:OTHER.toml gives "
                     "its correction",
-                    first.flown.flight->second_name));
+                    uncorrected->flown.flight->second_name));
   }
   result.cannot_see = check.cannot_see;
   result.numbers = {{"manoeuvres", static_cast<double>(manoeuvres.size())}};

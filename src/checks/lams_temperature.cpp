@@ -23,14 +23,15 @@ constexpr double max_period = 256.0;       // s
 constexpr double suspect_share = 0.5;      // fraction of missing laser values in a cloud that indicates an
                                            // iced window
 
-/// Difference of all flights, one flight after another.
+/// Difference of all flights of one record interval, one flight after another.
 struct Differences {
   std::vector<double> time{};
   std::vector<double> values{};  ///< ATLAMS minus the thermometer, K; NaN if either is unusable
   std::vector<double> altitude{};
   std::vector<bool> in_cloud{};
   std::vector<bool> near_ground{};  ///< samples in the lowest kilometre above the field
-  double step = 1.0;
+  double step = nan;                ///< record interval of the first flight with a difference, s
+  std::size_t other_steps = 0;      ///< number of flights that are left out because theirs differs
 };
 
 std::vector<bool> in_cloud(const FlightAir& air) {
@@ -65,9 +66,14 @@ Differences all_differences(const CheckedFlights& flights) {
   for (const CheckedFlight& flight : flights) {
     const FlightAir& air = flight.air;
     const std::vector<double> difference = difference_of(air);
+    if (!has_value(difference)) continue;
+    if (std::isnan(all.step)) all.step = air.step();
+    if (air.step() != all.step) {
+      ++all.other_steps;
+      continue;
+    }
     const std::vector<bool> cloud = in_cloud(air);
     const double field = field_of(air);
-    all.step = air.step();
     for (std::size_t i = 0; i < air.size(); ++i) {
       all.time.push_back(air.time()[i]);
       all.values.push_back(difference[i]);
@@ -249,6 +255,10 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
     }
   }
   result.finding += ".";
+  if (all.other_steps > 0) {
+    result.notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s",
+                                       all.other_steps, flights.size(), all.step));
+  }
 
   std::vector<Part> parts{
       outside, inside,

@@ -99,18 +99,31 @@ ReportTable table_of(const RedundantFit& fit, std::string title) {
   return table;
 }
 
-/// Two series at the airborne records at which both systems measure the same air, over all flights: with the
-/// avionics, PS_A/QC_A, records at which neither static nor total pressure changes faster than 0.1 hPa/s over
-/// five seconds (memo, Supporting Evidence for Accuracy of p_t). Both may be empty for a flight.
+bool has_both(const CheckedFlight& flight, const SeriesOfFlight& first, const SeriesOfFlight& second) {
+  return has_value(first(flight)) && has_value(second(flight));
+}
+
+/// Record interval of the first flight with both series, s; NaN without one.
+double step_of(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second) {
+  const auto found = std::find_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
+    return has_both(flight, first, second);
+  });
+  return found == flights.end() ? nan : found->air.step();
+}
+
+/// Two series at the airborne records at which both systems measure the same air, over all flights of one
+/// record interval: with the avionics, PS_A/QC_A, records at which neither static nor total pressure changes
+/// faster than 0.1 hPa/s over five seconds (memo, Supporting Evidence for Accuracy of p_t). Both may be empty
+/// for a flight.
 Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first,
                     const SeriesOfFlight& second) {
   Redundant both;
+  both.step = step_of(flights, first, second);
   for (const CheckedFlight& flight : flights) {
     const std::vector<double> a = first(flight);
     const std::vector<double> b = second(flight);
-    if (a.empty() || b.empty()) continue;
+    if (a.empty() || b.empty() || flight.air.step() != both.step) continue;
     const std::vector<bool> in_use = comparable(flight);
-    both.step = flight.air.step();
     for (std::size_t i = 0; i < a.size(); ++i) {
       const bool known = in_use[i] && std::isfinite(a[i]) && std::isfinite(b[i]);
       both.first.push_back(known ? a[i] : nan);
@@ -121,8 +134,8 @@ Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first,
   return both;
 }
 
-/// Adds the numbers of a fit, numbers of the interface first, its table and its columns, and a note on the
-/// avionics. @param names of the two series
+/// Adds the numbers of a fit, numbers of the interface first, its table and its columns, and notes on the
+/// avionics and on flights that are not used. @param names of the two series
 void add_results(const CheckedFlights& flights, const std::string& check, const SeriesOfFlight& first,
                  const SeriesOfFlight& second, const std::array<std::string, 2>& names,
                  const RedundantFit& fit, std::string table, CheckResult& result) {
@@ -141,6 +154,14 @@ void add_results(const CheckedFlights& flights, const std::string& check, const 
     result.notes.push_back(fmt::format(
         "The avionics smooth their pressures, so samples with a pressure change above {} hPa/s are excluded",
         fastest_of_avionics));
+  }
+  const double step = step_of(flights, first, second);
+  const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
+    return flight.air.step() != step && has_both(flight, first, second);
+  });
+  if (other_steps > 0) {
+    result.notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s",
+                                       other_steps, flights.size(), step));
   }
   result.tables = {table_of(fit, std::move(table))};
   const auto column = [&](const char* name, const std::string& title, const SeriesOfFlight& series) {

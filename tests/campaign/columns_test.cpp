@@ -338,3 +338,28 @@ TEST(Columns, OnlyShortGapsAreBridged) {
   EXPECT_EQ(few[115], few[99]);
   EXPECT_FALSE(with_gap(60).allFinite());
 }
+
+// Such a column was NaN, and the candidate was dropped because of an input that does not matter.
+TEST(Columns, AreZeroWhereTheReferenceSeesNothing) {
+  const Made made;
+  ModelEffect effect = formula();
+  effect.location = pcor::EffectLocation::temperature;
+  const pcor::References references{made.reference, pcor::pressure_reference("PS")};
+  const CandidateSet set = pcor::internal::find_candidates(made.model, {effect}, {}, references);
+  auto samples = std::make_shared<FlightSamples>(*made.samples);
+  samples->reference.columns = {
+      {Quantity::corrected_static_pressure, *samples->model.find(Quantity::static_pressure)}};
+  for (auto& [quantity, values] : samples->model.columns) {
+    if (quantity == Quantity::roll) std::fill(values.begin() + 100, values.begin() + 200, std::nan(""));
+  }
+  const FlightColumns columns = pcor::internal::find_columns(samples, made.model, set, 1, {}, 1.0);
+  EXPECT_GT(std::count(columns.mask.begin() + 100, columns.mask.begin() + 200, pcor::Mask::none), 0);
+  Eigen::Index column = 0;
+  for (const Candidate& candidate : set.candidates) {
+    const auto width = static_cast<Eigen::Index>(candidate.tested.size());
+    if (candidate.effect.id == effect.id) {
+      EXPECT_EQ(columns.candidates.middleCols(column, width).cwiseAbs().sum(), 0.0F);
+    }
+    column += width;
+  }
+}

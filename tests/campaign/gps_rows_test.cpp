@@ -4,6 +4,7 @@
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/simulate/simulate.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
@@ -45,4 +46,25 @@ TEST(GpsRows, SamplesWithoutTheRecordedHumidityHaveNoRow) {
       }
     }
   }
+}
+
+TEST(GpsRows, OneMissingSampleDoesNotBreakTheHeight) {
+  const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
+  const pcor::test::TemporaryDirectory directory;
+  pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-circles.toml"), directory / "circles.nc");
+  const pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  pcor::FlightSamples samples =
+      pcor::read_samples(pcor::Flight(directory / "circles.nc"), model, *pcor::height_reference(model));
+  const std::vector<double> parameters{0.004, 0.02, 0.03};
+  const auto breaks = [&] {
+    const GpsRows rows = gps_rows(GpsKind::height, samples, model, {}, parameters.data(), {0, 1, 2});
+    return std::count(rows.is_break.begin(), rows.is_break.end(), true);
+  };
+  const auto complete = breaks();
+  std::vector<double>& humidity = *samples.model.find(pcor::Quantity::vapor_pressure);
+  const std::size_t first = samples.time.size() / 2;
+  humidity[first] = std::nan("");
+  EXPECT_EQ(breaks(), complete);
+  for (std::size_t i = first; i < first + 30; ++i) humidity[i] = std::nan("");
+  EXPECT_EQ(breaks(), complete + 1);
 }

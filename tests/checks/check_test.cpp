@@ -14,6 +14,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/simulate/simulate.hpp>
 #include "campaign/flight_air.hpp"
+#include "checks/checks.hpp"
 #include "support/says.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -316,6 +317,28 @@ TEST_F(CheckTest, PitchAndYawDetectWrongTerms) {
   EXPECT_THAT(against_second.finding, HasSubstr("against second system"));
   EXPECT_NE(against_second.verdict, CheckVerdict::inconsistent) << against_second.finding;
   EXPECT_LT(std::abs(number(against_second, "slope_hpa_deg")), 0.15 * std::abs(number(yaw, "slope_hpa_deg")));
+}
+
+TEST_F(CheckTest, ManoeuvreWithoutTheLaserUsesTheNextReference) {
+  const std::string text = head + aloft + repeated(leg("yaw") + leg("level", "duration = 60"), 2);
+  CheckedFlights flights(1);
+  FlightAir& air = flights[0].air;
+  air = read_flight_air({fly(text, 1)}, 0, first_model());
+  flights[0].second = air;  // uncorrected, with a little noise
+  flights[0].second_name = "PSFRD/QCFR";
+  for (std::size_t i = 0; i < air.size(); ++i)
+    flights[0].second->pressure[i] += 0.01 * std::sin(1.7 * static_cast<double>(i));
+  double last_yaw = 0.0;
+  for (const Interval& interval : air.samples->intervals) {
+    if (interval.regime == Regime::yaw_manoeuvre) last_yaw = std::max(last_yaw, interval.begin);
+  }
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    if (air.time()[i] >= last_yaw) air.laser->static_defect[i] = std::nan("");
+  }
+  const CheckResult result = check_yaw(flights);
+  EXPECT_EQ(number(result, "manoeuvres"), 2.0);
+  EXPECT_THAT(result.finding, HasSubstr("against LAMS and second system"));
+  EXPECT_THAT(result.notes, testing::Contains(test::Says("PSFRD/QCFR is uncorrected")));
 }
 
 TEST_F(CheckTest, SpeedRunDetectsSpeedDependentTerm) {

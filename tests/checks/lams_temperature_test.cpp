@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -105,6 +106,21 @@ TEST(LamsTemperatureCheck, NoiseIsLargerInTheBoundaryLayer) {
     return;
   }
   FAIL() << "no table by period";
+}
+
+TEST(LamsTemperatureCheck, FlightsOfAnotherRecordIntervalAreNotUsed) {
+  CheckedFlights flights = fly("");
+  const auto alone = numbers_of(check_lams_temperature(flights));
+  const CheckedFlight same = flights[0];
+  flights.push_back(same);
+  FlightSamples coarse = *same.air.samples;
+  coarse.step = 2.0;
+  flights[1].air.samples = std::make_shared<FlightSamples>(std::move(coarse));
+  const CheckResult result = check_lams_temperature(flights);
+  const auto numbers = numbers_of(result);
+  for (const char* name : {"samples", "offset_k", "offset_stderr_k"})
+    EXPECT_EQ(numbers.at(name), alone.at(name)) << name;
+  EXPECT_THAT(result.notes, Contains(test::Says("1 of 2 flights are not used")));
 }
 
 TEST(LamsTemperatureCheck, IsNotRunWithoutALaser) {

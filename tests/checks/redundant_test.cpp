@@ -1,15 +1,18 @@
 #include "checks/redundant.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <iostream>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "support/many_seeds.hpp"
 #include "support/nuisance.hpp"
+#include "support/says.hpp"
 
 // Two systems that measure one pressure: the errors of their difference and of the line through them know the
 // drift of either.
@@ -70,4 +73,30 @@ TEST(RedundantFit, ErrorsIncludeDrift) {
   expect_right({0.15, 900.0}, "0.15 hPa, 900 s");
   expect_right({0.4, 3600.0}, "0.4 hPa, 3600 s");
   expect_right({0.0, 1.0, 0.05}, "1/f");
+}
+
+TEST(TotalPressureCheck, FlightsOfAnotherRecordIntervalAreNotUsed) {
+  constexpr std::size_t records = 1200;
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> noise(0.0, 0.05);
+  CheckedFlights flights(2);
+  for (CheckedFlight& flight : flights) {
+    const bool is_first = &flight == &flights.front();
+    const auto samples = std::make_shared<pcor::FlightSamples>();
+    samples->step = is_first ? 1.0 : 2.0;
+    MeasuredPair one{"PSFD/QCF", {}, std::vector<double>(records, 60.0)};
+    MeasuredPair two{"PSFRD/QCFR", {}, std::vector<double>(records, 60.0)};
+    for (std::size_t i = 0; i < records; ++i) {
+      const auto record = static_cast<double>(i);
+      samples->time.push_back((is_first ? 0.0 : 1e5) + samples->step * record);
+      one.static_pressure.push_back(700.0 + 50.0 * std::sin(0.01 * record));
+      two.static_pressure.push_back(one.static_pressure.back() + noise(engine));
+    }
+    flight.air.samples = samples;
+    flight.air.flying.assign(records, true);
+    flight.measured = {one, two};
+  }
+  const pcor::CheckResult result = check_total_pressure(flights);
+  EXPECT_THAT(result.numbers, testing::Contains(testing::Pair("samples", 1200.0)));
+  EXPECT_THAT(result.notes, testing::Contains(pcor::test::Says("1 of 2 flights are not used")));
 }
