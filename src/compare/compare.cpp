@@ -19,6 +19,7 @@
 #include "compare/model_sums.hpp"
 #include "numerics/binned_residual.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/noise_flights.hpp"
 #include "parallel/flight_partition.hpp"
 #include "parallel/workers.hpp"
 #include "report/shown_flights.hpp"
@@ -204,12 +205,16 @@ std::vector<std::size_t> to_show(const std::vector<FlightPart>& parts, std::size
   return flights_to_show(flights, maximum);
 }
 
-/// Every n-th entry.
+/// The entries with these numbers.
 template <class Entry>
-std::vector<Entry> thinned_out(const std::vector<Entry>& all, std::size_t every) {
+std::vector<Entry> entries_of(const std::vector<Entry>& all, const std::vector<std::size_t>& numbers) {
   std::vector<Entry> some;
-  for (std::size_t k = 0; k < all.size(); k += every) some.push_back(all[k]);
+  for (const std::size_t number : numbers) some.push_back(all[number]);
   return some;
+}
+
+NoiseFlight noise_flight_of(const Binning& bins) {
+  return {bins.size() > 0 ? bins.time().front() : 0.0, bins.size()};
 }
 
 /// Adds the variances by the noise to the sums of one model. The drift components are common to all flights,
@@ -226,10 +231,8 @@ void add_variances(std::size_t model, const FlightPartition& share,
     flights.residuals.push_back(own.means());
     flights.reference.push_back(0);
   }
-  flights.outlines = share.of_each_flight<NoiseFlight>([&](std::size_t f) {
-    const Binning& bins = flights.bins[f];
-    return NoiseFlight{bins.size() > 0 ? bins.time().front() : 0.0, bins.size()};
-  });
+  flights.outlines =
+      share.of_each_flight<NoiseFlight>([&](std::size_t f) { return noise_flight_of(flights.bins[f]); });
   ResidualSums all;
   for (const FlightPart& part : parts) all.add(part.models[model].all);
   const double mean = all.statistics().mean;
@@ -239,8 +242,10 @@ void add_variances(std::size_t model, const FlightPartition& share,
   const std::vector<NoiseModel> noise = noise_of_flights(
       share, flights, fit, [threads](const auto& bins, const auto& columns, const auto& left) {
         constexpr std::size_t enough = 6;
-        const std::size_t every = (bins.size() + enough - 1) / enough;
-        return expected_noise(thinned_out(bins, every), thinned_out(columns, every), thinned_out(left, every),
+        std::vector<NoiseFlight> outlines;
+        for (const Binning& own : bins) outlines.push_back(noise_flight_of(own));
+        const std::vector<std::size_t> few = flights_for_noise(outlines, enough);
+        return expected_noise(entries_of(bins, few), entries_of(columns, few), entries_of(left, few),
                               threads);
       });
   const auto variances = share.map<std::vector<double>>(

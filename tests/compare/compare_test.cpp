@@ -8,11 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/error_of.hpp"
+#include "support/synthetic_samples.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
 
@@ -339,6 +342,55 @@ TEST(ComparisonReport, HasTheFiguresAndIsSmall) {
   EXPECT_THAT(pair, HasSubstr("Corrected static pressures"));
   // 1.5 MB for five hours; this flight has two.
   EXPECT_LT(pair.size(), std::size_t{1500000} * 2 / 5);
+}
+
+namespace {
+
+using MadeFlights = std::vector<std::shared_ptr<const pcor::FlightSamples>>;
+
+/// @param airspeed m/s
+std::shared_ptr<const pcor::FlightSamples> made_flight(unsigned day, double memory, double airspeed) {
+  made::Plan plan;
+  plan.seed = day;
+  plan.samples = 1800;
+  plan.memory = memory;
+  plan.defect = made::equation_18;
+  pcor::FlightSamples samples = made::flight(plan);
+  for (double& time : samples.time) time += 86400.0 * day;
+  samples.motion.time = samples.time;
+  samples.motion.airspeed.assign(samples.time.size(), airspeed);
+  return std::make_shared<const pcor::FlightSamples>(std::move(samples));
+}
+
+/// Error of the bias of the true law.
+double bias_error(const MadeFlights& flights) {
+  ModelDefinition law = made::model({"static-constant", "static-alpha", "static-qp"});
+  law.model.effects[0].parameters = {0.004127875};
+  law.model.effects[1].parameters = {0.021279816};
+  law.model.effects[2].parameters = {0.030849643};
+  return pcor::compare(flights, {{"law", law, made::pressure_reference()}}).models.front().all.bias_error;
+}
+
+}  // namespace
+
+TEST(Compare, BiasErrorIsIndependentOfFlightOrder) {
+  MadeFlights flights;
+  for (unsigned day = 0; day < 8; ++day)
+    flights.push_back(made_flight(day, day % 2 == 0 ? 0.2 : 0.95, 130.0));
+  const double in_order = bias_error(flights);
+  for (std::size_t f = 0; f < flights.size(); f += 2) std::swap(flights[f], flights[f + 1]);
+  EXPECT_NEAR(bias_error(flights), in_order, 0.01 * in_order);
+}
+
+TEST(Compare, FlightsWithoutSamplesDoNotDetermineTheNoise) {
+  MadeFlights flying;
+  MadeFlights all;
+  for (unsigned day = 0; day < 7; ++day) {
+    all.push_back(made_flight(day, 0.7, day % 2 == 0 ? 20.0 : 130.0));
+    if (day % 2 == 1) flying.push_back(all.back());
+  }
+  const double expected = bias_error(flying);
+  EXPECT_NEAR(bias_error(all), expected, 1e-6 * expected);
 }
 
 class RealFlight : public testing::Test {

@@ -31,6 +31,18 @@ TEST(NoiseFlights, InformativeFlightsAreChosenFromMany) {
   }
 }
 
+TEST(NoiseFlights, FlightsWithoutBinsAreLeftOut) {
+  std::vector<NoiseFlight> all = flights(7);
+  for (const std::size_t f : {0U, 2U, 4U, 6U}) all[f].bins = 0;
+  EXPECT_THAT(flights_for_noise(all, 6), ::testing::ElementsAre(1, 3, 5));
+}
+
+TEST(NoiseFlights, FewLongFlightsArePreferredToManyShortOnes) {
+  std::vector<NoiseFlight> all = flights(12);
+  for (const std::size_t f : {0U, 2U, 6U, 8U}) all[f].bins = 2;
+  EXPECT_THAT(flights_for_noise(all, 6), ::testing::ElementsAre(4, 10));
+}
+
 TEST(NoiseFlights, ChoiceIsIndependentOfFlightOrder) {
   std::vector<NoiseFlight> all = flights(50);
   std::mt19937 chance(1);
