@@ -219,8 +219,10 @@ void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnos
   diagnosis.rms_given = statistics.rms;
   diagnosis.noise_rms = statistics.noise_rms;
   diagnosis.flaps_out = with_flaps.statistics();
-  for (std::size_t i = 0; i < diagnosis.held_out.size(); ++i)
+  for (std::size_t i = 0; i < diagnosis.held_out.size(); ++i) {
     diagnosis.held_out[i].expected = means.expected_bias(held_out_blocks[i]);
+    diagnosis.held_out[i].parts = diagnosis.held_out.size();
+  }
 }
 
 /// Samples of all flights by reason of exclusion.

@@ -58,7 +58,7 @@ ReportTable variables_table(const Unexplained& unexplained) {
   for (const EmpiricalPredictor& variable : unexplained.variables) {
     table.rows.push_back(
         {variable.name, percent(variable.r2), percent(variable.linear_r2),
-         variable.slope_error > 0.0 ? with_error(variable.slope, variable.slope_error) : "not linear",
+         variable.slope_error > 0.0 ? with_error(variable.slope, variable.slope_error) : "no linear trend",
          variable.unit, probability(variable.p_value), variable.formula, variable.description});
   }
   return table;

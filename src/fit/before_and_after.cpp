@@ -1,5 +1,6 @@
 #include "fit/before_and_after.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/phrasing.hpp"
@@ -134,7 +135,7 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
   if (fitted == nullptr) return result;
   result.sums = sums_of(*fitted, task, before, after, noise);
   result.longest_run = longest_run_of(*fitted, after, noise);
-  result.flaps_out = flaps_out(residuals, values.data());
+  result.flaps_out = flaps_out(residuals, flight_parameters(residuals, task, values).data());
   for (const Note& note : samples.notes) result.notes.emplace_back(samples.name, note);
   for (const Interval& interval : samples.intervals)
     result.flown.set(static_cast<std::size_t>(interval.regime));
@@ -197,7 +198,8 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
   for (const Compared& one : each) {
     for (FlightFit part : one.parts) {
       if (part.holdout) {
-        const double by_wander = fitted.expected_bias(one.held_out_blocks);
+        // The blocks do not determine a part shorter than half of one; its own noise does.
+        const double by_wander = std::max(fitted.expected_bias(one.held_out_blocks), part.after.bias_error);
         const double by_coefficients =
             one.held_out_derivatives.dot(covariance * one.held_out_derivatives);  // hPa^2
         part.expected_bias = std::sqrt(by_wander * by_wander + by_coefficients + left * left);

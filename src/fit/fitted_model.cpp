@@ -98,9 +98,11 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
                     return std::find(held.begin(), held.end(), name) != held.end();
                   }));
   file.covariance = std::move(covariance);
-  file.uncertainty.static_defect.reset();
-  if (fit.left > 0.0) file.uncertainty.static_defect = fit.left;
-  file.uncertainty.static_defect_ratio.reset();
+  if (!std::isnan(fit.left)) {  // a fit by GPS alone estimates no misfit, and keeps the stated one
+    file.uncertainty.static_defect.reset();
+    if (fit.left > 0.0) file.uncertainty.static_defect = fit.left;
+    file.uncertainty.static_defect_ratio.reset();
+  }
   Provenance provenance = provenance_of(fit, loss);
   // The temperature calibration is kept: the pressures do not change it.
   for (auto& entry : file.provenance) {

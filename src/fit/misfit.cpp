@@ -113,14 +113,15 @@ double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& var
   return 1.0 / (1.0 + std::exp(parameters - posterior.gain));
 }
 
-/// The variances at which the restricted likelihood is stationary: the variance of a state is the sum of
-/// squares of its heights over the number of them that the flights determine (MacKay 1992, Neural Computation
-/// 4, 415). Successive substitution ends at the same values from any start nearby, unlike a search without
-/// derivatives.
+/// The variances at which the restricted likelihood is stationary, limited to sizes from 0.001 to 1 times the
+/// rms of the residual: the variance of a state is the sum of squares of its heights over the number of them
+/// that the flights determine (MacKay 1992, Neural Computation 4, 415). Successive substitution ends at the
+/// same values from any start nearby, unlike a search without derivatives.
 Eigen::VectorXd variances_of(const Heights& heights, double rms) {
   constexpr int max_rounds = 500;
-  // Relative to the rms of the residual. A misfit is a part of the residual, and heights of alternating signs,
-  // which a narrow feature requires, would otherwise make the slope of the law uncertain by several times it.
+  // Relative to the rms of the residual, of which the misfit is a part. Without this bound a narrow feature,
+  // which requires large heights of alternating signs, makes the stated error of the slope of the law several
+  // times the residual. The bound is too small for a misfit that is confined to few samples.
   constexpr double maximum = 1.0;
   const auto square = [](double size) { return size * size; };
   Eigen::VectorXd variance = Eigen::VectorXd::Constant(states * bumps, square(0.3 * rms));
@@ -191,18 +192,23 @@ std::vector<Eigen::MatrixXd> binned_states(FitFlights& flights) {
 }
 
 MisfitBasis::MisfitBasis(const FlightPartition& share, const std::vector<Eigen::MatrixXd>& in_bins) {
-  const auto sum = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
-    Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(states, 3);  // number, sum and sum of squares
-    for (Eigen::Index s = 0; s < states; ++s) {
-      for (const double value : in_bins[flight].col(s)) {
-        if (std::isfinite(value)) moments.row(s) += Eigen::RowVector3d(1.0, value, value * value);
+  // The means first: the difference of large squares would not show that a state is constant.
+  mean_ = Eigen::VectorXd::Zero(states);
+  const auto moments_about_mean = [&]() -> Eigen::ArrayXXd {  // mean value and mean square of each state
+    const auto sum = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+      Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(states, 3);  // number, sum and sum of squares
+      for (Eigen::Index s = 0; s < states; ++s) {
+        for (const double value : in_bins[flight].col(s)) {
+          const double from = value - mean_[s];
+          if (std::isfinite(value)) moments.row(s) += Eigen::RowVector3d(1.0, from, from * from);
+        }
       }
-    }
-    return moments;
-  });
-  const Eigen::ArrayXd count = sum.col(0).array().max(1.0);
-  mean_ = sum.col(1).array() / count;
-  deviation_ = (sum.col(2).array() / count - mean_.array().square()).max(0.0).sqrt();
+      return moments;
+    });
+    return sum.array().rightCols(2).colwise() / sum.array().col(0).max(1.0);
+  };
+  mean_ = moments_about_mean().col(0).matrix();
+  deviation_ = moments_about_mean().col(1).sqrt().matrix();
   for (Eigen::Index s = 0; s < states; ++s) {
     if (!(deviation_[s] > 1e-9 * std::abs(mean_[s]))) deviation_[s] = 0.0;
   }

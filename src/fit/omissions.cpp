@@ -26,7 +26,8 @@ double SquaredResiduals::at(const Eigen::VectorXd& values) const {
     double sum = 0.0;
     for (const double part : flights_.of_each(
              [&](std::size_t, const FitFlight& fit) {
-               const std::vector<double> residual = fit.residuals().values(values.data());
+               const std::vector<double> residual =
+                   fit.residuals().values(flight_parameters(fit.residuals(), flights_.task(), values).data());
                double squares = 0.0;
                for (const std::size_t i : fit.kept()) squares += residual[i] * residual[i];
                return squares;

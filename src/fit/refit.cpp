@@ -412,11 +412,14 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
   result.bulk_rms = sums.rms_of(sums.bulk_squares);
   result.noise_rms = sums.rms_of(sums.noise_squares);
-  if (covariance.information > 0.0)
+  if (covariance.information > 0.0) {
     result.autocorrelation_time =
         std::max(static_cast<double>(sums.samples) /
                      (sums.bulk_squares / static_cast<double>(sums.samples) * covariance.information),
                  1.0);
+  } else if (by_gps_alone) {
+    result.autocorrelation_time = nan;
+  }
   result.r_squared = sums.r_squared(sums.squares);
   result.outliers = flights.outliers(solution.values, tukey_width * solution.deviation);
   const SquaredResiduals squares(flights, solution);
@@ -431,10 +434,10 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
       result.surfaces.push_back({surface.effect, surface.size, surface.degrees_of_freedom});
   }
   result.drift_rms = flights.drift_rms();
-  result.left = misfit.left;
+  result.left = by_gps_alone ? nan : misfit.left;
   // Gusts are in the residual of the wind: a better law need not make it smaller.
   result.worse = why_worse(result, by_gps_alone ? infinity : sums.rms_of(sums.bulk_squares_before));
-  result.least_squares_rms = gps ? result.rms : sums.rms_of(squares.minimum());
+  result.least_squares_rms = gps ? nan : sums.rms_of(squares.minimum());
   // Gusts and drifts of the wind are not errors of the model.
   if (!by_gps_alone) result.warnings = fit_warnings(result, compared.longest_run);
   if (gps) result.warnings.insert(result.warnings.begin(), gps->warnings.begin(), gps->warnings.end());

@@ -35,6 +35,7 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
   with.diagnose.series_of = improvement.steps.front().diagnosis.flights_with_records();
   with.diagnose.training_share = options.refit.training_share;
   with.diagnose.formulas = options.formulas;
+  with.diagnose.trust_reference = options.refit.trust_reference;
   with.holdout = options.refit.holdout;
   with.is_robust = options.refit.loss != Loss::none;
   std::vector<WhatIfCandidate> candidates;

@@ -194,3 +194,15 @@ TEST(GpsFit, JackknifeUsesAllReferences) {
   EXPECT_NE(all.parameters[0].jackknife_error, laser.parameters[0].jackknife_error);
   EXPECT_GT(all.parameters[0].jackknife_error, 0.0);
 }
+
+TEST(GpsFit, GpsAloneKeepsTheStatedMisfit) {
+  ModelDefinition model = law();
+  model.uncertainty.static_defect = 0.3;
+  model.uncertainty.static_defect_ratio = 0.001;
+  const RefitResult result = fit(flight("c130-eq18"), model, {"wind"});
+  EXPECT_EQ(result.model.uncertainty.static_defect, 0.3);
+  EXPECT_EQ(result.model.uncertainty.static_defect_ratio, 0.001);
+  // A fit by GPS alone does not compute these.
+  for (const double value : {result.left, result.least_squares_rms, result.autocorrelation_time})
+    EXPECT_TRUE(std::isnan(value)) << value;
+}

@@ -66,6 +66,12 @@ TEST(Misfit, MissingRollGivesNoLoadFactor) {
   EXPECT_GT(bumps.bottomRows(without).norm(), 1.0);
 }
 
+// The mean of squares less the square of the mean is 7e-7 of 0.1 here, by rounding.
+TEST(Misfit, ConstantStateHasNoBumps) {
+  const Eigen::MatrixXd states = Eigen::MatrixXd::Constant(20000, 6, 0.1);
+  EXPECT_EQ(MisfitBasis(FlightPartition(1), {states})(states.topRows(10)).norm(), 0.0);
+}
+
 TEST(Misfit, MisfitEqualsTheSizeOfAMissingTerm) {
   const RefitResult right = fit(made::equation_18);
   const RefitResult wrong = fit(curved);

@@ -387,6 +387,18 @@ TEST(Refit, ReportsHeldOutStatistics) {
   EXPECT_EQ(result.worse, "");
 }
 
+// Of less than half a block, the expected bias was that of the coefficients alone.
+TEST(Refit, ExpectedBiasOfAShortHeldOutPartIncludesItsNoise) {
+  RefitOptions options;
+  options.training_share = 0.97;
+  const RefitResult result = fit({made::shared(plan_18(14))}, made::model(equation_18), options);
+  ASSERT_EQ(result.flights.size(), 2U);
+  const pcor::FlightFit& held_out = result.flights[1];
+  EXPECT_EQ(held_out.after.samples, 108U);
+  EXPECT_GT(held_out.after.bias_error, 0.03);
+  EXPECT_GT(held_out.expected_bias, held_out.after.bias_error);
+}
+
 TEST(Refit, StartDoesNotDetermineWhichSamplesAreUsed) {
   // Gusts of ten seconds in the dynamic pressure: with a wrong a2 the residual jumps with it, as in a burst.
   FlightSamples samples = made::flight(plan_18(16));

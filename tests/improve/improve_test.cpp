@@ -178,6 +178,19 @@ TEST_F(Improve, StopsIfNoEffectIsMissing) {
   EXPECT_TRUE(improvement.holdout_is_flights);
 }
 
+TEST_F(Improve, JudgesAHeldOutFlightAsOneOfAll) {
+  diagnoses_ = {diagnosis(Verdict::silent)};
+  loop_.refit = [this](const TrialModel& model) {
+    RefitResult fit = fitted(model.file);
+    fit.flights.push_back(fit.flights.back());
+    return fit;
+  };
+  const Improvement improvement = run();
+  const std::vector<pcor::HeldOutPart>& held_out = improvement.steps[0].diagnosis.held_out;
+  ASSERT_EQ(held_out.size(), 2U);
+  for (const pcor::HeldOutPart& part : held_out) EXPECT_EQ(part.parts, 2U);
+}
+
 TEST_F(Improve, AddsAnIdentifiedEffect) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.5};

@@ -142,7 +142,7 @@ std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("
 
 std::string slope_of(const EmpiricalPredictor& variable) {
   return variable.slope_error > 0.0 ? fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error)
-                                    : "not linear";
+                                    : "no linear trend";
 }
 
 void print_unexplained(const Unexplained& unexplained) {

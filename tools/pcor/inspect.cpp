@@ -249,7 +249,7 @@ void print_short(const Inspection& flight) {
 }
 
 std::string validity_of(const LawInfo& law) {
-  if (law.valid_from.empty() && law.valid_to.empty()) return "states no dates of validity";
+  if (law.valid_from.empty() && law.valid_to.empty()) return "dates of validity not stated";
   if (law.valid_from.empty()) return fmt::format("valid until {}, start not stated", law.valid_to);
   if (law.valid_to.empty()) return fmt::format("valid from {}", law.valid_from);
   return fmt::format("valid from {} to {}", law.valid_from, law.valid_to);
@@ -266,7 +266,7 @@ void print_in_full(const Inspection& flight) {
   for (const ModelCandidate& law : flight.laws) {
     say("  {}: {}{}\n", law.path.stem().string(), law.model.model.name,
         !law.lacks.empty()     ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
-        : !law.is_in_time      ? "; valid for another time"
+        : !law.is_in_time      ? "; not for the date of the flight, " + validity_of(law.model.law)
         : !law.why_not.empty() ? "; " + law.why_not
                                : "; matches the flight's pressures, " + validity_of(law.model.law));
   }

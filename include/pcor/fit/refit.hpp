@@ -223,9 +223,11 @@ struct RefitResult {
 template <class Field>
 void describe_summary(const RefitResult& self, Field& field) {
   field("estimator", self.estimator, "estimator of the coefficients and their errors");
-  field("left_hpa", self.left, "misfit of the model that varies with the flight state, rms");
+  field("left_hpa", self.left,
+        "misfit of the model that varies with the flight state, rms; null for a fit by GPS alone");
   field("drift_hpa", self.drift_rms, "slow drift of the noise, rms");
-  field("least_squares_rms_hpa", self.least_squares_rms, "rms residual of plain least squares");
+  field("least_squares_rms_hpa", self.least_squares_rms,
+        "rms residual of plain least squares; null for a fit with GPS");
   const std::optional<HeldOutPart> worst = worst_held_out(self.flights);
   if (!field.has(worst.has_value())) return;
   field.object("holdout", "held-out part with the most significant bias; absent if none",
@@ -307,8 +309,9 @@ struct LevelByGps {
   double standard_error = 0.0;  ///< above 1 hPa the level is not determined
 };
 
-/// Constant error of the model's delta-p according to GPS, by the same likelihood as `refit`, fitted with all
-/// coefficients of the model. Empty without the references wind and height.
+/// Constant error of the model's delta-p according to GPS, by the same likelihood as `refit`: static-constant
+/// is fitted, added if the model lacks it, and all other coefficients are fixed. Empty without the references
+/// wind and height.
 /// @throws Error as `refit`
 std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelDefinition& model,
                                        const References& references, const MaskOptions& mask = {});

@@ -49,10 +49,10 @@ struct HeldOutPart {
   Statistics statistics;
   /// Expected standard deviation of the bias, hPa, for a model with the same accuracy as in the fit: from the
   /// scatter of means over five minutes, and over flights, in the fit; after a fit also from the errors of
-  /// its coefficients and from the misfit of the model.
+  /// its coefficients and from the misfit of the model, and at least the standard error of the bias itself.
   double expected = 0.0;
 
-  std::size_t parts = 1;  ///< number of parts among which this one has the largest bias
+  std::size_t parts = 1;  ///< number of parts that are tested together
 
   /// True if the bias is significant (p < 1/80 over all parts, Sidak).
   bool is_off() const;
