@@ -132,7 +132,9 @@ void print(const ProcessedFlight& of) {
   say("\n");
   if (summary.gaps > 0) say("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");
   print_flags(summary.flagged);
-  say_notes(summary.notes);
+  const auto bits = std::count_if(summary.flagged.begin(), summary.flagged.end(),
+                                  [](std::size_t samples) { return samples > 0; });
+  say_notes(summary.notes, bits > 5 ? 1 : 3);  // at most fifteen lines in all
   say("{} {} to {}\n", wrote(of.output), fmt::join(summary.outputs, " "), of.output.string());
 }
 

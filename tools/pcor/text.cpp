@@ -172,8 +172,8 @@ void finish_text() {
   unfinished_line().clear();
 }
 
-void say_notes(Notes notes) {
-  constexpr std::size_t max_notes = 3, max_width = 120;
+void say_notes(Notes notes, std::size_t max_notes) {
+  constexpr std::size_t max_width = 120;
   std::stable_partition(notes.begin(), notes.end(),
                         [](const Note& note) { return note.severity == Severity::warning; });
   if (is_verbose()) {

@@ -43,9 +43,9 @@ void finish_text();
 bool is_verbose();
 void say_everything();
 
-/// Prints notes without full stops as numbered, shortened lines, warnings first, at most three; all in full
-/// if `is_verbose`.
-void say_notes(Notes notes);
+/// Prints notes without full stops as numbered, shortened lines, warnings first, at most `max_notes`; all in
+/// full if `is_verbose`.
+void say_notes(Notes notes, std::size_t max_notes = 3);
 
 /// Registers a file that exists before the run, for `say_written`.
 void remember_existing(const std::filesystem::path& file);
