@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,11 @@ struct CheckedFlight {
 };
 
 using CheckedFlights = std::vector<CheckedFlight>;
+
+/// Whether a flight has this record interval, s, within 1 %: times are rounded, and may jitter.
+inline bool has_step(const CheckedFlight& flight, double step) {
+  return std::abs(flight.air.step() - step) < 0.01 * step;
+}
 
 /// Each check receives all flights, and returns a result without its name, whether it was run or not.
 CheckResult check_total_pressure(const CheckedFlights& flights);

@@ -68,7 +68,7 @@ Differences all_differences(const CheckedFlights& flights) {
     const std::vector<double> difference = difference_of(air);
     if (!has_value(difference)) continue;
     if (std::isnan(all.step)) all.step = air.step();
-    if (air.step() != all.step) {
+    if (!has_step(flight, all.step)) {
       ++all.other_steps;
       continue;
     }

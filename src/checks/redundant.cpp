@@ -122,7 +122,7 @@ Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first,
   for (const CheckedFlight& flight : flights) {
     const std::vector<double> a = first(flight);
     const std::vector<double> b = second(flight);
-    if (a.empty() || b.empty() || flight.air.step() != both.step) continue;
+    if (a.empty() || b.empty() || !has_step(flight, both.step)) continue;
     const std::vector<bool> in_use = comparable(flight);
     for (std::size_t i = 0; i < a.size(); ++i) {
       const bool known = in_use[i] && std::isfinite(a[i]) && std::isfinite(b[i]);
@@ -157,7 +157,7 @@ void add_results(const CheckedFlights& flights, const std::string& check, const 
   }
   const double step = step_of(flights, first, second);
   const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
-    return flight.air.step() != step && has_both(flight, first, second);
+    return !has_step(flight, step) && has_both(flight, first, second);
   });
   if (other_steps > 0) {
     result.notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s",

@@ -81,7 +81,7 @@ Spectrum spectrum_of(const CheckedFlights& flights, const Source& source) {
   spectrum.step = flights.front().air.step();
   for (const CheckedFlight& flight : flights) {
     const std::vector<double> values = source.series(flight);
-    if (values.empty() || flight.air.step() != spectrum.step) continue;
+    if (values.empty() || !has_step(flight, spectrum.step)) continue;
     for (const Segment& segment : contiguous_segments(values, flight.air.time(), flight.air.step())) {
       for (std::size_t first = 0; first + segment_length <= segment.count; first += segment_length / 2)
         spectrum.periodograms.push_back(periodogram(&values[segment.first + first], spectrum.step));
@@ -218,7 +218,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   result.finding += fmt::format("; over the last two octaves power varies as frequency to the {}: {}.",
                                 with_error(fall, ""), in_words(fall));
   const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
-    return flight.air.step() != spectrum.step;
+    return !has_step(flight, spectrum.step);
   });
   if (other_steps > 0) {
     result.notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s",

@@ -104,7 +104,7 @@ void Processing::find_frozen_sensors() {
         find_frozen(values, flying, always_varies(input.quantity) && flown >= min_records);
     if (frozen.empty()) continue;
     if (time.empty()) time = record_times(flight_);
-    summary_.notes.push_back(frozen_text(input.variable, input.quantity, values, time, frozen));
+    summary_.notes.push_back(warning_note(frozen_text(input.variable, input.quantity, values, time, frozen)));
     input.frozen.resize(values.size());
     frozen_.resize(values.size());
     for (const Segment& span : frozen) {
@@ -140,8 +140,8 @@ void Processing::find_flaps() {
         "quality bit");
   } else if (std::find(extended->begin(), extended->end(), true) != extended->end()) {
     summary_.notes.push_back(warning_note(fmt::format(
-        "flaps are extended in some records{}, and no effect of the model describes them: delta-p may be "
-        "wrong there, and PCORFLAG has the bit outside_domain",
+        "flaps are extended in some records{}, and no effect of the model describes them: its delta-p may "
+        "be wrong there, and PCORFLAG has the bit outside_domain",
         variable.empty() ? " (inferred from the lift)" : "")));
     flaps_ = std::move(*extended);
   }

@@ -271,8 +271,10 @@ std::optional<std::vector<bool>> internal::flaps_extended(const Flight& flight,
   const auto read = [&](Quantity role) { return read_role(flight, model, role).values; };
   for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure,
                               Quantity::recovery_temperature, Quantity::ambient_temperature}) {
-    if (std::vector<double> values = read(role); !values.empty())
-      samples.model.columns.emplace_back(role, std::move(values));
+    std::vector<double> values = read(role);
+    const bool is_pressure = role == Quantity::static_pressure || role == Quantity::dynamic_pressure;
+    if (values.empty() && is_pressure) values.assign(samples.time.size(), nan);  // no plausible value
+    if (!values.empty()) samples.model.columns.emplace_back(role, std::move(values));
   }
   samples.motion.airspeed = measured_airspeed(samples.model);
   samples.motion.vertical_speed = read(Quantity::vertical_speed);

@@ -155,7 +155,14 @@ bool is_of_aircraft(const ModelDefinition& file, const Flight& flight) {
   const std::string aircraft = flight.aircraft();
   if (model.empty() || aircraft.empty()) return false;
   const std::string registration = registration_in(aircraft);
-  return model == aircraft || (!registration.empty() && registration_in(model) == registration);
+  const std::string of_model = registration_in(model);
+  if (!registration.empty() || !of_model.empty()) return registration == of_model;
+  // Registrations of other countries: one text is the last word of the other.
+  const auto ends_with = [](const std::string& text, const std::string& word) {
+    return text == word ||
+           (text.size() > word.size() && text.substr(text.size() - word.size() - 1) == " " + word);
+  };
+  return ends_with(model, aircraft) || ends_with(aircraft, model);
 }
 
 }  // namespace pcor::internal

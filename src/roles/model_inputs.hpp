@@ -38,7 +38,8 @@ void note_excluded(const ModelInput& input, const RejectedCounts& excluded, Note
 Notes notes_on_law(const Flight& flight, const ModelDefinition& file);
 
 /// Whether a model belongs to the flight's aircraft: both state the same registration, as "C-130 N130AR" and
-/// "N130AR" do, or the same text. "C-130" alone is not the aircraft "C-130 N130AR".
+/// "N130AR" do. "C-130" alone is not the aircraft "C-130 N130AR". Without a registration of a known form in
+/// both, one text is the other or its last word.
 bool is_of_aircraft(const ModelDefinition& file, const Flight& flight);
 
 }  // namespace pcor::internal

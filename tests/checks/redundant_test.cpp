@@ -77,26 +77,31 @@ TEST(RedundantFit, ErrorsIncludeDrift) {
 
 TEST(TotalPressureCheck, FlightsOfAnotherRecordIntervalAreNotUsed) {
   constexpr std::size_t records = 1200;
-  std::mt19937_64 engine(1);
-  std::normal_distribution<double> noise(0.0, 0.05);
-  CheckedFlights flights(2);
-  for (CheckedFlight& flight : flights) {
-    const bool is_first = &flight == &flights.front();
-    const auto samples = std::make_shared<pcor::FlightSamples>();
-    samples->step = is_first ? 1.0 : 2.0;
-    MeasuredPair one{"PSFD/QCF", {}, std::vector<double>(records, 60.0)};
-    MeasuredPair two{"PSFRD/QCFR", {}, std::vector<double>(records, 60.0)};
-    for (std::size_t i = 0; i < records; ++i) {
-      const auto record = static_cast<double>(i);
-      samples->time.push_back((is_first ? 0.0 : 1e5) + samples->step * record);
-      one.static_pressure.push_back(700.0 + 50.0 * std::sin(0.01 * record));
-      two.static_pressure.push_back(one.static_pressure.back() + noise(engine));
+  const auto check_with = [](double second_step) {
+    std::mt19937_64 engine(1);
+    std::normal_distribution<double> noise(0.0, 0.05);
+    CheckedFlights flights(2);
+    for (CheckedFlight& flight : flights) {
+      const bool is_first = &flight == &flights.front();
+      const auto samples = std::make_shared<pcor::FlightSamples>();
+      samples->step = is_first ? 1.0 : second_step;
+      MeasuredPair one{"PSFD/QCF", {}, std::vector<double>(records, 60.0)};
+      MeasuredPair two{"PSFRD/QCFR", {}, std::vector<double>(records, 60.0)};
+      for (std::size_t i = 0; i < records; ++i) {
+        const auto record = static_cast<double>(i);
+        samples->time.push_back((is_first ? 0.0 : 1e5) + samples->step * record);
+        one.static_pressure.push_back(700.0 + 50.0 * std::sin(0.01 * record));
+        two.static_pressure.push_back(one.static_pressure.back() + noise(engine));
+      }
+      flight.air.samples = samples;
+      flight.air.flying.assign(records, true);
+      flight.measured = {one, two};
     }
-    flight.air.samples = samples;
-    flight.air.flying.assign(records, true);
-    flight.measured = {one, two};
-  }
-  const pcor::CheckResult result = check_total_pressure(flights);
+    return check_total_pressure(flights);
+  };
+  const pcor::CheckResult result = check_with(2.0);
   EXPECT_THAT(result.numbers, testing::Contains(testing::Pair("samples", 1200.0)));
   EXPECT_THAT(result.notes, testing::Contains(pcor::test::Says("1 of 2 flights are not used")));
+  EXPECT_THAT(check_with(1.0 + 1e-5).numbers, testing::Contains(testing::Pair("samples", 2400.0)))
+      << "times are rounded";
 }

@@ -446,7 +446,8 @@ TEST_F(FlightWriterTest, VariableWithASecondUnlimitedDimensionOfLengthZeroIsCopi
   }
   const Flight flight(input);
   FlightWriter writer(output, flight, {});
-  if (writer.can_copy("EMPTY")) writer.copy("EMPTY");
+  ASSERT_TRUE(writer.can_copy("EMPTY"));
+  writer.copy("EMPTY");
   writer.copy("PSFD");
   writer.finish();
   EXPECT_THAT(Written(output).values("PSFD"), ElementsAre(850, 851));

@@ -558,6 +558,26 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
   EXPECT_EQ(outside(describes_flaps, 50.0), 0U);
 }
 
+// The search for extended flaps used pressures that have no plausible value.
+TEST_F(Process, DeadPressureSensorGivesNoResultInAnyRecord) {
+  for (const std::string dead : {"PSFD", "QCF"}) {
+    {
+      test::NetcdfMaker maker(input_);
+      maker.time(test::sequence(50000.0, 40));
+      for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0},
+                                              {"QCF", "hPa", 60.0},
+                                              {"TTRR", "deg_C", 5.0},
+                                              {"QCR", "hPa", 60.0},
+                                              {"ADIFR", "hPa", -10.0},
+                                              {"EDPC", "hPa", 4.0}})
+        maker.series(name, unit, std::vector<double>(40, name == dead ? -9999.0 : level));
+    }
+    ModelDefinition model = lams_model();
+    model.variables.erase(Quantity::lams_airspeed);
+    EXPECT_EQ(process_flight(input_, model, output_).corrected, 0U) << dead;
+  }
+}
+
 // A lag is undone at even samples; at others a bit marks a doubtful value.
 TEST_F(Process, ReportsUnevenSamples) {
   std::vector<double> time = test::sequence(50000.0, 100), p, q;

@@ -29,6 +29,8 @@ TEST(ModelInputs, AircraftIsRecognisedByItsRegistration) {
   EXPECT_TRUE(is_of_same_aircraft("C-130 N130AR", "NSF/NCAR C-130 (N130AR)"));
   EXPECT_TRUE(is_of_same_aircraft("C-130H, 4X-FBB", "4X-FBB"));
   EXPECT_TRUE(is_of_same_aircraft("my aircraft", "my aircraft"));
+  EXPECT_TRUE(is_of_same_aircraft("King Air JA8570", "JA8570"));
+  EXPECT_FALSE(is_of_same_aircraft("King Air JA8570", "King Air"));
   for (const char* const platform : {"C-130", "N130", "N", "N130A", "N677F", ""})
     EXPECT_FALSE(is_of_same_aircraft("C-130 N130AR", platform)) << platform;
 }

@@ -134,7 +134,10 @@ void print(const ProcessedFlight& of) {
   print_flags(summary.flagged);
   const auto bits = std::count_if(summary.flagged.begin(), summary.flagged.end(),
                                   [](std::size_t samples) { return samples > 0; });
-  say_notes(summary.notes, bits > 5 ? 1 : 3);  // at most fifteen lines in all
+  const auto warnings = std::count_if(summary.notes.begin(), summary.notes.end(),
+                                      [](const Note& note) { return note.severity == Severity::warning; });
+  constexpr std::size_t few = 1, usual = 3;  // fewer below a long table, but all warnings
+  say_notes(summary.notes, std::max(bits > 5 ? few : usual, static_cast<std::size_t>(warnings)));
   say("{} {} to {}\n", wrote(of.output), fmt::join(summary.outputs, " "), of.output.string());
 }
 
