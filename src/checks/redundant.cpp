@@ -103,7 +103,7 @@ bool has_both(const CheckedFlight& flight, const SeriesOfFlight& first, const Se
   return has_value(first(flight)) && has_value(second(flight));
 }
 
-/// Record interval of the first flight with both series, s; NaN without one.
+/// Record interval of the first flight with both series, s; NaN if no flight has both.
 double step_of(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second) {
   const auto found = std::find_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
     return has_both(flight, first, second);

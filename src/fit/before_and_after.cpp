@@ -198,7 +198,7 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
   for (const Compared& one : each) {
     for (FlightFit part : one.parts) {
       if (part.holdout) {
-        // The blocks do not determine a part shorter than half of one; its own noise does.
+        // The noise of the part itself determines a part that is shorter than half of a block.
         const double by_wander = std::max(fitted.expected_bias(one.held_out_blocks), part.after.bias_error);
         const double by_coefficients =
             one.held_out_derivatives.dot(covariance * one.held_out_derivatives);  // hPa^2

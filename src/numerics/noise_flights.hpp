@@ -19,7 +19,8 @@ struct NoiseFlight {
 /// Numbers, in increasing order, of the flights that determine the common part of the noise: all flights with
 /// bins, up to `maximum`. If there are more, at most `maximum`, spread over the time in which they were
 /// flown, among the flights with at least a quarter of the mean number of bins, which have three quarters of
-/// all bins: the choice does not depend on the order of the flights. The first flight if none has a bin.
+/// all bins: the choice does not depend on the order of the flights. If no flight has a bin, the first
+/// flight.
 std::vector<std::size_t> flights_for_noise(const std::vector<NoiseFlight>& flights, std::size_t maximum = 16);
 
 }  // namespace pcor::internal

@@ -130,7 +130,7 @@ void Processing::find_flaps() {
         }))
       return;
     extended = flaps_extended(flight_, file_);
-  } catch (const Error& error) {  // of a variable that no result needs
+  } catch (const Error& error) {  // a variable that no result needs is damaged
     note("flaps are unknown: {}", error.what());
     return;
   }
