@@ -127,6 +127,20 @@ class Process : public testing::Test {
     return values;
   }
 
+  /// Writes a level flight with recorded flaps, percent. @param dead sensor that records -9999 everywhere
+  void write_level(const std::vector<double>& flaps, const std::string& dead = "") const {
+    test::NetcdfMaker maker(input_);
+    maker.time(test::sequence(50000.0, flaps.size()));
+    for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0},
+                                            {"QCF", "hPa", 60.0},
+                                            {"TTRR", "deg_C", 5.0},
+                                            {"QCR", "hPa", 60.0},
+                                            {"ADIFR", "hPa", -10.0},
+                                            {"EDPC", "hPa", 4.0}})
+      maker.series(name, unit, std::vector<double>(flaps.size(), name == dead ? -9999.0 : level));
+    maker.series("FLAPS", "percent", flaps);
+  }
+
   std::string attribute(const std::string& variable, const std::string& name) {
     int file = 0, number = 0;
     std::size_t length = 0;
@@ -518,20 +532,9 @@ TEST_F(Process, FrozenSensorGivesMissingValuesAndANote) {
 TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
   constexpr std::size_t records = 40, extended_from = 30;
   const auto outside = [&](const ModelDefinition& model, double flaps) {
-    {
-      test::NetcdfMaker maker(input_);
-      maker.time(test::sequence(50000.0, records));
-      for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0},
-                                              {"QCF", "hPa", 60.0},
-                                              {"TTRR", "deg_C", 5.0},
-                                              {"QCR", "hPa", 60.0},
-                                              {"ADIFR", "hPa", -10.0},
-                                              {"EDPC", "hPa", 4.0}})
-        maker.series(name, unit, std::vector<double>(records, level));
-      std::vector<double> position(records, 0.0);
-      std::fill(position.begin() + extended_from, position.end(), flaps);
-      maker.series("FLAPS", "percent", position);
-    }
+    std::vector<double> position(records, 0.0);
+    std::fill(position.begin() + extended_from, position.end(), flaps);
+    write_level(position);
     process_flight(input_, model, output_);
     std::size_t marked = 0;
     const std::vector<double> flags = read("PCORFLAG", "");
@@ -561,17 +564,7 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
 // The search for extended flaps used pressures that have no plausible value.
 TEST_F(Process, DeadPressureSensorGivesNoResultInAnyRecord) {
   for (const std::string dead : {"PSFD", "QCF"}) {
-    {
-      test::NetcdfMaker maker(input_);
-      maker.time(test::sequence(50000.0, 40));
-      for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0},
-                                              {"QCF", "hPa", 60.0},
-                                              {"TTRR", "deg_C", 5.0},
-                                              {"QCR", "hPa", 60.0},
-                                              {"ADIFR", "hPa", -10.0},
-                                              {"EDPC", "hPa", 4.0}})
-        maker.series(name, unit, std::vector<double>(40, name == dead ? -9999.0 : level));
-    }
+    write_level(std::vector<double>(40, 0.0), dead);
     ModelDefinition model = lams_model();
     model.variables.erase(Quantity::lams_airspeed);
     EXPECT_EQ(process_flight(input_, model, output_).corrected, 0U) << dead;

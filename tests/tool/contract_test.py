@@ -67,7 +67,7 @@ class Contract(unittest.TestCase):
         cls.cases = {}  # of each spoilt record the input and the kind of its value
         with netCDF4.Dataset(path / "flight.nc") as flight, netCDF4.Dataset(path / "good.nc", "w") as good, \
                 netCDF4.Dataset(path / "spoilt.nc", "w") as spoilt:
-            values = {name: np.ma.filled(flight[name][:].astype(float), np.nan) for name in ("Time", *FOUND_FROM)}
+            values = {name: np.ma.filled(flight[name][:].astype(float), np.nan) for name in ("Time", "FLAPS", *FOUND_FROM)}
             whole = np.flatnonzero(np.all([np.isfinite(each) for each in values.values()], axis=0) & (values["QCF"] > 50.0))
             kinds = list(itertools.product(FOUND_FROM, {**NONE, **ODD}.items()))
             # Two good records between invalid ones show that the invalid ones do not affect them.
@@ -118,9 +118,8 @@ class Contract(unittest.TestCase):
         untouched[list(self.cases)] = False
         for name in RESULTS:
             np.testing.assert_array_equal(self.spoilt[name][untouched], self.good[name][untouched], name)
-        # A bit marks an incomplete window of time averages, ATLAMSF alone; another one extended flaps, which are inferred
-        # from the lift of the whole flight.
-        other = ~np.uint32(1 << 16 | 1 << 12)
+        # A bit marks an incomplete window of time averages, ATLAMSF alone.
+        other = ~np.uint32(1 << 16)
         np.testing.assert_array_equal(self.bits[untouched] & other, self.good_bits[untouched] & other)
 
     def test_good_flight_has_all_results(self):
