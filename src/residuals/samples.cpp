@@ -269,6 +269,11 @@ std::optional<std::vector<bool>> internal::flaps_extended(const Flight& flight,
   samples.step = flight.time().step;
   samples.time = record_times(flight);
   const auto read = [&](Quantity role) { return read_role(flight, model, role).values; };
+  if (const std::vector<double> recorded = read(Quantity::flaps); !recorded.empty()) {
+    std::vector<bool> extended;
+    for (const double percent : recorded) extended.push_back(percent > flaps_in);
+    return extended;
+  }
   for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure,
                               Quantity::recovery_temperature, Quantity::ambient_temperature}) {
     std::vector<double> values = read(role);
@@ -281,10 +286,8 @@ std::optional<std::vector<bool>> internal::flaps_extended(const Flight& flight,
   samples.motion.roll = read(Quantity::roll);
   samples.motion.attack = read(Quantity::attack);
   read_flaps(flight, model, MaskOptions().min_airspeed, samples);
-  if (samples.flaps.empty() && samples.flaps_by_lift.empty()) return std::nullopt;
-  std::vector<bool> extended = std::move(samples.flaps_by_lift);
-  for (const double percent : samples.flaps) extended.push_back(percent > flaps_in);
-  return extended;
+  if (samples.flaps_by_lift.empty()) return std::nullopt;
+  return std::move(samples.flaps_by_lift);
 }
 
 FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, const Reference& reference,

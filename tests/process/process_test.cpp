@@ -127,18 +127,19 @@ class Process : public testing::Test {
     return values;
   }
 
-  /// Writes a level flight with recorded flaps, percent. @param dead sensor that records -9999 everywhere
-  void write_level(const std::vector<double>& flaps, const std::string& dead = "") const {
+  /// Writes a level flight. @param flaps percent; empty: not recorded. @param dead sensor that records -9999
+  void write_level(std::size_t records, const std::vector<double>& flaps,
+                   const std::string& dead = "") const {
     test::NetcdfMaker maker(input_);
-    maker.time(test::sequence(50000.0, flaps.size()));
+    maker.time(test::sequence(50000.0, records));
     for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0},
                                             {"QCF", "hPa", 60.0},
                                             {"TTRR", "deg_C", 5.0},
                                             {"QCR", "hPa", 60.0},
                                             {"ADIFR", "hPa", -10.0},
                                             {"EDPC", "hPa", 4.0}})
-      maker.series(name, unit, std::vector<double>(flaps.size(), name == dead ? -9999.0 : level));
-    maker.series("FLAPS", "percent", flaps);
+      maker.series(name, unit, std::vector<double>(records, name == dead ? -9999.0 : level));
+    if (!flaps.empty()) maker.series("FLAPS", "percent", flaps);
   }
 
   std::string attribute(const std::string& variable, const std::string& name) {
@@ -534,7 +535,7 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
   const auto outside = [&](const ModelDefinition& model, double flaps) {
     std::vector<double> position(records, 0.0);
     std::fill(position.begin() + extended_from, position.end(), flaps);
-    write_level(position);
+    write_level(records, position);
     process_flight(input_, model, output_);
     std::size_t marked = 0;
     const std::vector<double> flags = read("PCORFLAG", "");
@@ -564,7 +565,7 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
 // The search for extended flaps used pressures that have no plausible value.
 TEST_F(Process, DeadPressureSensorGivesNoResultInAnyRecord) {
   for (const std::string dead : {"PSFD", "QCF"}) {
-    write_level(std::vector<double>(40, 0.0), dead);
+    write_level(40, {}, dead);
     ModelDefinition model = lams_model();
     model.variables.erase(Quantity::lams_airspeed);
     EXPECT_EQ(process_flight(input_, model, output_).corrected, 0U) << dead;
