@@ -219,10 +219,8 @@ void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnos
   diagnosis.rms_given = statistics.rms;
   diagnosis.noise_rms = statistics.noise_rms;
   diagnosis.flaps_out = with_flaps.statistics();
-  for (std::size_t i = 0; i < diagnosis.held_out.size(); ++i) {
+  for (std::size_t i = 0; i < diagnosis.held_out.size(); ++i)
     diagnosis.held_out[i].expected = means.expected_bias(held_out_blocks[i]);
-    diagnosis.held_out[i].parts = diagnosis.held_out.size();
-  }
 }
 
 /// Samples of all flights by reason of exclusion.
@@ -457,7 +455,8 @@ std::vector<std::size_t> Diagnosis::flights_with_records() const {
 }
 
 void judge_held_out(Diagnosis& diagnosis) {
-  for (const HeldOutPart& part : diagnosis.held_out) {
+  for (HeldOutPart& part : diagnosis.held_out) {
+    part.parts = diagnosis.held_out.size();
     if (!part.is_off()) continue;
     const std::string text = part.text();
     Notes& notes = diagnosis.notes;

@@ -513,7 +513,6 @@ class ForwardSelection {
     for (const FlightFit& flight : fit.flights) {
       if (flight.holdout) held_out.push_back({flight.flight, flight.after, flight.expected_bias});
     }
-    for (HeldOutPart& part : held_out) part.parts = held_out.size();
     judge_held_out(step.diagnosis);
     result_.steps.push_back(std::move(step));
     result_.fit = std::move(fit);
