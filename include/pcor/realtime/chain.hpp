@@ -132,8 +132,7 @@ class Chain : public BoundModel {
   /// together. An ambient temperature derived from the recovery temperature is calibrated here. If the
   /// corrected dynamic pressure is below the minimum of the policy, as on the ramp, Mach number and airspeed
   /// would be noise and are NaN; the temperature, hardly affected by such a flow, is kept if both corrected
-  /// pressures are known. An implausible
-  /// Mach number indicates an impossible pair of pressures.
+  /// pressures are known. An implausible Mach number indicates an impossible pair of pressures.
   template <class S, class P, class Flags>
   void air(State<S>& state, const P* parameters, Flags& flags) const {
     const S p = state[Quantity::corrected_static_pressure];

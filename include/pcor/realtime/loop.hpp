@@ -198,7 +198,7 @@ class Loop {
   QualityFlags quality_;
   double max_step_;
   double previous_time_ = missing<double>();
-  double filter_time_ = missing<double>();  // of the sample before in the filter
+  double filter_time_ = missing<double>();  // time of the filter's previous sample
   bool started_ = false;
 };
 

@@ -43,8 +43,9 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 /// is flat, and its error grows by the rms slope inside the envelope. docs/uncertainty.md lists the
 /// contributions.
 ///
-/// If delta-p is raised to the minimum of the model, it keeps the uncertainty of the model; if it is tapered,
-/// the uncertainty is tapered, too. If a result is missing, its uncertainty is missing. If LAMS corrects the
+/// If delta-p is raised to the minimum of the model, it keeps the uncertainty of the model. If it is tapered,
+/// the contributions of coefficients and inputs are tapered, too; the model's own uncertainty of delta-p is
+/// not. If a result is missing, its uncertainty is missing. If LAMS corrects the
 /// sample, only the uncertainty of the model's delta-p is given, because the model covariance does not apply
 /// to the laser.
 class ResultUncertainty final : public Functor {
@@ -412,7 +413,8 @@ class ResultUncertainty final : public Functor {
     return change;
   }
 
-  // A tenth of a degree or a hPa, and what that is as a ratio: laws are smooth over it.
+  // Step of the differences: 0.1 of the unit (K, degree or hPa), 0.005 for the attack ratio. Laws are smooth
+  // over such a step.
   static double step_of(Quantity quantity) { return quantity == Quantity::attack_ratio ? 0.005 : 0.1; }
 
   // Uncertainties are reused for two seconds if the pressures have not changed significantly.
