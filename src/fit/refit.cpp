@@ -243,10 +243,8 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
     covariance.by_flights = gps.covariance;
     const Eigen::Index all = count + as_index(fitted.held.size());
     covariance.matrix.conservativeResizeLike(Eigen::MatrixXd::Zero(all, all));
-    for (std::size_t h = 0; h < fitted.held.size(); ++h) {
-      const Eigen::Index p = as_index(fitted.held[h]);
-      covariance.matrix(count + as_index(h), count + as_index(h)) = task.doubt(p, p);
-    }
+    const Eigen::Index held = as_index(fitted.held.size());
+    covariance.matrix.bottomRightCorner(held, held) = task.doubt(fitted.held, fitted.held);
     fitted.flights->measure_noise(solution.values);
     solution.deviation = fitted.flights->deviation(solution.values);
   } else {

@@ -22,6 +22,7 @@
 #include "flight/registration.hpp"
 #include "flight/status_flags.hpp"
 #include "flight/time_source.hpp"
+#include "flight/unpacking.hpp"
 
 namespace pcor {
 
@@ -69,29 +70,12 @@ std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
   return static_cast<int>(length);
 }
 
-/// Scale factor or offset of packed values. @throws Error if the attribute exists and is not a number.
-double packing_number(const FlightFile& file, int variable, const char* attribute, double otherwise) {
-  const std::string text = file.text_attribute(variable, attribute);
-  if (text.empty()) return otherwise;
-  const std::vector<double> numbers = file.number_attribute(variable, attribute);
-  const bool is_number = numbers.size() == 1 && std::isfinite(numbers.front());
-  if (is_number && (numbers.front() != 0 || otherwise == 0)) return numbers.front();
-  throw Error(
-      Error::Code::variable,
-      fmt::format("{}: the attribute {} of {} is \"{}\", which is not valid for packed values; correct it "
-                  "with ncatted -a {} {}",
-                  file.path().string(), attribute, file.variable_name(variable), text,
-                  shell_quote(fmt::format("{},{},o,d,NUMBER", attribute, file.variable_name(variable))),
-                  shell_path(file.path().string())));
-}
-
 /// Reads what turns the stored numbers into values.
 void describe_numbers(const FlightFile& file, Variable& variable) {
   variable.missing_values = file.missing_values(variable.id);
   variable.valid_range = file.valid_range(variable.id);
   variable.info.ignored_range = file.ignored_range(variable.id);
-  variable.unpacking = {packing_number(file, variable.id, "scale_factor", 1),
-                        packing_number(file, variable.id, "add_offset", 0)};
+  variable.unpacking = unpacking_of(file, variable.id);
   variable.flags = StatusFlags::of(file, variable.id);
   for (const StatusFlags& flags : variable.flags)
     variable.info.flags.push_back(file.variable_name(flags.variable()));

@@ -16,6 +16,8 @@
 #include <string_view>
 #include <vector>
 
+#include "flight/unpacking.hpp"
+
 namespace pcor::internal {
 namespace {
 
@@ -44,6 +46,7 @@ std::optional<double> first_value(const FlightFile& file, std::optional<int> var
     return std::nullopt;
   double value = 0;
   file.read(*variable, {0, 1}, &value);
+  value = unpacking_of(file, *variable)(value);
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
@@ -209,7 +212,7 @@ std::optional<double> offset_of_seconds(double first_raw, double start) {
 
 // The most seconds that the variable can count.
 double max_seconds(const FlightFile& file, int variable, const std::optional<UnitConversion>& epoch) {
-  return file.max_number(variable) * (epoch ? epoch->scale() : 1);
+  return unpacking_of(file, variable)(file.max_number(variable)) * (epoch ? epoch->scale() : 1);
 }
 
 std::optional<int> find_time_variable(const FlightFile& file) {

@@ -150,10 +150,11 @@ class Look {
   /// A pressure altitude is not a height of GPS under any name; a height that may be either is not sure.
   void tell_heights_apart() {
     constexpr std::string_view series = "altitude";
-    std::vector<std::string> pressures = static_pressures_of(flight_, ModelDefinition());
-    for (const RoleCandidate& each : evidence_["static_pressure"]) {
-      if (std::find(pressures.begin(), pressures.end(), each.variable) == pressures.end())
-        pressures.push_back(each.variable);
+    std::vector<StatedPressure> pressures = static_pressures_of(flight_, ModelDefinition());
+    for (const RoleCandidate& candidate : evidence_["static_pressure"]) {
+      if (std::none_of(pressures.begin(), pressures.end(),
+                       [&](const StatedPressure& each) { return each.variable == candidate.variable; }))
+        pressures.push_back({candidate.variable, family_.unit_of(candidate.variable)});
     }
     const QuantityInfo& info = *series_named(series);
     const auto evidence_of = [&](const std::string& variable) {

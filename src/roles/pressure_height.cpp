@@ -10,6 +10,7 @@
 #include "numerics/median.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/resolution.hpp"
+#include "roles/usual_variables.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -56,12 +57,12 @@ HeightEvidence compare_height(const std::vector<double>& height, const std::vect
 }
 
 HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& height,
-                               const std::vector<std::string>& pressures) {
+                               const std::vector<StatedPressure>& pressures) {
   HeightEvidence closest;
-  for (const std::string& variable : pressures) {
+  for (const auto& [variable, unit] : pressures) {
     try {
       const QuantityInfo& info = info_of(Quantity::static_pressure);
-      const UnitConversion conversion = flight.conversion(variable, std::string(info.unit));
+      const UnitConversion conversion = flight.conversion(variable, std::string(info.unit), "", unit);
       HeightEvidence evidence =
           compare_height(height, read_values(flight, variable, believed(conversion, info)).values);
       evidence.pressure = variable;
@@ -75,19 +76,21 @@ HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& 
   return closest;
 }
 
-std::vector<std::string> static_pressures_of(const Flight& flight, const ModelDefinition& model) {
-  std::vector<std::string> variables;
-  const auto add = [&](const std::string& variable) {
-    const bool is_new = std::find(variables.begin(), variables.end(), variable) == variables.end();
-    if (is_new && has_values(flight, variable, "hPa")) variables.push_back(variable);
+std::vector<StatedPressure> static_pressures_of(const Flight& flight, const ModelDefinition& model) {
+  std::vector<StatedPressure> pressures;
+  const auto add = [&](const std::string& variable, const std::string& unit) {
+    const bool is_new = std::none_of(pressures.begin(), pressures.end(),
+                                     [&](const StatedPressure& each) { return each.variable == variable; });
+    if (is_new && has_values(flight, variable, "hPa", unit)) pressures.push_back({variable, unit});
   };
-  const auto named = model.variables.find(Quantity::static_pressure);
-  if (named != model.variables.end()) add(named->second);
   const VariableNaming& family = family_of(model, flight);
+  const auto named = model.variables.find(Quantity::static_pressure);
+  if (named != model.variables.end())
+    add(named->second, unit_of_role(model, family, Quantity::static_pressure));
   for (const auto* pairs : {&family.measured, &family.processed}) {
-    for (const PressurePair& pair : *pairs) add(pair.static_pressure);
+    for (const PressurePair& pair : *pairs) add(pair.static_pressure, family.unit_of(pair.static_pressure));
   }
-  return variables;
+  return pressures;
 }
 
 std::string to_string(const HeightEvidence& evidence) {

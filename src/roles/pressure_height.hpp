@@ -26,12 +26,18 @@ struct HeightEvidence {
 /// @param height m  @param pressure hPa
 HeightEvidence compare_height(const std::vector<double>& height, const std::vector<double>& pressure);
 
+/// A recorded static pressure and the unit that model or aircraft state; empty for the unit in the file.
+struct StatedPressure {
+  std::string variable{};
+  std::string unit{};
+};
+
 /// Compares a height with several static pressures; returns the comparison that is closest.
 HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& height,
-                               const std::vector<std::string>& pressures);
+                               const std::vector<StatedPressure>& pressures);
 
 /// The static pressures of a flight: the model's, and those of the pairs that its aircraft's names have.
-std::vector<std::string> static_pressures_of(const Flight& flight, const ModelDefinition& model);
+std::vector<StatedPressure> static_pressures_of(const Flight& flight, const ModelDefinition& model);
 
 /// "the pressure of the height is that of PSXC within 0.01 hPa (mean +0.00 hPa)".
 std::string to_string(const HeightEvidence& evidence);

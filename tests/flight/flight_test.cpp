@@ -366,6 +366,19 @@ TEST_F(FlightTest, TimeOfLessThan32BitsIsRefused) {
   }
 }
 
+// As xarray packs it: half a second a step, from noon.
+TEST_F(FlightTest, PackedTimesAreUnpackedBeforeTheirChecks) {
+  for (const int type : {NC_SHORT, NC_INT}) {
+    {
+      NetcdfMaker maker(path());
+      const int time = maker.time({0, 2, 4}, "seconds since 2004-02-18 00:00:00 +0000", type);
+      maker.numbers(time, "scale_factor", NC_DOUBLE, {0.5});
+      maker.numbers(time, "add_offset", NC_DOUBLE, {80000});
+    }
+    EXPECT_THAT(times(), ElementsAre(midnight + 80000, midnight + 80001, midnight + 80002));
+  }
+}
+
 TEST_F(FlightTest, RefusesDuplicateNames) {
   {
     NetcdfMaker maker(path(), 0);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include <pcor/physics/standard_atmosphere.hpp>
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -48,6 +50,29 @@ TEST(PressureHeight, HeightFromAnotherPressureIsUndecided) {
   for (const double pressure : pressures())
     height.push_back(pressure_altitude(pressure + 1.0 + 0.01 * (900.0 - pressure)));
   EXPECT_EQ(compare_height(height, pressures()).kind, Kind::undecided);
+}
+
+TEST(PressureHeight, PressuresAreReadInTheUnitThatTheModelStates) {
+  const test::TemporaryDirectory folder;
+  std::vector<double> pascals;
+  std::vector<double> height;
+  for (const double pressure : pressures()) {
+    pascals.push_back(100.0 * pressure);
+    height.push_back(pressure_altitude(pressure));
+  }
+  {
+    test::NetcdfMaker maker(folder.path() / "flight.nc");
+    maker.time(test::sequence(0, 500));
+    maker.series("PSFD", "", pascals);
+  }
+  const Flight flight(folder.path() / "flight.nc");
+  ModelDefinition model;
+  model.variables[Quantity::static_pressure] = "PSFD";
+  model.units[Quantity::static_pressure] = "Pa";
+  const std::vector<StatedPressure> found = static_pressures_of(flight, model);
+  ASSERT_EQ(found.size(), 1);
+  EXPECT_EQ(found[0].unit, "Pa");
+  EXPECT_EQ(height_evidence(flight, height, found).kind, Kind::pressure_altitude);
 }
 
 TEST(PressureHeight, TooFewValuesDefaultToGps) {
