@@ -206,3 +206,15 @@ TEST(GpsFit, GpsAloneKeepsTheStatedMisfit) {
   for (const double value : {result.left, result.least_squares_rms, result.autocorrelation_time})
     EXPECT_TRUE(std::isnan(value)) << value;
 }
+
+TEST(GpsFit, FixedCoefficientsKeepTheirCovariance) {
+  const RefitResult laser = fit(flight("c130-eq18"), law(), {"lams"});
+  ASSERT_NE(laser.covariance[0][1], 0.0);
+  pcor::RefitOptions options;
+  options.fix = {laser.model.model.effects[0].id, laser.model.model.effects[1].id};
+  const auto references = pcor::read_references({"wind"}, laser.model, {}).used;
+  const RefitResult result = pcor::refit({flight("c130-eq18")}, laser.model, references, options);
+  ASSERT_EQ(result.covariance.size(), 3U);  // the fitted coefficient, and the fixed ones
+  EXPECT_EQ(result.covariance[1][2], laser.covariance[0][1]);
+  EXPECT_EQ(result.covariance[1][1], laser.covariance[0][0]);
+}
