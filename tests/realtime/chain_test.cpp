@@ -258,6 +258,18 @@ TEST(Policy, TaperIsContinuousAndZeroWithoutAirflow) {
   EXPECT_NEAR(defect(20), whole / 2, 1e-12);
 }
 
+TEST(Policy, MissingInputOfATaperedDefectSetsABit) {
+  Model model = with(truth.model(), catalogued("static-alpha", {0.02}));
+  model.policy.taper_below = 20;
+  Recorded recorded = with(truth.recorded(), Quantity::attack_differential_pressure, -5.0);
+  recorded[Quantity::radome_dynamic_pressure] = missing;
+  for (const double q : {1.5, 10.0, 60.0}) {
+    const Sample s = fly(model, with(recorded, Quantity::dynamic_pressure, q));
+    EXPECT_TRUE(std::isnan(s[Quantity::static_defect])) << q;
+    EXPECT_TRUE(s.has(Quality::effect_input_missing)) << q;
+  }
+}
+
 TEST(Policy, WithoutTaperThereIsNoDefectWithoutAirflow) {
   for (const double q : {0.0, -5.0, missing}) {
     const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::dynamic_pressure, q));
@@ -472,6 +484,7 @@ TEST(Calibration, MissingInputGivesAMissingTemperature) {
     EXPECT_EQ(fly(own, with(recorded, Quantity::altitude, 3000)).flags.bits(), 0U);
     const Sample s = fly(own, with(recorded, Quantity::altitude, missing));
     EXPECT_TRUE(s.has(Quality::effect_input_missing));
+    EXPECT_TRUE(s.has(Quality::temperature_missing));
     EXPECT_TRUE(std::isnan(s[Quantity::ambient_temperature]));
     EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
     EXPECT_TRUE(std::isnan(s[Quantity::lams_static_defect]));
@@ -506,6 +519,19 @@ TEST(FlowAngles, UnrecordedAnglesComeFromTheRadome) {
   EXPECT_NEAR(s[Quantity::attack], truth.alpha, 1e-13);
   EXPECT_NEAR(s[Quantity::sideslip], truth.beta, 1e-13);
   EXPECT_NEAR(s[Quantity::lams_static_defect], truth.defect(), 1e-9);
+}
+
+// A blocked port at the centre of the radome: 5.776 + 15.031 * 23.43 is 358 degrees.
+TEST(FlowAngles, ImpossibleAngleOfTheRadomeIsMissing) {
+  Model model = truth.model();
+  model.attack_radome = {5.776, 15.031, 0.0};
+  Recorded recorded = without(truth.recorded(), Quantity::attack);
+  recorded[Quantity::radome_dynamic_pressure] = 1.0;
+  recorded[Quantity::attack_differential_pressure] = 23.43;
+  const Sample s = fly(model, recorded);
+  EXPECT_TRUE(std::isnan(s[Quantity::attack]));
+  EXPECT_TRUE(std::isnan(s[Quantity::lams_static_defect]));
+  EXPECT_TRUE(s.has(Quality::lams_missing));
 }
 
 TEST(FlowAngles, GvAttackDependsOnTheMachNumber) {

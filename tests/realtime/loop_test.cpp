@@ -332,13 +332,26 @@ TEST(Loop, ImpossibleRateIsRefused) {
        std::initializer_list<std::pair<double, const char*>>{{missing, "nan samples/s"},
                                                              {infinity, "inf samples/s"},
                                                              {0.0, "0 samples/s"},
-                                                             {-1.0, "-1 samples/s"}}) {
+                                                             {-1.0, "-1 samples/s"},
+                                                             {1e15, "1e+15 samples/s"}}) {
     std::vector<Quantity> roles;
     for (const auto& [role, value] : level) roles.push_back(role);
     std::string error;
     EXPECT_FALSE(Loop::build(c130(), roles, rate, &error).has_value());
     EXPECT_THAT(error, testing::HasSubstr(text));
   }
+}
+
+// Rates of change are computed before the functors.
+TEST(LoopOrder, WriterOfAQuantityWithARateIsRefused) {
+  Model model;
+  model.effects = {{"qcf-lag", {1.0}}};
+  Loop loop = build(model, {{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 70.0}}, 1.0);
+  loop.add(own({Quantity::dynamic_pressure}, {Quantity::dynamic_pressure},
+               [](State<double>& state) { state[Quantity::dynamic_pressure] *= 10.0; }));
+  std::string error;
+  EXPECT_FALSE(loop.order(&error));
+  EXPECT_THAT(error, HasSubstr("dynamic_pressure"));
 }
 
 TEST(Loop, ImpossibleClockSkewIsRefused) {
@@ -1200,6 +1213,51 @@ TEST(LoopGarbage, DoesNotAffectTheNextSample) {
 }
 
 // With rates of change only the bad sample is lost.
+// A dropout of 0 hPa is impossible like a missing value: the rates of its neighbours do not use it.
+TEST(LoopGarbage, ImpossiblePressureDoesNotAffectTheRatesOfItsNeighbours) {
+  const struct {
+    const char* lag;
+    Quantity role;
+    double value;
+  } cases[] = {{"static-lag", Quantity::static_pressure, 0.0},
+               {"static-lag", Quantity::static_pressure, -3.0},
+               {"qcf-lag", Quantity::dynamic_pressure, -1999.0}};
+  for (const auto& each : cases) {
+    Model model;
+    model.effects = {{each.lag, {0.15}}};
+    const Sample cruise{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 70.0}};
+    for (const double rate : {1.0, 25.0}) {
+      Loop loop = build(model, cruise, rate);
+      constexpr int bad = 300;
+      for (int i = 0; i < 600; ++i) {
+        run(loop, i == bad ? with(cruise, {{each.role, each.value}}) : cruise, i / rate);
+        if (std::abs(loop.state()[Quantity::time] * rate - bad) < 0.5) continue;
+        if (loop.quality().has(Quality::awaiting_later_samples)) continue;
+        EXPECT_NEAR(loop.state()[Quantity::port_static_pressure], 700.0, 1e-9) << each.lag << " " << i;
+        EXPECT_NEAR(loop.state()[Quantity::port_dynamic_pressure], 70.0, 1e-9) << each.lag << " " << i;
+      }
+    }
+  }
+}
+
+TEST(LoopGarbage, ImplausibleLiquidWaterGivesNoTemperature) {
+  Model model;
+  model.effects = {{"temp-wetting", {-2.0, 10.0}}};
+  model.recovery = {{0.95}};
+  const Sample cruise{{Quantity::static_pressure, 700.0},
+                      {Quantity::dynamic_pressure, 70.0},
+                      {Quantity::recovery_temperature, 280.0},
+                      {Quantity::liquid_water, 0.0}};
+  for (const double water : {-32767.0, 99999.0, infinity, missing}) {
+    Loop loop = build(model, cruise, 1.0);
+    run(loop, cruise, 0.0);
+    EXPECT_FALSE(std::isnan(loop.state()[Quantity::ambient_temperature]));
+    run(loop, with(cruise, {{Quantity::liquid_water, water}}), 1.0);
+    EXPECT_THAT(loop.state()[Quantity::ambient_temperature], IsNan()) << water;
+    EXPECT_TRUE(loop.quality().has(Quality::temperature_missing)) << water;
+  }
+}
+
 TEST(LoopGarbage, LagLosesOnlyTheBadSample) {
   Model model = c130();
   model.effects.push_back({"static-lag", {0.15}});

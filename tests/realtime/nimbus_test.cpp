@@ -489,6 +489,17 @@ TEST(NimbusSystem, HostWithoutTimeIsTimedBySampleCount) {
   EXPECT_THAT(table.low("PSXC"), IsNan());
 }
 
+// Each reset would return the drift to zero.
+TEST(NimbusSystem, DriftIsRefusedWithoutATimeOfTheHost) {
+  Model model;
+  model.effects = {{"time-drift", {0.1}}};
+  const std::vector<std::string> inputs{"static_pressure", "dynamic_pressure"};
+  std::string error;
+  EXPECT_FALSE((NimbusSystem<Timeless, struct DriftingTag>::install(model, inputs, 1.0, 25.0, &error)));
+  EXPECT_THAT(error, testing::HasSubstr("time"));
+  EXPECT_TRUE((NimbusSystem<Host, struct TimedTag>::install(model, inputs, 1.0, 25.0, &error))) << error;
+}
+
 TEST(NimbusSystem, ReadsTheTimeOncePerSample) {
   struct Clock {
     using Entry = DERTBL;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -225,6 +226,77 @@ TEST(ResultUncertainty, TaperAndMinimumKeepLawUncertainty) {
   EXPECT_NEAR(of_constant(model), 1e-4 * 700.0, 1e-12) << "the limit is not known better than the law";
 }
 
+TEST(ResultUncertainty, TaperDependsOnTheDynamicPressure) {
+  Model model;
+  model.effects = {{"static-constant", {0.02}}};
+  model.policy.taper_below = 100.0;
+  const Recorded recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 70.0}};
+  ModelUncertainty uncertainty;
+  uncertainty.random[index(Quantity::dynamic_pressure)] = 0.5;
+  const State<double> s = fly(model, recorded, uncertainty);
+  // d(14 (q/100)^3)/dq = 0.2058 at 70 hPa; the difference over 0.5 hPa is accurate to (0.5/70)^2/3.
+  EXPECT_NEAR(s[Quantity::static_defect_uncertainty], 0.5 * 0.2058, 1e-5);
+  EXPECT_NEAR(s[Quantity::corrected_dynamic_pressure_uncertainty], 0.5 * (1.0 - 0.2058), 1e-5);
+}
+
+TEST(ResultUncertainty, VapourIsIrrelevantToAModelOfDryAir) {
+  Model model;
+  model.recovery = {{0.95}};
+  model.moist = false;
+  ModelUncertainty uncertainty;
+  uncertainty.random[index(Quantity::vapor_pressure)] = 2.0;
+  const State<double> s = fly(model, without(everything_recorded(), {Quantity::lams_airspeed}), uncertainty);
+  EXPECT_EQ(s[Quantity::corrected_airspeed_uncertainty], 0.0);
+  EXPECT_EQ(s[Quantity::ambient_temperature_uncertainty], 0.0);
+}
+
+// The lag multiplies the rate of change, and with it the noise that the filter of the rate passes.
+TEST(ResultUncertainty, LagAmplifiesTheNoiseOfItsSensor) {
+  const Recorded level{{Quantity::static_pressure, 700.0},
+                       {Quantity::dynamic_pressure, 70.0},
+                       {Quantity::recovery_temperature, 285.0}};
+  struct Case {
+    ModelEffect lag;
+    Quantity role;
+    Quantity result;
+    Quantity uncertainty;
+  };
+  for (const Case& each : {Case{{"temp-lag", {2.3}},
+                                Quantity::recovery_temperature,
+                                Quantity::ambient_temperature,
+                                Quantity::ambient_temperature_uncertainty},
+                           Case{{"static-lag", {0.15}},
+                                Quantity::static_pressure,
+                                Quantity::corrected_static_pressure,
+                                Quantity::corrected_static_pressure_uncertainty}}) {
+    Model model;
+    model.recovery = {{0.95}};
+    model.effects = {each.lag};
+    ModelUncertainty uncertainty;
+    uncertainty.random[index(each.role)] = 0.1;
+    std::string error;
+    auto loop = Loop::build(model, roles(level), 1.0, &error, CorrectWith::model, uncertainty);
+    ASSERT_TRUE(loop) << error;
+    std::mt19937_64 engine(1);
+    std::normal_distribution<double> noise(0.0, 0.1);
+    constexpr int count = 20000;
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < count; ++i) {
+      for (const auto& [quantity, value] : level) loop->state()[quantity] = value;
+      loop->state()[each.role] += noise(engine);
+      loop->run(i);
+      if (i < 100) continue;
+      sum += loop->state()[each.result];
+      squares += loop->state()[each.result] * loop->state()[each.result];
+    }
+    const double mean = sum / (count - 100);
+    const double scatter = std::sqrt(squares / (count - 100) - mean * mean);
+    // 20,000 samples determine a standard deviation to 0.5 %; the sensitivities are accurate to 2 %.
+    EXPECT_NEAR(loop->state()[each.uncertainty], scatter, 0.03 * scatter) << each.lag.id;
+    EXPECT_GT(scatter, 0.1 * (each.lag.id == "temp-lag" ? 3.0 : 1.0));
+  }
+}
+
 TEST(ResultUncertainty, TemperatureUncertaintyOnRampIsThatOfTheThermometer) {
   Model model = law();
   model.policy.taper_below = 40.0;
@@ -375,6 +447,8 @@ TEST(Covariance, InvalidMatrixIsRefused) {
   EXPECT_TRUE(is_covariance({0.0}, 1));
   EXPECT_FALSE(is_covariance({-1.0}, 1));
   EXPECT_FALSE(is_covariance({nan}, 1));
+  EXPECT_FALSE(is_covariance({1.0, nan, nan, 1.0}, 2));
+  EXPECT_FALSE(is_covariance({1.0, 0.9, -0.9, 1.0}, 2)) << "not symmetric";
   EXPECT_FALSE(is_covariance({0.0, 1e-3, 1e-3, 1.0}, 2)) << "what is known exactly varies with nothing";
   // Three variables, each pair with correlation c, exist for c >= -1/2 only; each pair alone always does.
   for (const double c : {-0.51, -0.5, 0.0, 0.9, 1.0}) {

@@ -75,7 +75,7 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
      "filter window incomplete, or its result is outside the plausible range: no filtered LAMS temperature"},
     {Quality::no_airflow, "no_airflow",
      "dynamic pressure too low to distinguish airflow from noise, as on the ramp: no Mach number, no "
-     "airspeed, and without a taper no delta-p"},
+     "airspeed, and, if the measured one is too low, no delta-p without a taper"},
     {Quality::sensor_frozen, "sensor_frozen",
      "a sensor is frozen, constant for much longer than its noise permits: dependent results are wrong"},
     {Quality::uneven_samples, "uneven_samples",

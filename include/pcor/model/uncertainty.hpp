@@ -46,8 +46,8 @@ struct ModelUncertainty {
   }
 };
 
-/// True if the symmetric `matrix` of `size` rows, row by row, is a covariance: no linear combination has a
-/// negative variance. Correlations may have rounding errors of 1e-6, as from six digits.
+/// True if the `matrix` of `size` rows, row by row, is a covariance: finite, symmetric, and no linear
+/// combination has a negative variance. Correlations may have rounding errors of 1e-6, as from six digits.
 inline bool is_covariance(std::vector<double> matrix, std::size_t size) {
   constexpr double rounding = 1e-6;
   const auto at = [&](std::size_t i, std::size_t j) -> double& { return matrix[i * size + j]; };
@@ -55,6 +55,11 @@ inline bool is_covariance(std::vector<double> matrix, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
     if (!(at(i, i) >= 0.0)) return false;
     scale[i] = std::sqrt(at(i, i));
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!(std::abs(at(i, j) - at(j, i)) <= rounding * scale[i] * scale[j])) return false;
+    }
   }
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < size; ++j) {

@@ -94,7 +94,8 @@ class Chain : public BoundModel {
     const S& p = state[Quantity::static_pressure];
     const S& q = state[Quantity::dynamic_pressure];
     R defect = sum<R>(EffectLocation::static_defect, state, parameters);
-    const auto flowing = p >= S(min_static_pressure) && is_flowing(q);
+    const bool is_tapered = policy_.taper_below > 0.0;
+    const auto flowing = p >= S(min_static_pressure) && (is_tapered ? q > S(0.0) : is_flowing(q));
     flags.set(flowing && is_missing(defect), Quality::effect_input_missing);
     for (const Range& range : domain_) {
       const S& value = state[range.quantity];
@@ -105,7 +106,7 @@ class Chain : public BoundModel {
       flags.set(below, Quality::minimum_applied);
       defect = select(below, R(policy_.minimum), defect);
     }
-    if (policy_.taper_below > 0.0) {
+    if (is_tapered) {
       const auto slow = q < S(policy_.taper_below);
       flags.set(slow, Quality::tapered);
       if (any(slow)) defect = select(slow, taper(defect, q), defect);
@@ -113,7 +114,7 @@ class Chain : public BoundModel {
     const auto exceeds = p >= S(min_static_pressure) && q > S(0.0) && exceeds_dynamic_pressure(defect, R(q));
     flags.set(exceeds, Quality::defect_exceeds_dynamic_pressure);
     defect = select(exceeds, missing<R>(), defect);
-    const auto enough = policy_.taper_below > 0.0 ? p >= S(min_static_pressure) && !is_missing(q) : flowing;
+    const auto enough = is_tapered ? p >= S(min_static_pressure) && !is_missing(q) : flowing;
     return select(enough, defect, missing<R>());
   }
 
@@ -140,7 +141,8 @@ class Chain : public BoundModel {
     const S thermometer = recovery_temperature_of(state, parameters);
     if (has_temperature()) {
       const S& ambient = state[Quantity::ambient_temperature];
-      flags.set(is_missing(derives_temperature() ? thermometer : ambient), Quality::temperature_missing);
+      flags.set(is_missing(derives_temperature() ? thermometer + delta : ambient),
+                Quality::temperature_missing);
       flags.set(is_missing(delta), Quality::effect_input_missing);
     }
     S humidity = recorded_humidity(state, parameters, p, flags);
@@ -260,6 +262,10 @@ class Chain : public BoundModel {
     return S(1.0) + above - sum<S>(EffectLocation::ambient_temperature, moved, parameters);
   }
 
+  /// Minimum static pressure, hPa: that at 48 km height, far below the resolution of any sensor. Ratios to
+  /// smaller pressures are not meaningful.
+  static constexpr double min_static_pressure = 1.0;
+
   /// Adds to a quantity of a state after `measure`, and updates the derived inputs of effects: the ratios and
   /// the Mach number of the pressures, the ratios of the radome and its flow angles.
   template <class S>
@@ -284,9 +290,6 @@ class Chain : public BoundModel {
   }
 
  private:
-  // Minimum static pressure, hPa: that at 48 km height, far below the resolution of any sensor. Ratios to
-  // smaller pressures are not meaningful.
-  static constexpr double min_static_pressure = 1.0;
   static constexpr double min_radome_pressure = 1e-6;
 
   explicit Chain(BoundModel bound) : BoundModel(std::move(bound)) {}
@@ -333,11 +336,13 @@ class Chain : public BoundModel {
     if (needs(Quantity::attack_ratio) || needs(Quantity::sideslip_ratio)) radome_ratios(state, flags);
     // Before the attack ratio, whose effects may depend on the sideslip.
     if (derives(Quantity::sideslip)) {
-      state[Quantity::sideslip] = radome_angle(sideslip_radome_, Quantity::sideslip_ratio, state);
+      state[Quantity::sideslip] = plausible_or_missing(
+          Quantity::sideslip, radome_angle(sideslip_radome_, Quantity::sideslip_ratio, state));
     }
     add(EffectLocation::attack_ratio, Quantity::attack_ratio, state, parameters);
     if (derives(Quantity::attack)) {
-      state[Quantity::attack] = radome_angle(attack_radome_, Quantity::attack_ratio, state);
+      state[Quantity::attack] =
+          plausible_or_missing(Quantity::attack, radome_angle(attack_radome_, Quantity::attack_ratio, state));
     }
   }
 
@@ -438,7 +443,9 @@ class Chain : public BoundModel {
     const S change = sum<S>(EffectLocation::ambient_temperature, here, parameters);
     flags.set(is_missing(change) && !is_missing(temperature), Quality::effect_input_missing);
     const S calibrated = temperature + change;
-    flags.set(is_implausible(Quantity::ambient_temperature, calibrated), Quality::temperature_missing);
+    flags.set(is_implausible(Quantity::ambient_temperature, calibrated) ||
+                  (is_missing(calibrated) && !is_missing(temperature)),
+              Quality::temperature_missing);
     return plausible_or_missing(Quantity::ambient_temperature, calibrated);
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -59,6 +60,21 @@ class LookAhead {
   /// Number of samples in the window of a rate.
   std::size_t window() const { return before_ + 1 + delay_; }
 
+  /// True if the rate of change of the quantity is computed.
+  bool reads(Quantity quantity) const {
+    return std::any_of(changes_.begin(), changes_.end(),
+                       [quantity](const Change& change) { return change.of == quantity; });
+  }
+
+  /// Standard deviation of a rate of change, per second, for white noise of standard deviation 1 of its
+  /// quantity; 0 for a rate that is not computed.
+  double noise_of(Quantity rate) const {
+    for (const Change& change : changes_) {
+      if (change.rate == rate) return std::sqrt(change.filter.gain());
+    }
+    return 0.0;
+  }
+
   /// Clears all samples.
   void reset() noexcept {
     entered_ = 0;
@@ -72,9 +88,8 @@ class LookAhead {
     const std::size_t length = before_ + 1 + delay_;
     for (Change& change : changes_) {
       // Each value is stored twice, so that the window is contiguous in time order.
-      const double value = change.of == Quantity::corrected_airspeed
-                               ? airspeed_along_beam(state)
-                               : plausible_or_missing(change.of, state[change.of]);
+      const double value =
+          change.of == Quantity::corrected_airspeed ? airspeed_along_beam(state) : usable(change.of, state);
       change.values[next_] = change.values[next_ + length] = value;
     }
     next_ = (next_ + 1) % length;
@@ -113,6 +128,16 @@ class LookAhead {
     }
     samples_.resize(delay_ + 1);
     for (Change& change : changes_) change.values.assign(2 * (before_ + 1 + delay_), missing<double>());
+  }
+
+  // Value for a rate of change; an impossible pressure would affect the rates of its neighbours.
+  static double usable(Quantity quantity, const State<double>& state) noexcept {
+    constexpr double min_dynamic_pressure = -50.0;  // hPa; the noise and the wind on the ramp are far above
+    const double value = plausible_or_missing(quantity, state[quantity]);
+    const bool is_impossible =
+        (quantity == Quantity::static_pressure && value < Chain::min_static_pressure) ||
+        (quantity == Quantity::dynamic_pressure && value < min_dynamic_pressure);
+    return is_impossible ? missing<double>() : value;
   }
 
   double airspeed_along_beam(State<double> state) const noexcept {

@@ -98,7 +98,8 @@ class Loop {
   void add(std::unique_ptr<Functor> functor) { functors_.push_back(std::move(functor)); }
 
   /// Orders the functors. Returns false without changes if two functors write one quantity or depend on each
-  /// other; `error` names them.
+  /// other, or if one writes a quantity whose rate of change the model reads, because rates are computed
+  /// before functors; `error` names them.
   bool order(std::string* error);
 
   /// True if some functor writes the quantity.
@@ -138,7 +139,7 @@ class Loop {
     return !started_ || !(step > 0.0 && step <= max_step_);
   }
 
-  /// Runs all functors on the sample at `time`, in seconds.
+  /// Runs all functors on the sample at `time`, in seconds. Drifts need the time since the first record.
   void run(double time) noexcept {
     quality_.clear();
     auto step = missing<double>();
@@ -158,7 +159,10 @@ class Loop {
     started_ = true;
     previous_time_ = time;
     state_[Quantity::time] = time;
-    if (wetness_) state_[Quantity::wetness] = (*wetness_)(state_[Quantity::liquid_water], step);
+    if (wetness_) {
+      state_[Quantity::wetness] =
+          (*wetness_)(plausible_or_missing(Quantity::liquid_water, state_[Quantity::liquid_water]), step);
+    }
     if (uneven_ > 0) {
       --uneven_;
       quality_.set(Quality::uneven_samples);
@@ -193,6 +197,7 @@ class Loop {
   std::size_t uneven_ = 0;       // remaining runs whose rates of change include uneven samples
   LowPass* low_pass_ = nullptr;  // one of the functors
   std::vector<std::unique_ptr<Functor>> functors_;
+  std::vector<Quantity> stage_outputs_;  // written by the functors of the model
   std::vector<std::string> extra_names_;
   State<double> state_;
   QualityFlags quality_;
@@ -212,6 +217,14 @@ inline bool Loop::order(std::string* error) {
   for (const auto& functor : functors_) {
     for (const Quantity output : functor->outputs()) {
       if (writer[index(output)] != nullptr) return fail("two functors write '" + to_string(output) + "'");
+      const bool is_of_stage =
+          std::find(stage_outputs_.begin(), stage_outputs_.end(), output) != stage_outputs_.end();
+      const bool changes_over_time =
+          (look_ahead_ && look_ahead_->reads(output)) || (wetness_ && output == Quantity::liquid_water);
+      if (changes_over_time && !is_of_stage) {
+        return fail("a functor writes '" + to_string(output) +
+                    "', whose changes over time the model needs; change it before the run");
+      }
       writer[index(output)] = functor.get();
     }
   }
@@ -283,8 +296,11 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
         "this program is compiled with fast mathematics, which loses the NaN of missing values; remove "
         "-ffast-math, -ffinite-math-only and similar pragmas");
   }
-  if (!(rate > 0.0 && is_finite(rate)))
-    return fail("the rate of the loop is " + text_of(rate) + " samples/s; give a finite number above 0");
+  constexpr double max_rate = 1e4;  // samples/s, ten times that of the fastest recordings
+  if (!(rate > 0.0 && rate <= max_rate)) {
+    return fail("the rate of the loop is " + text_of(rate) + " samples/s; give a number above 0, at most " +
+                text_of(max_rate));
+  }
   if (with == CorrectWith::lams && !chain->has_lams()) {
     return fail(
         "correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");
@@ -305,7 +321,10 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   loop.look_ahead_ = LookAhead::build(chain, rate, periods);
   Stages::each([&](auto stage) {
     auto functor = std::make_unique<StageFunctor<decltype(stage)>>(chain, with);
-    if (!functor->outputs().empty()) loop.add(std::move(functor));
+    if (functor->outputs().empty()) return;
+    loop.stage_outputs_.insert(loop.stage_outputs_.end(), functor->outputs().begin(),
+                               functor->outputs().end());
+    loop.add(std::move(functor));
   });
   if (chain->has_lams() && filter == LaserFilter::with) {
     auto low_pass =
@@ -314,7 +333,8 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
     loop.add(std::move(low_pass));
   }
   if (uncertainty.has_systematic() || uncertainty.has_random()) {
-    auto functor = ResultUncertainty::build(chain, uncertainty, with, error);
+    auto functor = ResultUncertainty::build(chain, uncertainty, with, error,
+                                            loop.look_ahead_ ? &*loop.look_ahead_ : nullptr);
     if (functor == nullptr) return std::nullopt;
     loop.add(std::move(functor));
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -50,7 +51,7 @@ struct HasTime<Host, std::void_t<decltype(Host::time())>> : std::true_type {};
 ///       static double get(Entry*, std::size_t input);   // this sample's input; NaN if missing
 ///       static void put(Entry*, double);                // the output of the sample `delay()` ago
 ///       static bool high_rate();                        // which of the two rates is being computed
-///       static double time();                           // of this sample, s; it grows, midnight or not
+///       static double time();                           // of this sample, s since the first record
 ///     };
 ///
 /// The leader requests the time, once per sample. A host without a public function `time` without arguments
@@ -86,8 +87,17 @@ class NimbusSystem {
       const Quantity quantity = quantity_named(name);
       if (quantity != Quantity::count && is_role(quantity)) roles.push_back(quantity);
     }
-    std::optional<Loop> low = Loop::build(model, roles, low_rate, error, with, uncertainty);
-    std::optional<Loop> high = Loop::build(model, roles, high_rate, error, with, uncertainty);
+    BindingError why;
+    std::optional<Chain> bound_model = Chain::build(model, roles, &why);
+    if (!bound_model) return fail(why.message());
+    if (bound_model->needs(Quantity::time) && !detail::HasTime<Host>::value) {
+      return fail(
+          "an effect of the model depends on the time since the first record; give the host a function "
+          "time()");
+    }
+    const auto chain = std::make_shared<const Chain>(std::move(*bound_model));
+    std::optional<Loop> low = Loop::build(chain, low_rate, error, with, uncertainty);
+    std::optional<Loop> high = Loop::build(chain, high_rate, error, with, uncertainty);
     if (!low || !high) return false;
     const std::vector<std::string>& extras = low->extra_names();
     for (const std::string& extra : extras) {

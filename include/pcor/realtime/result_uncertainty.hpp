@@ -11,6 +11,7 @@
 
 #include <pcor/model/uncertainty.hpp>
 #include <pcor/realtime/functor.hpp>
+#include <pcor/realtime/look_ahead.hpp>
 #include <pcor/realtime/stages.hpp>
 
 namespace pcor {
@@ -35,13 +36,13 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 ///     u^2 = g' C g + sum_i (dy/dx_i u_i)^2
 ///
 /// with g the derivatives of the result with respect to the coefficients, C their covariance, and u_i the
-/// random uncertainty of each input of the sample, and of the model. Derivatives with respect to nonlinear
-/// coefficients are differences over two of their standard uncertainties (GUM 5.1.3, note 2). Those with
-/// respect to pressures, temperature and humidity use the equations of the air with the constants of dry air,
-/// accurate to 2 % of the uncertainty. They change slowly, so a sample reuses uncertainties computed less
-/// than two seconds ago at pressures within 5 %, to limit the cost at 25 Hz. Outside its envelope a surface
-/// is flat, and its error grows by the rms slope inside the envelope. docs/uncertainty.md lists the
-/// contributions.
+/// random uncertainty of each input of the sample, of its rate of change (for lags), and of the model.
+/// Derivatives with respect to nonlinear coefficients are differences over two of their standard
+/// uncertainties (GUM 5.1.3, note 2). Those with respect to pressures, temperature and humidity use the
+/// equations of the air with the constants of dry air, accurate to 2 % of the uncertainty. They change
+/// slowly, so a sample reuses uncertainties computed less than a second ago at pressures within 5 %, to
+/// limit the cost at 25 Hz. Outside its envelope a surface is flat, and its error grows by the rms slope
+/// inside the envelope. docs/uncertainty.md lists the contributions.
 ///
 /// If delta-p is raised to the minimum of the model, it keeps the uncertainty of the model. If it is tapered,
 /// the contributions of coefficients and inputs are tapered, too; the model's own uncertainty of delta-p is
@@ -51,9 +52,11 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 class ResultUncertainty final : public Functor {
  public:
   /// nullptr if `uncertainty` does not match the model of `chain`, with the reason in `error`.
+  /// @param look_ahead of the rates of change that effects read, for their noise; nullptr without such
+  /// effects
   static std::unique_ptr<ResultUncertainty> build(std::shared_ptr<const Chain> chain,
                                                   const ModelUncertainty& uncertainty, CorrectWith with,
-                                                  std::string* error) {
+                                                  std::string* error, const LookAhead* look_ahead = nullptr) {
     const auto fail = [error](std::string why) {
       if (error != nullptr) *error = std::move(why);
       return nullptr;
@@ -68,7 +71,8 @@ class ResultUncertainty final : public Functor {
         return fail("the covariance of the model's parameters gives a negative variance");
       }
     }
-    return std::unique_ptr<ResultUncertainty>(new ResultUncertainty(std::move(chain), uncertainty, with));
+    return std::unique_ptr<ResultUncertainty>(
+        new ResultUncertainty(std::move(chain), uncertainty, with, look_ahead));
   }
 
   void reset() noexcept override { is_complete_ = false; }
@@ -206,7 +210,15 @@ class ResultUncertainty final : public Functor {
     bool moves_law;  // effects at the ports read it, or a quantity computed from it
   };
 
-  ResultUncertainty(std::shared_ptr<const Chain> chain, const ModelUncertainty& uncertainty, CorrectWith with)
+  /// A rate of change with the noise of its quantity, which the filter of the rate passes.
+  struct RateNoise {
+    Quantity rate;
+    double size;                       // per second
+    std::vector<std::size_t> effects;  // effects at the locations where the rate is read
+  };
+
+  ResultUncertainty(std::shared_ptr<const Chain> chain, const ModelUncertainty& uncertainty, CorrectWith with,
+                    const LookAhead* look_ahead)
       : Functor(reads(*chain, with), writes()),
         chain_(std::move(chain)),
         with_(with),
@@ -231,9 +243,26 @@ class ResultUncertainty final : public Functor {
     for (std::size_t i = 0; i < role_count; ++i) {
       const auto role = static_cast<Quantity>(i);
       if (!(uncertainty.random[i] > 0.0 && chain_->recorded(role))) continue;
+      const bool is_vapor =
+          role == Quantity::vapor_pressure || role == Quantity::dew_point || role == Quantity::frost_point;
+      if (is_vapor && !chain_->counts_vapor()) continue;
       const bool moves_law =
           std::find(read_at_ports.begin(), read_at_ports.end(), role) != read_at_ports.end();
       noises_.push_back({role, uncertainty.random[i], moves_law});
+    }
+    if (look_ahead != nullptr) add_rates(uncertainty, *look_ahead);
+  }
+
+  void add_rates(const ModelUncertainty& uncertainty, const LookAhead& look_ahead) {
+    for (const Rate& each : rates) {
+      RateNoise noise{
+          each.rate, look_ahead.noise_of(each.rate) * uncertainty.random[index(each.quantity)], {}};
+      if (!(noise.size > 0.0)) continue;
+      for (std::size_t effect = 0; effect < chain_->effect_count(); ++effect) {
+        const Quantities read = chain_->read_at(chain_->location_of(effect));
+        if (std::find(read.begin(), read.end(), each.rate) != read.end()) noise.effects.push_back(effect);
+      }
+      rate_noises_.push_back(std::move(noise));
     }
   }
 
@@ -417,10 +446,10 @@ class ResultUncertainty final : public Functor {
   // over such a step.
   static double step_of(Quantity quantity) { return quantity == Quantity::attack_ratio ? 0.005 : 0.1; }
 
-  // Uncertainties are reused for two seconds if the pressures have not changed significantly.
+  // Uncertainties are reused for less than a second if the pressures have not changed significantly.
   bool still_holds(const State<double>& state) const noexcept {
     const double age = state[Quantity::time] - time_;
-    if (!(is_complete_ && age >= 0.0 && age < 2.0) || is_outside_ || is_outside(state)) return false;
+    if (!(is_complete_ && age >= 0.0 && age < 0.999) || is_outside_ || is_outside(state)) return false;
     const double p = state[Quantity::static_pressure];
     const double q = state[Quantity::dynamic_pressure];
     return std::abs(p - static_pressure_) <= 0.05 * p && std::abs(q - dynamic_pressure_) <= 0.05 * q;
@@ -455,14 +484,8 @@ class ResultUncertainty final : public Functor {
       if (chain_->location_of(each.effect) == EffectLocation::humidity && is_missing(each.shape))
         each.shape = 0.0;
     }
-    for (LocationTerms& terms : terms_by_location_) {
-      const Quantity source = source_of(terms.location);
-      Changes changes;
-      if (source != Quantity::count) changes = response(state, source, step_of(source));
-      add(changes, terms.location, 1.0);
-      changes.static_defect *= fraction;
-      terms.by_amount = sensitivity.of(changes);
-    }
+    for (LocationTerms& terms : terms_by_location_)
+      terms.by_amount = results_by_amount(sensitivity, state, fraction, terms.location);
     for (const LocationTerms& a : terms_by_location_) {
       for (const LocationTerms& b : terms_by_location_) {
         const double both = shared(a, b);
@@ -485,6 +508,17 @@ class ResultUncertainty final : public Functor {
     for (double& each : variance) each = each < 0.0 ? 0.0 : each;
   }
 
+  // Sensitivity of the results to an amount that is added at the location.
+  Results results_by_amount(const Sensitivity& sensitivity, const State<double>& state, double fraction,
+                            EffectLocation location) const noexcept {
+    const Quantity source = source_of(location);
+    Changes changes;
+    if (source != Quantity::count) changes = response(state, source, step_of(source));
+    add(changes, location, 1.0);
+    changes.static_defect *= fraction;
+    return sensitivity.of(changes);
+  }
+
   // Covariance of the amounts that are added at two locations, in this sample.
   double shared(const LocationTerms& a, const LocationTerms& b) const noexcept {
     double sum = 0.0;
@@ -503,15 +537,49 @@ class ResultUncertainty final : public Functor {
       Changes changes;
       if (noise.moves_law) changes = response(state, noise.role, noise.size);
       changes.static_defect *= fraction;
+      if (noise.role == Quantity::dynamic_pressure && fraction < 1.0)
+        changes.static_defect += taper_slope(state, noise.size) * at_ports(state).static_defect;
       add_role(changes, noise.role, state);
       add_squares(sensitivity.of(changes), noise.size * noise.size, variance);
     }
+    for (const RateNoise& noise : rate_noises_) add_rate(noise, sensitivity, state, fraction, variance);
     const double ratio = static_defect_ratio_ * state[Quantity::static_pressure];
     const double left = static_defect_ * static_defect_ + ratio * ratio;
     if (static_defect_ == 0.0 && static_defect_ratio_ == 0.0) return;
     Changes changes;
     changes.static_defect = 1.0;
     add_squares(sensitivity.of(changes), left, variance);
+  }
+
+  // Derivative of the remaining fraction of delta-p with respect to the dynamic pressure, 1/hPa.
+  double taper_slope(State<double> state, double step) const noexcept {
+    state[Quantity::dynamic_pressure] += step;
+    const double above = chain_->taper_fraction(state);
+    state[Quantity::dynamic_pressure] -= 2.0 * step;
+    return (above - chain_->taper_fraction(state)) / (2.0 * step);
+  }
+
+  // The filter of a derivative has no weight at its own sample, so this noise is independent of the direct
+  // noise of the quantity.
+  void add_rate(const RateNoise& noise, const Sensitivity& sensitivity, State<double> state, double fraction,
+                Results& variance) const noexcept {
+    Results change{};
+    const double before = state[noise.rate];
+    for (const std::size_t effect : noise.effects) {
+      const double* const parameters = chain_->parameters().data() + chain_->first_parameter_of(effect);
+      state[noise.rate] = before + noise.size;
+      const double above = chain_->effect_value(effect, state, parameters);
+      state[noise.rate] = before - noise.size;
+      const double by_noise = 0.5 * (above - chain_->effect_value(effect, state, parameters));
+      state[noise.rate] = before;
+      if (by_noise == 0.0) continue;
+      const Results by_amount = results_by_amount(sensitivity, state, fraction, chain_->location_of(effect));
+      for (std::size_t i = 0; i < change.size(); ++i) {
+        // A missing rate is irrelevant to a result that does not depend on it.
+        if (by_amount[i] != 0.0) change[i] += by_amount[i] * by_noise;
+      }
+    }
+    add_squares(change, 1.0, variance);
   }
 
   static void add_squares(const Results& results, double square, Results& variance) noexcept {
@@ -562,6 +630,7 @@ class ResultUncertainty final : public Functor {
   std::vector<double> covariance_;  // covariance of the coefficients, in their order
   std::vector<FlatOutside> surfaces_;
   std::vector<Noise> noises_;
+  std::vector<RateNoise> rate_noises_;
   Results found_{};
   bool is_complete_ = false;  // all are finite
   bool is_outside_ = false;   // computed outside the envelope of a surface

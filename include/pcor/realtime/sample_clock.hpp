@@ -7,8 +7,8 @@ namespace pcor {
 /// True if samples come at the intervals of a rate.
 ///
 /// Deviations of samples from an even clock are accumulated, with a decay time of five samples. Times that
-/// jitter by less than a tenth of a sample are even, and so is a rate error below 2 %; a larger rate error is
-/// uneven, and so is a step longer or shorter by a tenth.
+/// jitter by less than a twentieth of a sample are even, and so is a rate error below 2 %; a larger rate
+/// error is uneven, and so is a step longer or shorter by a tenth.
 class SampleClock {
  public:
   /// @param rate samples in a second
