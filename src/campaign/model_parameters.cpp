@@ -31,6 +31,7 @@ std::vector<std::size_t> free_parameters(const ModelDefinition& model) {
 }
 
 EffectLocation location_of(const ModelEffect& effect) {
+  if (effect.is_surface()) return EffectLocation::static_defect;
   return effect.is_formula() ? effect.location : effect_named(effect.id)->location;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "campaign/model_parameters.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -66,6 +67,26 @@ std::size_t position_of(const ModelDefinition& model, const SensorDoubt& doubt) 
   return *first_parameter_of(model, doubt.effect) + doubt.parameter;
 }
 
+/// Square root of the stated covariance of a law: a row for each parameter of its effects, a column for each
+/// direction with an error.
+Eigen::MatrixXd root_of_law(const ModelDefinition& law) {
+  constexpr double rounding = 1e-12;  // relative rounding of the correlations
+  const std::vector<double> stated = uncertainty_of(law).covariance;
+  const auto size = static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(stated.size()))));
+  const Eigen::Map<const Eigen::MatrixXd> covariance(stated.data(), size, size);
+  if (covariance.isZero(0.0)) return Eigen::MatrixXd(size, 0);
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
+  const SymmetricEigen eigen = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index k = 0; k < size; ++k) {
+    if (eigen.eigenvalues()[k] > rounding) known.push_back(k);
+  }
+  const Eigen::MatrixXd root =
+      scale.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return root(Eigen::all, known);
+}
+
 /// Samples with the time since the first, which drifts require, among the inputs of both models.
 std::shared_ptr<const FlightSamples> with_time(const std::shared_ptr<const FlightSamples>& flight) {
   auto result = std::make_shared<FlightSamples>(*flight);
@@ -81,15 +102,19 @@ std::shared_ptr<const FlightSamples> with_time(const std::shared_ptr<const Fligh
 
 }  // namespace
 
-ReferenceDoubt::ReferenceDoubt(const ModelDefinition& model, const Reference& reference, bool trusted)
+ReferenceDoubt::ReferenceDoubt(const ModelDefinition& model, const Reference& reference, bool trusted,
+                               bool with_law)
     : model_parameters_(parameter_count(model.model)),
       reference_parameters_(reference.model() != nullptr ? parameter_count(reference.model()->model) : 0) {
-  if (trusted) return;
-  std::vector<NamedDoubt> doubts = own_doubts(model, reference);
+  if (with_law && reference.model() != nullptr) law_root_ = root_of_law(*reference.model());
+  if (trusted && law_root_.cols() == 0) return;
+  std::vector<NamedDoubt> doubts;
+  if (!trusted) doubts = own_doubts(model, reference);
   model_ = with_effects_of(model, doubts);
   for (const NamedDoubt& each : doubts) indices_.push_back(position_of(model_, each.doubt));
   if (reference.model() != nullptr) {
-    const std::vector<NamedDoubt> second = second_doubts(*reference.model(), reference);
+    std::vector<NamedDoubt> second;
+    if (!trusted) second = second_doubts(*reference.model(), reference);
     const ModelDefinition system = with_effects_of(*reference.model(), second);
     reference_ = reference.with_model(system);
     for (const NamedDoubt& each : second)
@@ -98,18 +123,22 @@ ReferenceDoubt::ReferenceDoubt(const ModelDefinition& model, const Reference& re
   } else {
     reference_ = std::shared_ptr<const Reference>(std::shared_ptr<const Reference>(), &reference);
   }
-  sizes_.resize(as_index(doubts.size()));
+  sizes_ = Eigen::VectorXd::Ones(as_index(doubts.size()) + law_root_.cols());
   for (const NamedDoubt& each : doubts) {
     sizes_[as_index(names_.size())] = each.doubt.size;
     names_.push_back(each.name);
   }
+  for (Eigen::Index k = 0; k < law_root_.rows() && law_root_.cols() > 0; ++k)
+    indices_.push_back(parameter_count(model_.model) + static_cast<std::size_t>(k));
+  for (Eigen::Index k = 0; k < law_root_.cols(); ++k)
+    names_.push_back(reference.model()->model.name + ": law, direction " + std::to_string(k + 1));
 }
 
 Eigen::MatrixXd ReferenceDoubt::columns(const std::shared_ptr<const FlightSamples>& flight,
                                         const std::vector<std::size_t>& samples,
                                         const double* parameters) const {
-  Eigen::MatrixXd derivatives(as_index(samples.size()), as_index(names_.size()));
-  if (empty() || samples.empty()) return derivatives;
+  if (empty() || samples.empty()) return Eigen::MatrixXd(as_index(samples.size()), as_index(names_.size()));
+  Eigen::MatrixXd derivatives(as_index(samples.size()), as_index(indices_.size()));
   const Residuals residuals(with_time(flight), model_, *reference_, std::vector<Mask>());
   std::vector<double> all = residuals.parameters();
   if (parameters != nullptr) {
@@ -120,7 +149,12 @@ Eigen::MatrixXd ReferenceDoubt::columns(const std::shared_ptr<const FlightSample
   std::vector<double> residual(samples.size());
   residuals.evaluate(samples.data(), samples.size(), all.data(), indices_, residual.data(),
                      derivatives.data());
-  return derivatives * sizes_.asDiagonal();
+  const Eigen::Index sensors = as_index(names_.size()) - law_root_.cols();
+  Eigen::MatrixXd changes(derivatives.rows(), as_index(names_.size()));
+  changes.leftCols(sensors) = derivatives.leftCols(sensors) * sizes_.head(sensors).asDiagonal();
+  if (law_root_.cols() > 0)
+    changes.rightCols(law_root_.cols()) = derivatives.rightCols(law_root_.rows()) * law_root_;
+  return changes;
 }
 
 }  // namespace pcor::internal

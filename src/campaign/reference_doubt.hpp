@@ -16,10 +16,15 @@ namespace pcor::internal {
 /// Laser: scale and angles of the beam. Second static system: zero, gain and drift of its transducers, and
 /// the stated residual error of delta-p of its model. Thermometer: offset and recovery factor. Sizes:
 /// `doubts_of`.
+///
+/// A second system whose law is neither fitted nor fixed by the fit also has the stated errors of its
+/// coefficients, one column for each independent direction.
 class ReferenceDoubt {
  public:
-  /// @param trusted the reference is assumed exact: the uncertainty is zero
-  ReferenceDoubt(const ModelDefinition& model, const Reference& reference, bool trusted);
+  /// @param trusted the calibration is assumed exact: its uncertainty is zero
+  /// @param with_law add the stated errors of the law of a second system, also if it is trusted
+  ReferenceDoubt(const ModelDefinition& model, const Reference& reference, bool trusted,
+                 bool with_law = false);
 
   /// Names like "lams-scale.scale"; for a second system with its name in front. The same name in several
   /// references denotes the same error.
@@ -38,6 +43,7 @@ class ReferenceDoubt {
   std::size_t reference_parameters_;  // number of parameters of the reference's model
   ModelDefinition model_;             // model with the effects of its uncertainties
   std::shared_ptr<const Reference> reference_;
+  Eigen::MatrixXd law_root_;  // square root of the covariance of its law; no columns: without these errors
   std::vector<std::string> names_;
   Eigen::VectorXd sizes_;
   std::vector<std::size_t> indices_;  // indices among the parameters of residuals with all these effects

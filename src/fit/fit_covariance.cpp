@@ -65,12 +65,13 @@ struct BlockSums {
 struct FlightScores {
   std::vector<BlockSums> blocks;
   Eigen::MatrixXd covariance;  ///< scores of all equations by the noise; zero except for the last equations
+  Eigen::VectorXd zero;        ///< derivatives of the scores of all equations by the zero of the flight
   Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
   Eigen::MatrixXd doubt;       ///< derivatives by the errors of the reference, in standard uncertainties
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(blocks, covariance, misfit, doubt);
+    archive(blocks, covariance, zero, misfit, doubt);
   }
 };
 
@@ -108,6 +109,55 @@ Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector
   return all;
 }
 
+/// Correlation of the residuals against two references in the bins that both have, at least 0.
+double shared_noise(FitFlights& one, FitFlights& other, const Eigen::VectorXd& values) {
+  const auto sums = one.share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+    Eigen::MatrixXd products = Eigen::MatrixXd::Zero(2, 2);
+    const std::vector<double>& time = other.bins(flight).time();
+    const Eigen::VectorXd a = one.residual(flight, values);
+    const Eigen::VectorXd b = other.residual(flight, values);
+    for (Eigen::Index i = 0; i < a.size(); ++i) {
+      const double at = one.bins(flight).time()[static_cast<std::size_t>(i)];
+      const auto bin = std::lower_bound(time.begin(), time.end(), at - 0.5 * Binning::usual_width);
+      if (bin == time.end() || *bin > at + 0.5 * Binning::usual_width) continue;
+      const Eigen::Vector2d both(a[i], b[bin - time.begin()]);
+      products += both * both.transpose();
+    }
+    return products;
+  });
+  const double squares = sums(0, 0) * sums(1, 1);
+  return squares > 0.0 ? std::clamp(sums(0, 1) / std::sqrt(squares), 0.0, 1.0) : 0.0;
+}
+
+/// Covariance of the scores by noise that references share: each sees the errors of the static pressure under
+/// test. The noise of two references has the correlation of their residuals.
+/// @param roots square roots of the covariance of the scores, for each reference of a static pressure and
+/// each flight
+Eigen::MatrixXd shared_covariance(const std::vector<FitFlights*>& references,
+                                  const std::vector<std::vector<Eigen::MatrixXd>>& roots,
+                                  const Eigen::VectorXd& values, Eigen::Index fitted) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(fitted, fitted);
+  for (std::size_t a = 0; a < references.size(); ++a) {
+    for (std::size_t b = a + 1; b < references.size(); ++b) {
+      const double correlation = shared_noise(*references[a], *references[b], values);
+      for (std::size_t flight = 0; flight < roots[a].size(); ++flight) {
+        const Eigen::MatrixXd both = roots[a][flight] * roots[b][flight].transpose();
+        sum += correlation * (both + both.transpose());
+      }
+    }
+  }
+  return sum;
+}
+
+/// Symmetric square root of a covariance of unknowns of different orders of magnitude, each row scaled.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const Eigen::VectorXd inverse = scale.cwiseInverse();
+  const SymmetricEigen eigen = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+  return scale.asDiagonal() * eigen.eigenvectors() *
+         eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+}
+
 /// Inverse of a regular matrix with unknowns of different orders of magnitude.
 Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd scale = matrix.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -131,6 +181,9 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
   Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitBasis::count());
   Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(doubts.size()));
+  std::vector<Eigen::VectorXd> zeros(main.share().flights(), Eigen::VectorXd::Zero(fitted));
+  std::vector<FitFlights*> alike;  // references of a static pressure, which share its errors
+  std::vector<std::vector<Eigen::MatrixXd>> roots;
   std::vector<std::vector<StageScores>> stages(main.count());  // one for each local flight, first reference
   Eigen::Index first = 0;
   for (const FitEquations& each : equations) {
@@ -139,8 +192,9 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
     const ScaledLoss loss(task.options.loss, each.solution.deviation);
     for (FitFlights* const flights : each.flights->joint()) {
       const bool is_first_reference = flights == each.flights;
+      const bool sees_law = is_first_reference || flights->task().reference.is_static_pressure();
       const std::vector<Eigen::MatrixXd> states =
-          is_first_reference ? binned_states(*flights) : std::vector<Eigen::MatrixXd>();
+          sees_law ? binned_states(*flights) : std::vector<Eigen::MatrixXd>();
       std::vector<Eigen::MatrixXd> doubted;
       std::vector<Eigen::Index> doubt_places;  // indices of the uncertainties of this reference
       if (!flights->doubt().empty()) {
@@ -153,6 +207,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
       const auto scores_of = [&](std::size_t flight) {
         FlightScores scores{{},
                             Eigen::MatrixXd::Zero(fitted, fitted),
+                            Eigen::VectorXd::Zero(fitted),
                             Eigen::MatrixXd::Zero(width, by_misfit.cols()),
                             Eigen::MatrixXd::Zero(width, by_doubt.cols())};
         scores.blocks.assign(blocks.count(flight),
@@ -173,14 +228,11 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
           const Eigen::MatrixXd joint = joined(
               is_first_reference ? stages[flight] : std::vector<StageScores>(), time, weighted, fitted);
           scores.covariance = noise_covariance(joint, flights->bins(flight), flights->noise(flight), 0);
-          if (is_first_reference) {
-            const Eigen::VectorXd by_zero = joint.colwise().sum();
-            scores.covariance += misfit.between_flights * by_zero * by_zero.transpose();
-          }
+          if (sees_law) scores.zero = joint.colwise().sum();
         } else {
           stages[flight].push_back({first, time, weighted});
         }
-        if (is_first_reference) scores.misfit = weighted.transpose() * misfit.bumps(states[flight]);
+        if (sees_law) scores.misfit = weighted.transpose() * misfit.bumps(states[flight]);
         if (!doubted.empty())
           scores.doubt(Eigen::all, doubt_places) = slope * left.transpose() * doubted[flight];
         for (Eigen::Index i = 0; i < left.rows(); ++i) {
@@ -191,9 +243,14 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
         return scores;
       };
       auto block = excluded.begin();
+      std::vector<Eigen::MatrixXd> roots_of_reference;
+      std::size_t number = 0;
       for (const FlightScores& flight :
            main.share().of_each_flight<FlightScores>(scores_of, digest_of(values))) {
         score += flight.covariance;
+        zeros[number++] += flight.zero;
+        if (&each == &last && sees_law && last.flights->joint().size() > 1)
+          roots_of_reference.push_back(root_of(flight.covariance));
         by_misfit.middleRows(first, width) += flight.misfit;
         by_doubt.middleRows(first, width) += flight.doubt;
         for (const BlockSums& sums : flight.blocks) {
@@ -201,9 +258,15 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
           block++->score.segment(first, width) += sums.score;
         }
       }
+      if (!roots_of_reference.empty()) {
+        alike.push_back(flights);
+        roots.push_back(std::move(roots_of_reference));
+      }
     }
     first += width;
   }
+  for (const Eigen::VectorXd& zero : zeros) score += misfit.between_flights * zero * zero.transpose();
+  score += shared_covariance(alike, roots, last.solution.values, fitted);
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   for (const BlockSums& block : excluded) derivatives += block.derivatives;
   const PriorRows prior = prior_rows(task, parameters);
@@ -229,14 +292,16 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   if (varying.empty()) return found;
   const Eigen::MatrixXd inverse = scaled_inverse(derivatives(varying, varying));
   const Eigen::MatrixXd carried = -inverse * derivatives(varying, Eigen::all).rightCols(size - fitted);
-  Eigen::MatrixXd covariance =
-      inverse * score(varying, varying) * inverse.transpose() + carried * doubt * carried.transpose();
-  found.by_noise(varying, varying) = covariance;
+  Eigen::MatrixXd covariance = inverse * score(varying, varying) * inverse.transpose();
+  const Eigen::MatrixXd by_held = carried * doubt * carried.transpose();
+  found.by_noise(varying, varying) = covariance + by_held;
   if (misfit.variance.size() > 0) {
     const Eigen::MatrixXd moved = inverse * by_misfit(varying, Eigen::all);
     covariance += moved * misfit.variance.asDiagonal() * moved.transpose();
   }
+  // Fitted coefficients compensate errors of fixed ones, on all flights alike.
   found.by_flights(varying, varying) = covariance;
+  covariance += by_held;
   const Eigen::MatrixXd by_one = -inverse * by_doubt(varying, Eigen::all);
   covariance += by_one * by_one.transpose();
   found.doubts = doubts;

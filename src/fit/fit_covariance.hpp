@@ -25,7 +25,8 @@ struct FitCovariance {
   /// Covariance of the equations' parameters from noise and errors of fixed coefficients, without the misfit
   /// of the law.
   Eigen::MatrixXd by_noise{};
-  /// Covariance that includes the misfit of the law, without the uncertainty of the reference.
+  /// Covariance that includes the misfit of the law, without the uncertainty of the reference and of fixed
+  /// coefficients, which are the same on all flights.
   Eigen::MatrixXd by_flights{};
   /// Names of the reference uncertainties, and the change of the equations' parameters by one standard
   /// uncertainty of each.
@@ -44,8 +45,8 @@ struct FitCovariance {
 /// residual. The derivatives of all equations by all parameters are A, the covariance of their scores is B,
 /// and the covariance of the parameters is A^-1 B A^-T (Newey and McFadden 1994, Handbook of Econometrics 4,
 /// section 6). A score is the sum of weighted derivative times influence (rho' r). Its covariance comes from
-/// the noise (`noise_covariance`) and the misfit of the law. Errors of fixed parameters propagate to the
-/// others.
+/// the noise (`noise_covariance`), which references of a static pressure share by the correlation of their
+/// residuals, and the misfit of the law. Errors of fixed parameters propagate to the others.
 ///
 /// @param equations in the order of the requested parameters; the last ones include all samples
 FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Misfit& misfit);

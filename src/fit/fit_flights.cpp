@@ -52,7 +52,7 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
     : task_(task),
       setup_(std::move(setup)),
       columns_(joined(setup_.requested, setup_.held)),
-      doubt_(task.model, task.reference, task.options.trust_reference),
+      doubt_(task.model, task.reference, task.options.trust_reference, !task.shares_system),
       prepared_(setup_.values),
       evaluated_(setup_.values),
       by_offsets_(count()),

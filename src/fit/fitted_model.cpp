@@ -35,7 +35,7 @@ Provenance provenance_of(const RefitResult& fit, Loss loss) {
   }
   add("samples_not_used", std::move(masks));
   add("rms_hpa", fit.rms);
-  add("r2", fit.r_squared);
+  if (std::isfinite(fit.r_squared)) add("r2", fit.r_squared);  // undefined without variation
   return provenance;
 }
 
@@ -100,7 +100,8 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
   file.covariance = std::move(covariance);
   if (!std::isnan(fit.left)) {  // a fit by GPS alone estimates no misfit, and keeps the stated one
     file.uncertainty.static_defect.reset();
-    if (fit.left > 0.0) file.uncertainty.static_defect = fit.left;
+    const double misfit = std::hypot(fit.left, fit.between_flights);
+    if (misfit > 0.0) file.uncertainty.static_defect = misfit;
     file.uncertainty.static_defect_ratio.reset();
   }
   Provenance provenance = provenance_of(fit, loss);

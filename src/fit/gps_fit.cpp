@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "campaign/gps_noise.hpp"
 #include "campaign/gps_rows.hpp"
 #include "campaign/gps_system.hpp"
+#include "campaign/model_parameters.hpp"
 #include "fit/fit_task.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
@@ -26,8 +28,8 @@ constexpr double block_time = 300.0;     // s
 
 /// Information of a flight through one reference.
 struct Part {
-  /// Products of whitened rows (requested, nuisances, residual) over blocks of a few minutes, with their
-  /// numbers.
+  /// Products of whitened rows (requested, nuisances, residual) with themselves and with the columns of fixed
+  /// coefficients, over blocks of a few minutes, with their numbers.
   std::vector<std::pair<std::int64_t, Eigen::MatrixXd>> blocks{};
   Eigen::MatrixXd defects{};  ///< products of the derivatives of delta-p by the requested coefficients
   std::size_t samples = 0;
@@ -49,6 +51,7 @@ struct FlightState {
 struct Equations {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right;
+  Eigen::MatrixXd fixed{};                  // products of these columns with those of fixed coefficients
   std::vector<Eigen::MatrixXd> products{};  // one per block, with the nuisances of each flight eliminated
 };
 
@@ -62,6 +65,8 @@ class GpsSolver {
         before_(before),
         requested_(requested),
         count_(as_index(requested.size())),
+        columns_(requested),
+        doubt_of_fixed_(doubt_of(before.fixed)),
         states_(flights.size()) {
     for (auto& each : states_) each.resize(task_.flights.size());
     values_(requested_) = before.values;
@@ -86,6 +91,7 @@ class GpsSolver {
       step();
     }
     const Eigen::VectorXd before_last = values_(requested_);
+    columns_.insert(columns_.end(), before_.fixed.begin(), before_.fixed.end());
     read(false, false);
     GpsFit fit = result();
     add_warning_of_convergence(fit.values - before_last, fit);
@@ -95,6 +101,31 @@ class GpsSolver {
  private:
   Eigen::Index shared() const { return count_ + gps_shared_nuisances; }
   Eigen::Index all() const { return count_ + gps_nuisance_count; }
+  Eigen::Index fixed() const { return as_index(columns_.size()) - count_; }
+
+  /// Stated covariance of fixed coefficients; zero for those of the law of a reference.
+  Eigen::MatrixXd doubt_of(const std::vector<std::size_t>& coefficients) const {
+    Eigen::MatrixXd doubt = task_.doubt(coefficients, coefficients);
+    for (std::size_t k = 0; k < coefficients.size(); ++k) {
+      if (coefficients[k] < parameter_count(task_.model.model)) continue;
+      doubt.row(as_index(k)).setZero();
+      doubt.col(as_index(k)).setZero();
+    }
+    return doubt;
+  }
+
+  /// Covariance from errors of fixed coefficients. @param derivatives by the fixed coefficients
+  Eigen::MatrixXd covariance_by_fixed(const Eigen::MatrixXd& derivatives) const {
+    return derivatives * doubt_of_fixed_ * derivatives.transpose();
+  }
+
+  /// Columns of the rows in the order requested, nuisances, residual, fixed.
+  std::vector<Eigen::Index> order_of_columns() const {
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(all() + 1 + fixed()));
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    std::rotate(order.begin() + count_, order.begin() + count_ + fixed(), order.end());
+    return order;
+  }
 
   GpsPrior flight_prior() const {
     GpsPrior prior{Eigen::VectorXd::Zero(all()), Eigen::VectorXd(all())};
@@ -109,9 +140,9 @@ class GpsSolver {
     const FlightSamples& samples = fit.residuals().samples();
     Part part;
     const GpsRows rows =
-        gps_rows(kind, samples, task_.model, fit.kept(), coefficients.data(), requested_, {}, warmer_);
+        gps_rows(kind, samples, task_.model, fit.kept(), coefficients.data(), columns_, {}, warmer_);
     part.samples = static_cast<std::size_t>(rows.defect.rows());
-    part.defects = rows.defect.transpose() * rows.defect;
+    part.defects = rows.defect.leftCols(count_).transpose() * rows.defect.leftCols(count_);
     if (part.samples == 0) return part;
     if (state.outliers.size() != rows.rows.rows()) state.outliers = Eigen::VectorXd::Zero(rows.rows.rows());
     GpsPrior prior = flight_prior();
@@ -126,13 +157,15 @@ class GpsSolver {
       const double time = rows.time[static_cast<std::size_t>(row) % rows.time.size()];
       rows_of_blocks[static_cast<std::int64_t>(std::floor(time / block_time))].push_back(row);
     }
+    const std::vector<Eigen::Index> order = order_of_columns();
     for (const auto& [block, numbers] : rows_of_blocks) {
-      const Eigen::MatrixXd some = white.rows(numbers, Eigen::all);
-      if (!some.isZero(0.0)) part.blocks.emplace_back(block, some.transpose() * some);
+      const Eigen::MatrixXd some = white.rows(numbers, order);
+      if (!some.isZero(0.0)) part.blocks.emplace_back(block, some.leftCols(all() + 1).transpose() * some);
     }
     return part;
   }
 
+  /// @param with_noise, with_outliers only without columns of fixed coefficients
   void read(bool with_noise, bool with_outliers) {
     std::vector<std::map<std::int64_t, Eigen::MatrixXd>> blocks(task_.flights.size());
     defects_ = Eigen::MatrixXd::Zero(count_, count_);
@@ -164,9 +197,12 @@ class GpsSolver {
   void eliminate_own(const std::vector<std::map<std::int64_t, Eigen::MatrixXd>>& flights) {
     const Eigen::Index own = gps_nuisance_count - gps_shared_nuisances;
     const Eigen::Index size = shared();
-    equations_ = {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), {}};
+    equations_ = {Eigen::MatrixXd::Zero(size, size),
+                  Eigen::VectorXd::Zero(size),
+                  Eigen::MatrixXd::Zero(size, fixed()),
+                  {}};
     for (const auto& blocks : flights) {
-      Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(all() + 1, all() + 1);
+      Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(all() + 1, all() + 1 + fixed());
       sum.diagonal().segment(size, own) = nuisance_deviation_.tail(own).cwiseAbs2().cwiseInverse();
       for (const auto& [block, products] : blocks) sum += products;
       // Rows minus the part explained by the flight's nuisances: columns less own times these.
@@ -174,12 +210,13 @@ class GpsSolver {
       without.topLeftCorner(size, size).setIdentity();
       without(all(), size) = 1.0;
       without.middleRows(size, own) =
-          -sum.block(size, size, own, own).ldlt().solve(sum.middleRows(size, own) * without);
+          -sum.block(size, size, own, own).ldlt().solve(sum.block(size, 0, own, all() + 1) * without);
       for (const auto& [block, products] : blocks)
-        equations_.products.emplace_back(without.transpose() * products * without);
-      const Eigen::MatrixXd left = without.transpose() * sum * without;
+        equations_.products.emplace_back(without.transpose() * products.leftCols(all() + 1) * without);
+      const Eigen::MatrixXd left = without.transpose() * sum.leftCols(all() + 1) * without;
       equations_.matrix += left.topLeftCorner(size, size);
       equations_.right += left.col(size).head(size);
+      equations_.fixed += without.leftCols(size).transpose() * sum.rightCols(fixed());
     }
     for (Eigen::Index k = 0; k < count_; ++k) {
       if (prior_deviation_[k] > 0.0) continue;
@@ -192,7 +229,7 @@ class GpsSolver {
   Eigen::MatrixXd prior_covariance() const {
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(shared(), shared());
     if (before_.covariance.size() > 0) {
-      covariance.topLeftCorner(count_, count_) = before_.covariance;
+      covariance.topLeftCorner(count_, count_) = before_.covariance - covariance_by_fixed(before_.carried);
     } else {
       covariance.topLeftCorner(count_, count_) = free_ * free_.transpose();
     }
@@ -332,6 +369,10 @@ class GpsSolver {
     const Eigen::MatrixXd by_scatter = level * sandwich.topLeftCorner(count_, count_) * level.transpose();
     fit.jackknife = by_scatter.diagonal().cwiseMax(0.0).cwiseSqrt();
     fit.covariance = error_of(by_scatter) > error_of(fit.by_noise) ? by_scatter : fit.by_noise;
+    determined_ = error_of(fit.covariance);
+    fit.by_fixed = level * (fit.kept * before_.carried - (posterior_ * equations_.fixed).topRows(count_));
+    fit.by_noise += covariance_by_fixed(fit.by_fixed);
+    fit.covariance += covariance_by_fixed(fit.by_fixed);
     if (held_.cols() > 0) {
       const Eigen::MatrixXd doubt = doubt_of_held();
       fit.covariance += doubt;
@@ -386,8 +427,7 @@ class GpsSolver {
     constexpr double notable = 0.5;  // errors of the determined part
     constexpr double small = 0.03;   // hPa, noise of a sensor
     const double change = error_along(last_step);
-    const double determined = std::sqrt(std::max(0.0, fit.stated * fit.stated - fit.held * fit.held));
-    if (change < std::max(small, notable * determined)) return;
+    if (change < std::max(small, notable * determined_)) return;
     fit.warnings.push_back(fmt::format(
         "the fit by GPS did not converge: its last step changed delta-p by {:.2f} hPa (rms); exclude the "
         "fastest manoeuvres with an intervals file, or fit their coefficients with a laser",
@@ -426,6 +466,8 @@ class GpsSolver {
   const BeforeGps& before_;
   const std::vector<std::size_t>& requested_;
   Eigen::Index count_;
+  std::vector<std::size_t> columns_;  // parameters with a column: requested; in the last pass also fixed
+  Eigen::MatrixXd doubt_of_fixed_;    // stated covariance of the fixed coefficients on which GPS depends
   Eigen::VectorXd prior_deviation_{};
   Eigen::VectorXd nuisance_deviation_ = gps_nuisance_deviations();
   double warmer_ = 0.0;                           // nuisance of the thermometer, K
@@ -439,6 +481,7 @@ class GpsSolver {
   Eigen::MatrixXd posterior_{};  // covariance of coefficients and shared nuisances
   std::vector<bool> at_bound_{};
   Eigen::VectorXd change_{};  // changes of coefficients; values of nuisances
+  double determined_ = 0.0;   // error of delta-p by noise, without fixed directions and coefficients, hPa
 };
 
 }  // namespace

@@ -19,10 +19,7 @@ std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelDefi
                [](const auto& reference) { return is_by_gps(*reference); });
   if (gps.empty()) return std::nullopt;
   const std::string constant = "static-constant";
-  const auto is_constant = [&constant](const ModelEffect& effect) { return effect.id == constant; };
-  const auto& effects = model.model.effects;
-  const bool has_it = std::any_of(effects.begin(), effects.end(), is_constant);
-  ModelDefinition with = has_it ? model : add_effects(model, {neutral_effect(constant)});
+  ModelDefinition with = has_effect(model, constant) ? model : add_effects(model, {neutral_effect(constant)});
   // GPS alone is used, without the result of an earlier fit.
   with.covariance = {};
   for (EffectFit& fit : with.fits) {
@@ -30,8 +27,8 @@ std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelDefi
   }
   RefitOptions options;
   options.mask = mask;
-  for (const ModelEffect& effect : effects) {
-    if (!is_constant(effect)) options.fix.push_back(effect.id);
+  for (const ModelEffect& effect : model.model.effects) {
+    if (effect.id != constant) options.fix.push_back(effect.id);
   }
   options.free.push_back(constant);
   const RefitResult found = refit(flights, with, gps, options);

@@ -93,20 +93,27 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
       lower[as_index(i)] = task.parameters[parameters[i]].bounds.lower;
       upper[as_index(i)] = task.parameters[parameters[i]].bounds.upper;
     }
-    Eigen::VectorXd x = solution.values(parameters);
-    // A linear problem needs one step from the fit to least squares; otherwise a few.
-    for (int round = 0; round < (squares.is_linear() ? 1 : max_omissions) && !others.empty(); ++round) {
-      const Eigen::MatrixXd rows = round == 0 ? rows_of_fit : rows_at(changed);
-      const Eigen::MatrixXd columns = rows(Eigen::all, others);
-      Eigen::VectorXd right = columns * x - rows.col(size);
-      if (round == 0) right -= rows.leftCols(size) * away;
-      if (!right.allFinite()) break;
-      const Eigen::VectorXd before = x;
-      x = bounded_least_squares(columns, right, lower, upper, x);
-      changed(parameters) = x;
-      if ((x - before).norm() < 1e-6 * x.norm()) break;
-    }
-    const double left = squares.at(changed);
+    // A linear problem needs one step from the fit to least squares; otherwise a few, from the fit and from
+    // the model without the effect, because a minimum of delta-p may stop one of them.
+    const auto refitted = [&](bool is_from_fit) {
+      Eigen::VectorXd values = changed;
+      Eigen::VectorXd x = solution.values(parameters);
+      for (int round = 0; round < (squares.is_linear() ? 1 : max_omissions) && !others.empty(); ++round) {
+        const bool extrapolates = round == 0 && is_from_fit;
+        const Eigen::MatrixXd rows = extrapolates ? rows_of_fit : rows_at(values);
+        const Eigen::MatrixXd columns = rows(Eigen::all, others);
+        Eigen::VectorXd right = columns * x - rows.col(size);
+        if (extrapolates) right -= rows.leftCols(size) * away;
+        if (!right.allFinite()) break;
+        const Eigen::VectorXd before = x;
+        x = bounded_least_squares(columns, right, lower, upper, x);
+        values(parameters) = x;
+        if ((x - before).norm() < 1e-6 * x.norm()) break;
+      }
+      return squares.at(values);
+    };
+    const double from_fit = refitted(true);
+    const double left = squares.is_linear() ? from_fit : std::min(from_fit, refitted(false));
     result.push_back({effect, sums.rms_of(left), sums.r_squared(left)});
   }
   return result;

@@ -20,6 +20,7 @@
 #include "fit/prior.hpp"
 #include "fit/solver.hpp"
 #include "fit/warnings.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor {
@@ -223,8 +224,13 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
   if (by_gps.empty()) return std::nullopt;
   Solution& solution = fitted.solution;
   const Eigen::Index count = as_index(fitted.parameters.size());
-  BeforeGps before{solution.values(fitted.parameters), {}};
-  if (!is_alone) before.covariance = covariance.matrix.topLeftCorner(count, count);
+  const Eigen::Index held = as_index(fitted.held.size());
+  const Eigen::MatrixXd doubt = task.doubt(fitted.held, fitted.held);
+  BeforeGps before{solution.values(fitted.parameters), {}, fitted.held, Eigen::MatrixXd::Zero(count, held)};
+  if (!is_alone) {
+    before.covariance = covariance.matrix.topLeftCorner(count, count);
+    if (held > 0) before.carried = covariance.matrix.topRightCorner(count, held) * information_inverse(doubt);
+  }
   GpsFit gps = fit_gps(by_gps, solution.values, before, fitted.parameters);
   solution.values(fitted.parameters) = gps.values;
   for (std::size_t k = 0; k < fitted.parameters.size(); ++k)
@@ -238,28 +244,20 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
     return add_gps(fitted, task, covariance, true);
   }
   if (is_alone) {
-    covariance.matrix = gps.covariance;
     covariance.by_noise = gps.by_noise;
-    covariance.by_flights = gps.covariance;
-    const Eigen::Index all = count + as_index(fitted.held.size());
-    covariance.matrix.conservativeResizeLike(Eigen::MatrixXd::Zero(all, all));
-    const Eigen::Index held = as_index(fitted.held.size());
-    covariance.matrix.bottomRightCorner(held, held) = task.doubt(fitted.held, fitted.held);
     fitted.flights->measure_noise(solution.values);
     solution.deviation = fitted.flights->deviation(solution.values);
   } else {
-    covariance.matrix.topLeftCorner(count, count) = gps.covariance;
-    covariance.by_flights = gps.covariance;
     covariance.by_noise = gps.covariance;
     if (covariance.by_doubt.size() > 0) {
       const Eigen::MatrixXd by_others = covariance.by_doubt.topRows(count);
       covariance.by_doubt.topRows(count) = gps.kept * by_others;
     }
-    covariance.matrix.topRightCorner(count, covariance.matrix.cols() - count) =
-        gps.kept * covariance.matrix.topRightCorner(count, covariance.matrix.cols() - count).eval();
-    covariance.matrix.bottomLeftCorner(covariance.matrix.rows() - count, count) =
-        covariance.matrix.topRightCorner(count, covariance.matrix.cols() - count).transpose();
   }
+  const Eigen::MatrixXd across = gps.by_fixed * doubt;
+  covariance.by_flights = gps.covariance - across * gps.by_fixed.transpose();
+  covariance.matrix.resize(count + held, count + held);
+  covariance.matrix << gps.covariance, across, across.transpose(), doubt;
   return gps;
 }
 
@@ -290,7 +288,8 @@ void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& f
       parameter.jackknife_error = covariance.jackknife[as_index(a)];
     }
     result.covariance_names.push_back(parameter.name);
-    result.covariance.emplace_back(row.begin(), row.end());
+    std::vector<double>& covariances = result.covariance.emplace_back(row.begin(), row.end());
+    for (double& each : covariances) each += 0.0;  // no negative zero
   }
 }
 
@@ -433,12 +432,19 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   }
   result.drift_rms = flights.drift_rms();
   result.left = by_gps_alone ? nan : misfit.left;
+  result.between_flights = std::sqrt(misfit.between_flights);
   // Gusts are in the residual of the wind: a better law need not make it smaller.
   result.worse = why_worse(result, by_gps_alone ? infinity : sums.rms_of(sums.bulk_squares_before));
   result.least_squares_rms = gps ? nan : sums.rms_of(squares.minimum());
   // Gusts and drifts of the wind are not errors of the model.
   if (!by_gps_alone) result.warnings = fit_warnings(result, compared.longest_run);
   if (gps) result.warnings.insert(result.warnings.begin(), gps->warnings.begin(), gps->warnings.end());
+  if (constexpr double much = 1.02; by_gps_alone && result.rms > much * result.rms_before) {
+    result.warnings.push_back(fmt::format(
+        "the rms of the residual increases from {:.3f} to {:.3f} hPa, which gusts can cause; compare "
+        "the model with another reference before you use it",
+        result.rms_before, result.rms));
+  }
   result.notes = notes_of(result, task, fitted, covariance.by_noise, gps, compared);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights.title());
   if (options.fit_reference) {

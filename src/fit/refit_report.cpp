@@ -21,13 +21,16 @@ namespace {
 ReportTable coefficient_table(const RefitResult& fit) {
   ReportTable table;
   table.title = "Coefficients";
-  table.caption = "Standard errors allow for the autocorrelation of the residuals.";
-  table.headers = {"coefficient", "before", "after", "std. error", "unit", "stage"};
+  table.caption =
+      "Standard errors allow for the autocorrelation of the residuals; jackknife errors come from leaving "
+      "out one flight or one part of a flight at a time.";
+  table.headers = {"coefficient", "before", "after", "std. error", "jackknife", "unit", "stage"};
   for (const FittedParameter& p : fit.parameters) {
     table.rows.push_back({p.name, fmt::format("{:.6g}", p.start), fmt::format("{:.6g}", p.value),
                           !p.fitted    ? "held"
                           : p.at_bound ? "bound"
                                        : fmt::format("{:.3g}", p.standard_error),
+                          std::isnan(p.jackknife_error) ? "" : fmt::format("{:.3g}", p.jackknife_error),
                           p.unit, p.fitted ? std::to_string(p.stage) : ""});
   }
   return table;

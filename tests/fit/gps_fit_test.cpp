@@ -79,6 +79,27 @@ double stated_by(const RefitResult& fit) {
   return std::sqrt(square);
 }
 
+constexpr double error_of_qp = 0.01;  // stated for static-qp.a2
+
+/// Fit of static-constant only, with static-qp fixed at its true value plus `change`.
+RefitResult fit_of_constant(double change, const std::vector<std::string>& references) {
+  ModelDefinition model = law();
+  model.model.effects[2].parameters[0] += change;
+  model.fits.resize(model.model.effects.size());
+  for (auto& each : model.fits) each.resize(1);
+  model.fits[2][0].standard_error = error_of_qp;
+  pcor::RefitOptions options;
+  options.fix = {"static-alpha", "static-qp"};
+  return pcor::refit({flight("c130-eight-circles")}, model, pcor::read_references(references, model, {}).used,
+                     options);
+}
+
+/// Change of static-constant.a0 by one standard error of static-qp.a2, from two fits.
+double change_by_qp(const std::vector<std::string>& references) {
+  return 0.5 * (fit_of_constant(error_of_qp, references).parameters[0].value -
+                fit_of_constant(-error_of_qp, references).parameters[0].value);
+}
+
 }  // namespace
 
 TEST(GpsFit, WindDeterminesTheLaw) {
@@ -217,4 +238,26 @@ TEST(GpsFit, FixedCoefficientsKeepTheirCovariance) {
   ASSERT_EQ(result.covariance.size(), 3U);  // the fitted coefficient, and the fixed ones
   EXPECT_EQ(result.covariance[1][2], laser.covariance[0][1]);
   EXPECT_EQ(result.covariance[1][1], laser.covariance[0][0]);
+  EXPECT_NE(result.covariance[0][1], 0.0) << "their errors change the fitted coefficient";
+  EXPECT_EQ(result.covariance[0][1], result.covariance[1][0]);
+}
+
+TEST(GpsFit, ErrorOfAFixedCoefficientIsCarriedThroughTheFit) {
+  // Each fit estimates noise and outliers again, and the laser and the wind differ by 6 % in this change.
+  constexpr double tolerance = 0.1;
+  const std::vector<std::vector<std::string>> choices{{"wind"}, {"lams", "wind"}};
+  for (const std::vector<std::string>& references : choices) {
+    SCOPED_TRACE(references.front());
+    const RefitResult result = fit_of_constant(0.0, references);
+    ASSERT_GE(result.covariance_names.size(), 2U);
+    EXPECT_EQ(result.covariance_names[0], "static-constant.a0");
+    EXPECT_EQ(result.covariance_names[1], "static-qp.a2");
+    EXPECT_DOUBLE_EQ(result.covariance[1][1], error_of_qp * error_of_qp);
+    const double change = change_by_qp(references);
+    // A dynamic pressure of 50 hPa at 700 hPa: delta-p stays if a0 changes by 0.07 times as much as a2.
+    EXPECT_LT(change, -0.03 * error_of_qp);
+    EXPECT_NEAR(result.covariance[0][1] / error_of_qp, change, tolerance * std::abs(change));
+    EXPECT_GT(result.parameters[0].standard_error, (1.0 - tolerance) * std::abs(change));
+    EXPECT_GT(result.parameters[0].noise_error, (1.0 - tolerance) * std::abs(change));
+  }
 }

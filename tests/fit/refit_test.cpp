@@ -246,6 +246,25 @@ TEST(Refit, ReportsTheValueOfEachEffect) {
   }
 }
 
+// With a minimum of delta-p the model without an effect may be at the minimum everywhere.
+TEST(Refit, ValueOfAnEffectWithAMinimumIsThatOfARefit) {
+  const auto samples = made::shared(plan_18(11));
+  ModelDefinition model = made::model(equation_18);
+  model.model.policy.minimum = 1.0;
+  for (pcor::ModelEffect& effect : model.model.effects)
+    effect.parameters[0] = truth_18.at(
+        effect.id == "static-constant" ? "static-constant.a0"
+                                       : (effect.id == "static-alpha" ? "static-alpha.a1" : "static-qp.a2"));
+  const RefitResult all = fit({samples}, model);
+  for (std::size_t e = 0; e < all.omissions.size(); ++e) {
+    ModelDefinition without = all.model;
+    RefitOptions options;
+    options.fix = {without.model.effects[e].id};
+    without.model.effects[e].parameters[0] = 0.0;
+    EXPECT_LT(all.omissions[e].rms, 1.1 * fit({samples}, without, options).rms) << options.fix[0];
+  }
+}
+
 TEST(Refit, FitsSlopesToManoeuvresFirst) {
   FlightSamples samples = made::flight(plan_18(12));
   // A bias outside of the manoeuvre that varies with the angle of attack: only a stage finds the slope.
@@ -440,6 +459,27 @@ TEST(Refit, BiasedHeldOutPartIsReported) {
   EXPECT_TRUE(part->is_off());
   EXPECT_NEAR(std::abs(part->statistics.bias), 0.5, 0.1);  // the coefficients err by some hundredths
   EXPECT_EQ(result.worse, part->text());
+}
+
+// The fit compensates an error of a fixed coefficient on all flights: it does not excuse a biased part.
+TEST(Refit, ErrorOfAFixedCoefficientDoesNotWidenTheExpectedBias) {
+  FlightSamples samples = *made::shared(plan_18(14));
+  std::vector<double>& reference = made::reference_pressure(samples);
+  for (std::size_t i = reference.size() / 2; i < reference.size(); ++i)
+    reference[i] += 0.5;  // noise: 0.3 hPa
+  RefitOptions options;
+  options.training_share = 0.5;
+  options.fix = {"static-constant"};
+  ModelDefinition model = made::model(equation_18);
+  model.model.effects.front().parameters = {truth_18.at("static-constant.a0")};
+  const Flights flights{std::make_shared<FlightSamples>(samples)};
+  const double exact = worst_held_out(fit(flights, model, options).flights)->expected;
+  model.covariance = {{"static-constant.a0"}, {{1e-6}}};  // 0.7 hPa at 700 hPa
+  const RefitResult result = fit(flights, model, options);
+  const std::optional<pcor::HeldOutPart> part = worst_held_out(result.flights);
+  ASSERT_TRUE(part.has_value());
+  EXPECT_TRUE(part->is_off());
+  EXPECT_NEAR(part->expected, exact, 0.05 * exact);
 }
 
 TEST(Refit, ImpossibleFitsAreRefused) {

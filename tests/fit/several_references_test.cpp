@@ -92,6 +92,50 @@ TEST(SeveralReferences, CommonErrorsOfTwoSystemsStayUnresolved) {
   EXPECT_LT(of_one.standard_error, alone.standard_error) << "a lag of one system is seen there";
 }
 
+// The law of a second system is not fitted if a laser is the first reference. Errors of its coefficients are
+// stated, so trust in the calibration does not exclude them.
+TEST(SeveralReferences, StatedErrorOfASecondLawIsCarried) {
+  constexpr double stated = 1e-4;
+  const auto fit_with = [&](double change) {
+    ModelDefinition second =
+        pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml");
+    second.model.effects[0].parameters[0] += change;
+    second.fits.resize(second.model.effects.size());
+    for (auto& each : second.fits) each.resize(1);
+    second.fits[0][0].standard_error = stated;
+    References references = pcor::read_references({"lams"}, law(), {}).used;
+    references.push_back(pcor::static_system_reference(second));
+    pcor::RefitOptions options;
+    options.trust_reference = true;
+    return parameter(pcor::refit({flight_file()}, law(), references, options), "static-constant.a0");
+  };
+  const FittedParameter fitted = fit_with(0.0);
+  const double change = 0.5 * (fit_with(stated).value - fit_with(-stated).value);
+  // The second system has much less noise than the laser, so the fit follows it.
+  EXPECT_GT(change, 0.5 * stated);
+  // Each fit estimates the weights of the references again.
+  constexpr double tolerance = 0.1;
+  EXPECT_GT(fitted.standard_error, (1.0 - tolerance) * change);
+}
+
+// A second reference with the same errors adds no information. Counted as independent, it made the errors
+// sqrt(2) smaller.
+TEST(SeveralReferences, OneReferenceGivenTwiceHasTheErrorsOfOne) {
+  const References once = pcor::read_references({"lams"}, law(), {}).used;
+  References twice = once;
+  twice.push_back(once.front());
+  pcor::RefitOptions options;
+  options.trust_reference = true;
+  const RefitResult one = pcor::refit({flight_file()}, law(), once, options);
+  const RefitResult both = pcor::refit({flight_file()}, law(), twice, options);
+  for (std::size_t p = 0; p < one.parameters.size(); ++p) {
+    const double error = one.parameters[p].standard_error;
+    EXPECT_NEAR(both.parameters[p].value, one.parameters[p].value, 0.05 * error);
+    // The noise of the first reference is that of its residual less the misfit.
+    EXPECT_NEAR(both.parameters[p].standard_error, error, 0.1 * error);
+  }
+}
+
 TEST(SeveralReferences, ReportStatisticsOfTheFirstReference) {
   const RefitResult alone = fit(law(), {"pressure:TRUE_PS"});
   const RefitResult both = fit(law(), {"pressure:TRUE_PS", "lams"});

@@ -115,3 +115,18 @@ TEST(StatedErrors, IncludeAReferenceError) {
   nuisance.drift_time = 900.0;
   expect_right(scores_of(nuisance, seeds, 1), seeds, "reference off, 0.15 hPa, 900 s");
 }
+
+// A zero that differs from flight to flight is an error of each sample of a flight.
+TEST(StatedErrors, OfTheModelIncludeTheZeroOfEachFlight) {
+  Flights flights;
+  for (unsigned f = 0; f < 8; ++f) {
+    pcor::FlightSamples samples = *flight(200 + f, {});
+    for (double& value : made::reference_pressure(samples)) value += f % 2 == 0 ? 0.3 : -0.3;
+    flights.push_back(std::make_shared<const pcor::FlightSamples>(samples));
+  }
+  const pcor::RefitResult result = pcor::refit(
+      flights, made::model({"static-constant", "static-alpha", "static-qp"}), made::pressure_reference(), {});
+  EXPECT_NEAR(result.between_flights, 0.3, 0.1);  // 8 zeros determine their deviation to 25 %
+  ASSERT_TRUE(result.model.uncertainty.static_defect);
+  EXPECT_GE(*result.model.uncertainty.static_defect, result.between_flights);
+}

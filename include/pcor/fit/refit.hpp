@@ -190,9 +190,12 @@ struct RefitResult {
   double bulk_rms = 0.0;           ///< robust standard deviation, hPa; insensitive to outliers
   double noise_rms = 0.0;          ///< noise floor, hPa
   double drift_rms = 0.0;          ///< drift of the sensors, hPa
-  /// Rms misfit of the model as a smooth function of the flight state, hPa. The fitted model states it as the
-  /// standard uncertainty of its delta-p in one sample.
+  /// Rms misfit of the model as a smooth function of the flight state, hPa.
   double left = 0.0;
+  /// Standard deviation of the zero of the residual from flight to flight, hPa; 0 with one flight. The fitted
+  /// model states the root of the sum of squares of both as the standard uncertainty of its delta-p in one
+  /// sample.
+  double between_flights = 0.0;
   double least_squares_rms = 0.0;  ///< plain least squares on the same samples, hPa; NaN if unknown
   double r_squared = 0.0;
   double rms_before = 0.0;   ///< hPa, with the coefficients of the file
@@ -225,6 +228,8 @@ void describe_summary(const RefitResult& self, Field& field) {
   field("estimator", self.estimator, "estimator of the coefficients and their errors");
   field("left_hpa", self.left,
         "misfit of the model that varies with the flight state, rms; null for a fit by GPS alone");
+  field("between_flights_hpa", self.between_flights,
+        "zero of the residual that differs between flights, standard deviation");
   field("drift_hpa", self.drift_rms, "slow drift of the noise, rms");
   field("least_squares_rms_hpa", self.least_squares_rms,
         "rms residual of plain least squares; null for a fit with GPS");
