@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <random>
 #include <string>
 #include <string_view>
@@ -224,6 +225,18 @@ AtomicFile::~AtomicFile() {
   fs::resize_file(path_, 0, ignored);
   fs::remove(path_, ignored);
   take_from_list(path_.string());
+}
+
+void AtomicFile::write(std::string_view text) {
+  std::ofstream stream(path_, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream)
+    throw Error(
+        Error::Code::output,
+        shown_.string() +
+            " cannot be written: check the space and the permissions there, or choose another output");
+  commit();
 }
 
 void AtomicFile::commit() {

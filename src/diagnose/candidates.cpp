@@ -21,11 +21,6 @@
 namespace pcor::internal {
 namespace {
 
-bool has_effect(const ModelDefinition& model, std::string_view id) {
-  const std::vector<ModelEffect>& effects = model.model.effects;
-  return std::any_of(effects.begin(), effects.end(), [id](const ModelEffect& e) { return e.id == id; });
-}
-
 /// Aircraft family whose variable names a model uses on some flights.
 const VariableNaming& family_of(const ModelDefinition& file, const FlightSet& flights) {
   if (!file.roles_from.empty()) return family_named(file.roles_from);

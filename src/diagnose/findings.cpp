@@ -203,60 +203,6 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
   return aliases;
 }
 
-/// Whether an effect at this location is part of the corrected static pressure.
-bool corrects_static_pressure(const Candidate& candidate) {
-  if (candidate.is_of_reference()) return false;
-  const EffectLocation location = location_of(candidate.effect);
-  return location == EffectLocation::static_defect || location == EffectLocation::static_line ||
-         location == EffectLocation::static_transducer;
-}
-
-/// Change of the corrected static pressure by base and groups, relative to the base alone, estimated from the
-/// columns of both.
-Eigen::VectorXd static_estimate(const Analysis& analysis, const std::vector<Candidate>& candidates,
-                                const std::vector<std::size_t>& groups) {
-  Eigen::VectorXd with = analysis.search().fit(groups).estimate;
-  with.head(analysis.base()) -= analysis.search().fit({}).estimate;
-  Eigen::Index position = analysis.base();
-  for (const std::size_t group : groups) {
-    const Eigen::Index count = analysis.groups()[group].count;
-    if (!corrects_static_pressure(candidates[group])) with.segment(position, count).setZero();
-    position += count;
-  }
-  return with;
-}
-
-/// rms of the pressure change over every used record.
-double static_change(const Analysis& analysis, const std::vector<Candidate>& candidates,
-                     const std::vector<std::size_t>& groups) {
-  const Eigen::VectorXd estimate = static_estimate(analysis, candidates, groups);
-  return rms_of(analysis.share(), [&](std::size_t f) { return analysis.added(f, groups, estimate); });
-}
-
-double static_risk(const Analysis& analysis, const std::vector<Candidate>& candidates, std::size_t winner,
-                   const std::vector<std::size_t>& chosen, const std::vector<Alias>& aliases) {
-  if (aliases.empty()) return 0.0;
-  const Eigen::VectorXd estimate = static_estimate(analysis, candidates, chosen);
-  double risk = 0.0;
-  for (std::size_t g = 0; g < candidates.size(); ++g) {
-    const bool is_alias = std::any_of(aliases.begin(), aliases.end(), [&](const Alias& alias) {
-      return alias.effect == candidates[g].id && !candidates[g].is_variant;
-    });
-    if (!is_alias) continue;
-    std::vector<std::size_t> instead = chosen;
-    std::replace(instead.begin(), instead.end(), winner, g);
-    const Eigen::VectorXd other = static_estimate(analysis, candidates, instead);
-    const auto difference = [&](std::size_t f) {
-      std::vector<double> values = analysis.added(f, instead, other);
-      const std::vector<double> by_winner = analysis.added(f, chosen, estimate);
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] -= by_winner[i];
-      return values;
-    };
-    risk = std::max(risk, rms_of(analysis.share(), difference));
-  }
-  return risk;
-}
-
 /// Contribution of an effect on a flight.
 struct Added {
   SquareSum sum{};
@@ -445,8 +391,6 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     const std::vector<Rival> rivals = rivals_of(analysis, candidates, group, chosen);
     finding.aliases = aliases_of(analysis, candidates, group, chosen, rivals);
     describe(candidates, group, rivals, finding);
-    finding.static_change = static_change(analysis, candidates, chosen);
-    finding.static_risk = static_risk(analysis, candidates, group, chosen, finding.aliases);
     findings.push_back(std::move(finding));
   }
   return findings;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <system_error>
 
 #include <pcor/base/atomic_file.hpp>
@@ -95,6 +94,11 @@ Bounds ModelDefinition::bounds(std::size_t effect, std::size_t parameter) const 
   return {info->parameters[parameter].lower, info->parameters[parameter].upper};
 }
 
+bool has_effect(const ModelDefinition& file, std::string_view id) {
+  const std::vector<ModelEffect>& effects = file.model.effects;
+  return std::any_of(effects.begin(), effects.end(), [id](const ModelEffect& each) { return each.id == id; });
+}
+
 std::vector<std::string> parameter_names(const ModelEffect& effect) {
   if (effect.is_formula()) return effect.parameter_names;
   neutral_effect(effect.id);
@@ -157,15 +161,7 @@ void save_model(const ModelDefinition& file, const fs::path& path, const std::ve
         path.string() +
             ": the model was read from this file, which is never overwritten; give the output another name");
   }
-  const std::string text = write_model(file);
-  AtomicFile output(path);
-  std::ofstream stream(output.path(), std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream)
-    throw Error(Error::Code::output,
-                path.string() + ": cannot be written; check the space and the permissions");
-  output.commit();
+  AtomicFile(path).write(write_model(file));
 }
 
 }  // namespace pcor

@@ -8,16 +8,6 @@
 #include "model_io/calibration.hpp"
 
 namespace pcor::internal {
-namespace {
-
-bool has_effect(const ModelDefinition& model, std::string_view id) {
-  const std::vector<ModelEffect>& effects = model.model.effects;
-  return std::any_of(effects.begin(), effects.end(),
-                     [id](const ModelEffect& effect) { return effect.id == id; });
-}
-
-}  // namespace
-
 std::string SensorDoubt::name() const {
   return effect + "." + std::string(effect_named(effect)->parameters[parameter].name);
 }

@@ -192,32 +192,4 @@ Autoregression autoregression(const std::vector<double>& values, const std::vect
   return best;
 }
 
-std::vector<double> covariance_of_sums(const Autoregression& noise, const std::vector<const double*>& columns,
-                                       const std::vector<Segment>& segments) {
-  // The noise is its innovations put through a recursive filter, so a sum (column . noise) is a sum over the
-  // innovations of the column put through the same filter backwards in time. Innovations before the first
-  // sample matter as long as the filter remembers.
-  constexpr Eigen::Index run_out = 300;
-  const Eigen::Index count = as_index(columns.size());
-  const Eigen::Index order = as_index(noise.coefficients.size());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
-  for (const Segment& segment : segments) {
-    const Eigen::Index length = as_index(segment.count);
-    Eigen::MatrixXd filtered(length + (order > 0 ? run_out : 0), count);
-    for (Eigen::Index c = 0; c < count; ++c) {
-      const double* const last = columns[static_cast<std::size_t>(c)] + segment.first + segment.count - 1;
-      double* const now = filtered.col(c).data();
-      for (Eigen::Index step = 0; step < filtered.rows(); ++step) {
-        now[step] = step < length ? last[-step] : 0.0;
-        for (Eigen::Index k = 0; k < std::min(order, step); ++k)
-          now[step] += noise.coefficients[static_cast<std::size_t>(k)] * now[step - 1 - k];
-      }
-    }
-    matrix.selfadjointView<Eigen::Lower>().rankUpdate(filtered.transpose());
-  }
-  matrix =
-      noise.innovation_rms * noise.innovation_rms * Eigen::MatrixXd(matrix.selfadjointView<Eigen::Lower>());
-  return {matrix.data(), matrix.data() + matrix.size()};
-}
-
 }  // namespace pcor

@@ -9,7 +9,11 @@
 
 namespace pcor::internal {
 
-/// `pcor::covariance_of_sums` of a matrix.
+/// Sum over all pairs of samples of u(t) C(t-s) v(s), for columns u, v and the autocovariance C of the
+/// process: the covariance matrix of the sums (column . noise).
+///
+/// @param columns one row for each sample, zero for missing samples
+/// @param segments the parts of the series without a gap in time
 Eigen::MatrixXd covariance_of_sums(const Autoregression& noise, const Eigen::MatrixXd& columns,
                                    const std::vector<Segment>& segments);
 

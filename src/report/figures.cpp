@@ -187,17 +187,6 @@ std::vector<fs::path> earlier_pictures(const fs::path& folder) {
   return all;
 }
 
-void write_file(const fs::path& path, const std::string& bytes) {
-  AtomicFile file(path);
-  std::ofstream stream(file.path(), std::ios::binary);
-  stream << bytes;
-  stream.close();
-  if (!stream)
-    throw Error(Error::Code::output,
-                path.string() + " cannot be written: check the space there, or choose another output");
-  file.commit();
-}
-
 }  // namespace
 
 void require_figures(const fs::path& folder) {
@@ -232,7 +221,7 @@ std::vector<std::string> write_figures(const Report& report, const fs::path& fol
   for (const fs::path& path : earlier_pictures(folder)) {
     if (std::find(names.begin(), names.end(), path.filename().string()) == names.end()) together.remove(path);
   }
-  for (const auto& [name, bytes] : files) write_file(folder / name, bytes);
+  for (const auto& [name, bytes] : files) AtomicFile(folder / name).write(bytes);
   together.appear();
   return names;
 }

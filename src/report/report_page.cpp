@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -238,15 +237,7 @@ std::string report_html(const Report& report) {
 }
 
 void write_report(const Report& report, const std::filesystem::path& path) {
-  const std::string html = report_html(report);
-  AtomicFile file(path);
-  std::ofstream stream(file.path(), std::ios::binary);
-  stream << html;
-  stream.close();
-  if (!stream)
-    throw Error(Error::Code::output,
-                path.string() + " cannot be written: check the space there, or choose another output");
-  file.commit();
+  AtomicFile(path).write(report_html(report));
 }
 
 }  // namespace pcor

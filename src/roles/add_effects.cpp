@@ -45,9 +45,7 @@ EffectFit fit_of(const ModelEffect& effect) {
 
 void add(ModelDefinition& file, ModelEffect effect) {
   std::vector<ModelEffect>& effects = file.model.effects;
-  const bool known = std::any_of(effects.begin(), effects.end(),
-                                 [&effect](const ModelEffect& each) { return each.id == effect.id; });
-  if (known) {
+  if (has_effect(file, effect.id)) {
     throw Error(Error::Code::usage,
                 fmt::format("model '{}' has the effect {} already; refit it, or add another",
                             one_line(file.model.name), quote(effect.id)));

@@ -31,6 +31,16 @@ void add_to_law(const Effect& effect, const Truth&, SystemFaults* system, Faults
   system->law.*Term += effect.parameters.begin()->second;
 }
 
+template <double SystemFaults::*Fault>
+void add_to_system(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
+  system->*Fault += effect.parameters.begin()->second;
+}
+
+template <double Faults::*Fault>
+void add_to_instruments(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
+  faults.*Fault += effect.parameters.begin()->second;
+}
+
 // l = q k theta^n, theta the angle between the flow and the pitot's axis. Memo footnote 3: below 0.2 % of q
 // to 5 deg.
 void pitot_angle(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
@@ -43,24 +53,8 @@ void pitot_angle(const Effect& effect, const Truth& truth, SystemFaults* system,
   });
 }
 
-void static_lag(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
-  system->static_lag += number(effect, "tau");
-}
-
-void total_lag(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
-  system->total_lag += number(effect, "tau");
-}
-
-void static_leak(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
-  system->leak += number(effect, "fraction");
-}
-
 void qcf_zero(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
   add(system->dynamic_error, truth, [&](std::size_t) { return number(effect, "offset"); });
-}
-
-void qcf_gain(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
-  system->dynamic_gain += number(effect, "gain");
 }
 
 void psfd_bias(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
@@ -155,10 +149,6 @@ void lams_elevation(const Effect& effect, const Truth& truth, SystemFaults*, Fau
   add(faults.lams_elevation, truth, [&](std::size_t) { return number(effect, "error"); });
 }
 
-void lams_azimuth(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
-  faults.lams_azimuth += number(effect, "error");
-}
-
 // The wing bends with the lift that it carries more than at the start.
 void lams_pod_flex(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
   const double per_tonne = number(effect, "per_tonne");
@@ -166,10 +156,6 @@ void lams_pod_flex(const Effect& effect, const Truth& truth, SystemFaults*, Faul
     const double load = 1.0 + truth.normal_acceleration[i] / constants::standard_gravity;
     return per_tonne * 1e-3 * (load * truth.weight[i] - truth.weight[0]);
   });
-}
-
-void lams_scale(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
-  faults.lams_scale += number(effect, "scale");
 }
 
 void lams_induction(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
@@ -189,10 +175,6 @@ void temp_offset(const Effect& effect, const Truth& truth, SystemFaults*, Faults
   });
 }
 
-void recovery_factor(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
-  faults.recovery += number(effect, "error");
-}
-
 // De-icing heat warms the element in inverse relation to the mass flow, of which Z is a measure; there are no
 // measurements below 0.18.
 void temp_deice_heat(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
@@ -205,10 +187,6 @@ void temp_deice_heat(const Effect& effect, const Truth& truth, SystemFaults*, Fa
     const double flow = flow_scale * truth.pressure[i] * truth.mach[i] / truth.temperature[i];
     return heat * std::pow(std::max(flow, min_flow) / usual_flow, power);
   });
-}
-
-void temp_lag(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
-  faults.temperature_lag += number(effect, "tau");
 }
 
 // Wet within a second, dry again in the time stated.
@@ -295,11 +273,11 @@ const std::vector<FaultInfo>& fault_info() {
        Target::system,
        {{"k", "1/deg^power"}, {"power", "1", 2.0}, {"axis", "deg", 0.0}},
        pitot_angle},
-      {"static-lag", Target::system, {{"tau", "s"}}, static_lag},
-      {"total-lag", Target::system, {{"tau", "s"}}, total_lag},
-      {"static-leak", Target::system, {{"fraction", "1"}}, static_leak},
+      {"static-lag", Target::system, {{"tau", "s"}}, add_to_system<&SystemFaults::static_lag>},
+      {"total-lag", Target::system, {{"tau", "s"}}, add_to_system<&SystemFaults::total_lag>},
+      {"static-leak", Target::system, {{"fraction", "1"}}, add_to_system<&SystemFaults::leak>},
       {"qcf-zero", Target::system, {{"offset", "hPa"}}, qcf_zero},
-      {"qcf-gain", Target::system, {{"gain", "1"}}, qcf_gain},
+      {"qcf-gain", Target::system, {{"gain", "1"}}, add_to_system<&SystemFaults::dynamic_gain>},
       {"psfd-bias", Target::system, {{"offset", "hPa"}}, psfd_bias},
       {"transducer-thermal",
        Target::system,
@@ -315,17 +293,17 @@ const std::vector<FaultInfo>& fault_info() {
        {{"gain", "1", 0.0}, {"offset", "1", 0.0}, {"per_hour", "1/h", 0.0}},
        adif_drift},
       {"lams-elevation", Target::instrument, {{"error", "deg"}}, lams_elevation},
-      {"lams-azimuth", Target::instrument, {{"error", "deg"}}, lams_azimuth},
+      {"lams-azimuth", Target::instrument, {{"error", "deg"}}, add_to_instruments<&Faults::lams_azimuth>},
       {"lams-pod-flex", Target::instrument, {{"per_tonne", "deg/t"}}, lams_pod_flex},
-      {"lams-scale", Target::instrument, {{"scale", "1"}}, lams_scale},
+      {"lams-scale", Target::instrument, {{"scale", "1"}}, add_to_instruments<&Faults::lams_scale>},
       {"lams-induction",
        Target::instrument,
        {{"fraction", "1", 0.0}, {"per_attack", "1/deg", 0.0}},
        lams_induction},
       {"lams-cloud", Target::instrument, {{"error", "m/s"}}, lams_cloud},
       {"temp-offset", Target::instrument, {{"offset", "K", 0.0}, {"slope", "1", 0.0}}, temp_offset},
-      {"recovery-factor", Target::instrument, {{"error", "1"}}, recovery_factor},
-      {"temp-lag", Target::instrument, {{"tau", "s"}}, temp_lag},
+      {"recovery-factor", Target::instrument, {{"error", "1"}}, add_to_instruments<&Faults::recovery>},
+      {"temp-lag", Target::instrument, {{"tau", "s"}}, add_to_instruments<&Faults::temperature_lag>},
       {"temp-wetting", Target::instrument, {{"error", "K"}, {"drying", "s", 10.0}}, temp_wetting},
       {"temp-deice-heat",
        Target::instrument,

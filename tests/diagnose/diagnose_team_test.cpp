@@ -57,8 +57,7 @@ void serialize(Archive& archive, pcor::Finding& finding) {
           finding.worst_time, finding.chi2, finding.p_value, finding.rms_before, finding.rms_after,
           finding.gain, finding.gain_error, finding.events, finding.evidence, finding.aliases, finding.family,
           finding.shape, finding.shape_beyond_model, finding.variants, finding.components,
-          finding.probability, finding.times_usual, finding.static_risk, finding.static_change,
-          finding.advice);
+          finding.probability, finding.times_usual, finding.advice);
 }
 
 template <class Archive>

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "numerics/noise_covariance.hpp"
+
 // Series with known autocovariance.
 
 using pcor::Autoregression;
@@ -165,18 +167,17 @@ TEST(CovarianceOfSums, EqualsTheDoubleSumOfTheAutocovariance) {
   Autoregression noise;
   noise.coefficients = {memory};
   noise.innovation_rms = std::sqrt(1.0 - memory * memory);
-  std::vector<double> u(60);
-  std::vector<double> v(60);
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    u[i] = i % 7 == 3 ? 0.0 : 1.0;  // some samples are missing
-    v[i] = u[i] * std::sin(0.3 * static_cast<double>(i));
+  Eigen::MatrixXd columns(60, 2);
+  for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+    columns(i, 0) = i % 7 == 3 ? 0.0 : 1.0;  // some samples are missing
+    columns(i, 1) = columns(i, 0) * std::sin(0.3 * static_cast<double>(i));
   }
-  const std::vector<double> matrix =
-      pcor::covariance_of_sums(noise, {u.data(), v.data()}, {{0, 25}, {25, 35}});
-  const auto sum = [&](const std::vector<double>& a, const std::vector<double>& b) {
+  const Eigen::VectorXd u = columns.col(0), v = columns.col(1);
+  const Eigen::MatrixXd matrix = pcor::internal::covariance_of_sums(noise, columns, {{0, 25}, {25, 35}});
+  const auto sum = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     double total = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      for (std::size_t j = 0; j < b.size(); ++j) {
+    for (Eigen::Index i = 0; i < a.size(); ++i) {
+      for (Eigen::Index j = 0; j < b.size(); ++j) {
         if ((i < 25) != (j < 25)) continue;
         total += a[i] * b[j] * std::pow(memory, std::abs(static_cast<double>(i) - static_cast<double>(j)));
       }
@@ -184,8 +185,8 @@ TEST(CovarianceOfSums, EqualsTheDoubleSumOfTheAutocovariance) {
     return total;
   };
   // The filter is cut off after 300 samples, where 0.8^300 is negligible: rounding alone remains.
-  EXPECT_NEAR(matrix[0], sum(u, u), 1e-10 * sum(u, u));
-  EXPECT_NEAR(matrix[1], sum(u, v), 1e-10 * sum(u, u));
-  EXPECT_NEAR(matrix[3], sum(v, v), 1e-10 * sum(u, u));
-  EXPECT_EQ(matrix[1], matrix[2]);
+  EXPECT_NEAR(matrix(0, 0), sum(u, u), 1e-10 * sum(u, u));
+  EXPECT_NEAR(matrix(0, 1), sum(u, v), 1e-10 * sum(u, u));
+  EXPECT_NEAR(matrix(1, 1), sum(v, v), 1e-10 * sum(u, u));
+  EXPECT_EQ(matrix(0, 1), matrix(1, 0));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace pcor {
@@ -21,6 +22,9 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+
+  /// Writes the whole text and commits. @throws Error if impossible.
+  void write(std::string_view text);
 
   /// Synchronises the file to disk and renames it to the target, with the permissions of the file it
   /// replaces; during an `OutputTransaction`, the rename is deferred. @throws Error if impossible.

@@ -191,12 +191,6 @@ struct Finding {
   std::vector<std::string> components{};
   double probability = 1.0;  ///< posterior probability among the finding and its aliases, 0 to 1
   double times_usual = 0.0;  ///< size divided by the typical size; 0 if unknown
-  /// Difference of corrected static pressure between this effect and its worst alias, rms hPa; 0 without
-  /// aliases.
-  double static_risk = 0.0;
-  /// Change of corrected static pressure after a refit of model and findings, rms hPa. For an effect nearly
-  /// collinear with the model, it is many times the reduction of the residual.
-  double static_change = 0.0;
   Advice advice{};
 
   /// Id of the effect; on another system "reference:ID", or "reference:PSFRD+QCFR:ID" if there are several.

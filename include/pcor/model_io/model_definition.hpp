@@ -115,6 +115,9 @@ struct ModelDefinition {
 /// the covariance (independent of all others), and standard uncertainties of single samples.
 ModelUncertainty uncertainty_of(const ModelDefinition& file);
 
+/// Whether the model contains the effect `id`.
+bool has_effect(const ModelDefinition& file, std::string_view id);
+
 /// Names of an effect's parameters, from the catalogue or a formula. @throws Error if the effect is neither.
 std::vector<std::string> parameter_names(const ModelEffect& effect);
 

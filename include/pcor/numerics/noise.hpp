@@ -53,13 +53,4 @@ struct Autoregression {
 Autoregression autoregression(const std::vector<double>& values, const std::vector<Segment>& segments,
                               double limit = 4.5);
 
-/// Sum over all pairs of samples of u(t) C(t-s) v(s), for columns u, v and the autocovariance C of the
-/// process: the covariance matrix of the sums (column . noise). Columns are zero for missing samples;
-/// `segments` are the parts of the series without a gap in time.
-///
-/// @param columns `count` pointers to `samples` values each
-/// @return the matrix, row by row
-std::vector<double> covariance_of_sums(const Autoregression& noise, const std::vector<const double*>& columns,
-                                       const std::vector<Segment>& segments);
-
 }  // namespace pcor
