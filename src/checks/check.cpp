@@ -98,7 +98,7 @@ CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelD
             : measured(systems.own->name(),
                        read_flight_air(flights, number, model_of(*systems.own), options.mask)));
   }
-  result.second_corrected = options.second.has_value();
+  result.second_corrected = options.second && !options.second->model.effects.empty();
   std::optional<ModelDefinition> second = options.second;
   if (!second && systems.other) second = model_of(*systems.other);
   if (!second) return result;

@@ -332,24 +332,9 @@ Eigen::MatrixXd covariance_of(const std::vector<FlightLayers>& flights, std::siz
   return causes.covariance();
 }
 
-void require(bool well, const char* what, Error::Code code = Error::Code::usage) {
-  if (!well) throw Error(code, fmt::format("layers: {}", what));
-}
-
 }  // namespace
 
 FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
-  require(options.min_climb_rate > 0.0, "the minimum climb rate must be above zero");
-  require(options.min_thickness > 0.0 && options.thickness > 0.0, "thicknesses must be above zero");
-  require(options.height_noise.value_or(1.0) > 0.0, "the noise of the height must be above zero");
-  require(options.pressure_noise >= 0.0 && options.static_bias >= 0.0 && options.static_change >= 0.0 &&
-              options.gradient.value_or(0.0) >= 0.0,
-          "standard deviations must not be negative");
-  require(!air.temperature.empty(), "the model has no thermometer, so no temperature to test",
-          Error::Code::variable);
-  require(!air.geopotential_height.empty(), "the flight has no GPS height or no latitude",
-          Error::Code::variable);
-
   FlightLayers found;
   found.flight = air.samples->name;
   const std::vector<double> heights = usable_heights(air);

@@ -116,6 +116,12 @@ std::vector<double> masked(std::vector<double> series, const std::vector<bool>& 
   return series;
 }
 
+void note_other_steps(std::size_t others, std::size_t flights, double step, Notes& notes) {
+  if (others == 0) return;
+  notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s", others,
+                              flights, step));
+}
+
 CheckResult not_run(std::string reason) {
   CheckResult result;
   result.reason = std::move(reason);

@@ -255,10 +255,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
     }
   }
   result.finding += ".";
-  if (all.other_steps > 0) {
-    result.notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s",
-                                       all.other_steps, flights.size(), all.step));
-  }
+  note_other_steps(all.other_steps, flights.size(), all.step, result.notes);
 
   std::vector<Part> parts{
       outside, inside,

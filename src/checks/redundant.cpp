@@ -159,10 +159,7 @@ void add_results(const CheckedFlights& flights, const std::string& check, const 
   const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
     return !has_step(flight, step) && has_both(flight, first, second);
   });
-  if (other_steps > 0) {
-    result.notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s",
-                                       other_steps, flights.size(), step));
-  }
+  note_other_steps(static_cast<std::size_t>(other_steps), flights.size(), step, result.notes);
   result.tables = {table_of(fit, std::move(table))};
   const auto column = [&](const char* name, const std::string& title, const SeriesOfFlight& series) {
     return column_of(flights, check + name, title, "hPa", [&series](const CheckedFlight& flight) {

@@ -220,10 +220,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
     return !has_step(flight, spectrum.step);
   });
-  if (other_steps > 0) {
-    result.notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s",
-                                       other_steps, flights.size(), spectrum.step));
-  }
+  note_other_steps(static_cast<std::size_t>(other_steps), flights.size(), spectrum.step, result.notes);
   result.cannot_see =
       "The check cannot identify the noisy sensor: pressures, thermometer, laser and the air between laser "
       "and pitot tube add up. Noise of the transducers and small eddies are indistinguishable unless the "

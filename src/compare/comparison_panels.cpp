@@ -265,11 +265,14 @@ void ComparisonPanels::add_tables() {
 
 void ComparisonPanels::summarise() {
   for (const ModelComparison& model : comparison_.models) {
-    report_.summary.push_back(
-        sentence(fmt::format("{}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} times the noise of {:.3f} hPa; R2 "
-                             "{:.4f}, over {} samples",
-                             model.name, model.all.bias, model.all.rms, model.all.rms_over_noise(),
-                             model.all.noise_rms, model.r_squared, model.all.samples)));
+    // Differences over time have no R2.
+    const std::string r_squared =
+        std::isfinite(model.r_squared) ? fmt::format("; R2 {:.4f}", model.r_squared) : "";
+    report_.summary.push_back(sentence(
+        fmt::format("{}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} times the noise of {:.3f} hPa{}, over {} "
+                    "samples",
+                    model.name, model.all.bias, model.all.rms, model.all.rms_over_noise(),
+                    model.all.noise_rms, r_squared, model.all.samples)));
     if (const std::string text = flaps_out_text(model.flaps_out, "the comparison"); !text.empty())
       report_.summary.push_back(sentence(text));
   }

@@ -116,6 +116,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   diagnose_with.progress = options.refit.progress;
 
   ImproveLoop loop;
+  loop.is_by_gps = gps_kind(first_of(ordered)).has_value();
   loop.refit = [&](const TrialModel& trial) {
     tell("fitting with " + last_of(trial.file));
     const RefitOptions refit_with = refit_options_for(trial);

@@ -333,6 +333,7 @@ class ForwardSelection {
 
   /// Whether all steps together increased the residual, by a large or significant amount.
   std::string why_worse(const TrialComparison& whole) const {
+    if (loop_.is_by_gps) return "";  // gusts are in its residual: a better law need not make it smaller
     constexpr double much = 1.02;
     const double growth = whole.rms_after / whole.rms_before;
     if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";
@@ -377,12 +378,12 @@ class ForwardSelection {
     if (now.verdict == Verdict::silent) return candidates;
     candidates.all = now.verdict == Verdict::identified || now.verdict == Verdict::ambiguous;
     for (const Finding& finding : now.findings) {
-      if (!may_be_of_reference(finding) && !has(result_.fit.model, finding.effect.id))
+      if (!may_be_of_reference(finding) && !has_effect(result_.fit.model, finding.effect.id))
         candidates.effects.push_back(candidate_of(finding, now));
     }
     if (candidates.all || !loop_.trace_variables) return candidates;
     for (const EmpiricalPredictor& variable : now.unexplained.variables) {
-      if (variable.formula.empty() || has(result_.fit.model, id_of_trace(variable.name))) continue;
+      if (variable.formula.empty() || has_effect(result_.fit.model, id_of_trace(variable.name))) continue;
       candidates.effects.push_back(candidate_of(variable, loop_.flights));
       break;
     }

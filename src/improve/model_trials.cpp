@@ -83,17 +83,13 @@ TrialFlight tried_on(const FlightSet& flights, std::size_t number, const ModelDe
 
 }  // namespace
 
-bool has(const ModelDefinition& model, const std::string& effect) {
-  return position_of(model, effect) < model.model.effects.size();
-}
-
 ModelDefinition union_of(const std::vector<ModelDefinition>& models) {
   ModelDefinition whole = models.front();
   whole.fits.resize(whole.model.effects.size());
   for (const ModelDefinition& model : models) {
     for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
       const ModelEffect& effect = model.model.effects[e];
-      if (has(whole, effect.id)) continue;
+      if (has_effect(whole, effect.id)) continue;
       whole.model.effects.push_back(effect);
       whole.fits.push_back(e < model.fits.size() ? model.fits[e] : EffectFit{});
     }

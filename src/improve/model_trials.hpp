@@ -44,9 +44,6 @@ struct TrialFlight {
 std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<TrialModel>& models,
                                     const References& references, const RefitOptions& options);
 
-/// Whether a model has an effect with this name.
-bool has(const ModelDefinition& model, const std::string& effect);
-
 /// Model that has the effects of all models, with the coefficients of the first that has them.
 ModelDefinition union_of(const std::vector<ModelDefinition>& models);
 

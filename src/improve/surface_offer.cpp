@@ -79,7 +79,8 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
   const std::string id(surface_info.front().id);
   const bool is_in_memory = flights.path(0).empty();
   const bool names_a_flight = options.mask.intervals && !options.mask.intervals->flight.empty();
-  if (is_in_memory || has(model.file, id) || (names_a_flight && flights.size() > 1)) return std::nullopt;
+  if (is_in_memory || has_effect(model.file, id) || (names_a_flight && flights.size() > 1))
+    return std::nullopt;
   Pair models{model, model};
   try {
     const ModelEffect surface = surface_over(

@@ -421,12 +421,6 @@ class Look {
       if (has_wind) references.emplace_back("wind");
       if (has_heights) references.emplace_back("height");
     }
-    for (const auto& [role, variable] : model.variables) {
-      const bool is_input = role == Quantity::static_pressure || role == Quantity::dynamic_pressure ||
-                            role == Quantity::ambient_temperature;
-      for (const char* const name : {"PSXC", "QCXC", "ATX"})
-        result_.has_results = result_.has_results || (is_input && variable == model.output_name(name));
-    }
   }
 
   /// The part of a series that has values.

@@ -27,7 +27,7 @@ constexpr std::array<Cost, 14> costs{{
     {"roll", "turns, circles and reverse headings are not found"},
     {"heading",
      "circles, reverse headings and yaw manoeuvres are found by the ground track, if that is recorded"},
-    {"ground_speed", "winds cannot be compared on reverse headings and circles"},
+    {"ground_speed", "winds cannot be compared, unless the ground speed is recorded by components"},
     {"ground_track", "winds cannot be compared, unless the ground speed is recorded by components"},
     {"flaps", "samples with flaps out are found by the lift alone"},
     {"liquid_water", "clouds are not found"},

@@ -80,7 +80,11 @@ constexpr std::array<Form, 6> forms{{
        return static_system_reference(read_system(file));
      }},
     {"pressure", "VARIABLE", "a recorded static pressure",
-     [](const std::string& variable, const ModelDefinition&) { return pressure_reference(variable); }},
+     [](const std::string& variable, const ModelDefinition& model) {
+       const auto measured = model.variables.find(Quantity::static_pressure);
+       return pressure_reference(variable,
+                                 measured == model.variables.end() ? std::string() : measured->second);
+     }},
     {"total", "OTHER.toml", "the total pressure of a second system, by its model, or of STATIC+DYNAMIC",
      read_total_pressure},
     {"height", "", "hydrostatic heights against GPS in climbs",
@@ -108,8 +112,8 @@ Pointer static_system_reference(ModelDefinition system) {
   return std::make_shared<StaticSystemReference>(std::move(system));
 }
 
-Pointer pressure_reference(std::string variable) {
-  return std::make_shared<PressureReference>(std::move(variable));
+Pointer pressure_reference(std::string variable, std::string of_model) {
+  return std::make_shared<PressureReference>(std::move(variable), std::move(of_model));
 }
 
 Pointer total_pressure_reference(ModelDefinition system) {

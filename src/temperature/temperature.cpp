@@ -120,8 +120,7 @@ class TemperatureCalibration {
     law_error_ = std::hypot(rms, usual_zero);
     const auto size = [&](HeightError error, const EffectInfo& effect) {
       const double usual = effect.parameters[0].typical;
-      const bool is_in_law = std::any_of(model_.model.effects.begin(), model_.model.effects.end(),
-                                         [&](const ModelEffect& each) { return each.id == effect.id; });
+      const bool is_in_law = has_effect(model_, effect.id);
       if (!(squares[error] > 0.0) || !(is_stated || model_.law.rms_hpa || is_in_law)) return usual;
       return std::min(usual, law_error_ / std::sqrt(squares[error] / count));
     };

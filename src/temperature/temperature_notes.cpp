@@ -16,6 +16,13 @@ namespace {
 constexpr double much_noise = 3.0;  // m, of the GPS height
 constexpr double much_drift = 1.0;  // m in a minute; a usual slope of isobars, 10 m in 100 km, makes 0.7
 
+/// Comparison of an error that heights detect with its stated size.
+const char* size_text(const LawError& error) {
+  if (is_beyond_prior(error)) return "but an undetected error of the same size may remain: ";
+  return std::abs(error.change) < error.size ? "and is within the stated error of the model; "
+                                             : "and is within three times the stated error of the model; ";
+}
+
 }  // namespace
 
 bool is_seen(const LawError& error) {
@@ -52,8 +59,7 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
         "{:.2f} hPa over the flights; it was removed before fitting the thermometer, {}refit the model "
         "first",
         error.parameter, error.effect, with_error(error.change, error.standard_error), error.range,
-        is_beyond_prior(error) ? "but an undetected error of the same size may remain: "
-                               : "and is within the stated error of the model; "));
+        size_text(error)));
   }
   if (std::abs(result.humidity_change) > significant_ratio * result.humidity_error) {
     warnings.push_back(

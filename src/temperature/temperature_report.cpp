@@ -176,8 +176,9 @@ Report temperature_report(const TemperatureResult& result) {
   const TemperatureCorrection& middle = result.corrections[result.corrections.size() / 2];
   report.title = fmt::format("Temperature correction {} K at {:.0f} °C{}",
                              with_error(middle.correction, middle.standard_error, "±"), middle.temperature,
-                             result.worse.empty() ? "" : ", not significant");
+                             result.worse.empty() ? "" : ", not recommended");
   report.subtitle = "Calibration by the GPS height for " + result.model.model.name;
+  if (!result.worse.empty()) report.summary.push_back("Not recommended: " + result.worse + ".");
   for (const std::string& warning : result.warnings) report.summary.push_back("Warning: " + warning + ".");
   for (const Note& note : result.notes)
     report.summary.push_back(fmt::format("{}: {}.", label_of(note), note.text));

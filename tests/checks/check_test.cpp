@@ -419,6 +419,18 @@ TEST_F(CheckTest, ReportStatesThatChecksWereNotRun) {
   EXPECT_THAT(report_html(check_report(check({fly(head + aloft, 1)}, first_model()))), HasSubstr("not run"));
 }
 
+// The difference includes the defect of the second pair, a few hPa.
+TEST_F(CheckTest, UncorrectedPairDoesNotTestTheStaticPressure) {
+  CheckOptions options;
+  options.second = second_model();
+  options.second->model.effects.clear();
+  options.second->fits.clear();
+  const CheckResult result = named(
+      check({fly(head + aloft + repeated(manoeuvres, 3), 1)}, first_model(), options), "static-pressure");
+  ASSERT_TRUE(result.ran) << result.reason;
+  EXPECT_NE(result.verdict, CheckVerdict::inconsistent);
+}
+
 // A real flight
 
 TEST_F(CheckTest, RunsOnARealFlight) {

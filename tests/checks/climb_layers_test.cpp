@@ -258,22 +258,6 @@ TEST(Layers, EndAtGapsMissingValuesAndHeightSteps) {
   EXPECT_THAT(layers_of(taxi), SizeIs(1));
 }
 
-TEST(Layers, InvalidOptionsAndMissingInputsAreRejected) {
-  const FlightAir air = made(climb(1000.0, 3000.0, 5.0));
-  LayerOptions options;
-  options.thickness = 0.0;
-  EXPECT_THAT(test::error_of([&] { find_layers(air, options); }), test::IsError(Error::Code::usage));
-  options = {};
-  options.static_bias = -0.1;
-  EXPECT_THAT(test::error_of([&] { find_layers(air, options); }), test::IsError(Error::Code::usage));
-  FlightAir without = air;
-  without.temperature.clear();
-  EXPECT_THAT(test::error_of([&] { find_layers(without); }), test::IsError(Error::Code::variable));
-  without = air;
-  without.geopotential_height.clear();
-  EXPECT_THAT(test::error_of([&] { find_layers(without); }), test::IsError(Error::Code::variable));
-}
-
 // Errors
 
 TEST(LayerErrors, EqualThoseOfTheMemo) {

@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <vector>
 
 #include <pcor/base/error.hpp>
 
 #include "support/error_of.hpp"
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace pcor {
 namespace {
@@ -45,6 +49,27 @@ TEST(Reference, UnknownTextIsRefusedWithTheValidForms) {
 TEST(Reference, LaserMissingFromTheModelIsRefused) {
   EXPECT_THAT(refusal("lams", without_laser()),
               test::IsError(Error::Code::model, "lams_airspeed", "static:OTHER.toml"));
+}
+
+TEST(Reference, PressureComputedFromThatOfTheModelGivesAWarning) {
+  const test::TemporaryDirectory folder;
+  {
+    test::NetcdfMaker maker(folder.path() / "flight.nc");
+    maker.time(test::sequence(0, 50));
+    for (const char* const name : {"PSFD", "PSFRD", "PS_A", "PSFDC", "PSXC"}) {
+      const int variable = maker.series(name, "hPa", std::vector<double>(50, 700.0));
+      if (std::string(name) == "PSFDC") maker.text(variable, "Dependencies", "2 PSFD RATIO");
+      if (std::string(name) == "PSXC") maker.text(variable, "Dependencies", "1 PSFDC");
+    }
+  }
+  const Flight flight(folder.path() / "flight.nc");
+  for (const auto& [variable, warnings] : std::map<std::string, std::size_t>{
+           {"PSXC", 1}, {"PSFDC", 1}, {"PSFD", 1}, {"PS_A", 0}, {"PSFRD", 0}}) {
+    Notes notes;
+    read_reference("pressure:" + variable, without_laser())->read(flight, {}, notes);
+    EXPECT_EQ(notes.size(), warnings) << variable;
+    for (const Note& note : notes) EXPECT_EQ(note.severity, Severity::warning);
+  }
 }
 
 TEST(Reference, ListsItsVariables) {

@@ -10,6 +10,7 @@ import json
 import os
 import re
 import resource
+import shlex
 import shutil
 import subprocess
 import sys
@@ -139,8 +140,40 @@ class Pasting(ChangedTest):
         for name in HOSTILE[:4]:
             shutil.copy(ONE, self.work / name)
             result = self.here("inspect", "--json", "-", "--", name)
-            for command in json.loads(result.stdout).get("next", []):
-                self.assertIn(self.paste(command).returncode, (0, 1), command)
+            commands = json.loads(result.stdout)["flights"][0]["next"]
+            self.assertEqual(len(commands), 3)
+            for command in commands:
+                pasted = self.paste(command)
+                self.assertEqual(pasted.returncode, 0, f"{command}\n{pasted.stderr}")
+
+    def test_advised_outputs_are_no_inputs(self):
+        biased = comparison_test.with_a0(0.03)(comparison_test.MODEL)
+        shutil.copy(ONE, self.work / "corrected.nc")
+        for model, text, arguments, advised in (
+                ("fitted.toml", biased, ("compare",), "refit"),
+                ("fitted.toml", comparison_test.MODEL, ("compare",), "process"),
+                ("best.toml", biased, ("diagnose",), "improve"),
+                ("improved.toml", comparison_test.MODEL, ("check",), "improve"),
+                ("calibrated.toml", biased, ("check",), "temperature"),
+                ("fitted.toml", comparison_test.MODEL, ("add", "static-mach", "-o", "more.toml", "--flight"), "refit")):
+            with self.subTest(model=model, arguments=arguments):
+                (self.work / model).write_text(text)
+                result = self.here(*arguments, "corrected.nc", "-m", model)
+                command = re.search(r": (pcor .*)$", result.stdout.rstrip().splitlines()[-1]).group(1)
+                self.assertEqual(shlex.split(command)[1], advised)
+                pasted = self.paste(command)
+                self.assertEqual(pasted.returncode, 0, f"{command}\n{pasted.stderr}")
+                self.assertEqual((self.work / model).read_text(), text)
+
+    def test_a_total_pressure_fits_no_static_defect(self):
+        def change(flight):
+            flight["QCFR"][:] = numpy.where(flight["QCFR"][:] > 0.0, flight["QCFR"][:] + 1.0, flight["QCFR"][:])
+        flight = self.changed(change)
+        (self.work / "model.toml").write_text(PUBLISHED.read_text())
+        (self.work / "zero.toml").write_text(PUBLISHED.read_text() + '\n[[effect]]\nid = "qcf-zero"\n')
+        for model, is_fitted in (("model.toml", False), ("zero.toml", True)):
+            result = self.here("compare", flight, "-m", model, "--reference", "total:PSFRD+QCFR")
+            self.assertEqual((result.returncode, "pcor refit" in result.stdout), (0, is_fitted), result.stderr)
 
     def test_commands_for_other_programs_quote_file_names(self):
         for name in HOSTILE:

@@ -197,6 +197,13 @@ class Diagnose(DiagnosisTest):
         self.assertRegex(command, r"pcor add .* && \S*pcor refit")
         self.assertTrue((self.path / "fitted.toml").exists())
 
+    def test_command_with_a_missing_effect_keeps_the_model(self):
+        for name in ("extended.toml", "fitted.toml"):
+            given = self.model(name=name)
+            before = given.read_bytes()
+            self.run_as_printed(self.done("diagnose", LAGGING, "-m", name, cwd=self.path).stdout)
+            self.assertEqual(given.read_bytes(), before)
+
     def test_a_shape_outside_the_model_format_is_reported(self):
         """Both total lines lag behind."""
         scenario = self.write("scenario.toml", with_effect('id = "total-lag"\ntau = 3.0\n')(SCENARIO))

@@ -118,6 +118,23 @@ class Simulated(CaseTest):
             self.assertIn("PSXC_NEW", corrected.variables)
         self.assertTrue((self.path / "corrected.html").exists())
 
+    def test_advised_command_for_a_corrected_flight_runs(self):
+        flight = self.write(self.CORRECTED, {"institution": "NCAR"})
+        (self.path / "two.toml").write_text(
+            BARE.format('[variables]\nstatic_pressure = "PSXC"\ndynamic_pressure = "QCXC"\n'))
+        by_height = ("--reference", "height")
+        for command, more in (("compare", by_height), ("diagnose", by_height), ("check", ()),
+                              ("improve", (*by_height, "-o", "best.toml", "--force"))):
+            with self.subTest(command):
+                text = self.run_tool(command, flight, "-m", "two.toml", "--time-stamp", "middle", *more).stdout
+                words = shlex.split(text.rstrip().splitlines()[-1].rpartition(": ")[2])
+                self.assertEqual(words[1], "process")
+                self.run_tool(*words[1:])
+                with netCDF4.Dataset(self.path / "corrected.nc") as corrected:
+                    self.assertIn("PSXC_NEW", corrected.variables)
+                    self.assertIn("--time-stamp middle", corrected.history)
+                (self.path / "corrected.nc").unlink()
+
     def test_a_model_with_pressures_only_gets_the_other_roles(self):
         flight = self.write(self.CORRECTED, {"institution": "NCAR"})
         (self.path / "two.toml").write_text(

@@ -106,7 +106,7 @@ void print(const ModelDefinition& model, const ModelDefinition& extended, const 
   say_written({options.output, options.common.json});
   say("To fit it: {} refit {} -m {} -o {}\n", program(),
       options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output),
-      fitted_file(options.output));
+      output_file("fitted.toml", {options.model, options.output}));
 }
 
 /// JSON result of the command.

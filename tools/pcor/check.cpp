@@ -55,6 +55,12 @@ std::string second_model(const CheckArguments& options) {
   return options.reference.substr(options.reference.find(':') + 1);
 }
 
+std::vector<std::filesystem::path> inputs_of(const CheckArguments& options) {
+  std::vector<std::filesystem::path> inputs = input_files(options.flights);
+  inputs.insert(inputs.end(), {options.model, second_model(options)});
+  return inputs;
+}
+
 ModelDefinition read_second(const CheckArguments& options) {
   const std::string& text = options.reference;
   return is_pair(text) ? *read_reference(text, {})->model() : read_model(second_model(options));
@@ -103,7 +109,8 @@ std::size_t count_of(const Checks& checks, CheckVerdict verdict) {
 
 /// Suggested next step: first for a fault that a refit cannot correct, then for the temperature, then for the
 /// model.
-std::string next_step(const Checks& checks, const CheckArguments& options, bool has_laser) {
+std::string next_step(const Checks& checks, const CheckArguments& options,
+                      const std::optional<ModelDefinition>& model) {
   const auto fails = [&](const std::string& name) {
     return std::any_of(checks.results.begin(), checks.results.end(), [&](const CheckResult& result) {
       return result.name == name && result.ran && result.verdict == CheckVerdict::inconsistent;
@@ -120,23 +127,23 @@ std::string next_step(const Checks& checks, const CheckArguments& options, bool 
   }
   const std::size_t inconsistent = count_of(checks, CheckVerdict::inconsistent);
   const std::size_t open = count_of(checks, CheckVerdict::inconclusive);
-  const bool has_model = !options.model.empty();
-  if (has_model && (fails("layers") || fails("lams-temperature"))) {
-    return fmt::format("To find the thermometer's error by the height: {} temperature {} -o calibrated.toml",
-                       program(), command_line(options));
+  const std::vector<std::filesystem::path> inputs = inputs_of(options);
+  if (model && (fails("layers") || fails("lams-temperature"))) {
+    return fmt::format("To find the thermometer's error by the height: {} temperature {} -o {}", program(),
+                       command_line(options), output_file("calibrated.toml", inputs));
   }
-  if (inconsistent > 0 && has_laser)
-    return fmt::format("To refit the model and find missing effects: {} improve {} -o improved.toml",
-                       program(), command_line(options));
-  if (inconsistent > 0 && has_model && !options.reference.empty()) {
-    return fmt::format(
-        "To refit the model and find missing effects: {} improve {} --reference {} -o improved.toml",
-        program(), command_line(options), shell_quote(options.reference));
+  const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
+  // A total pressure does not determine the static defect.
+  const bool has_second_system = options.reference.rfind(second_system, 0) == 0;
+  if (inconsistent > 0 && model && (has_laser || has_second_system)) {
+    return fmt::format("To refit the model and find missing effects: {} improve {}{} -o {}", program(),
+                       command_line(options), has_laser ? "" : second, output_file("improved.toml", inputs));
   }
-  if (inconsistent == 0 && has_model && count_of(checks, CheckVerdict::consistent) > 0) {
-    return fmt::format("No check contradicts the model{}. To apply it: {} process {} -m {} -o corrected.nc",
+  if (inconsistent == 0 && model && count_of(checks, CheckVerdict::consistent) > 0) {
+    return fmt::format("No check contradicts the model{}. To apply it: {}",
                        open > 0 ? fmt::format("; {} check{} inconclusive", open, open == 1 ? "" : "s") : "",
-                       program(), shell_path(options.flights.flights.front()), shell_path(options.model));
+                       process_command(options.flights.flights.front(), *model, options.model,
+                                       options.flights.timestamp_alignment));
   }
   return pictures;
 }
@@ -159,7 +166,7 @@ void print_details(const Checks& checks) {
   }
 }
 
-void print(const Checks& checks, const CheckArguments& options, bool has_laser) {
+void print(const Checks& checks, const CheckArguments& options, const std::optional<ModelDefinition>& model) {
   if (!checks.model.empty()) say("{}\n", checks.model);
   say("{:<18} {:<14} {}\n", "check", "verdict", "number");
   std::vector<std::string> not_run;
@@ -173,7 +180,7 @@ void print(const Checks& checks, const CheckArguments& options, bool has_laser) 
   if (is_verbose()) print_details(checks);
   say_notes(checks.notes);
   say_written({options.common.report, options.common.figures, options.table, options.common.json});
-  say("{}\n", next_step(checks, options, has_laser));
+  say("{}\n", next_step(checks, options, model));
 }
 
 /// Row for each check of each flight, which is checked separately.
@@ -207,12 +214,7 @@ std::vector<std::string> models_of(const CheckArguments& options) {
 }
 
 void run(const CheckArguments& options) {
-  std::vector<std::filesystem::path> inputs = input_files(options.flights);
-  inputs.insert(inputs.end(), {options.model, second_model(options)});
-  refuse_overwriting({options.common.json, options.common.report, options.common.figures, options.table},
-                     inputs);
-  for (const std::string& output : {options.common.report, options.table}) require_writable(output);
-  require_figures(options.common);
+  prepare_outputs(options.common, {options.table}, inputs_of(options));
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.flights).flights;
   std::optional<ModelDefinition> model;
@@ -229,17 +231,15 @@ void run(const CheckArguments& options) {
   std::optional<FlightTable> table;
   if (!options.table.empty()) table = flight_table(flights, model, check_options, checks);
   if (!is_speaker()) return;
-  const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
   OutputTransaction together;
   if (wants_report(options.common))
-    write_report_of_run(
-        check_report(checks),
-        {models_of(options), options.flights.flights, {}, next_step(checks, options, has_laser)},
-        options.common);
+    write_report_of_run(check_report(checks),
+                        {models_of(options), options.flights.flights, {}, next_step(checks, options, model)},
+                        options.common);
   if (table) table->write(options.table);
   json.write(checks);
   together.appear();
-  if (wants_text(options.common)) print(checks, options, has_laser);
+  if (wants_text(options.common)) print(checks, options, model);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <set>
 
 #include <pcor/base/error.hpp>
@@ -140,15 +139,7 @@ void JsonResult::write_text(const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stdout);
     return;
   }
-  std::ofstream stream(file_->path(), std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) {
-    throw Error(
-        Error::Code::output,
-        fmt::format("{}: cannot write the JSON result; check the space and the permissions", destination_));
-  }
-  file_->commit();
+  file_->write(text);
 }
 
 void require_writable(const fs::path& output) {
@@ -180,6 +171,15 @@ void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<
                               outputs[i].string()));
     remember_existing(outputs[i]);
   }
+}
+
+void prepare_outputs(const CommonOptions& common, std::vector<fs::path> outputs,
+                     const std::vector<fs::path>& inputs) {
+  outputs.insert(outputs.end(), {common.json, common.report, common.figures});
+  refuse_overwriting(outputs, inputs);
+  outputs.pop_back();
+  for (const fs::path& output : outputs) require_writable(output);
+  require_figures(common);
 }
 
 }  // namespace pcor::tool

@@ -110,6 +110,11 @@ class JsonResult {
 void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
                         const std::vector<std::filesystem::path>& inputs);
 
+/// Checks the outputs of a sub-command with a report before its work: `refuse_overwriting` and
+/// `require_writable` for `outputs` and the common ones, and the browser of the figures. @throws Error
+void prepare_outputs(const CommonOptions& common, std::vector<std::filesystem::path> outputs,
+                     const std::vector<std::filesystem::path>& inputs);
+
 /// Checks before the work that the first rank can write the file. Empty names and `-` are ignored.
 /// @throws Error if it cannot.
 void require_writable(const std::filesystem::path& output);

@@ -11,6 +11,7 @@
 
 #include <pcor/base/utc.hpp>
 #include <pcor/compare/comparison_report.hpp>
+#include <pcor/effects/catalogue.hpp>
 #include <pcor/fit/refit.hpp>
 #include "communicator.hpp"
 #include "comparison.hpp"
@@ -29,6 +30,12 @@ struct CompareArguments {
   std::string residuals;
   std::string table;
 };
+
+std::vector<std::filesystem::path> inputs_of(const CompareArguments& options) {
+  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
+  inputs.insert(inputs.end(), options.models.begin(), options.models.end());
+  return inputs;
+}
 
 void print_row(const std::string& name, const Statistics& s) {
   const auto known = [](double value, int digits) {
@@ -148,6 +155,20 @@ void print_in_full(const Comparison& comparison, const ChosenReferences& referen
   for (const Comparison& further : comparison.further) print_further(further, options.models.size() > 1);
 }
 
+/// Whether an effect of the model changes a reference: effects at the static ports and in the static line
+/// cancel in total pressures.
+bool can_be_refitted(const ComparedModel& compared) {
+  const auto sees_static_defect = [](const auto& reference) { return reference->sees_static_defect(); };
+  const auto changes_total_pressure = [](const ModelEffect& effect) {
+    if (effect.is_surface()) return false;
+    const EffectLocation location = effect.is_formula() ? effect.location : effect_named(effect.id)->location;
+    return location != EffectLocation::static_defect && location != EffectLocation::static_line;
+  };
+  const std::vector<ModelEffect>& effects = compared.model.model.effects;
+  return std::any_of(compared.references.begin(), compared.references.end(), sees_static_defect) ||
+         std::any_of(effects.begin(), effects.end(), changes_total_pressure);
+}
+
 /// Next step: the model with the smallest rms is applied or refitted.
 std::string next_step(const Comparison& comparison, const std::vector<ComparedModel>& models,
                       const CompareArguments& options) {
@@ -161,17 +182,23 @@ std::string next_step(const Comparison& comparison, const std::vector<ComparedMo
       comparison.models.size() > 1 ? fmt::format("{} has the smallest rms. ", best->name) : "";
   const std::string flights = advised_command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
-    return fmt::format(
-        "{}The residual of {} is close to the noise. To apply it: {} process {} -m {} -o corrected.nc", which,
-        best->name, program(), shell_path(options.comparison.flights.front()), shell_path(model));
+    return fmt::format("{}The residual of {} is close to the noise. To apply it: {}", which, best->name,
+                       process_command(options.comparison.flights.front(), compared->model, model,
+                                       options.comparison.timestamp_alignment));
   }
-  const std::string refit =
-      fmt::format("{} refit {} -m {} -o {}", program(), flights, shell_path(model), fitted_file(model));
+  if (!can_be_refitted(*compared)) {
+    return fmt::format(
+        "{}Static defects cancel in the total pressure, so a refit to it cannot determine {}; compare it "
+        "with a static pressure, for example --reference static:OTHER.toml",
+        which, best->name);
+  }
+  const std::vector<std::filesystem::path> inputs = inputs_of(options);
+  const std::string refit = fmt::format("{} refit {} -m {} -o {}", program(), flights, shell_path(model),
+                                        output_file("fitted.toml", inputs));
   if (is_verbose() && comparison.total_pressure && comparison.is_static_pressure) {
     return fmt::format(
-        "{0}To refit its coefficients: {1}\nTo refit both systems together: {1} --refit-reference "
-        "fitted-reference.toml",
-        which, refit);
+        "{0}To refit its coefficients: {1}\nTo refit both systems together: {1} --refit-reference {2}", which,
+        refit, output_file("fitted-reference.toml", inputs));
   }
   return fmt::format("{}To refit its coefficients: {}", which, refit);
 }
@@ -279,18 +306,12 @@ std::string history_of(const CompareArguments& options) {
 }
 
 void run(const CompareArguments& options) {
-  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
-  inputs.insert(inputs.end(), options.models.begin(), options.models.end());
-  std::vector<std::filesystem::path> outputs{options.common.json, options.common.report, options.table};
+  std::vector<std::filesystem::path> outputs{options.table};
   if (!options.residuals.empty()) {
     for (std::size_t i = 0; i < options.comparison.flights.size(); ++i)
       outputs.push_back(residual_file(options, i));
   }
-  outputs.emplace_back(options.common.figures);
-  refuse_overwriting(outputs, inputs);
-  outputs.pop_back();
-  for (const std::filesystem::path& output : outputs) require_writable(output);
-  require_figures(options.common);
+  prepare_outputs(options.common, std::move(outputs), inputs_of(options));
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
   std::vector<ComparedModel> models;

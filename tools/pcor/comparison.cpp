@@ -1,6 +1,7 @@
 #include "comparison.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,6 +14,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
 #include <pcor/flight/readable_flights.hpp>
+#include <pcor/model/formula.hpp>
 #include "choices.hpp"
 #include "communicator.hpp"
 #include "processes.hpp"
@@ -72,11 +74,7 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
                   "exclude samples with flaps above N percent (default 5; no limit if an effect of the model "
                   "uses the flaps)")
       ->check(is_amount());
-  command
-      .add_option("--time-stamp", options.timestamp_alignment,
-                  "position of the time of a record in its averaging interval")
-      ->check(CLI::IsMember({"begin", "middle"}))
-      ->capture_default_str();
+  add_time_stamp_option(command, options.timestamp_alignment);
   command.add_flag("--skip-unreadable", options.skip_unreadable,
                    "skip files that are damaged or not flights, with a warning");
   add_processes_option(command);
@@ -84,6 +82,17 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
     options.references = in_order(options.references);
     if (options.skip_unreadable) leave_out_unreadable(options.flights);
   });
+}
+
+void add_time_stamp_option(CLI::App& command, TimestampAlignment& alignment) {
+  const auto set = [&alignment](const std::string& name) {
+    alignment = name == "middle" ? TimestampAlignment::middle : TimestampAlignment::begin;
+  };
+  command
+      .add_option_function<std::string>("--time-stamp", set,
+                                        "position of the time of a record in its averaging interval")
+      ->check(CLI::IsMember({"begin", "middle"}))
+      ->default_str("begin");
 }
 
 Regime regime_of(const std::string& name, const std::string& option) {
@@ -110,9 +119,7 @@ CommandFlights::CommandFlights(const ComparisonOptions& options, const std::vect
                                std::size_t memory) {
   std::vector<std::filesystem::path> paths = flight_paths(options);
   paths.insert(paths.end(), held_out.begin(), held_out.end());
-  const TimestampAlignment timestamp_alignment =
-      options.timestamp_alignment == "middle" ? TimestampAlignment::middle : TimestampAlignment::begin;
-  const FlightSet all(paths, {timestamp_alignment, &comm(), memory});
+  const FlightSet all(paths, {options.timestamp_alignment, &comm(), memory});
   flights = all.part(0, options.flights.size());
   holdout = all.part(options.flights.size(), held_out.size());
 }
@@ -131,7 +138,7 @@ std::string with_options(std::string line, const ComparisonOptions& options) {
   if (options.min_airspeed != MaskOptions{}.min_airspeed)
     line += fmt::format("--min-airspeed {} ", options.min_airspeed);
   if (options.max_flaps) line += fmt::format("--max-flaps {} ", *options.max_flaps);
-  if (options.timestamp_alignment != "begin") line += "--time-stamp " + options.timestamp_alignment + " ";
+  if (options.timestamp_alignment == TimestampAlignment::middle) line += "--time-stamp middle ";
   line.pop_back();
   return line;
 }
@@ -156,8 +163,45 @@ std::string command_line(const ComparisonOptions& options) {
   return with_options(std::move(flights), options);
 }
 
-std::string fitted_file(const std::string& model) {
-  return std::filesystem::path(model).filename() == "fitted.toml" ? "refitted.toml" : "fitted.toml";
+std::string output_file(const std::string& name, const std::vector<std::filesystem::path>& inputs) {
+  const std::filesystem::path first(name);
+  std::string output = name;
+  const auto is_output = [&output](const std::filesystem::path& input) { return input.filename() == output; };
+  for (int number = 2; std::any_of(inputs.begin(), inputs.end(), is_output); ++number)
+    output = fmt::format("{}{}{}", first.stem().string(), number, first.extension().string());
+  return output;
+}
+
+namespace {
+
+/// Variables that a model reads, and names in its formulas.
+std::vector<std::string> names_read_by(const ModelDefinition& model) {
+  std::vector<std::string> names;
+  for (const auto& [role, variable] : model.variables) names.push_back(variable);
+  for (const ModelEffect& effect : model.model.effects) {
+    if (!effect.is_formula()) continue;
+    const auto formula = Formula::parse(effect.formula, effect.parameter_names);
+    if (formula) names.insert(names.end(), formula->variables().begin(), formula->variables().end());
+  }
+  return names;
+}
+
+/// Whether a result of `process` has the name of a variable that the model reads.
+bool reads_results(const ModelDefinition& model) {
+  constexpr std::array<const char*, 6> results{"PCOR", "PSXC", "QCXC", "MACHX", "ATX", "TASX"};
+  const std::vector<std::string> names = names_read_by(model);
+  return std::any_of(results.begin(), results.end(), [&](const char* result) {
+    return std::find(names.begin(), names.end(), model.output_name(result)) != names.end();
+  });
+}
+
+}  // namespace
+
+std::string process_command(const std::string& flight, const ModelDefinition& model, const std::string& path,
+                            TimestampAlignment alignment) {
+  return fmt::format("{} process {} -m {}{}{} -o {}", program(), shell_path(flight), shell_path(path),
+                     alignment == TimestampAlignment::middle ? " --time-stamp middle" : "",
+                     reads_results(model) ? " --suffix _NEW" : "", output_file("corrected.nc", {flight}));
 }
 
 std::string advised_command_line(const ComparisonOptions& options) {

@@ -20,7 +20,7 @@ struct ComparisonOptions {
   std::string intervals{};
   double min_airspeed = MaskOptions{}.min_airspeed;
   std::optional<double> max_flaps{};
-  std::string timestamp_alignment = "begin";
+  TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
   bool skip_unreadable = false;  ///< flights that cannot be opened are removed from `flights`
 };
 
@@ -28,6 +28,9 @@ struct ComparisonOptions {
 CLI::Validator is_amount();
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options);
+
+/// Adds the option --time-stamp.
+void add_time_stamp_option(CLI::App& command, TimestampAlignment& alignment);
 
 /// Adds the options of `add_comparison_options` without the reference: flights, and selection of samples.
 void add_flight_options(CLI::App& command, ComparisonOptions& options);
@@ -60,8 +63,13 @@ std::string command_line(const ComparisonOptions& options);
 /// last.
 std::string advised_command_line(const ComparisonOptions& options);
 
-/// File of a fitted model in advice: fitted.toml, but no file that the fit reads.
-std::string fitted_file(const std::string& model);
+/// Output file in advice: `name`, with a number before its extension if an input has that name: "best2.toml".
+std::string output_file(const std::string& name, const std::vector<std::filesystem::path>& inputs);
+
+/// Advised command that corrects a flight by the model in the file `path`. It has a suffix if the command
+/// would otherwise give a result the name of an input.
+std::string process_command(const std::string& flight, const ModelDefinition& model, const std::string& path,
+                            TimestampAlignment alignment);
 
 std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options);
 

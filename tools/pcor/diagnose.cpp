@@ -33,6 +33,13 @@ struct DiagnoseArguments {
   bool full = false;
 };
 
+std::vector<std::filesystem::path> inputs_of(const DiagnoseArguments& options) {
+  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
+  inputs.emplace_back(options.model);
+  inputs.emplace_back(options.candidates.file);
+  return inputs;
+}
+
 /// The first five items, and the number of the others.
 std::string shortened_list(std::vector<std::string> items) {
   constexpr std::size_t max_items = 5;
@@ -130,16 +137,20 @@ void print_others(const Diagnosis& diagnosis, bool all) {
 
 /// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
 /// for findings that one command cannot add.
-std::string next_command(const Diagnosis& diagnosis, const DiagnoseArguments& options) {
+std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diagnosed,
+                         const DiagnoseArguments& options) {
   const std::string flights = advised_command_line(options.comparison) + command_line(options.fit);
   const std::string model = shell_path(options.model);
   if (diagnosis.verdict == Verdict::silent) {
-    return fmt::format("To apply the model: {} process {} -m {} -o corrected.nc", program(),
-                       shell_path(options.comparison.flights.front()), model);
+    return "To apply the model: " + process_command(options.comparison.flights.front(), diagnosed,
+                                                    options.model, options.comparison.timestamp_alignment);
   }
-  const std::string and_fit = fmt::format(
-      " -m {} --flight {} -o extended.toml && {} refit {} -m extended.toml -o {}", model,
-      shell_path(options.comparison.flights.front()), program(), flights, fitted_file(options.model));
+  const std::vector<std::filesystem::path> inputs = inputs_of(options);
+  const std::string best = output_file("best.toml", inputs);
+  const std::string and_fit =
+      fmt::format(" -m {0} --flight {1} -o {2} && {3} refit {4} -m {2} -o {5}", model,
+                  shell_path(options.comparison.flights.front()), output_file("extended.toml", inputs),
+                  program(), flights, output_file("fitted.toml", inputs));
   const auto add_formula = [&and_fit](const std::string& id, const std::string& formula,
                                       const std::string& location) {
     return fmt::format("{} add {} {} --where {}{}", program(), shell_quote(id),
@@ -175,14 +186,14 @@ std::string next_command(const Diagnosis& diagnosis, const DiagnoseArguments& op
            add_formula(effect.id, effect.formula, std::string(info_of(effect.location).name));
   }
   if (!findings.empty()) {
-    return fmt::format("To add helpful effects one after another: {} improve {} -m {}{} -o best.toml",
-                       program(), flights, model, command_line(options.candidates));
+    return fmt::format("To add helpful effects one after another: {} improve {} -m {}{} -o {}", program(),
+                       flights, model, command_line(options.candidates), best);
   }
   for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty()) continue;
     return fmt::format(
-        "To test a formula of {} on data outside the fit: {} improve {} -m {} --trace-variables -o best.toml",
-        variable.name, program(), flights, model);
+        "To test a formula of {} on data outside the fit: {} improve {} -m {} --trace-variables -o {}",
+        variable.name, program(), flights, model, best);
   }
   return fmt::format("To see where the residual is largest: {} compare {} -m {}", program(),
                      advised_command_line(options.comparison), model);
@@ -201,7 +212,8 @@ void print_in_full(const Diagnosis& diagnosis, const ChosenReferences& reference
   print_others(diagnosis, options.full);
 }
 
-void print(const Diagnosis& diagnosis, const ChosenReferences& references, const DiagnoseArguments& options) {
+void print(const Diagnosis& diagnosis, const ModelDefinition& model, const ChosenReferences& references,
+           const DiagnoseArguments& options) {
   say("{}.\n", verdict_text(diagnosis));
   if (is_verbose() || options.full) {
     print_in_full(diagnosis, references, options);
@@ -211,16 +223,11 @@ void print(const Diagnosis& diagnosis, const ChosenReferences& references, const
   }
   say_notes(diagnosis.notes);
   say_written({options.common.report, options.common.figures, options.common.json});
-  say("{}\n", next_command(diagnosis, options));
+  say("{}\n", next_command(diagnosis, model, options));
 }
 
 void run(const DiagnoseArguments& options) {
-  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
-  inputs.emplace_back(options.model);
-  inputs.emplace_back(options.candidates.file);
-  refuse_overwriting({options.common.json, options.common.report, options.common.figures}, inputs);
-  require_writable(options.common.report);
-  require_figures(options.common);
+  prepare_outputs(options.common, {}, inputs_of(options));
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
   const ModelDefinition model =
@@ -251,12 +258,13 @@ void run(const DiagnoseArguments& options) {
   if (!is_speaker()) return;
   OutputTransaction together;
   if (wants_report(options.common))
-    write_report_of_run(diagnosis_report(diagnosis, model, &tried),
-                        {{options.model}, options.comparison.flights, {}, next_command(diagnosis, options)},
-                        options.common);
+    write_report_of_run(
+        diagnosis_report(diagnosis, model, &tried),
+        {{options.model}, options.comparison.flights, {}, next_command(diagnosis, model, options)},
+        options.common);
   json.write(diagnosis);
   together.appear();
-  if (wants_text(options.common)) print(diagnosis, references, options);
+  if (wants_text(options.common)) print(diagnosis, model, references, options);
 }
 
 }  // namespace

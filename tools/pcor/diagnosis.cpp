@@ -82,8 +82,7 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
   std::vector<ModelEffect> candidates;
   const auto is_new = [&](const std::string& id) {
     const auto same = [&id](const ModelEffect& effect) { return effect.id == id; };
-    return std::none_of(model.model.effects.begin(), model.model.effects.end(), same) &&
-           std::none_of(candidates.begin(), candidates.end(), same);
+    return !has_effect(model, id) && std::none_of(candidates.begin(), candidates.end(), same);
   };
   if (!options.file.empty()) {
     for (const ModelEffect& effect : read_model(options.file).model.effects) {

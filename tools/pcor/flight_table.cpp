@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/base/error.hpp>
@@ -26,17 +25,12 @@ std::string escaped(const std::string& cell) {
 }  // namespace
 
 void FlightTable::write(const std::string& path) const {
-  AtomicFile file(path);
-  std::ofstream stream(file.path(), std::ios::binary);
+  std::string text;
   for (const std::vector<std::string>& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) stream << (i == 0 ? "" : ",") << escaped(row[i]);
-    stream << "\r\n";
+    for (std::size_t i = 0; i < row.size(); ++i) text += (i == 0 ? "" : ",") + escaped(row[i]);
+    text += "\r\n";
   }
-  stream.close();
-  if (!stream)
-    throw Error(Error::Code::output,
-                fmt::format("{}: cannot write the table; check the space and the permissions", path));
-  file.commit();
+  AtomicFile(path).write(text);
 }
 
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }

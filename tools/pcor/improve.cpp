@@ -34,9 +34,9 @@ struct ImproveArguments {
   bool force = false;
 };
 
-std::string next_step(const ImproveArguments& options) {
-  return fmt::format("To apply it: {} process {} -m {} -o corrected.nc", program(),
-                     shell_path(options.comparison.flights.front()), shell_path(options.output));
+std::string next_step(const Improvement& improvement, const ImproveArguments& options) {
+  return "To apply it: " + process_command(options.comparison.flights.front(), improvement.model,
+                                           options.output, options.comparison.timestamp_alignment);
 }
 
 void print(const Improvement& improvement, const ChosenReferences& references,
@@ -85,7 +85,7 @@ void print(const Improvement& improvement, const ChosenReferences& references,
   if (is_verbose()) print_unexplained(improvement.steps.back().diagnosis.unexplained);
   say_notes(improvement.fit.notes);
   say_written({options.output, options.common.report, options.common.figures, options.common.json});
-  say("{}\n", next_step(options));
+  say("{}\n", next_step(improvement, options));
 }
 
 ImproveOptions improve_options(const ImproveArguments& options, const ModelDefinition& model,
@@ -106,10 +106,7 @@ void run(const ImproveArguments& options) {
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);
   inputs.insert(inputs.end(), options.fit.holdout.begin(), options.fit.holdout.end());
-  refuse_overwriting({options.output, options.common.json, options.common.report, options.common.figures},
-                     inputs);
-  for (const std::string& output : {options.output, options.common.report}) require_writable(output);
-  require_figures(options.common);
+  prepare_outputs(options.common, {options.output}, inputs);
   JsonResult json(options.common);
   const CommandFlights of(options.comparison, options.fit.holdout);
   const ModelDefinition model =
@@ -138,7 +135,7 @@ void run(const ImproveArguments& options) {
                         {{options.model, options.output},
                          options.comparison.flights,
                          options.fit.holdout,
-                         next_step(options)},
+                         next_step(improvement, options)},
                         options.common);
   improvement.output = options.output;
   json.write(improvement);

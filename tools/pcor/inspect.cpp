@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,6 +16,7 @@
 #include <pcor/base/utc.hpp>
 #include <pcor/inspect/inspection_report.hpp>
 #include "command.hpp"
+#include "comparison.hpp"
 #include "model_name.hpp"
 #include "report_origin.hpp"
 
@@ -28,7 +28,7 @@ struct InspectArguments {
   std::vector<std::string> flights;
   std::string model;
   std::string roles;
-  std::string timestamp_alignment = "begin";
+  TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
 };
 
 /// Command of this program for the flight.
@@ -36,11 +36,15 @@ std::string command(const std::string& name, const Inspection& flight, const std
   return fmt::format("{} {} {}{}", program(), name, shell_path(flight.path), options);
 }
 
-/// Reference for a published law: the laser, otherwise a second static system that has a published law,
-/// otherwise the last of the flight's references; empty if the flight has no reference.
+/// Reference for a published law: the laser if the law names it, otherwise a second static system that has a
+/// published law, otherwise the last of the flight's references; empty if the flight has no reference.
 std::string reference_for(const Inspection& flight, const ModelCandidate& law) {
-  const std::vector<std::string>& references = flight.references;
-  if (std::find(references.begin(), references.end(), "lams") != references.end()) return "lams";
+  std::vector<std::string> references = flight.references;
+  const auto laser = std::find(references.begin(), references.end(), "lams");
+  if (laser != references.end()) {
+    if (law.model.variables.count(Quantity::lams_airspeed) > 0) return "lams";
+    references.erase(laser);
+  }
   const auto pressure_of = [](const ModelCandidate& each) {
     return each.model.variables.at(Quantity::static_pressure);
   };
@@ -54,28 +58,33 @@ std::string reference_for(const Inspection& flight, const ModelCandidate& law) {
 /// Up to three commands to paste, in order, that test a model and produce a corrected flight with a report.
 std::vector<std::string> next_commands(const InspectArguments& options, const Inspection& flight) {
   const std::string stamp =
-      options.timestamp_alignment == "begin" ? "" : " --time-stamp " + options.timestamp_alignment;
-  const std::string output = " -o corrected.nc --report corrected.html";
-  const std::string corrected = stamp + (flight.has_results ? " --suffix _NEW" : "") + output;
+      options.timestamp_alignment == TimestampAlignment::begin ? "" : " --time-stamp middle";
+  const auto process = [&](const ModelDefinition& model, const std::string& path) {
+    return process_command(flight.path, model, path, options.timestamp_alignment) +
+           " --report corrected.html";
+  };
   std::string reference;
   for (const std::string& each : flight.references) reference += " --reference " + shell_quote(each);
   if (!flight.model) return {};
   const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
                                  [](const ModelCandidate& law) { return law.fits(); });
   if (options.model.empty() && fits != flight.laws.end()) {
-    const std::string law = " -m " + shell_quote(fits->path.stem().string());
+    const std::string name = fits->path.stem().string();
+    const std::string law = " -m " + shell_path(name);
     const std::string best = reference_for(flight, *fits);
     const std::string against = best.empty() ? "" : " --reference " + shell_quote(best);
+    const bool is_system = best.rfind("static:", 0) == 0;
     std::vector<std::string> commands{
-        command("check", flight, law + stamp + against + " --report check.html"),
-        command("process", flight, law + stamp + output)};
+        command("check", flight, law + stamp + (is_system ? against : "") + " --report check.html"),
+        process(fits->model, name)};
     if (!best.empty())
       commands.insert(commands.begin(),
                       command("compare", flight, law + stamp + against + " --report compare.html"));
     return commands;
   }
   std::vector<std::string> commands;
-  const std::string model = " -m " + shell_path(options.model.empty() ? "model.toml" : options.model);
+  const std::string file = options.model.empty() ? "model.toml" : options.model;
+  const std::string model = " -m " + shell_path(file);
   if (options.model.empty()) {
     const std::string roles = options.roles.empty() ? "" : " --roles " + shell_quote(options.roles);
     commands.push_back(command("inspect", flight, roles + stamp + " --write-model model.toml"));
@@ -88,11 +97,12 @@ std::vector<std::string> next_commands(const InspectArguments& options, const In
                            : command("compare", flight,
                                      fmt::format("{}{} --reference {} --report compare.html", model, stamp,
                                                  shell_quote(flight.references.back()))));
-    commands.push_back(command("process", flight, model + corrected));
+    commands.push_back(process(*flight.model, file));
   } else {
+    const std::string fitted = output_file("fitted.toml", {file});
     commands.push_back(
-        command("refit", flight, model + stamp + reference + " -o fitted.toml --report refit.html"));
-    commands.push_back(command("process", flight, " -m fitted.toml" + corrected));
+        command("refit", flight, model + stamp + reference + " -o " + fitted + " --report refit.html"));
+    commands.push_back(process(*flight.model, fitted));
   }
   return commands;
 }
@@ -296,13 +306,11 @@ bool is_readable(const Inspection& flight) { return flight.unreadable.empty(); }
 /// others.
 std::vector<Inspection> look(const InspectArguments& options, bool text) {
   const std::vector<std::filesystem::path> laws = named_models();
-  const TimestampAlignment timestamp_alignment =
-      options.timestamp_alignment == "middle" ? TimestampAlignment::middle : TimestampAlignment::begin;
   std::vector<Inspection> all;
   for (const std::string& flight : options.flights) {
     if (text && !all.empty()) say("\n");
     try {
-      all.push_back(inspect_flight(flight, laws, timestamp_alignment, options.roles));
+      all.push_back(inspect_flight(flight, laws, options.timestamp_alignment, options.roles));
     } catch (const Error& error) {
       if (options.flights.size() == 1 || error.code() == Error::Code::model) throw;
       all.push_back({flight});
@@ -348,21 +356,12 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
     fmt::print("{}", text);
     return;
   }
-  AtomicFile file{std::filesystem::path(output)};
-  std::ofstream stream(file.path(), std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream)
-    throw Error(Error::Code::output, output + ": cannot be written; check the space and the permissions");
-  file.commit();
+  AtomicFile(output).write(text);
 }
 
 void run(const InspectArguments& options) {
   std::vector<std::filesystem::path> inputs(options.flights.begin(), options.flights.end());
-  refuse_overwriting({options.model, options.common.json, options.common.report, options.common.figures},
-                     inputs);
-  for (const std::string& output : {options.model, options.common.report}) require_writable(output);
-  require_figures(options.common);
+  prepare_outputs(options.common, {options.model}, inputs);
   JsonResult json(options.common);
   const bool text = wants_text(options.common, {options.model});
   const Inspections result{look(options, text)};
@@ -408,11 +407,7 @@ std::function<void()> add_inspect(CLI::App& program) {
       ->add_option("--roles", options->roles,
                    "naming convention to use: a name from data/aircraft or a .toml file (default: detected)")
       ->type_name("NAME");
-  command
-      ->add_option("--time-stamp", options->timestamp_alignment,
-                   "position of the time of a record in its averaging interval")
-      ->check(CLI::IsMember({"begin", "middle"}))
-      ->capture_default_str();
+  add_time_stamp_option(*command, options->timestamp_alignment);
   add_common_options<Inspections>(*command, options->common);
   add_examples(*command,
                {"inspect first.nc --report inspect.html", "inspect first.nc --write-model mine.toml"});

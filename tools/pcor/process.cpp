@@ -36,7 +36,7 @@ struct ProcessArguments {
   std::string models;  ///< folder of models, one of which is selected for each flight
   std::string output;
   std::string correct_with = "model";
-  std::string timestamp_alignment = "begin";
+  TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
   std::string uncertainty;
   std::string suffix;
   bool copy_all = false;
@@ -53,7 +53,7 @@ std::string command_line(const ProcessTask& task, const ProcessArguments& option
                   options.models.empty() ? "-m" : "--models", shell_path(options.model + options.models),
                   shell_path(task.output.string()));
   if (options.correct_with != "model") line += " --correct-with " + options.correct_with;
-  if (options.timestamp_alignment != "begin") line += " --time-stamp " + options.timestamp_alignment;
+  if (options.timestamp_alignment == TimestampAlignment::middle) line += " --time-stamp middle";
   if (!options.uncertainty.empty()) line += " --uncertainty " + options.uncertainty;
   if (!options.suffix.empty()) line += " " + shell_option("--suffix", options.suffix);
   if (options.copy_all) line += " --all";
@@ -261,8 +261,7 @@ class OutputFolder {
 ProcessOptions process_options(const ProcessArguments& options) {
   ProcessOptions process;
   process.correct_with = options.correct_with == "lams" ? CorrectWith::lams : CorrectWith::model;
-  process.timestamp_alignment =
-      options.timestamp_alignment == "middle" ? TimestampAlignment::middle : TimestampAlignment::begin;
+  process.timestamp_alignment = options.timestamp_alignment;
   process.copy_all = options.copy_all;
   process.hydrostatic = options.hydrostatic;
   process.keep_frozen = options.keep_frozen;
@@ -393,11 +392,7 @@ std::function<void()> add_process(CLI::App& program) {
                    "(LAMS) where it is valid")
       ->check(CLI::IsMember({"model", "lams"}))
       ->capture_default_str();
-  command
-      ->add_option("--time-stamp", options->timestamp_alignment,
-                   "position of the time of a record in its averaging interval")
-      ->check(CLI::IsMember({"begin", "middle"}))
-      ->capture_default_str();
+  add_time_stamp_option(*command, options->timestamp_alignment);
   command
       ->add_option("--uncertainty", options->uncertainty,
                    "write the standard uncertainties of results: total, only the systematic or only the "

@@ -309,13 +309,7 @@ void run(const RefitArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.insert(inputs.end(), options.fit.holdout.begin(), options.fit.holdout.end());
-  refuse_overwriting({options.output, options.reference_output, options.common.json, options.common.report,
-                      options.common.figures, options.table},
-                     inputs);
-  for (const std::string& output :
-       {options.output, options.reference_output, options.common.report, options.table})
-    require_writable(output);
-  require_figures(options.common);
+  prepare_outputs(options.common, {options.output, options.reference_output, options.table}, inputs);
   JsonResult json(options.common);
   const CommandFlights of(options.comparison, options.fit.holdout,
                           static_cast<std::size_t>(options.memory_mib * 1048576.0));

@@ -160,24 +160,21 @@ const std::string& first_used(const TemperatureResult& result, const Temperature
 
 std::string next_step(const TemperatureResult& result, const TemperatureArguments& options) {
   if (!result.worse.empty())
-    return "The correction is not yet significant; add flights that climb and descend by 3 km and more, "
-           "there and back along the same track";
-  return fmt::format("To apply it: {} process {} -m {} -o corrected.nc", program(),
-                     shell_path(first_used(result, options)), shell_path(options.output));
+    return "Flights that climb and descend by 3 km and more, there and back along the same track, determine "
+           "the correction better";
+  return "To apply it: " + process_command(first_used(result, options), result.model, options.output,
+                                           options.comparison.timestamp_alignment);
 }
 
 void run(const TemperatureArguments& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
-  refuse_overwriting({options.output, options.common.json, options.common.report, options.common.figures},
-                     inputs);
-  for (const std::string& output : {options.output, options.common.report}) require_writable(output);
+  prepare_outputs(options.common, {options.output}, inputs);
   if (options.iterate && options.archived)
     throw Error(Error::Code::usage,
                 "--iterate refits the pressures and requires flights as recorded; remove --archived");
   if (!options.iterate && !options.comparison.references.empty())
     throw Error(Error::Code::usage, "--reference gives the references of --iterate; give both or neither");
-  require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
   const ModelDefinition model = read_model_for(options.model, flights, options.common);
@@ -220,6 +217,7 @@ void run(const TemperatureArguments& options) {
   if (is_refused) refuse_worse(result.worse, options.force, result.model);
   if (!with_text) return;
   say_written({options.output});
+  if (!result.worse.empty()) say("Not recommended: {}.\n", result.worse);
   say("{}\n", next_step(result, options));
 }
 

@@ -120,7 +120,6 @@ struct Inspection {
   /// empty.
   std::vector<std::string> references{};
   std::string why_no_model{};          ///< reason why the flight has no model; empty if it has one
-  bool has_results = false;            ///< true: its inputs have names used for results of `process`
   bool is_corrected = false;           ///< true: the pressures of the model are already corrected
   std::string corrected_pressure{};    ///< static pressure corrected in the flight file; may be empty
   std::vector<FrozenSpan> frozen{};    ///< sensors with constant readings for longer than their noise permits

@@ -87,7 +87,9 @@ std::shared_ptr<const Reference> lams_reference();
 std::shared_ptr<const Reference> static_system_reference(ModelDefinition system);
 
 /// Variable that is a static pressure: from the avionics, or already corrected.
-std::shared_ptr<const Reference> pressure_reference(std::string variable);
+/// @param of_model variable of the model's static pressure; the flight gets a warning if the reference is
+/// computed from it
+std::shared_ptr<const Reference> pressure_reference(std::string variable, std::string of_model = "");
 
 /// Total pressure of another pair of the aircraft, corrected by its model: the residual is (p + q) of the
 /// pair minus (p + q) of the model, hPa. Static defects cancel; errors of transducers, pitot tubes and total

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -50,13 +51,15 @@ class PressureOnSamples final : public ReferenceOnSamples {
 
 class PressureReference final : public Reference {
  public:
-  explicit PressureReference(std::string variable) : variable_(std::move(variable)) {}
+  /// @param of_model variable of the model's static pressure; may be empty
+  PressureReference(std::string variable, std::string of_model)
+      : variable_(std::move(variable)), of_model_(std::move(of_model)) {}
 
   std::string description() const override { return fmt::format("static pressure {}", variable_); }
   std::string name() const override { return "pressure:" + variable_; }
   std::vector<std::string> variables() const override { return {variable_}; }
 
-  ModelSamples read(const Flight& flight, const std::vector<double>&, Notes&) const override {
+  ModelSamples read(const Flight& flight, const std::vector<double>&, Notes& notes) const override {
     if (!flight.has(variable_)) {
       const std::string meant = did_you_mean(variable_, flight.variables());
       throw Error(Error::Code::variable,
@@ -66,6 +69,14 @@ class PressureReference final : public Reference {
     const UnitConversion conversion =
         believed(flight.conversion(variable_, "hPa"), info_of(Quantity::static_pressure));
     flight.require_values(variable_);
+    constexpr int max_steps = 5;  // steps from a corrected variable to the measured one
+    if (depends(flight, variable_, max_steps)) {
+      notes.emplace_back(
+          Severity::warning,
+          fmt::format("the reference {} is computed from {}, the static pressure of the model, so "
+                      "the comparison is circular; use an independent reference",
+                      variable_, of_model_));
+    }
     ModelSamples samples;
     samples.columns = {
         {Quantity::corrected_static_pressure, read_values(flight, variable_, conversion).values}};
@@ -79,7 +90,23 @@ class PressureReference final : public Reference {
   }
 
  private:
+  // Whether a variable is the static pressure of the model, or its attribute Dependencies ("2 PSFD RATIO")
+  // leads there.
+  bool depends(const Flight& flight, const std::string& variable, int steps) const {
+    if (variable == of_model_) return true;
+    if (of_model_.empty() || steps == 0 || !flight.has(variable)) return false;
+    for (const auto& [name, value] : flight.variable(variable).attributes) {
+      if (name != "Dependencies") continue;
+      std::istringstream words(value);
+      for (std::string word; words >> word;) {
+        if (word != variable && depends(flight, word, steps - 1)) return true;
+      }
+    }
+    return false;
+  }
+
   std::string variable_;
+  std::string of_model_;
 };
 
 }  // namespace pcor::internal
