@@ -7,7 +7,6 @@
 #include <map>
 #include <tuple>
 
-#include <pcor/base/error.hpp>
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include "numerics/decompositions.hpp"

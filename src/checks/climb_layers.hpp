@@ -94,8 +94,8 @@ struct FlightLayers {
 /// geometric heights. A sum ends at a gap in time, a missing value, a sample not in flight, and at a step of
 /// the GPS height relative to the pressure by more than 2 m (or eight times its typical step) within a
 /// sample.
-/// @throws Error if the flight has no temperature or no GPS height, a thickness or rate is not positive, or a
-/// standard deviation is negative or, for the height, zero.
+/// @param air with temperatures and GPS heights
+/// @param options positive thicknesses and rates, and standard deviations that are not negative
 FlightLayers find_layers(const FlightAir& air, const LayerOptions& options = {});
 
 /// Thermometer correction implied by layers: the line that minimizes

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <pcor/base/utc.hpp>
 #include "numerics/missing.hpp"
@@ -114,6 +115,22 @@ std::vector<double> masked(std::vector<double> series, const std::vector<bool>& 
     if (!used[i]) series[i] = nan;
   }
   return series;
+}
+
+double usual_step(const CheckedFlights& flights,
+                  const std::function<std::vector<double>(const CheckedFlight&)>& series) {
+  std::map<double, std::ptrdiff_t> values;  // number by interval
+  for (const CheckedFlight& flight : flights) {
+    const std::vector<double> here = series(flight);
+    const auto known = std::count_if(here.begin(), here.end(), [](double x) { return std::isfinite(x); });
+    if (known == 0) continue;
+    const auto alike = std::find_if(values.begin(), values.end(),
+                                    [&](const auto& each) { return has_step(flight, each.first); });
+    (alike == values.end() ? values[flight.air.step()] : alike->second) += known;
+  }
+  const auto most = std::max_element(values.begin(), values.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == values.end() ? nan : most->first;
 }
 
 void note_other_steps(std::size_t others, std::size_t flights, double step, Notes& notes) {

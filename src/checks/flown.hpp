@@ -76,6 +76,10 @@ ReportColumn column_in(const CheckedFlights& flights, std::string name, std::str
 /// Series of a flight where it is `used`, NaN elsewhere. An empty series stays empty.
 std::vector<double> masked(std::vector<double> series, const std::vector<bool>& used);
 
+/// Record interval with the most known values of a series, s; NaN without a value.
+double usual_step(const CheckedFlights& flights,
+                  const std::function<std::vector<double>(const CheckedFlight&)>& series);
+
 /// Adds a note if some flights are not used because of their record interval.
 /// @param others number of flights with another interval than `step`, s
 void note_other_steps(std::size_t others, std::size_t flights, double step, Notes& notes);

@@ -30,7 +30,7 @@ struct Differences {
   std::vector<double> altitude{};
   std::vector<bool> in_cloud{};
   std::vector<bool> near_ground{};  ///< samples in the lowest kilometre above the field
-  double step = nan;                ///< record interval of the first flight with a difference, s
+  double step = nan;                ///< record interval with the most differences, s
   std::size_t other_steps = 0;      ///< number of flights that are left out because theirs differs
 };
 
@@ -63,11 +63,11 @@ std::vector<double> difference_of(const FlightAir& air) {
 
 Differences all_differences(const CheckedFlights& flights) {
   Differences all;
+  all.step = usual_step(flights, [](const CheckedFlight& flight) { return difference_of(flight.air); });
   for (const CheckedFlight& flight : flights) {
     const FlightAir& air = flight.air;
     const std::vector<double> difference = difference_of(air);
     if (!has_value(difference)) continue;
-    if (std::isnan(all.step)) all.step = air.step();
     if (!has_step(flight, all.step)) {
       ++all.other_steps;
       continue;

@@ -103,12 +103,15 @@ bool has_both(const CheckedFlight& flight, const SeriesOfFlight& first, const Se
   return has_value(first(flight)) && has_value(second(flight));
 }
 
-/// Record interval of the first flight with both series, s; NaN if no flight has both.
+/// Record interval with the most records that have both series, s; NaN if no flight has both.
 double step_of(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second) {
-  const auto found = std::find_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
-    return has_both(flight, first, second);
+  return usual_step(flights, [&](const CheckedFlight& flight) {
+    std::vector<double> both = first(flight);
+    const std::vector<double> other = second(flight);
+    if (both.size() != other.size()) return std::vector<double>();
+    for (std::size_t i = 0; i < both.size(); ++i) both[i] += other[i];
+    return both;
   });
-  return found == flights.end() ? nan : found->air.step();
 }
 
 /// Two series at the airborne records at which both systems measure the same air, over all flights of one
@@ -183,14 +186,22 @@ RedundantFit fit_of(const Redundant& both) {
     each->slope_error = line.coefficients[1].error;
   }
   std::vector<double> difference(both.first.size());
-  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = both.second[i] - both.first[i];
+  std::vector<double> middle(both.first.size());
+  for (std::size_t i = 0; i < difference.size(); ++i) {
+    difference[i] = both.second[i] - both.first[i];
+    middle[i] = 0.5 * (both.second[i] + both.first[i]);
+  }
   const LeastSquares mean = mean_of(difference, both.time, both.step);
   fit.difference = mean.coefficients.front();
   fit.scatter = mean.rms;
   fit.samples = mean.samples;
   const auto [minimum, maximum] = range_of(both.first);
-  fit.across = {(fit.orthogonal.slope - 1.0) * (maximum - minimum),
-                fit.orthogonal.slope_error * (maximum - minimum)};
+  // The slope of the difference against the mean is zero also where noise exceeds the range, as in level
+  // flight; the ordinary line is then too flat, and the orthogonal one undetermined (Bland and Altman 1986,
+  // Lancet 327, 307).
+  const LeastSquares change =
+      least_squares({std::vector<double>(middle.size(), 1.0), middle}, difference, both.time, both.step);
+  fit.across = (maximum - minimum) * change.coefficients[1];
   return fit;
 }
 

@@ -78,7 +78,7 @@ std::vector<double> periodogram(const double* values, double step) {
 
 Spectrum spectrum_of(const CheckedFlights& flights, const Source& source) {
   Spectrum spectrum;
-  spectrum.step = flights.front().air.step();
+  spectrum.step = usual_step(flights, source.series);
   for (const CheckedFlight& flight : flights) {
     const std::vector<double> values = source.series(flight);
     if (values.empty() || !has_step(flight, spectrum.step)) continue;
@@ -203,6 +203,8 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
 
   CheckResult result;
   decide({judged(floor, max_noise, "hPa", "white noise")}, result);
+  if (result.verdict == CheckVerdict::inconsistent && !(fall.value - margin * fall.error > flattest_fall))
+    withhold("the spectrum does not flatten, so the power is an upper limit of the noise", result);
   const double step = coarsest_step(flights);
   if (step >= coarse_pressure) {
     withhold(fmt::format("the static pressure is recorded in steps of {:.2g} hPa, which cause {:.2g} hPa of "

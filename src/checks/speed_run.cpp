@@ -45,11 +45,11 @@ LeastSquares line_against(const std::vector<double>& x, const std::vector<double
                        flown.step());
 }
 
+/// @param values of the series at the samples of the run
 /// @param per_unit error of delta-p for one unit of the series, hPa
 /// @param min_drift of the series from end to end that its samples do not show as noise
-Trend trend_of(const std::vector<double>& series, const Flown& flown, double airspeed_range, double per_unit,
+Trend trend_of(const std::vector<double>& values, const Flown& flown, double airspeed_range, double per_unit,
                double min_drift) {
-  const std::vector<double> values = flown.of(series);
   Trend trend;
   trend.scatter = standard_deviation(values);
   const auto [minimum, maximum] = range_of(values);
@@ -63,6 +63,18 @@ Trend trend_of(const std::vector<double>& series, const Flown& flown, double air
   return trend;
 }
 
+/// GPS height above the height that the pressure of the model implies in air of the temperature of the run,
+/// m. The D-value assumes the standard temperature, so a climb changes it without an error of the pressure.
+/// @param scale height in which the pressure falls by a factor e, m  @param pressure mean of the run, hPa
+std::vector<double> height_above_pressure(const Flown& flown, bool is_missing, double scale,
+                                          double pressure) {
+  const FlightAir& air = flown.flight->air;
+  std::vector<double> height = flown.of(is_missing ? std::vector<double>() : air.geopotential_height);
+  const std::vector<double> pressures = flown.of(air.pressure);
+  for (std::size_t i = 0; i < height.size(); ++i) height[i] += scale * std::log(pressures[i] / pressure);
+  return height;
+}
+
 Run run_of(const Flown& flown) {
   const FlightAir& air = flown.flight->air;
   Run run;
@@ -70,13 +82,17 @@ Run run_of(const Flown& flown) {
   const auto [slow, fast] = range_of(flown.of(air.airspeed));
   run.airspeed_range = fast - slow;
   const double pressure = flown.mean(air.pressure);
-  const double weight = pressure / (flown.mean(air.gas_constant) * flown.mean(air.temperature)) *
-                        constants::standard_gravity;  // rho g: hPa per m
+  const double scale =
+      flown.mean(air.gas_constant) * flown.mean(air.temperature) / constants::standard_gravity;  // m
   const std::vector<double> d_value = height_problem(air).empty() ? air.d_value : std::vector<double>{};
-  run.height = trend_of(d_value, flown, run.airspeed_range, weight, min_drift_of_height);
+  run.height = trend_of(flown.of(d_value), flown, run.airspeed_range, pressure / scale, min_drift_of_height);
+  const Trend above = trend_of(height_above_pressure(flown, d_value.empty(), scale, pressure), flown,
+                               run.airspeed_range, pressure / scale, min_drift_of_height);
+  run.height.slope = above.slope;
+  run.height.pressure_error = above.pressure_error;
   run.dynamic_slope = line_against(flown.of(air.dynamic), flown.of(d_value), flown).coefficients[2];
   // The tail wind is too low if the airspeed is too high.
-  run.wind = trend_of(air.tail_wind, flown, run.airspeed_range,
+  run.wind = trend_of(flown.of(air.tail_wind), flown, run.airspeed_range,
                       -pressure_per_airspeed(pressure, flown.mean(air.mach), flown.mean(air.airspeed)),
                       wind_drift_of_run);
   return run;

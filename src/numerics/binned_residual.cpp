@@ -37,7 +37,13 @@ BinnedResidual::BinnedResidual(const std::vector<double>& residual, const std::v
     variance_[bin] +=
         std::pow(residual[records[k]] - means_[bin], 2) / std::max(bins_.counts()[bin] - 1.0, 1.0);
   }
-  if (!records.empty()) outside_ = used_records(residual) / static_cast<double>(records.size());
+  double squares = 0.0;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (std::isnan(residual[i])) continue;
+    squares += residual[i] * residual[i];
+    if (bin_of_[i] < 0) outside_.push_back(i);
+  }
+  variance_outside_ = squares / std::max(used_records(residual), 1.0);
 }
 
 Eigen::MatrixXd BinnedResidual::covariance_of_sums(const std::vector<const double*>& columns,
@@ -54,7 +60,11 @@ Eigen::MatrixXd BinnedResidual::covariance_of_sums(const std::vector<const doubl
   }
   // Only the deviations of the columns from their bin means.
   within -= sums.transpose() * variance_.cwiseQuotient(bins_.counts()).asDiagonal() * sums;
-  return outside_ * outside_ * (within + noise_covariance(sums, bins_, noise, flight));
+  for (const std::size_t record : outside_) {
+    for (Eigen::Index c = 0; c < row.size(); ++c) row[c] = columns[static_cast<std::size_t>(c)][record];
+    within += variance_outside_ * row * row.transpose();
+  }
+  return within + noise_covariance(sums, bins_, noise, flight);
 }
 
 double BinnedResidual::variance_of_sum(const std::vector<std::size_t>& records, const NoiseModel& noise,

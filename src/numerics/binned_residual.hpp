@@ -22,7 +22,8 @@ class BinnedResidual {
 
   /// Covariance matrix of the sums (column . noise) over the records: the covariance of the bin means by the
   /// noise model, plus the covariance of the records about the means of their bins, in which they are
-  /// independent. Records outside the bins are treated like records inside.
+  /// independent. Records outside the bins, such as isolated ones, are independent, with the mean square of
+  /// the residual.
   ///
   /// @param columns one value for each record @param flight its number among the levels of the noise
   Eigen::MatrixXd covariance_of_sums(const std::vector<const double*>& columns, const NoiseModel& noise,
@@ -33,7 +34,8 @@ class BinnedResidual {
                          std::size_t flight) const;
 
  private:
-  double outside_ = 1.0;  ///< records that are used for each one in a bin
+  std::vector<std::size_t> outside_{};  ///< used records outside the bins
+  double variance_outside_ = 0.0;
   Binning bins_{};
   Eigen::VectorXd means_{};
   std::vector<Eigen::Index> bin_of_{};  ///< bin of each record; -1 outside the bins

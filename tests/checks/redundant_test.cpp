@@ -75,6 +75,53 @@ TEST(RedundantFit, ErrorsIncludeDrift) {
   expect_right({0.0, 1.0, 0.05}, "1/f");
 }
 
+// In level flight the orthogonal line has any slope, and the ordinary one is too flat.
+TEST(RedundantFit, LevelFlightShowsNoChangeOverTheRange) {
+  const std::size_t seeds = pcor::test::number_of_seeds();
+  std::size_t large = 0;
+  for (std::size_t s = 0; s < seeds; ++s) {
+    Redundant both;
+    std::mt19937_64 engine(s);
+    std::normal_distribution<double> noise(0.0, 0.05);
+    for (int i = 0; i < 3600; ++i) {
+      both.time.push_back(i);
+      both.first.push_back(700.0 + noise(engine));
+      both.second.push_back(700.0 + noise(engine));
+    }
+    const RedundantFit fit = fit_of(both);
+    if (std::abs(fit.across.value) > 4.0 * fit.across.error) ++large;
+    EXPECT_LT(std::abs(fit.across.value), 0.1);  // hPa; 0.35 hPa of range with a slope error of 0.03
+  }
+  EXPECT_EQ(large, 0U);  // four standard errors are one in 16,000
+}
+
+TEST(TotalPressureCheck, OrderOfFlightsDoesNotDetermineTheRecordInterval) {
+  const auto flight = [](std::size_t records, double step) {
+    CheckedFlight result;
+    std::mt19937_64 engine(records);
+    std::normal_distribution<double> noise(0.0, 0.05);
+    const auto samples = std::make_shared<pcor::FlightSamples>();
+    samples->step = step;
+    MeasuredPair one{"PSFD/QCF", {}, std::vector<double>(records, 60.0)};
+    MeasuredPair two{"PSFRD/QCFR", {}, std::vector<double>(records, 60.0)};
+    for (std::size_t i = 0; i < records; ++i) {
+      const auto record = static_cast<double>(i);
+      samples->time.push_back(1e5 * step + step * record);
+      one.static_pressure.push_back(700.0 + 50.0 * std::sin(0.01 * record));
+      two.static_pressure.push_back(one.static_pressure.back() + noise(engine));
+    }
+    result.air.samples = samples;
+    result.air.flying.assign(records, true);
+    result.measured = {one, two};
+    return result;
+  };
+  const CheckedFlight few = flight(300, 5.0);
+  const CheckedFlight many = flight(2000, 1.0);
+  for (const CheckedFlights& flights : {CheckedFlights{few, many}, CheckedFlights{many, few}}) {
+    EXPECT_THAT(check_total_pressure(flights).numbers, testing::Contains(testing::Pair("samples", 2000.0)));
+  }
+}
+
 TEST(TotalPressureCheck, FlightsOfAnotherRecordIntervalAreNotUsed) {
   constexpr std::size_t records = 1200;
   const auto check_with = [](double second_step) {

@@ -55,6 +55,28 @@ TEST(LeastSquares, ErrorsIncludeAutocorrelation) {
   EXPECT_LT(independent, 210U);  // three times too small: it would hold for half of them
 }
 
+// Isolated records are outside the bins, and here they determine the slope: its error was 15 times too small.
+TEST(LeastSquares, ErrorsIncludeIsolatedRecords) {
+  constexpr unsigned count = 200;
+  double squares = 0.0;
+  for (unsigned seed = 1; seed <= count; ++seed) {
+    std::mt19937 engine(seed);
+    std::normal_distribution<double> normal;
+    Series s;
+    for (int i = 0; i < 1200; ++i) {
+      const bool is_isolated = i > 600 && i % 100 == 50;
+      s.time.push_back(i);
+      s.x.push_back(i <= 600 ? 0.01 * normal(engine) : (is_isolated ? 50.0 : nan_value));
+      s.y.push_back(2.0 + 0.5 * s.x.back() + normal(engine));
+    }
+    const Estimate slope =
+        least_squares({std::vector<double>(s.x.size(), 1.0), s.x}, s.y, s.time, 1.0).coefficients[1];
+    squares += std::pow((slope.value - 0.5) / slope.error, 2) / count;
+  }
+  // 200 scores determine their rms to 5 %.
+  EXPECT_NEAR(std::sqrt(squares), 1.0, 0.2);
+}
+
 TEST(LeastSquares, IgnoresMissingValues) {
   Series s = made(5);
   const LeastSquares all = mean_of(s.y, s.time, 1.0);
