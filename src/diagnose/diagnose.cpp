@@ -242,7 +242,9 @@ Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
   constexpr double notable = 0.03;  // fraction of the explained part
   if (diagnosis.findings.empty())
     return diagnosis.unexplained.significant ? Verdict::unexplained : Verdict::silent;
-  if (diagnosis.unexplained.significant && left > notable * explained) return Verdict::partial;
+  const Unexplained& unexplained = diagnosis.unexplained;
+  if (unexplained.significant && (left > notable * explained || !unexplained.steps.empty()))
+    return Verdict::partial;
   const bool alone = std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
                                  [](const Finding& finding) { return finding.aliases.empty(); });
   return alone && diagnosis.rival.empty() ? Verdict::identified : Verdict::ambiguous;

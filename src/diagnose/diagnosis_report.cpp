@@ -47,7 +47,7 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
     report.summary.push_back(sentence(text));
   if (diagnosis.findings.empty()) {
     report.summary.push_back(
-        fmt::format("{} effects were tested, no effect was detected.", diagnosis.candidates));
+        fmt::format("{} effects were tested; no effect was detected.", diagnosis.candidates));
   }
   for (std::string& text : unexplained_text(diagnosis.unexplained)) report.summary.push_back(std::move(text));
   std::vector<std::string> limits;

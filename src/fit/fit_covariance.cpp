@@ -192,7 +192,8 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
     const ScaledLoss loss(task.options.loss, each.solution.deviation);
     for (FitFlights* const flights : each.flights->joint()) {
       const bool is_first_reference = flights == each.flights;
-      const bool sees_law = is_first_reference || flights->task().reference.is_static_pressure();
+      const bool is_static = flights->task().reference.is_static_pressure();
+      const bool sees_law = is_first_reference || is_static;
       const std::vector<Eigen::MatrixXd> states =
           sees_law ? binned_states(*flights) : std::vector<Eigen::MatrixXd>();
       std::vector<Eigen::MatrixXd> doubted;
@@ -249,7 +250,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
            main.share().of_each_flight<FlightScores>(scores_of, digest_of(values))) {
         score += flight.covariance;
         zeros[number++] += flight.zero;
-        if (&each == &last && sees_law && last.flights->joint().size() > 1)
+        if (&each == &last && is_static && last.flights->joint().size() > 1)
           roots_of_reference.push_back(root_of(flight.covariance));
         by_misfit.middleRows(first, width) += flight.misfit;
         by_doubt.middleRows(first, width) += flight.doubt;

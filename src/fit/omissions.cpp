@@ -113,7 +113,7 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
       return squares.at(values);
     };
     const double from_fit = refitted(true);
-    const double left = squares.is_linear() ? from_fit : std::min(from_fit, refitted(false));
+    const double left = squares.is_linear() ? from_fit : std::fmin(from_fit, refitted(false));
     result.push_back({effect, sums.rms_of(left), sums.r_squared(left)});
   }
   return result;

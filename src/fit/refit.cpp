@@ -432,7 +432,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   }
   result.drift_rms = flights.drift_rms();
   result.left = by_gps_alone ? nan : misfit.left;
-  result.between_flights = std::sqrt(misfit.between_flights);
+  result.between_flights = by_gps_alone ? nan : std::sqrt(misfit.between_flights);
   // Gusts are in the residual of the wind: a better law need not make it smaller.
   result.worse = why_worse(result, by_gps_alone ? infinity : sums.rms_of(sums.bulk_squares_before));
   result.least_squares_rms = gps ? nan : sums.rms_of(squares.minimum());

@@ -333,7 +333,8 @@ class ForwardSelection {
 
   /// Whether all steps together increased the residual, by a large or significant amount.
   std::string why_worse(const TrialComparison& whole) const {
-    if (loop_.is_by_gps) return "";  // gusts are in its residual: a better law need not make it smaller
+    // Gusts are in the residual of GPS: a better law need not make it smaller in the fit.
+    if (loop_.is_by_gps && !loop_.has_holdout) return "";
     constexpr double much = 1.02;
     const double growth = whole.rms_after / whole.rms_before;
     if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";

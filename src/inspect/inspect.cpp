@@ -15,6 +15,7 @@
 #include "inspect/plausibility.hpp"
 #include "inspect/role_use.hpp"
 #include "residuals/ground_velocity.hpp"
+#include "roles/computed_from.hpp"
 #include "roles/pressure_height.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/resolution.hpp"
@@ -406,6 +407,9 @@ class Look {
     const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
     const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) && has_temperature;
     const std::string& corrected = result_.corrected_pressure;
+    const bool is_independent =
+        !corrected.empty() &&
+        !is_computed_from(flight_, corrected, model.variables.at(Quantity::static_pressure));
     const bool has_wind = has_temperature && has(Quantity::heading) &&
                           !read_ground_velocity(flight_, model).speed.values.empty();
     std::vector<std::string>& references = result_.references;
@@ -414,8 +418,8 @@ class Look {
     } else if (model.variables.at(Quantity::static_pressure) != avionics &&
                has_values(flight_, avionics, "hPa")) {
       references = {fmt::format("pressure:{}", avionics)};
-    } else if (!corrected.empty() && (family_.name != aircraft_families().front().name ||
-                                      (!has_heights && !result_.is_corrected))) {
+    } else if (is_independent && (family_.name != aircraft_families().front().name ||
+                                  (!has_heights && !result_.is_corrected))) {
       references = {"pressure:" + corrected};
     } else {
       if (has_wind) references.emplace_back("wind");

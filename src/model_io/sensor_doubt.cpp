@@ -1,6 +1,5 @@
 #include "model_io/sensor_doubt.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <pcor/effects/catalogue.hpp>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <pcor/numerics/noise.hpp>
+#include <pcor/realtime/look_ahead.hpp>
 #include <pcor/realtime/rate_filter.hpp>
 #include <pcor/realtime/sample_clock.hpp>
 #include "numerics/missing.hpp"
@@ -52,6 +53,7 @@ FastSeries read_fast(const Flight& flight, const ModelInput& input, int rate) {
   FastSeries series;
   series.in_record = static_cast<std::size_t>(rate);
   series.values = read_values(flight, input.variable, input.conversion, rate).values;
+  for (double& value : series.values) value = usable_for_rates(input.quantity, value);
   return series;
 }
 

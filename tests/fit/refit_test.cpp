@@ -256,6 +256,7 @@ TEST(Refit, ValueOfAnEffectWithAMinimumIsThatOfARefit) {
         effect.id == "static-constant" ? "static-constant.a0"
                                        : (effect.id == "static-alpha" ? "static-alpha.a1" : "static-qp.a2"));
   const RefitResult all = fit({samples}, model);
+  ASSERT_EQ(all.omissions.size(), 3U);
   for (std::size_t e = 0; e < all.omissions.size(); ++e) {
     ModelDefinition without = all.model;
     RefitOptions options;

@@ -1212,7 +1212,6 @@ TEST(LoopGarbage, DoesNotAffectTheNextSample) {
   }
 }
 
-// With rates of change only the bad sample is lost.
 // A dropout of 0 hPa is impossible like a missing value: the rates of its neighbours do not use it.
 TEST(LoopGarbage, ImpossiblePressureDoesNotAffectTheRatesOfItsNeighbours) {
   const struct {
@@ -1258,6 +1257,7 @@ TEST(LoopGarbage, ImplausibleLiquidWaterGivesNoTemperature) {
   }
 }
 
+// With rates of change only the bad sample is lost.
 TEST(LoopGarbage, LagLosesOnlyTheBadSample) {
   Model model = c130();
   model.effects.push_back({"static-lag", {0.15}});

@@ -7,6 +7,9 @@
 #include <random>
 #include <vector>
 
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
+
 namespace {
 
 using pcor::FastSeries;
@@ -130,6 +133,23 @@ TEST(RateOfSeries, EstimatedCutOffReducesNoise) {
   const double cut = rms_of_difference(rate_of(noisy, time, 1.0, signal_band_of(noisy, time, 1.0).min_period),
                                        0.0, 2.0 * pi / 40.0);
   EXPECT_LT(cut, 0.1 * whole);
+}
+
+// A dropout would affect the rates of its neighbours.
+TEST(FastSeries, ImpossiblePressureIsMissing) {
+  const pcor::test::TemporaryDirectory folder;
+  {
+    pcor::test::NetcdfMaker maker(folder.path() / "flight.nc");
+    maker.time(pcor::test::sequence(0, 50));
+    std::vector<double> pressure(50, 700.0);
+    pressure[20] = 0.0;
+    maker.series("PSFD", "hPa", pressure);
+  }
+  const FastSeries series =
+      pcor::internal::read_fast(pcor::Flight(folder.path() / "flight.nc"),
+                                {"PSFD", pcor::Quantity::static_pressure, pcor::UnitConversion()}, 1);
+  EXPECT_TRUE(std::isnan(series.values[20]));
+  EXPECT_EQ(series.values[19], 700.0);
 }
 
 TEST(RateOfSeries, GapsAreNotBridged) {

@@ -155,18 +155,24 @@ void print_in_full(const Comparison& comparison, const ChosenReferences& referen
   for (const Comparison& further : comparison.further) print_further(further, options.models.size() > 1);
 }
 
-/// Whether an effect of the model changes a reference: effects at the static ports and in the static line
-/// cancel in total pressures.
-bool can_be_refitted(const ComparedModel& compared) {
-  const auto sees_static_defect = [](const auto& reference) { return reference->sees_static_defect(); };
-  const auto changes_total_pressure = [](const ModelEffect& effect) {
-    if (effect.is_surface()) return false;
-    const EffectLocation location = effect.is_formula() ? effect.location : effect_named(effect.id)->location;
-    return location != EffectLocation::static_defect && location != EffectLocation::static_line;
-  };
-  const std::vector<ModelEffect>& effects = compared.model.model.effects;
-  return std::any_of(compared.references.begin(), compared.references.end(), sees_static_defect) ||
-         std::any_of(effects.begin(), effects.end(), changes_total_pressure);
+bool changes_total_pressure(const ModelEffect& effect) {
+  if (effect.is_surface()) return false;
+  const EffectLocation location = effect.is_formula() ? effect.location : effect_named(effect.id)->location;
+  return location == EffectLocation::static_transducer || location == EffectLocation::dynamic_transducer ||
+         location == EffectLocation::total_line || location == EffectLocation::pitot;
+}
+
+/// Effects that no reference determines: static defects cancel in total pressures.
+std::vector<std::string> undetermined_effects(const ComparedModel& compared) {
+  std::vector<std::string> ids;
+  const bool sees_static_defect =
+      std::any_of(compared.references.begin(), compared.references.end(),
+                  [](const auto& reference) { return reference->sees_static_defect(); });
+  if (sees_static_defect) return ids;
+  for (const ModelEffect& effect : compared.model.model.effects) {
+    if (!changes_total_pressure(effect)) ids.push_back(effect.id);
+  }
+  return ids;
 }
 
 /// Next step: the model with the smallest rms is applied or refitted.
@@ -186,15 +192,17 @@ std::string next_step(const Comparison& comparison, const std::vector<ComparedMo
                        process_command(options.comparison.flights.front(), compared->model, model,
                                        options.comparison.timestamp_alignment));
   }
-  if (!can_be_refitted(*compared)) {
+  const std::vector<std::string> undetermined = undetermined_effects(*compared);
+  if (!undetermined.empty() && undetermined.size() == compared->model.model.effects.size()) {
     return fmt::format(
         "{}Static defects cancel in the total pressure, so a refit to it cannot determine {}; compare it "
         "with a static pressure, for example --reference static:OTHER.toml",
         which, best->name);
   }
   const std::vector<std::filesystem::path> inputs = inputs_of(options);
-  const std::string refit = fmt::format("{} refit {} -m {} -o {}", program(), flights, shell_path(model),
-                                        output_file("fitted.toml", inputs));
+  std::string refit = fmt::format("{} refit {} -m {} -o {}", program(), flights, shell_path(model),
+                                  output_file("fitted.toml", inputs));
+  for (const std::string& id : undetermined) refit += " --fix " + shell_quote(id);
   if (is_verbose() && comparison.total_pressure && comparison.is_static_pressure) {
     return fmt::format(
         "{0}To refit its coefficients: {1}\nTo refit both systems together: {1} --refit-reference {2}", which,

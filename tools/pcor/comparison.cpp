@@ -188,7 +188,7 @@ std::vector<std::string> names_read_by(const ModelDefinition& model) {
 
 /// Whether a result of `process` has the name of a variable that the model reads.
 bool reads_results(const ModelDefinition& model) {
-  constexpr std::array<const char*, 6> results{"PCOR", "PSXC", "QCXC", "MACHX", "ATX", "TASX"};
+  constexpr std::array<const char*, 7> results{"PCOR", "PSXC", "QCXC", "MACHX", "ATX", "TASX", "PCORFLAG"};
   const std::vector<std::string> names = names_read_by(model);
   return std::any_of(results.begin(), results.end(), [&](const char* result) {
     return std::find(names.begin(), names.end(), model.output_name(result)) != names.end();

@@ -12,6 +12,8 @@ void print_fit_summary(const RefitResult& fit) {
   if (fit.left > 0.0)
     say("Model error varying with the flight state: {:.2f} hPa (rms); slow drift of the noise: {:.2f} hPa.\n",
         fit.left, fit.drift_rms);
+  if (fit.between_flights > 0.0)
+    say("Standard deviation between flights of the mean residual: {:.2f} hPa.\n", fit.between_flights);
 }
 
 }  // namespace pcor::tool

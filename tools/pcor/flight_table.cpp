@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <pcor/base/atomic_file.hpp>
-#include <pcor/base/error.hpp>
 #include <pcor/base/message.hpp>
 
 namespace pcor::tool {

@@ -48,7 +48,8 @@ struct RefitOptions {
   /// GPS alone, which has a prior.
   std::vector<std::string> added{};
   /// The calibration of the references and of the thermometer is exact. Otherwise its error is part of the
-  /// standard errors: `ParameterInfo::doubt`, or `[uncertainty]` of the model.
+  /// standard errors: `ParameterInfo::doubt`, or `[uncertainty]` of the model. Stated errors of the law of a
+  /// second system are always included.
   bool trust_reference = false;
   /// Global search of the starting point between the bounds, for parameters with a nonlinear residual.
   bool search = false;
@@ -192,9 +193,9 @@ struct RefitResult {
   double drift_rms = 0.0;          ///< drift of the sensors, hPa
   /// Rms misfit of the model as a smooth function of the flight state, hPa.
   double left = 0.0;
-  /// Standard deviation of the zero of the residual from flight to flight, hPa; 0 with one flight. The fitted
-  /// model states the root of the sum of squares of both as the standard uncertainty of its delta-p in one
-  /// sample.
+  /// Standard deviation between flights of the mean residual, hPa; 0 with one flight, NaN by GPS alone. The
+  /// fitted model states the root of the sum of squares of both as the standard uncertainty of its delta-p in
+  /// one sample.
   double between_flights = 0.0;
   double least_squares_rms = 0.0;  ///< plain least squares on the same samples, hPa; NaN if unknown
   double r_squared = 0.0;
@@ -229,7 +230,7 @@ void describe_summary(const RefitResult& self, Field& field) {
   field("left_hpa", self.left,
         "misfit of the model that varies with the flight state, rms; null for a fit by GPS alone");
   field("between_flights_hpa", self.between_flights,
-        "zero of the residual that differs between flights, standard deviation");
+        "standard deviation between flights of the mean residual; null for a fit by GPS alone");
   field("drift_hpa", self.drift_rms, "slow drift of the noise, rms");
   field("least_squares_rms_hpa", self.least_squares_rms,
         "rms residual of plain least squares; null for a fit with GPS");

@@ -244,6 +244,9 @@ class Chain : public BoundModel {
     return any(slow) ? select(slow, taper(S(1.0), q), S(1.0)) : S(1.0);
   }
 
+  /// Minimum of delta-p by the policy, hPa; minus infinity without one.
+  double minimum_defect() const { return policy_.minimum; }
+
   /// The recovery factor at Mach number `mach`, with the effects that act on it.
   template <class S, class P>
   S recovery_factor(const S& mach, const State<S>& state, const P* parameters) const {

@@ -17,6 +17,15 @@ namespace pcor {
 /// `RateFilter::usual_period`.
 using ShortestPeriods = std::vector<std::pair<Quantity, double>>;
 
+/// Value of a recorded quantity for its rate of change: NaN if it is implausible, or an impossible pressure,
+/// which would affect the rates of its neighbours.
+inline double usable_for_rates(Quantity quantity, double value) noexcept {
+  constexpr double min_dynamic_pressure = -50.0;  // hPa; noise and wind on the ramp are far above
+  const bool is_impossible = (quantity == Quantity::static_pressure && value < Chain::min_static_pressure) ||
+                             (quantity == Quantity::dynamic_pressure && value < min_dynamic_pressure);
+  return is_impossible ? missing<double>() : plausible_or_missing(quantity, value);
+}
+
 /// Delays samples until the later samples required for their rates of change are available (`RateFilter`): a
 /// causal rate would be late, or noisy.
 ///
@@ -88,8 +97,9 @@ class LookAhead {
     const std::size_t length = before_ + 1 + delay_;
     for (Change& change : changes_) {
       // Each value is stored twice, so that the window is contiguous in time order.
-      const double value =
-          change.of == Quantity::corrected_airspeed ? airspeed_along_beam(state) : usable(change.of, state);
+      const double value = change.of == Quantity::corrected_airspeed
+                               ? airspeed_along_beam(state)
+                               : usable_for_rates(change.of, state[change.of]);
       change.values[next_] = change.values[next_ + length] = value;
     }
     next_ = (next_ + 1) % length;
@@ -128,16 +138,6 @@ class LookAhead {
     }
     samples_.resize(delay_ + 1);
     for (Change& change : changes_) change.values.assign(2 * (before_ + 1 + delay_), missing<double>());
-  }
-
-  // Value for a rate of change; an impossible pressure would affect the rates of its neighbours.
-  static double usable(Quantity quantity, const State<double>& state) noexcept {
-    constexpr double min_dynamic_pressure = -50.0;  // hPa; the noise and the wind on the ramp are far above
-    const double value = plausible_or_missing(quantity, state[quantity]);
-    const bool is_impossible =
-        (quantity == Quantity::static_pressure && value < Chain::min_static_pressure) ||
-        (quantity == Quantity::dynamic_pressure && value < min_dynamic_pressure);
-    return is_impossible ? missing<double>() : value;
   }
 
   double airspeed_along_beam(State<double> state) const noexcept {

@@ -66,7 +66,8 @@ class Loop {
 
   /// Creates a loop that runs `model` on the roles `recorded`: delta-p, corrected pressures, Mach number,
   /// humidity, ambient temperature, airspeed, and, if the laser airspeed is recorded, results of LAMS,
-  /// including its filtered temperature (`LowPass`) unless disabled; omit that role to skip the laser. If an
+  /// including its filtered temperature (`LowPass`) unless disabled; omit that role to skip the laser. The
+  /// rate is at most 10,000 samples per second. If an
   /// uncertainty is given, also the uncertainties of the results (`ResultUncertainty`). Returns nullopt if
   /// the model cannot be used, with the reason in `error`.
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
@@ -98,8 +99,8 @@ class Loop {
   void add(std::unique_ptr<Functor> functor) { functors_.push_back(std::move(functor)); }
 
   /// Orders the functors. Returns false without changes if two functors write one quantity or depend on each
-  /// other, or if one writes a quantity whose rate of change the model reads, because rates are computed
-  /// before functors; `error` names them.
+  /// other, or if one writes a quantity whose rate of change the model reads, or the liquid water of
+  /// `temp-wetting`, because these are read before functors run; `error` names them.
   bool order(std::string* error);
 
   /// True if some functor writes the quantity.

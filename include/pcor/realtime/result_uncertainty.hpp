@@ -538,7 +538,8 @@ class ResultUncertainty final : public Functor {
       if (noise.moves_law) changes = response(state, noise.role, noise.size);
       changes.static_defect *= fraction;
       if (noise.role == Quantity::dynamic_pressure && fraction < 1.0)
-        changes.static_defect += taper_slope(state, noise.size) * at_ports(state).static_defect;
+        changes.static_defect += taper_slope(state, noise.size) *
+                                 std::max(at_ports(state).static_defect, chain_->minimum_defect());
       add_role(changes, noise.role, state);
       add_squares(sensitivity.of(changes), noise.size * noise.size, variance);
     }

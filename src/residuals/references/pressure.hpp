@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include <pcor/base/suggest.hpp>
 #include <pcor/residuals/reference.hpp>
 #include "residuals/reference_on_samples.hpp"
+#include "roles/computed_from.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -69,13 +69,13 @@ class PressureReference final : public Reference {
     const UnitConversion conversion =
         believed(flight.conversion(variable_, "hPa"), info_of(Quantity::static_pressure));
     flight.require_values(variable_);
-    constexpr int max_steps = 5;  // steps from a corrected variable to the measured one
-    if (depends(flight, variable_, max_steps)) {
+    if (!of_model_.empty() && is_computed_from(flight, variable_, of_model_)) {
+      const std::string what = variable_ == of_model_ ? "is" : "is computed from " + of_model_ + ",";
       notes.emplace_back(
           Severity::warning,
-          fmt::format("the reference {} is computed from {}, the static pressure of the model, so "
-                      "the comparison is circular; use an independent reference",
-                      variable_, of_model_));
+          fmt::format("the reference {} {} the static pressure of the model, so the comparison "
+                      "is circular; use an independent reference",
+                      variable_, what));
     }
     ModelSamples samples;
     samples.columns = {
@@ -90,21 +90,6 @@ class PressureReference final : public Reference {
   }
 
  private:
-  // Whether a variable is the static pressure of the model, or its attribute Dependencies ("2 PSFD RATIO")
-  // leads there.
-  bool depends(const Flight& flight, const std::string& variable, int steps) const {
-    if (variable == of_model_) return true;
-    if (of_model_.empty() || steps == 0 || !flight.has(variable)) return false;
-    for (const auto& [name, value] : flight.variable(variable).attributes) {
-      if (name != "Dependencies") continue;
-      std::istringstream words(value);
-      for (std::string word; words >> word;) {
-        if (word != variable && depends(flight, word, steps - 1)) return true;
-      }
-    }
-    return false;
-  }
-
   std::string variable_;
   std::string of_model_;
 };
