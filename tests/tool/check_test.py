@@ -101,8 +101,8 @@ class Results(CheckTest):
             sentence = f"{key['value']:+.3f} +- {key['stderr']:.3f} {key['unit']}, {key['what']}: "
             self.assertTrue(check["decided"].startswith(sentence), check["decided"])
             self.assertIn(f"  {check['verdict']}: {check['decided']}.\n", text)
-            if "uncorrected" not in check["decided"]:
-                self.assertEqual(check["verdict"], key["verdict"])
+            # A check withholds a verdict that its data do not allow: an uncorrected system, turbulence.
+            self.assertIn(check["verdict"], (key["verdict"], "cannot tell"))
 
     def test_several_flights(self):
         both = self.check("-m", self.model(), flights=(ONE, TWO))
