@@ -1,6 +1,7 @@
 #include "fit/omissions.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
@@ -66,6 +67,9 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
     return rows;
   };
   const Eigen::MatrixXd rows_of_fit = rows_at(solution.values);
+  const auto limits = [](const ModelDefinition& model) { return std::isfinite(model.model.policy.minimum); };
+  const ModelDefinition* const second = task.reference.model();
+  const bool has_minimum = limits(task.model) || (second != nullptr && limits(*second));
   std::vector<std::string> effects;
   for (const std::size_t p : requested) {
     const std::string& effect = task.parameters[p].effect;
@@ -93,8 +97,8 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
       lower[as_index(i)] = task.parameters[parameters[i]].bounds.lower;
       upper[as_index(i)] = task.parameters[parameters[i]].bounds.upper;
     }
-    // A linear problem needs one step from the fit to least squares; otherwise a few, from the fit and from
-    // the model without the effect, because a minimum of delta-p may stop one of them.
+    // A linear problem needs one step from the fit to least squares; otherwise a few. A minimum of delta-p
+    // may stop them, so they start again from the model without the effect.
     const auto refitted = [&](bool is_from_fit) {
       Eigen::VectorXd values = changed;
       Eigen::VectorXd x = solution.values(parameters);
@@ -113,7 +117,7 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
       return squares.at(values);
     };
     const double from_fit = refitted(true);
-    const double left = squares.is_linear() ? from_fit : std::fmin(from_fit, refitted(false));
+    const double left = has_minimum ? std::fmin(from_fit, refitted(false)) : from_fit;
     result.push_back({effect, sums.rms_of(left), sums.r_squared(left)});
   }
   return result;
