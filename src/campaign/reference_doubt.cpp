@@ -74,7 +74,7 @@ Eigen::MatrixXd root_of_law(const ModelDefinition& law) {
   const std::vector<double> stated = uncertainty_of(law).covariance;
   const auto size = static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(stated.size()))));
   const Eigen::Map<const Eigen::MatrixXd> covariance(stated.data(), size, size);
-  if (covariance.isZero(0.0)) return Eigen::MatrixXd(size, 0);
+  if (covariance.isZero(0.0)) return Eigen::MatrixXd::Zero(size, 0);
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
   const SymmetricEigen eigen = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
@@ -137,7 +137,8 @@ ReferenceDoubt::ReferenceDoubt(const ModelDefinition& model, const Reference& re
 Eigen::MatrixXd ReferenceDoubt::columns(const std::shared_ptr<const FlightSamples>& flight,
                                         const std::vector<std::size_t>& samples,
                                         const double* parameters) const {
-  if (empty() || samples.empty()) return Eigen::MatrixXd(as_index(samples.size()), as_index(names_.size()));
+  if (empty() || samples.empty())
+    return Eigen::MatrixXd::Zero(as_index(samples.size()), as_index(names_.size()));
   Eigen::MatrixXd derivatives(as_index(samples.size()), as_index(indices_.size()));
   const Residuals residuals(with_time(flight), model_, *reference_, std::vector<Mask>());
   std::vector<double> all = residuals.parameters();
