@@ -158,11 +158,10 @@ void add_results(const CheckedFlights& flights, const std::string& check, const 
         "The avionics smooth their pressures, so samples with a pressure change above {} hPa/s are excluded",
         fastest_of_avionics));
   }
-  const double step = step_of(flights, first, second);
   const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
-    return !has_step(flight, step) && has_both(flight, first, second);
+    return !has_step(flight, fit.step) && has_both(flight, first, second);
   });
-  note_other_steps(static_cast<std::size_t>(other_steps), flights.size(), step, result.notes);
+  note_other_steps(static_cast<std::size_t>(other_steps), flights.size(), fit.step, result.notes);
   result.tables = {table_of(fit, std::move(table))};
   const auto column = [&](const char* name, const std::string& title, const SeriesOfFlight& series) {
     return column_of(flights, check + name, title, "hPa", [&series](const CheckedFlight& flight) {
@@ -176,6 +175,7 @@ void add_results(const CheckedFlights& flights, const std::string& check, const 
 
 RedundantFit fit_of(const Redundant& both) {
   RedundantFit fit;
+  fit.step = both.step;
   fit.ordinary = ordinary_fit(both.first, both.second);
   fit.orthogonal = orthogonal_fit(both.first, both.second);
   // For pressures that vary by hundreds of times their differences the two lines have the same errors.

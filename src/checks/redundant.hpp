@@ -23,6 +23,7 @@ struct RedundantFit {
   double scatter = 0.0;     ///< scatter of the difference, hPa
   Estimate across{};        ///< change of the difference from the minimum to the maximum pressure, hPa
   std::size_t samples = 0;  ///< number of samples used
+  double step = 1.0;        ///< record interval of the samples, s
 };
 
 RedundantFit fit_of(const Redundant& both);

@@ -244,7 +244,7 @@ class Chain : public BoundModel {
     return any(slow) ? select(slow, taper(S(1.0), q), S(1.0)) : S(1.0);
   }
 
-  /// Minimum of delta-p by the policy, hPa; minus infinity without one.
+  /// Minimum of delta-p by the policy, hPa; minus infinity if the policy has no minimum.
   double minimum_defect() const { return policy_.minimum; }
 
   /// The recovery factor at Mach number `mach`, with the effects that act on it.
