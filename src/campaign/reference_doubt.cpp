@@ -68,23 +68,17 @@ std::size_t position_of(const ModelDefinition& model, const SensorDoubt& doubt) 
 }
 
 /// Square root of the stated covariance of a law: a row for each parameter of its effects, a column for each
-/// direction with an error.
+/// parameter with an error.
 Eigen::MatrixXd root_of_law(const ModelDefinition& law) {
-  constexpr double rounding = 1e-12;  // relative rounding of the correlations
   const std::vector<double> stated = uncertainty_of(law).covariance;
   const auto size = static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(stated.size()))));
   const Eigen::Map<const Eigen::MatrixXd> covariance(stated.data(), size, size);
-  if (covariance.isZero(0.0)) return Eigen::MatrixXd::Zero(size, 0);
-  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
-  const SymmetricEigen eigen = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
   std::vector<Eigen::Index> known;
   for (Eigen::Index k = 0; k < size; ++k) {
-    if (eigen.eigenvalues()[k] > rounding) known.push_back(k);
+    if (covariance(k, k) > 0.0) known.push_back(k);
   }
-  const Eigen::MatrixXd root =
-      scale.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  return root(Eigen::all, known);
+  if (known.empty()) return Eigen::MatrixXd::Zero(size, 0);
+  return covariance_root(covariance)(Eigen::all, known);
 }
 
 /// Samples with the time since the first, which drifts require, among the inputs of both models.

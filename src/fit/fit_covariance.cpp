@@ -149,15 +149,6 @@ Eigen::MatrixXd shared_covariance(const std::vector<FitFlights*>& references,
   return sum;
 }
 
-/// Symmetric square root of a covariance of unknowns of different orders of magnitude, each row scaled.
-Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
-  const Eigen::VectorXd inverse = scale.cwiseInverse();
-  const SymmetricEigen eigen = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
-  return scale.asDiagonal() * eigen.eigenvectors() *
-         eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
-}
-
 /// Inverse of a regular matrix with unknowns of different orders of magnitude.
 Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd scale = matrix.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -251,7 +242,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
         score += flight.covariance;
         zeros[number++] += flight.zero;
         if (&each == &last && is_static && last.flights->joint().size() > 1)
-          roots_of_reference.push_back(root_of(flight.covariance));
+          roots_of_reference.push_back(covariance_root(flight.covariance));
         by_misfit.middleRows(first, width) += flight.misfit;
         by_doubt.middleRows(first, width) += flight.doubt;
         for (const BlockSums& sums : flight.blocks) {

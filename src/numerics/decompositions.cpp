@@ -17,6 +17,14 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
   return SymmetricEigen(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
+Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
+  const SymmetricEigen eigen = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+  return scale.asDiagonal() * eigen.eigenvectors() *
+         eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+}
+
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
 }

@@ -15,6 +15,10 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 /// Its eigenvalues alone.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
+/// Root R of a covariance of unknowns of different orders of magnitude, R R' = C: rows scaled by standard
+/// deviations, times the symmetric root of the correlations. Rows of unknowns without a variance are zero.
+Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance);
+
 /// The singular values, descending.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix);
 
