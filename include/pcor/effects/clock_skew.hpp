@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct ClockSkew {
+struct ClockSkew : Proportional<Quantity::airspeed_rate> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "clock-skew";
@@ -24,11 +24,6 @@ struct ClockSkew {
     info.example.parameters = {0.5};
     info.example.value = 0.2;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * state[Quantity::airspeed_rate];
   }
 };
 

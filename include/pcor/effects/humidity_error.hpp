@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct HumidityError {
+struct HumidityError : MinusProportional<Quantity::vapor_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "humidity-error";
@@ -25,11 +25,6 @@ struct HumidityError {
     info.example.parameters = {0.1};
     info.example.value = -2.0;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return -(parameter[0] * state[Quantity::vapor_pressure]);
   }
 };
 

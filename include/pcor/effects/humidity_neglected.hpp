@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct HumidityNeglected {
+struct HumidityNeglected : Proportional<Quantity::vapor_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "humidity-neglected";
@@ -24,11 +24,6 @@ struct HumidityNeglected {
     info.example.parameters = {1.0};
     info.example.value = 20.0;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * state[Quantity::vapor_pressure];
   }
 };
 

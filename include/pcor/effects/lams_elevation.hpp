@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct LamsElevation {
+struct LamsElevation : Constant {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "lams-elevation";
@@ -23,11 +23,6 @@ struct LamsElevation {
     info.example.parameters = {0.5};
     info.example.value = 0.5;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State&, const P* parameter) {
-    return parameter[0];
   }
 };
 

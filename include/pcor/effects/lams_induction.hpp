@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct LamsInduction {
+struct LamsInduction : Proportional<Quantity::attack, Quantity::lams_airspeed> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "lams-induction";
@@ -25,11 +25,6 @@ struct LamsInduction {
     info.example.parameters = {0.0005};
     info.example.value = 0.24;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (state[Quantity::attack] * state[Quantity::lams_airspeed]);
   }
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct LamsScale {
+struct LamsScale : MinusProportional<Quantity::lams_airspeed> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "lams-scale";
@@ -25,11 +25,6 @@ struct LamsScale {
     info.example.parameters = {0.001};
     info.example.value = -0.12;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return -(parameter[0] * state[Quantity::lams_airspeed]);
   }
 };
 

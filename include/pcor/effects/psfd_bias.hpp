@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct PsfdBias {
+struct PsfdBias : MinusConstant {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "psfd-bias";
@@ -22,11 +22,6 @@ struct PsfdBias {
     info.example.parameters = {0.1};
     info.example.value = -0.1;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State&, const P* parameter) {
-    return -parameter[0];
   }
 };
 

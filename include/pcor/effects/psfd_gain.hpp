@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct PsfdGain {
+struct PsfdGain : MinusProportional<Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "psfd-gain";
@@ -24,11 +24,6 @@ struct PsfdGain {
     info.example.parameters = {0.0001};
     info.example.value = -0.07;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return -(parameter[0] * state[Quantity::static_pressure]);
   }
 };
 

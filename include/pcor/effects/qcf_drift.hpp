@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct QcfDrift {
+struct QcfDrift : MinusDrift {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "qcf-drift";
@@ -24,12 +24,6 @@ struct QcfDrift {
     info.example.parameters = {0.1};
     info.example.value = -0.2;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    using S = typename State::Scalar;
-    return -(parameter[0] * (state[Quantity::time] * S(1.0 / 3600.0)));
   }
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct QcfGain {
+struct QcfGain : MinusProportional<Quantity::dynamic_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "qcf-gain";
@@ -22,11 +22,6 @@ struct QcfGain {
     info.example.parameters = {0.005};
     info.example.value = -0.35;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return -(parameter[0] * state[Quantity::dynamic_pressure]);
   }
 };
 

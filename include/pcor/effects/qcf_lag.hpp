@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct QcfLag {
+struct QcfLag : Proportional<Quantity::dynamic_pressure_rate> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "qcf-lag";
@@ -23,11 +23,6 @@ struct QcfLag {
     info.example.parameters = {0.1};
     info.example.value = 0.03;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * state[Quantity::dynamic_pressure_rate];
   }
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct QcfZero {
+struct QcfZero : MinusConstant {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "qcf-zero";
@@ -21,11 +21,6 @@ struct QcfZero {
     info.example.parameters = {0.3};
     info.example.value = -0.3;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State&, const P* parameter) {
-    return -parameter[0];
   }
 };
 

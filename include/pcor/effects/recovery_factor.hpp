@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct RecoveryFactorError {
+struct RecoveryFactorError : Constant {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "recovery-factor";
@@ -22,11 +22,6 @@ struct RecoveryFactorError {
     info.example.parameters = {0.01};
     info.example.value = 0.01;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State&, const P* parameter) {
-    return parameter[0];
   }
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticAlpha {
+struct StaticAlpha : Proportional<Quantity::attack_ratio, Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-alpha";
@@ -24,11 +24,6 @@ struct StaticAlpha {
     info.example.parameters = {0.021279816};
     info.example.value = -2.97917424;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (state[Quantity::attack_ratio] * state[Quantity::static_pressure]);
   }
 };
 

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticAlphaQuad {
+struct StaticAlphaQuad
+    : Proportional<Quantity::dynamic_ratio, Quantity::attack, Quantity::attack, Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-alpha-quad";
@@ -25,12 +26,6 @@ struct StaticAlphaQuad {
     info.example.parameters = {0.00245};
     info.example.value = 2.744;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (state[Quantity::dynamic_ratio] * state[Quantity::attack] *
-                           state[Quantity::attack] * state[Quantity::static_pressure]);
   }
 };
 

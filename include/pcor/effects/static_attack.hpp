@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticAttack {
+struct StaticAttack : Proportional<Quantity::attack, Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-attack";
@@ -24,11 +24,6 @@ struct StaticAttack {
     info.example.parameters = {0.002148};
     info.example.value = 1.611;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (state[Quantity::attack] * state[Quantity::static_pressure]);
   }
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticBetaEven {
+struct StaticBetaEven : Proportional<Quantity::sideslip, Quantity::sideslip, Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-beta-even";
@@ -24,12 +24,6 @@ struct StaticBetaEven {
     info.example.parameters = {-2e-5};
     info.example.value = -0.224;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] *
-           (state[Quantity::sideslip] * state[Quantity::sideslip] * state[Quantity::static_pressure]);
   }
 };
 

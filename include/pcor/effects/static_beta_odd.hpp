@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticBetaOdd {
+struct StaticBetaOdd : Proportional<Quantity::sideslip_ratio, Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-beta-odd";
@@ -24,11 +24,6 @@ struct StaticBetaOdd {
     info.example.parameters = {-0.001773};
     info.example.value = -0.37233;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (state[Quantity::sideslip_ratio] * state[Quantity::static_pressure]);
   }
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticConstant {
+struct StaticConstant : Proportional<Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-constant";
@@ -22,11 +22,6 @@ struct StaticConstant {
     info.example.parameters = {0.004127875};
     info.example.value = 2.8895125;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * state[Quantity::static_pressure];
   }
 };
 

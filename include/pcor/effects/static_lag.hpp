@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticLag {
+struct StaticLag : Proportional<Quantity::static_pressure_rate> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-lag";
@@ -22,11 +22,6 @@ struct StaticLag {
     info.example.parameters = {0.15};
     info.example.value = -0.18;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * state[Quantity::static_pressure_rate];
   }
 };
 

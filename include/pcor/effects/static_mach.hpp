@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticMach {
+struct StaticMach : Proportional<Quantity::mach, Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-mach";
@@ -24,11 +24,6 @@ struct StaticMach {
     info.example.parameters = {-0.05965};
     info.example.value = -11.184375;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (state[Quantity::mach] * state[Quantity::static_pressure]);
   }
 };
 

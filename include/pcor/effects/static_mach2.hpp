@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticMach2 {
+struct StaticMach2 : Proportional<Quantity::mach, Quantity::mach, Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-mach2";
@@ -24,11 +24,6 @@ struct StaticMach2 {
     info.example.parameters = {-0.2833};
     info.example.value = -39.8390625;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (state[Quantity::mach] * state[Quantity::mach] * state[Quantity::static_pressure]);
   }
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticMach3 {
+struct StaticMach3 : Proportional<Quantity::mach, Quantity::mach, Quantity::mach, Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-mach3";
@@ -24,12 +24,6 @@ struct StaticMach3 {
     info.example.parameters = {-0.2437};
     info.example.value = -25.702734375;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (state[Quantity::mach] * state[Quantity::mach] * state[Quantity::mach] *
-                           state[Quantity::static_pressure]);
   }
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct StaticQp {
+struct StaticQp : Proportional<Quantity::dynamic_ratio, Quantity::static_pressure> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "static-qp";
@@ -23,11 +23,6 @@ struct StaticQp {
     info.example.parameters = {0.030849643};
     info.example.value = 2.097775724;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (state[Quantity::dynamic_ratio] * state[Quantity::static_pressure]);
   }
 };
 

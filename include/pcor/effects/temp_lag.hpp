@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct TempLag {
+struct TempLag : Proportional<Quantity::recovery_temperature_rate> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "temp-lag";
@@ -22,11 +22,6 @@ struct TempLag {
     info.example.parameters = {2.3};
     info.example.value = -0.115;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return parameter[0] * state[Quantity::recovery_temperature_rate];
   }
 };
 

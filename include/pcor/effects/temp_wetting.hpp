@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct TempWetting {
+struct TempWetting : MinusProportional<Quantity::wetness> {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "temp-wetting";
@@ -24,11 +24,6 @@ struct TempWetting {
     info.example.parameters = {-1.0, 10.0};
     info.example.value = 0.6;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    return -(parameter[0] * state[Quantity::wetness]);
   }
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <pcor/model/effect.hpp>
+#include <pcor/effects/shared_formulas.hpp>
 
 namespace pcor::effects {
 
-struct TransducerThermal {
+struct TransducerThermal : MinusThermalDrift {
   static constexpr EffectInfo info() {
     EffectInfo info;
     info.id = "transducer-thermal";
@@ -23,12 +23,6 @@ struct TransducerThermal {
     info.example.parameters = {0.02, 0.1};
     info.example.value = -0.3;
     return info;
-  }
-
-  template <class State, class P>
-  static auto value(const State& state, const P* parameter) {
-    using S = typename State::Scalar;
-    return -(parameter[0] * (state[Quantity::transducer_temperature] - S(290.0)) + parameter[1]);
   }
 };
 

@@ -129,7 +129,8 @@ struct EffectExample {
 ///
 ///     template <class State, class P> static auto value(const State& state, const P* parameters)
 ///
-/// which returns the correction at its location, true minus recorded value, in the unit of the location.
+/// which returns the correction at its location, true minus recorded value, in the unit of the location; or a
+/// base of `effects/shared_formulas.hpp`, which has it.
 /// `value` is linear in the parameters, except shape parameters, and zero at the neutral parameters. NaN in
 /// an input gives NaN.
 struct EffectInfo {
