@@ -83,8 +83,8 @@ TEST(VaporPressure, RisesWithTemperature) {
 }
 
 TEST(VaporPressure, MirrorSaturationChangesFromIceToWaterAtIcePoint) {
-  EXPECT_EQ(saturation_vapor_pressure(273.14), vapor_pressure_over_ice(273.14));
-  EXPECT_EQ(saturation_vapor_pressure(273.15), vapor_pressure_over_water(273.15));
+  EXPECT_DOUBLE_EQ(saturation_vapor_pressure(273.14), vapor_pressure_over_ice(273.14));
+  EXPECT_DOUBLE_EQ(saturation_vapor_pressure(273.15), vapor_pressure_over_water(273.15));
   // 0.01 K below the triple point the phases differ by 1e-4: that is the whole step.
   EXPECT_NEAR(vapor_pressure_over_ice(c::ice_point) / vapor_pressure_over_water(c::ice_point), 1.0, 1.1e-4);
 }

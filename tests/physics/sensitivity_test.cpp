@@ -79,8 +79,8 @@ TEST(Sensitivity, FormulasEqualTheDerivativesOfTheRetrieval) {
     const double of_temperature = 1.4 * m2 * p / (2 * (1 + x) * T);
     EXPECT_NEAR(slope([&](double used) { return row.defect(used, T); }, v, 1e-4 * v) / of_airspeed, 1.0,
                 1e-7);
-    EXPECT_NEAR(slope([&](double used) { return row.defect(v, used); }, T, 1e-4 * T) / of_temperature, 1.0,
-                1e-7);
+    EXPECT_NEAR(slope([&](double used) { return row.defect(row.v, used); }, T, 1e-4 * T) / of_temperature,
+                1.0, 1e-7);
   }
 }
 
