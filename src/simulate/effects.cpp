@@ -41,6 +41,11 @@ void add_to_instruments(const Effect& effect, const Truth&, SystemFaults*, Fault
   faults.*Fault += effect.parameters.begin()->second;
 }
 
+template <Series SystemFaults::*Error>
+void add_offset(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  add(system->*Error, truth, [&](std::size_t) { return number(effect, "offset"); });
+}
+
 // l = q k theta^n, theta the angle between the flow and the pitot's axis. Memo footnote 3: below 0.2 % of q
 // to 5 deg.
 void pitot_angle(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
@@ -51,14 +56,6 @@ void pitot_angle(const Effect& effect, const Truth& truth, SystemFaults* system,
     const double angle = std::hypot(truth.attack[i] - axis, truth.sideslip[i]);
     return k * (truth.total_pressure[i] - truth.pressure[i]) * std::pow(angle, power);
   });
-}
-
-void qcf_zero(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  add(system->dynamic_error, truth, [&](std::size_t) { return number(effect, "offset"); });
-}
-
-void psfd_bias(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  add(system->static_error, truth, [&](std::size_t) { return number(effect, "offset"); });
 }
 
 void transducer_thermal(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
@@ -276,9 +273,9 @@ const std::vector<FaultInfo>& fault_info() {
       {"static-lag", Target::system, {{"tau", "s"}}, add_to_system<&SystemFaults::static_lag>},
       {"total-lag", Target::system, {{"tau", "s"}}, add_to_system<&SystemFaults::total_lag>},
       {"static-leak", Target::system, {{"fraction", "1"}}, add_to_system<&SystemFaults::leak>},
-      {"qcf-zero", Target::system, {{"offset", "hPa"}}, qcf_zero},
+      {"qcf-zero", Target::system, {{"offset", "hPa"}}, add_offset<&SystemFaults::dynamic_error>},
       {"qcf-gain", Target::system, {{"gain", "1"}}, add_to_system<&SystemFaults::dynamic_gain>},
-      {"psfd-bias", Target::system, {{"offset", "hPa"}}, psfd_bias},
+      {"psfd-bias", Target::system, {{"offset", "hPa"}}, add_offset<&SystemFaults::static_error>},
       {"transducer-thermal",
        Target::system,
        {{"static", "hPa/K", 0.0}, {"dynamic", "hPa/K", 0.0}, {"reference", "K", 290.0}},

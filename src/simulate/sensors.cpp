@@ -51,16 +51,11 @@ Air air_at(const Truth& truth, std::size_t i) {
   return {truth.pressure[i], truth.temperature[i], truth.vapor_pressure[i]};
 }
 
-}  // namespace
-
-double static_defect(const Scenario::Law& law, const PortState& state) {
-  constexpr double tolerance = 1e-11;  // hPa
-  constexpr int maximum = 30;
-  const auto miss = [&](double d) { return law_value(law, state, state.pressure - d) + state.extra - d; };
-  double last = state.extra;
-  double miss_last = miss(last);
-  double now = last + miss_last;
-  for (int i = 0; i < maximum && std::abs(now - last) > tolerance; ++i) {
+/// Root of `miss` by the secant method, from two values, of which the first misses by `miss_last`.
+template <class Miss>
+double root_of(const Miss& miss, double last, double miss_last, double now, double tolerance) {
+  constexpr int max_steps = 30;
+  for (int step = 0; step < max_steps && std::abs(now - last) > tolerance; ++step) {
     const double miss_now = miss(now);
     if (miss_now == miss_last) break;
     const double next = now - miss_now * (now - last) / (miss_now - miss_last);
@@ -71,9 +66,17 @@ double static_defect(const Scenario::Law& law, const PortState& state) {
   return now;
 }
 
+}  // namespace
+
+double static_defect(const Scenario::Law& law, const PortState& state) {
+  constexpr double tolerance = 1e-11;  // hPa
+  const auto miss = [&](double d) { return law_value(law, state, state.pressure - d) + state.extra - d; };
+  const double first_miss = miss(state.extra);
+  return root_of(miss, state.extra, first_miss, state.extra + first_miss, tolerance);
+}
+
 Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftInfo& aircraft) {
   constexpr double tolerance = 1e-12;
-  constexpr int maximum = 30;
   const Scenario::System& system = scenario.systems.front();
   Series mach = truth.mach;
   for (std::size_t i = 0; i < mach.size(); ++i) {
@@ -86,18 +89,8 @@ Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftI
       state.mach = m;
       return law_value(scenario.avionics.law, state, port) - defect;
     };
-    double last = truth.mach[i];
-    double now = last + 1e-4;
-    double miss_last = miss(last);
-    for (int step = 0; step < maximum && std::abs(now - last) > tolerance; ++step) {
-      const double miss_now = miss(now);
-      if (miss_now == miss_last) break;
-      const double next = now - miss_now * (now - last) / (miss_now - miss_last);
-      last = now;
-      miss_last = miss_now;
-      now = next;
-    }
-    mach[i] += fading * (now - mach[i]);
+    const double of_law = root_of(miss, mach[i], miss(mach[i]), mach[i] + 1e-4, tolerance);
+    mach[i] += fading * (of_law - mach[i]);
   }
   return mach;
 }
@@ -213,7 +206,7 @@ Series with_response(Series series, double tau) {
 Series delayed(Series series, double seconds) {
   if (seconds == 0.0 || series.empty()) return series;
   Series late(series.size());
-  const double end = static_cast<double>(series.size() - 1);
+  const auto end = static_cast<double>(series.size() - 1);
   for (std::size_t i = 0; i < series.size(); ++i) {
     const double position = std::clamp(static_cast<double>(i) - seconds * internal_rate, 0.0, end);
     const auto before = static_cast<std::size_t>(position);

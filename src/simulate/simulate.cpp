@@ -53,13 +53,7 @@ class Recording {
  private:
   std::vector<double>& record(const std::string& name, const std::string& units, const std::string& what,
                               Series series, int rate) {
-    OutputVariable variable;
-    variable.name = name;
-    variable.rate = rate;
-    variable.units = units;
-    variable.long_name = what;
-    variable.data_quality = "Simulated";
-    columns_.push_back({std::move(variable), recorder_.record(name, std::move(series), rate)});
+    put(name, units, what, recorder_.record(name, std::move(series), rate), rate);
     return columns_.back().values;
   }
 
