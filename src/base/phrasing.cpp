@@ -37,7 +37,7 @@ int decimals_of_error(double error) {
   return std::max(0, 1 - static_cast<int>(std::floor(std::log10(rounded) + 1e-9)));
 }
 
-Notes notes_of_flights(const std::vector<FlightNote>& notes) {
+Notes notes_of_flights(const std::vector<FlightNote>& notes, std::size_t flight_count) {
   constexpr std::size_t max_names = 3;
   std::vector<std::pair<Note, std::vector<std::string>>> flights_of;
   for (const auto& [flight, note] : notes) {
@@ -53,7 +53,7 @@ Notes notes_of_flights(const std::vector<FlightNote>& notes) {
         flights.size() > max_names ? std::to_string(flights.size()) + " flights" : flights.front();
     for (std::size_t i = 1; i < flights.size() && flights.size() <= max_names; ++i)
       names.append(", ").append(flights[i]);
-    all.emplace_back(note.severity, names + ": " + note.text);
+    all.emplace_back(note.severity, flight_count == 1 ? note.text : names + ": " + note.text);
   }
   return all;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,8 +25,8 @@ std::string join_list(const std::vector<std::string>& all);
 using FlightNote = std::pair<std::string, Note>;
 
 /// Notes on flights without repetition: "first.nc, second.nc: ..."; for more than three flights "16 flights:
-/// ...".
-Notes notes_of_flights(const std::vector<FlightNote>& notes);
+/// ...". @param flight_count number of flights; if there is one, the notes do not name it
+Notes notes_of_flights(const std::vector<FlightNote>& notes, std::size_t flight_count);
 
 /// The decimals with which an error has two digits, the first of them that after rounding: 0.0996 is 0.10.
 int decimals_of_error(double error);

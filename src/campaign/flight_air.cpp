@@ -116,8 +116,7 @@ void find_tail_wind(FlightAir& air) {
 FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const ModelDefinition& model,
                           const MaskOptions& options) {
   const Flight& flight = flights[number];
-  const auto laser = model.variables.find(Quantity::lams_airspeed);
-  const bool with_laser = laser != model.variables.end() && flight.has(laser->second);
+  const bool with_laser = flight.has(model.variable_of(Quantity::lams_airspeed));
   const auto reference =
       with_laser ? lams_reference() : pressure_reference(model.variables.at(Quantity::static_pressure));
   const auto samples = flights.samples(number, model, *reference, options);

@@ -29,19 +29,25 @@ std::vector<NamedDoubt> own_doubts(const ModelDefinition& model, const Reference
   // the same amount with the opposite sign. The sizes come from the catalogue, regardless of the model's
   // statement about its transducer.
   if (reference.is_static_pressure() && !reference.reads_laser() && reference.model() == nullptr)
-    add(doubts, doubts_of(ModelDefinition{}, {"psfd-bias", "psfd-gain", "psfd-drift"}),
-        reference.name() + ": ");
+    add(doubts, doubts_of(ModelDefinition{}, static_calibration), reference.name() + ": ");
   if (model.variables.count(Quantity::recovery_temperature) > 0)
     add(doubts, doubts_of(model, thermometer_calibration));
   return doubts;
 }
 
+/// Law of a second system, like "law A of PSFRD/QCFR".
+std::string law_of(const ModelDefinition& system) {
+  return system.model.name + " of " + system.variable_of(Quantity::static_pressure) + "/" +
+         system.variable_of(Quantity::dynamic_pressure);
+}
+
 /// Calibration uncertainties of a second system, and the stated uncertainty of its model, as a zero and a
 /// gain.
 std::vector<NamedDoubt> second_doubts(const ModelDefinition& system, const Reference& reference) {
-  const std::string prefix = system.model.name + ": ";
   std::vector<NamedDoubt> doubts;
-  add(doubts, doubts_of(system, pressure_calibration), prefix);
+  // The variable identifies a sensor: two systems may share it, or have the same name.
+  add(doubts, doubts_of(system, static_calibration), system.variable_of(Quantity::static_pressure) + ": ");
+  add(doubts, doubts_of(system, dynamic_calibration), system.variable_of(Quantity::dynamic_pressure) + ": ");
   if (!reference.sees_static_defect()) return doubts;
   const StatedUncertainty& stated = system.uncertainty;
   const auto state = [&](const char* effect, const std::optional<double>& size, const char* name) {
@@ -49,7 +55,7 @@ std::vector<NamedDoubt> second_doubts(const ModelDefinition& system, const Refer
     NamedDoubt& stated_doubt = doubts.emplace_back();
     stated_doubt.doubt.effect = effect;
     stated_doubt.doubt.size = *size;
-    stated_doubt.name = prefix + name;
+    stated_doubt.name = law_of(system) + ": " + name;
   };
   state("psfd-bias", stated.static_defect, "static_defect");
   state("psfd-gain", stated.static_defect_ratio, "static_defect_ratio");
@@ -125,7 +131,7 @@ ReferenceDoubt::ReferenceDoubt(const ModelDefinition& model, const Reference& re
   for (Eigen::Index k = 0; k < law_root_.rows() && law_root_.cols() > 0; ++k)
     indices_.push_back(parameter_count(model_.model) + static_cast<std::size_t>(k));
   for (Eigen::Index k = 0; k < law_root_.cols(); ++k)
-    names_.push_back(reference.model()->model.name + ": law, direction " + std::to_string(k + 1));
+    names_.push_back(law_of(*reference.model()) + ": law, direction " + std::to_string(k + 1));
 }
 
 Eigen::MatrixXd ReferenceDoubt::columns(const std::shared_ptr<const FlightSamples>& flight,

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "numerics/binned_rows.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/noise_covariance.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -28,12 +28,17 @@ std::vector<std::size_t> few_of(const std::vector<NoiseFlight>& flights, std::si
 
 constexpr double block_time = 60.0;  // s
 
-/// Rows' products with each other.
-SymmetricPart squares_of(const Eigen::MatrixXd& rows) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
-  result.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-  return SymmetricPart(result.selfadjointView<Eigen::Lower>());
-}
+/// A flight in bins, for the members of a team that do not own it: derivatives or other columns, and the
+/// residual last.
+struct BinnedRows {
+  Binning bins{};
+  Eigen::MatrixXd rows{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(bins, rows);
+  }
+};
 
 /// Contribution of a flight to the counts of all flights.
 struct RowCount {
@@ -163,10 +168,10 @@ Eigen::VectorXd WhitenedSystem::by_minutes(const std::function<Eigen::VectorXd(s
 }
 
 void sum_up(WhitenedSystem& scores) {
-  scores.information =
-      scores.share
-          .sum_of_each_flight<SymmetricPart>([&](std::size_t f) { return squares_of(scores.rows[f]); })
-          .matrix;
+  scores.information = scores.share
+                           .sum_of_each_flight<SymmetricPart>(
+                               [&](std::size_t f) { return SymmetricPart(products_of(scores.rows[f])); })
+                           .matrix;
 }
 
 void marginalize(WhitenedSystem& system, Eigen::Index count) {
@@ -249,16 +254,16 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
   sum_up(scores);
   scores.plain = scores.information;
   if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.drifts(); })) {
-    scores.plain =
-        share
-            .sum_of_each_flight<SymmetricPart>([&](std::size_t f) {
-              NoiseModel still = noise[f];
-              still.slow = {};
-              return squares_of(noise[f].drifts() && !is_white(f)
-                                    ? whitened(side_by_side(columns[f], residuals[f]), bins[f], still, 0)
-                                    : scores.rows[f]);
-            })
-            .matrix;
+    scores.plain = share
+                       .sum_of_each_flight<SymmetricPart>([&](std::size_t f) {
+                         NoiseModel still = noise[f];
+                         still.slow = {};
+                         return SymmetricPart(products_of(
+                             noise[f].drifts() && !is_white(f)
+                                 ? whitened(side_by_side(columns[f], residuals[f]), bins[f], still, 0)
+                                 : scores.rows[f]));
+                       })
+                       .matrix;
   }
   return scores;
 }

@@ -228,7 +228,7 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
     if (checks.model.empty()) checks.model = part.model;
     for (Note& note : part.notes) notes.emplace_back(checks.flights.back(), std::move(note));
   }
-  checks.notes = notes_of_flights(notes);
+  checks.notes = notes_of_flights(notes, flights.size());
   for (const std::string& why : unusable) checks.notes.push_back("Not used: " + why);
   for (const NamedCheck& each : all_checks) {
     checks.results.push_back(read.empty() ? not_run(fmt::format("{}", fmt::join(unusable, "; ")))

@@ -326,7 +326,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     total_pressures.add(part.total_pressures);
     if (part.series) result.flights.push_back(std::move(*part.series));
   }
-  result.notes = notes_of_flights(notes);
+  result.notes = notes_of_flights(notes, flights.size());
   if (result.masks[0] == 0) return result;
   for (std::size_t m = 0; m < pairings.size(); ++m) {
     add_variances(m, flights.share(), records, threads, parts);

@@ -117,16 +117,14 @@ void ComparisonPanels::add_panels() {
   const double memory = comparison_.models.back().autocorrelation_time;
   TimePanel time;
   time.title = "Residual in time";
-  time.caption =
-      "Residual: reference minus model; regimes are shaded. Drag over a time range, or choose a regime, to "
-      "restrict every picture to its samples.";
+  time.caption = "Residual: reference minus model; regimes are shaded.";
   time.columns = residuals_;
   time.axis = "residual";
   report_.items.emplace_back(std::move(time));
   add_strip(report_);
   RegimeTable regimes;
   regimes.title = "By regime";
-  regimes.caption = "Bias and rms of the residual in each regime of the selected samples.";
+  regimes.caption = "Bias and rms of the residual in each regime.";
   regimes.columns = residuals_;
   report_.items.emplace_back(std::move(regimes));
   add_regimes(report_, residuals_);

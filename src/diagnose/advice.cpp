@@ -6,15 +6,6 @@
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
-namespace {
-
-std::size_t number_of(const std::vector<Candidate>& candidates, const std::string& effect) {
-  const auto found = std::find_if(candidates.begin(), candidates.end(),
-                                  [&](const Candidate& candidate) { return candidate.id == effect; });
-  return static_cast<std::size_t>(found - candidates.begin());
-}
-
-}  // namespace
 
 void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
             std::vector<Finding>& findings) {
@@ -42,7 +33,7 @@ void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
     for (const Alias& alias : finding.aliases) {
       rivals.push_back(alias.effect);
       std::vector<std::size_t> instead = analysis.result().chosen;
-      instead[i] = number_of(candidates, alias.effect);
+      instead[i] = alias.candidate;
       rivalry.rests.push_back(indices_of(instead, analysis.groups(), analysis.base()));
     }
     const Plan best = best_plan(regimes, rivalry);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "campaign/gps_rows.hpp"
 #include "diagnose/rms.hpp"
@@ -181,21 +182,21 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
   first_residuals_ = part(binned_.residuals, 0, flights_.size());
 }
 
-void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
-                                  const FindNoise& find) {
+std::vector<NoiseModel> Analysis::noise_after(const std::vector<std::size_t>& groups,
+                                              const Eigen::VectorXd& estimate, const FindNoise& find) const {
   const std::vector<Eigen::Index> indices = indices_of(groups);
-  noise_ = noise_of_flights(
+  return noise_of_flights(
       share_, binned_,
       {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, indices); },
        [&](std::size_t f) { return left_of(f, groups, estimate); }, digest_of(packed(estimate))},
       find);
-  first_noise_ = noise_of_first_reference(binned_, noise_);
 }
 
 void Analysis::find_first_noise(const Eigen::VectorXd& estimate) {
-  for_each_reference({}, estimate, [](const auto& bins, const auto& /*columns*/, const auto& residuals) {
+  noise_ = noise_after({}, estimate, [](const auto& bins, const auto& /*columns*/, const auto& residuals) {
     return estimate_noise(bins, residuals);
   });
+  first_noise_ = noise_of_first_reference(binned_, noise_);
   keep_coefficients({}, estimate);
 }
 
@@ -203,14 +204,36 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
   const std::size_t threads = Workers(share_.comm(), 0).threads;
   bool is_first = true;
   likelihood_ = 0.0;
-  for_each_reference(groups, estimate, [&](const auto& bins, const auto& columns, const auto& residuals) {
+  noise_ = noise_after(groups, estimate, [&](const auto& bins, const auto& columns, const auto& residuals) {
     const FoundNoise found = internal::find_noise(bins, columns, residuals, threads);
     if (is_first) drift_gain_ = found.drift_gain;
     is_first = false;
     likelihood_ += found.likelihood;
     return with_slower_noise(found.model);  // this likelihood includes only what the flights show
   });
+  first_noise_ = noise_of_first_reference(binned_, noise_);
   keep_coefficients(groups, estimate);
+}
+
+NoiseModel Analysis::noise_beside_offsets() const {
+  const std::size_t threads = Workers(share_.comm(), 0).threads;
+  bool is_first = true;
+  const auto noise = noise_after(
+      result_.chosen, search_->fit(result_.chosen).estimate,
+      [&](const auto& bins, const auto& columns, const auto& residuals) {
+        if (!std::exchange(is_first, false)) return estimate_noise(bins, residuals);
+        std::vector<Eigen::MatrixXd> with_offsets = columns;
+        std::vector<Eigen::VectorXd> about_means = residuals;
+        const Eigen::Index offsets = as_index(bins.size()) - 1;
+        for (std::size_t f = 0; f < bins.size(); ++f) {
+          Eigen::MatrixXd own = Eigen::MatrixXd::Zero(columns[f].rows(), offsets);
+          if (f > 0) own.col(as_index(f) - 1).setOnes();
+          with_offsets[f] = side_by_side(columns[f], own);
+          if (residuals[f].size() > 0) about_means[f].array() -= residuals[f].mean();
+        }
+        return with_slower_noise(internal::find_noise(bins, with_offsets, about_means, threads).model);
+      });
+  return noise_of_first_reference(binned_, noise);
 }
 
 void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {

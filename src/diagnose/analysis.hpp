@@ -61,6 +61,9 @@ class Analysis {
   const Binning& bins(std::size_t flight) const { return binned_.bins[flight]; }
   /// Noise against the first reference, with the levels of local flights.
   const NoiseModel& noise() const { return first_noise_; }
+  /// Noise estimated together with an offset for each flight, so that it does not contain the steps between
+  /// flights.
+  NoiseModel noise_beside_offsets() const;
   /// Twice the gain in log-likelihood by slow drift against the first reference.
   double drift_gain() const { return drift_gain_; }
   const Search& search() const { return *search_; }
@@ -111,10 +114,11 @@ class Analysis {
   void replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_first_noise(const Eigen::VectorXd& estimate);
-  /// Noise of the flights against each reference. The shared part is estimated from a few flights by
-  /// `find(bins, columns, residuals)`; the levels of a flight follow from it and the flight's residual.
-  void for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
-                          const FindNoise& find);
+  /// Noise of each flight against each reference after base and groups. The shared part is estimated from a
+  /// few flights by `find(bins, columns, residuals)`; the levels of a flight follow from it and the flight's
+  /// residual.
+  std::vector<NoiseModel> noise_after(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
+                                      const FindNoise& find) const;
   void keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   /// @param chosen effects found so far; the shapes of those of the flow are uncertain
   void find_search(const std::vector<std::size_t>& chosen);

@@ -74,6 +74,29 @@ EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefi
   return inputs;
 }
 
+/// Residual of all used samples of a flight, including those outside all bins.
+/// @param change of the coefficients of base and groups
+std::vector<double> residual_after(const Analysis& analysis, std::size_t flight,
+                                   const std::vector<std::size_t>& groups, const Eigen::VectorXd& change) {
+  const FlightColumns& columns = analysis.flights()[flight];
+  std::vector<double> residual = columns.given;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (std::isnan(residual[i])) continue;
+    const Eigen::Index row = as_index(i);
+    Eigen::Index position = columns.base.cols();
+    residual[i] -= columns.base.row(row).cast<double>().dot(change.head(position));
+    for (const std::size_t group : groups) {
+      const ColumnGroup& own = analysis.groups()[group];
+      residual[i] -= columns.candidates.row(row)
+                         .segment(own.first, own.count)
+                         .cast<double>()
+                         .dot(change.segment(position, own.count));
+      position += own.count;
+    }
+  }
+  return residual;
+}
+
 /// Local flights; entries of the others are empty. @param refitted change of the base by least squares
 std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::VectorXd& refitted) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
@@ -87,14 +110,8 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::V
     FlightDiagnosis& flight = flights[f];
     flight.samples = columns.samples;
     flight.mask = columns.mask;
-    const std::vector<double> base = analysis.added(f, {}, refitted);
-    const std::vector<double> all = analysis.added(f, chosen, corrected);
-    flight.before = columns.given;
-    flight.after = columns.given;
-    for (std::size_t i = 0; i < base.size(); ++i) {
-      flight.before[i] -= base[i];
-      flight.after[i] -= all[i];
-    }
+    flight.before = residual_after(analysis, f, {}, refitted);
+    flight.after = residual_after(analysis, f, chosen, corrected);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       flight.added.push_back(analysis.added_by(f, chosen, k, with));
       flight.evidence.push_back(evidence_along(analysis, f, evidence[k]));
@@ -245,9 +262,24 @@ Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
   const Unexplained& unexplained = diagnosis.unexplained;
   if (unexplained.significant && (left > notable * explained || !unexplained.steps.empty()))
     return Verdict::partial;
-  const bool alone = std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
-                                 [](const Finding& finding) { return finding.aliases.empty(); });
+  const bool alone =
+      std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
+                  [](const Finding& finding) { return finding.aliases.empty() && finding.rival.empty(); });
   return alone && diagnosis.rival.empty() ? Verdict::identified : Verdict::ambiguous;
+}
+
+/// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
+/// clearly predict held-out parts may be one.
+void doubt_by_atmosphere(Diagnosis& diagnosis) {
+  constexpr double clear = 3.0;  // standard errors
+  for (Finding& finding : diagnosis.findings) {
+    if (finding.gain > clear * finding.gain_error) continue;
+    finding.rival = "the atmosphere";
+    diagnosis.notes.push_back(warning_note(fmt::format(
+        "variations of the atmosphere may be the cause instead of {}: it changes chi2 of held-out "
+        "parts by {:+.0f} +- {:.0f}; give a laser or a second system as a further reference",
+        finding.id(), -finding.gain, finding.gain_error)));
+  }
 }
 
 /// Withdraws the findings if a straight line in one variable of the files is more likely than they are.
@@ -285,10 +317,10 @@ void note_unnamed_inputs(const FlightSet& files, const ModelDefinition& model, D
         if (std::any_of(variables.begin(), variables.end(),
                         [&](const std::string& variable) { return variable != traced.name; }))
           continue;
+        diagnosis.unnamed_roles.push_back({role, traced.name, effect.effect});
         diagnosis.notes.push_back(fmt::format(
-            "{} seems to be the role '{}', which {} reads: to test that effect, write {} = \"{}\" "
-            "into [variables] of the model",
-            traced.name, role, effect.effect, role, traced.name));
+            "{} was not tested: write {} = \"{}\" into [variables] of the model; {} seems to be that role",
+            effect.effect, role, traced.name, traced.name));
       }
     }
   }
@@ -378,6 +410,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
       rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].after; });
   UnexplainedStructure structure;
   if (gps_kind(*references.front())) {
+    doubt_by_atmosphere(diagnosis);
     diagnosis.notes.emplace_back(
         "unnamed structure was not tested, because atmospheric variations in a comparison with GPS look the "
         "same; give a laser or a second system as a further reference");

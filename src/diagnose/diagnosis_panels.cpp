@@ -47,19 +47,26 @@ std::string column_of(Quantity quantity) {
   return std::string(info_of(quantity).name);
 }
 
+/// Whether a coefficient belongs to a system that the model is compared with.
+bool is_of_reference(const std::string& coefficient) { return coefficient.rfind("reference:", 0) == 0; }
+
 ReportTable variables_table(const Unexplained& unexplained) {
   ReportTable table;
   table.title = "Variables that the unexplained structure varies with";
   table.caption =
-      "Share of the residual's variance explained by the variable, by any smooth curve and by a straight "
+      "R2: share of the residual's variance that the variable explains, by a smooth curve or by a straight "
       "line, with the most likely drift fitted at the same time. p: probability that the best of all "
-      "variables explains as much if the residuals are shifted in time or have random signs.";
-  table.headers = {"variable", "share", "linear share", "slope", "hPa per", "p", "formula", "what"};
+      "variables explains as much by a curve if the residuals are shifted in time or have random signs; p "
+      "tests the curve, so it can be small although the slope of the line is not significant. No line is "
+      "fitted to an angle, or if the model's coefficients imitate the line.";
+  table.headers = {"variable", "R2, curve", "R2, line", "slope of the line",
+                   "hPa per",  "p",         "formula",  "what"};
   for (const EmpiricalPredictor& variable : unexplained.variables) {
-    table.rows.push_back(
-        {variable.name, percent(variable.r2), percent(variable.linear_r2),
-         variable.slope_error > 0.0 ? with_error(variable.slope, variable.slope_error) : "no linear trend",
-         variable.unit, probability(variable.p_value), variable.formula, variable.description});
+    const bool has_line = variable.slope_error > 0.0;
+    table.rows.push_back({variable.name, percent(variable.r2), has_line ? percent(variable.linear_r2) : "",
+                          has_line ? with_error(variable.slope, variable.slope_error) : "no line",
+                          variable.unit, probability(variable.p_value), variable.formula,
+                          variable.description});
   }
   return table;
 }
@@ -165,7 +172,8 @@ std::vector<std::string> DiagnosisPanels::choices(const std::vector<std::string>
 }
 
 void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& residual,
-                                  const std::vector<std::string>& first, double noise) {
+                                  const std::vector<std::string>& first, double noise,
+                                  const std::string& noise_label) {
   if (what_if.panel.effects.empty() || !meet({residual})) return;
   WhatIfPanel panel = what_if.panel;
   for (std::size_t c = 0; c < panel.coefficients.size(); ++c) {
@@ -183,15 +191,21 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
   panel.title = "What if";
   panel.caption =
       "Switch an effect on, or move its coefficient: residual, table, steps and figures follow, and the "
-      "coefficients that were not moved by hand are fitted again. The fit is linear about the current model "
-      "and weighted by the noise after the findings that are switched on. It equals the result of pcor refit "
-      "if the residual is linear in the coefficients, and nearly equals it otherwise, for example for a lag. "
+      "coefficients that were not moved by hand are fitted again. The fit is linear about the current model, "
+      "with the weights of pcor refit. It equals the result of pcor refit if the residual is linear in the "
+      "coefficients, and nearly equals it otherwise, for example for a lag. ";
+  const auto own_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.own);
+  if (std::any_of(panel.coefficients.begin(), own_end,
+                  [](const WhatIfCoefficient& each) { return is_of_reference(each.name); }))
+    panel.caption += "The coefficients of the reference system keep their given values here. ";
+  panel.caption +=
       "The numbers use all samples; pictures and tables use derivatives at a few thousand samples, with "
       "linear interpolation.";
   panel.residual = residual;
   panel.x_choices = choices({residual}, first);
   panel.autocorrelation_time = memory_;
   panel.noise = noise;
+  panel.noise_label = noise_label;
   add(std::move(panel));
 }
 
@@ -387,18 +401,30 @@ void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
                       [](const FlightDiagnosis& f) { return f.traced; });
 }
 
-void add_residual_in_time(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
-  if (panels.report().time.empty()) return;
-  panels.add_time("Residual in time",
-                  "Static pressure of the reference minus that of the model; regimes are shaded. Drag over a "
-                  "time range, or choose a regime, to restrict every picture to its samples.",
-                  residuals, "residual");
+std::string refitted_text(const Diagnosis& diagnosis) {
+  const bool with_reference =
+      std::any_of(diagnosis.own.begin(), diagnosis.own.end(),
+                  [](const CoefficientEstimate& each) { return is_of_reference(each.name); });
+  return with_reference ? "the coefficients of the model and of the reference system fitted again"
+                        : "the model's own coefficients fitted again";
 }
 
-void add_residual_by_regime(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
+void add_residual_in_time(DiagnosisPanels& panels, const std::vector<std::string>& residuals,
+                          const std::string& refitted) {
+  if (panels.report().time.empty()) return;
+  panels.add_time(
+      "Residual in time",
+      fmt::format("Static pressure of the reference minus that of the model, with {}; regimes are shaded.",
+                  refitted),
+      residuals, "residual");
+}
+
+void add_residual_by_regime(DiagnosisPanels& panels, const std::vector<std::string>& residuals,
+                            const std::string& refitted) {
   if (panels.report().time.empty()) return;
   add_strip(panels.report());
-  panels.add(RegimeTable{"By regime", "Bias and rms of the residual in each regime of the selected samples.",
+  panels.add(RegimeTable{"By regime",
+                         fmt::format("Bias and rms of the residual in each regime, with {}.", refitted),
                          residuals});
   add_regimes(panels.report(), residuals);
 }

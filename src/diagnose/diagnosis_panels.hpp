@@ -97,8 +97,9 @@ class DiagnosisPanels {
   /// Interactive effects; empty if there is no effect.
   /// @param residual initial column
   /// @param first existing variables that come before the others
+  /// @param noise hPa, with its label
   void add_what_if(const WhatIf& what_if, const std::string& residual, const std::vector<std::string>& first,
-                   double noise);
+                   double noise, const std::string& noise_label = "noise");
 
   void add_plane(std::string title, std::string caption, const std::string& colour);
 
@@ -162,10 +163,18 @@ void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const 
 /// Variable with the most unexplained structure, if any.
 void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis);
 
-void add_residual_in_time(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
+/// Coefficients that a diagnosis fits before it looks for effects: "the model's own coefficients fitted
+/// again".
+std::string refitted_text(const Diagnosis& diagnosis);
+
+/// @param refitted `refitted_text` of the residuals
+void add_residual_in_time(DiagnosisPanels& panels, const std::vector<std::string>& residuals,
+                          const std::string& refitted);
 
 /// Flight profile with its regimes, and the residuals in each regime.
-void add_residual_by_regime(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
+/// @param refitted `refitted_text` of the residuals
+void add_residual_by_regime(DiagnosisPanels& panels, const std::vector<std::string>& residuals,
+                            const std::string& refitted);
 
 /// Periods, locations and distribution of the residuals.
 void add_distribution_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals);

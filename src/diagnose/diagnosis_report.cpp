@@ -32,17 +32,18 @@ std::string either(const Finding& finding, const std::string& rival) {
   } else {
     for (const Alias& alias : finding.aliases) names += " or " + alias.effect;
   }
-  if (!rival.empty()) names += fmt::format(", or {} is the cause", rival);
+  for (const std::string& cause : {finding.rival, rival}) {
+    if (!cause.empty()) names += fmt::format(", or {} is the cause", cause);
+  }
   return fmt::format("An effect is missing, {}: these flights cannot distinguish them", names);
 }
 
 void summarise(Report& report, const Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) report.summary.push_back(finding_summary(finding));
   report.summary.push_back(
-      fmt::format("The residual is {} hPa rms, and {} hPa with the model's own coefficients fitted again; "
-                  "the noise is {} "
-                  "hPa.",
-                  hpa(diagnosis.rms_given), hpa(diagnosis.residual_rms), hpa(diagnosis.noise_rms)));
+      fmt::format("The residual is {} hPa rms, and {} hPa with {}, as in the pictures; the noise is {} hPa.",
+                  hpa(diagnosis.rms_given), hpa(diagnosis.residual_rms), refitted_text(diagnosis),
+                  hpa(diagnosis.noise_rms)));
   if (const std::string text = flaps_out_text(diagnosis.flaps_out, "the diagnosis"); !text.empty())
     report.summary.push_back(sentence(text));
   if (diagnosis.findings.empty()) {
@@ -69,14 +70,17 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
 }
 
 Info numbers_of(const Diagnosis& diagnosis) {
-  return {
-      {"Noise", hpa(diagnosis.noise_rms) + " hPa rms"},
-      {"Residual, coefficients as given", hpa(diagnosis.rms_given) + " hPa rms"},
-      {"Residual, refitted", hpa(diagnosis.residual_rms) + " hPa rms"},
-      {"Residual, parts not in the fit, without outliers", hpa(diagnosis.residual_rms_held_out) + " hPa rms"},
-      {"Noise with all findings", hpa(diagnosis.noise_rms_with_findings) + " hPa rms"},
-      {"Effects tested", std::to_string(diagnosis.candidates)},
-      {"Threshold", fmt::format("chi2 {:.1f}", diagnosis.threshold)}};
+  Info numbers{{"Verdict", std::string(to_string(diagnosis.verdict))},
+               {"Noise", hpa(diagnosis.noise_rms) + " hPa rms"},
+               {"Residual, coefficients as given", hpa(diagnosis.rms_given) + " hPa rms"},
+               {"Residual, " + refitted_text(diagnosis), hpa(diagnosis.residual_rms) + " hPa rms"},
+               {"Residual on five-minute parts that each of five fits excludes, without outliers",
+                hpa(diagnosis.residual_rms_held_out) + " hPa rms"}};
+  if (!diagnosis.findings.empty())
+    numbers.emplace_back("Noise with all findings", hpa(diagnosis.noise_rms_with_findings) + " hPa rms");
+  numbers.emplace_back("Effects tested", std::to_string(diagnosis.candidates));
+  numbers.emplace_back("Threshold", fmt::format("chi2 {:.1f}", diagnosis.threshold));
+  return numbers;
 }
 
 BarPanel ranking_bars(const Diagnosis& diagnosis) {
@@ -256,13 +260,17 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
                         [&](const F& f) -> const Series& { return found ? f.after : f.before; });
   const FindingColumns columns = add_columns(panels, diagnosis);
   if (found) add_against_inputs(panels, diagnosis, residuals, 0);
-  add_residual_in_time(panels, residuals);
+  add_residual_in_time(panels, residuals, refitted_text(diagnosis));
   if (what_if != nullptr) {
     const std::vector<std::string> inputs =
         found ? inputs_of(diagnosis.findings.front().effect) : std::vector<std::string>{};
-    panels.add_what_if(*what_if, "before", inputs, diagnosis.noise_rms_with_findings);
+    if (found)
+      panels.add_what_if(*what_if, "before", inputs, diagnosis.noise_rms_with_findings,
+                         "noise with all findings");
+    else
+      panels.add_what_if(*what_if, "before", inputs, diagnosis.noise_rms);
   }
-  add_residual_by_regime(panels, residuals);
+  add_residual_by_regime(panels, residuals, refitted_text(diagnosis));
   if (found) {
     add_findings(panels, diagnosis, residuals, columns);
   } else {

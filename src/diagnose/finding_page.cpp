@@ -194,7 +194,7 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
   std::string what =
       fmt::format("Structure of {} hPa rms is not explained by any effect", hpa(unexplained.rms));
   if (!unexplained.regime.empty())
-    what += fmt::format("; most of it lies in the regime {}", unexplained.regime);
+    what += fmt::format("; the residual is largest in the regime {}", unexplained.regime);
   what += fmt::format(". Probability by chance: {}.", probability(unexplained.p_value));
   if (unexplained.drift_rms > 0.0) {
     what += fmt::format(" The slow part is {} hPa.", hpa(unexplained.drift_rms));
@@ -204,7 +204,7 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
     all.emplace_back("It is not correlated with any tested variable of the files.");
   } else {
     const EmpiricalPredictor& first = unexplained.variables.front();
-    std::string with = fmt::format("It varies with {}, which explains {} of its variance",
+    std::string with = fmt::format("It varies with {}, which explains {} of the residual's variance",
                                    name_with_id(first.description, first.name), percent(first.r2));
     if (first.slope_error > 0.0) {
       with +=

@@ -82,6 +82,26 @@ Eigen::VectorXd evidence_of(const Analysis& analysis, std::size_t group,
   return scores.by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(left[f]) / variance; });
 }
 
+/// Joins the events of one flight that overlap by more than half, each against another reference.
+std::vector<Event> without_repeats(std::vector<Event> events, const Analysis& analysis) {
+  const auto name_of = [&](const Event& event) { return analysis.flight(event.flight).samples->name; };
+  std::stable_sort(events.begin(), events.end(), [&](const Event& a, const Event& b) {
+    return std::pair(name_of(a), a.begin) < std::pair(name_of(b), b.begin);
+  });
+  std::vector<Event> joined;
+  for (Event& event : events) {
+    const bool is_of_same = !joined.empty() && name_of(joined.back()) == name_of(event);
+    const double end = is_of_same ? std::min(joined.back().end, event.end) : event.begin;
+    if (!(2.0 * (end - event.begin) > event.end - event.begin)) {
+      joined.push_back(std::move(event));
+      continue;
+    }
+    joined.back().end = std::max(joined.back().end, event.end);
+    joined.back().evidence += event.evidence;
+  }
+  return joined;
+}
+
 std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& evidence) {
   constexpr double minute = 60.0;  // s
   const WhitenedSystem& scores = analysis.scores();
@@ -111,7 +131,7 @@ std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& ev
          return of_flight;
        }))
     events.insert(events.end(), more.begin(), more.end());
-  return events;
+  return without_repeats(std::move(events), analysis);
 }
 
 /// Equivalent number of events of equal weight.
@@ -173,12 +193,16 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
   const GroupScore best = search.score(winner, chosen);
   std::vector<std::size_t> others = chosen;
   others.erase(std::find(others.begin(), others.end(), winner));
+  const double noisier = search.variance(others) / search.variance(chosen);
   std::vector<Alias> aliases;
   for (const Rival& rival : rivals) {
     const std::size_t g = rival.group;
     if (candidates[g].id == candidates[winner].id) continue;
     const GroupScore score = search.score(g, others);
+    std::vector<std::size_t> instead = others;
+    instead.push_back(g);
     Alias alias;
+    alias.candidate = g;
     alias.effect = candidates[g].id;
     alias.title = candidates[g].title;
     alias.correction = with_estimate(candidates[g], score.estimate);
@@ -186,9 +210,10 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     alias.is_alike = candidates[g].is_shared;
     alias.correlation = search.correlation(winner, g, others);
     // Each direction explains one unit of noise.
-    alias.chi2_less = (best.chi2 - best.freedom) - (score.chi2 - score.freedom);
+    alias.chi2_less = (best.chi2 - score.chi2) * noisier - (best.freedom - score.freedom);
     alias.log_likelihood_less = rival.less;
-    alias.estimates = estimates_of(candidates[g], search.identifiable(g), score.estimate, score.covariance);
+    alias.estimates = estimates_of(candidates[g], search.identifiable(g), score.estimate,
+                                   score.covariance * (search.variance(instead) / search.variance(others)));
     const CoefficientEstimate& first = alias.estimates.front();
     if (first.typical != 0.0) alias.size_to_usual = first.value / first.typical;
     aliases.push_back(std::move(alias));
@@ -217,8 +242,10 @@ struct Added {
 
 /// Rms that the model does not absorb, and extreme, over all used records: against the first reference or,
 /// for an effect on another system, against the references that see it.
+/// @param own part of `estimate` that belongs to the effect
 void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
-             const Eigen::VectorXd& estimate, const Candidate& candidate, Finding& finding) {
+             const Eigen::VectorXd& estimate, const Eigen::VectorXd& own, const Candidate& candidate,
+             Finding& finding) {
   const auto of_flights = analysis.whole_share().of_each_flight<Added>([&](std::size_t f) {
     Added of_flight;
     if (!candidate.is_measured_by(analysis.flight(f).reference)) return of_flight;
@@ -239,7 +266,7 @@ void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, s
     finding.worst_flight = analysis.flight(f).samples->name;
     finding.worst_time = of_flights[f].worst_time;
   }
-  finding.rms = std::sqrt(analysis.search().remaining(chosen[which])) * sum.rms();
+  finding.rms = std::sqrt(analysis.search().remaining(chosen[which], own)) * sum.rms();
 }
 
 /// Part of the tried shape that a model file cannot represent; empty if it can represent all.
@@ -314,23 +341,19 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   }
 }
 
-/// Largest contribution of an effect at its limits to each sample of a flight.
-SquareSum at_limit(const Analysis& analysis, const Candidate& candidate, std::size_t group,
-                   const UpperLimit& limit, std::size_t number) {
+/// Contribution of each identifiable coefficient of an effect at its limit to the samples of a flight.
+std::vector<SquareSum> at_limit(const Analysis& analysis, const Candidate& candidate, std::size_t group,
+                                const UpperLimit& limit, std::size_t number) {
   const FlightColumns& flight = analysis.flight(number);
   const Eigen::Index first = analysis.groups()[group].first;
   const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);
-  SquareSum sums;
+  std::vector<SquareSum> sums(limit.limits.size());
   if (!candidate.is_measured_by(flight.reference)) return sums;
   for (std::size_t i = 0; i < flight.given.size(); ++i) {
     if (std::isnan(flight.given[i])) continue;
-    double largest = 0.0;
-    for (std::size_t k = 0; k < limit.limits.size(); ++k) {
-      const double value =
-          limit.limits[k] * static_cast<double>(flight.candidates(as_index(i), first + identifiable[k]));
-      largest = std::max(largest, std::abs(value));
-    }
-    sums.add(largest);
+    for (std::size_t k = 0; k < sums.size(); ++k)
+      sums[k].add(limit.limits[k] *
+                  static_cast<double>(flight.candidates(as_index(i), first + identifiable[k])));
   }
   return sums;
 }
@@ -367,12 +390,14 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     finding.estimates = estimates_of(candidate, identifiable, estimate.segment(position, count),
                                      covariance.block(position, position, count, count));
     finding.held = held_of(candidate, identifiable);
+    measure(analysis, chosen, i, estimate, estimate.segment(position, count), candidate, finding);
     position += count;
-    measure(analysis, chosen, i, estimate, candidate, finding);
-    finding.chi2 = analysis.search().score(group, chosen).chi2;
-    finding.p_value = analysis.result().p_values[i];
     std::vector<std::size_t> without = chosen;
     without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
+    // In units of the noise with the effect: the score of the search has the noise without it.
+    finding.chi2 = analysis.search().score(group, chosen).chi2 * analysis.search().variance(without) /
+                   analysis.search().variance(chosen);
+    finding.p_value = analysis.result().p_values[i];
     const HeldOut without_it = analysis.held_out(without);
     finding.rms_before = without_it.rms;
     finding.rms_after = with_all.rms;
@@ -477,17 +502,23 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     limits.push_back(std::move(limit));
     groups.push_back(g);
   }
-  // Unit hPa: rms of each remaining column at its limit after base and chosen effects.
-  const auto of_flights = analysis.whole_share().of_each_flight<std::vector<SquareSum>>([&](std::size_t f) {
-    std::vector<SquareSum> sums;
-    for (std::size_t i = 0; i < limits.size(); ++i)
-      sums.push_back(at_limit(analysis, candidates[groups[i]], groups[i], limits[i], f));
-    return sums;
-  });
+  // Unit hPa: the largest rms of a coefficient at its limit that the base does not absorb.
+  using OfCoefficients = std::vector<SquareSum>;
+  const auto of_flights =
+      analysis.whole_share().of_each_flight<std::vector<OfCoefficients>>([&](std::size_t f) {
+        std::vector<OfCoefficients> sums;
+        for (std::size_t i = 0; i < limits.size(); ++i)
+          sums.push_back(at_limit(analysis, candidates[groups[i]], groups[i], limits[i], f));
+        return sums;
+      });
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    SquareSum sum;
-    for (const std::vector<SquareSum>& of_flight : of_flights) sum += of_flight[i];
-    limits[i].rms = std::sqrt(search.remaining(groups[i])) * sum.rms();
+    for (std::size_t k = 0; k < limits[i].limits.size(); ++k) {
+      SquareSum sum;
+      for (const std::vector<OfCoefficients>& of_flight : of_flights) sum += of_flight[i][k];
+      const Eigen::VectorXd one =
+          Eigen::VectorXd::Unit(analysis.groups()[groups[i]].count, search.identifiable(groups[i])[k]);
+      limits[i].rms = std::max(limits[i].rms, std::sqrt(search.remaining(groups[i], one)) * sum.rms());
+    }
   }
   std::sort(limits.begin(), limits.end(),
             [](const UpperLimit& a, const UpperLimit& b) { return a.rms > b.rms; });

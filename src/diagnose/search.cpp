@@ -103,6 +103,13 @@ std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& some,
   return indices;
 }
 
+double distinct_squares(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& rest,
+                        const std::vector<Eigen::Index>& own, const Eigen::VectorXd& coefficients) {
+  const Eigen::VectorXd across = information(rest, own) * coefficients;
+  const double imitated = across.dot(pseudo_solution(information(rest, rest), across));
+  return std::max(0.0, coefficients.dot(information(own, own) * coefficients) - imitated);
+}
+
 Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups)
     : scores_(&scores), base_(base), groups_(groups) {
   const Eigen::Index columns = scores.columns();
@@ -163,6 +170,14 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
   }
   information_ = turn.transpose() * left_ * turn;
   score_ = turn.transpose() * left_score_;
+}
+
+double Search::remaining(std::size_t group, const Eigen::VectorXd& coefficients) const {
+  const std::vector<Eigen::Index> own = indices_of(groups_[group], base_);
+  const double whole = coefficients.dot(scores_->plain(own, own) * coefficients);
+  if (!(whole > 0.0)) return 0.0;
+  return std::min(
+      1.0, distinct_squares(scores_->plain, indices_of({}, groups_, base_), own, coefficients) / whole);
 }
 
 std::vector<Eigen::Index> Search::directions_of(const std::vector<std::size_t>& groups) const {

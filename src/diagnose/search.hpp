@@ -40,6 +40,11 @@ std::vector<Eigen::Index> indices_of(const ColumnGroup& group, Eigen::Index base
 std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& some,
                                      const std::vector<ColumnGroup>& groups, Eigen::Index base);
 
+/// Squares of the columns `own` with these coefficients after the columns `rest`.
+/// @param information products of all columns with each other
+double distinct_squares(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& rest,
+                        const std::vector<Eigen::Index>& own, const Eigen::VectorXd& coefficients);
+
 struct SearchOptions {
   std::size_t draws = 4000;
   double confidence = 0.997;          ///< probability of no finding if there is no effect
@@ -79,6 +84,8 @@ class Search {
 
   /// Fraction of the variance of a group's best direction that the base leaves, 0 to 1.
   double remaining(std::size_t group) const { return remaining_[group]; }
+  /// Fraction of the variance of a group with these coefficients that the base leaves, 0 to 1.
+  double remaining(std::size_t group, const Eigen::VectorXd& coefficients) const;
   /// Absorbed groups, with no visible remainder after the base, are not searched for.
   bool is_absorbed(std::size_t group) const { return turned_[group].cols() == 0; }
 

@@ -8,7 +8,6 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include "base/phrasing.hpp"
-#include "numerics/decompositions.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -18,19 +17,13 @@ constexpr double enough_power = 0.95;
 constexpr int max_repeats = 4;
 constexpr double seconds_per_minute = 60.0;
 
-/// Part of an effect at its estimated size that base and a rival cannot imitate, in units of the noise.
-double distinct(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& rest,
-                const std::vector<Eigen::Index>& own, const Eigen::VectorXd& size) {
-  const Eigen::VectorXd across = information(rest, own) * size;
-  const double imitated = across.dot(pseudo_solution(information(rest, rest), across));
-  return std::max(0.0, size.dot(information(own, own) * size) - imitated);
-}
-
-/// Minimum of that part over all rivals.
+/// Minimum over all rivals of the part of an effect at its estimated size that base and rival cannot imitate,
+/// in units of the noise.
 double min_distinct(const SeparationProblem& rivalry, const Eigen::MatrixXd& information) {
   double minimum = std::numeric_limits<double>::infinity();
   for (const std::vector<Eigen::Index>& rest : rivalry.rests)
-    minimum = std::min(minimum, distinct(information, rest, rivalry.own, rivalry.size) / rivalry.variance);
+    minimum =
+        std::min(minimum, distinct_squares(information, rest, rivalry.own, rivalry.size) / rivalry.variance);
   return minimum;
 }
 

@@ -88,7 +88,7 @@ class StructureTest {
     std::vector<Whitening> whitening{};
     std::vector<Eigen::MatrixXd> model{};  // columns of each flight
     std::vector<Eigen::VectorXd> left{};   // residuals after the model
-    std::vector<DrawnResiduals> drawn{};   // of the residuals after the model
+    std::vector<DrawnResiduals> drawn{};   // shifted in time or with random signs
     Eigen::MatrixXd model_with_drawn{};
     Eigen::MatrixXd inverse{};  // inverse of the information of the model
     double squares = 0.0;       // sum of the remaining squares

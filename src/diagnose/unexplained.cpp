@@ -398,8 +398,10 @@ std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& 
 
 std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
   std::vector<FlightOffset> steps;
+  const std::vector<Eigen::MatrixXd> columns = analysis.columns_of(chosen);
+  if (analysis.flights().size() < 2) return steps;
   const std::vector<MeanOffset> found = find_mean_offsets(
-      analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise());
+      analysis.share(), analysis.bins(), columns, analysis.residuals(), analysis.noise_beside_offsets());
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (found[f].chance < chance)
       steps.push_back({analysis.flights()[f].samples->name, found[f].size, found[f].error, found[f].chance});
@@ -454,7 +456,8 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   // Part beyond the noise; at least the drift and the part that the best variable explains.
   found.rms = std::max(found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)));
   if (!found.variables.empty()) found.rms = std::max(found.rms, std::sqrt(found.variables.front().r2) * rms);
-  found.regime = worst_regime(analysis, left, noise_rms);
+  // A regime is named only if its residual clearly exceeds that of all samples.
+  found.regime = worst_regime(analysis, left, std::max(noise_rms, 1.25 * rms));
   found.p_value =
       std::min(shown.p_value(), drifts ? chi_squared_tail(analysis.drift_gain(), slow_times.size()) : 1.0);
   for (const FlightOffset& step : found.steps) found.p_value = std::min(found.p_value, step.p_value);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 #include <utility>
+#include <variant>
 
 #include <pcor/base/error.hpp>
 #include "campaign/linear_rows.hpp"
@@ -282,6 +283,23 @@ std::vector<WhatIfSeparation> separations_of(const WhatIfFit& fit, const std::ve
   return separations;
 }
 
+/// Whether the provenance of a model states a fit to one of the flights.
+bool is_fitted_to(const ModelDefinition& model, const FlightSet& flights) {
+  for (const auto& [key, value] : model.provenance) {
+    const auto* const fitted = std::get_if<ProvenanceList>(&value);
+    if (key != "flights" || fitted == nullptr) continue;
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+      const std::string flight = flights.name(f);
+      if (std::any_of(fitted->begin(), fitted->end(), [&flight](const ProvenanceValue& each) {
+            const auto* const name = std::get_if<std::string>(&each);
+            return name != nullptr && *name == flight;
+          }))
+        return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
@@ -357,6 +375,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   WhatIf result;
   if (found.empty()) return result;
   WhatIfPanel& panel = result.panel;
+  panel.is_start_fitted = is_fitted_to(model, files);
   panel.own = ordered.base.size();
   for (const BaseCoefficient& coefficient : ordered.base) {
     const auto start =

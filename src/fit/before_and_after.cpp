@@ -13,8 +13,7 @@ namespace pcor {
 
 template <class Archive>
 void serialize(Archive& archive, FlightFit& flight) {
-  archive(flight.flight, flight.holdout, flight.before, flight.after, flight.expected_bias, flight.gain,
-          flight.gain_error, flight.reference);
+  archive(flight.flight, flight.holdout, flight.before, flight.after, flight.expected_bias, flight.reference);
 }
 
 std::optional<HeldOutPart> worst_held_out(const std::vector<FlightFit>& flights) {
@@ -119,9 +118,6 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
     result.parts.push_back({samples.name, held, sums_of_flight(samples, was, noise).statistics(),
                             sums_of_flight(samples, is, noise).statistics()});
     result.parts.back().reference = task.reference.name();
-    const Gain gain = gain_between(samples, was, is, noise, task.reference.window());
-    result.parts.back().gain = gain.value;
-    result.parts.back().gain_error = gain.error;
     const std::vector<double> means = means_of_blocks(samples, is);
     if (held) {
       result.held_out_blocks = means.size();
@@ -212,7 +208,7 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
     notes.insert(notes.end(), one.notes.begin(), one.notes.end());
     all.flown |= one.flown;
   }
-  for (Note& note : notes_of_flights(notes)) all.notes.push_back(std::move(note));
+  for (Note& note : notes_of_flights(notes, each.size())) all.notes.push_back(std::move(note));
   for (const std::unique_ptr<FitFlights>& with : flights.further()) {
     for (const Compared& one : compared(*with, values, false))
       all.further.insert(all.further.end(), one.parts.begin(), one.parts.end());

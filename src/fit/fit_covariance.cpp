@@ -109,15 +109,34 @@ Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector
   return all;
 }
 
-/// Correlation of the residuals against two references in the bins that both have, at least 0.
-double shared_noise(FitFlights& one, FitFlights& other, const Eigen::VectorXd& values) {
-  const auto sums = one.share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+/// A reference of a static pressure, which shares the errors of the static pressure under test.
+struct StaticReference {
+  const FitFlights* flights;
+  std::vector<Eigen::VectorXd> noise{};  ///< residual less misfit in the bins of each local flight, hPa
+  std::vector<Eigen::MatrixXd> roots{};  ///< square root of the covariance of the scores of each flight
+};
+
+/// Residual less misfit in the bins of each local flight, hPa. @param states in these bins
+std::vector<Eigen::VectorXd> noise_of(const FitFlights& flights, const Misfit& misfit,
+                                      const std::vector<Eigen::MatrixXd>& states,
+                                      const Eigen::VectorXd& values) {
+  std::vector<Eigen::VectorXd> noise(states.size());
+  for (std::size_t flight = 0; flight < states.size(); ++flight) {
+    if (flights.share().is_local(flight))
+      noise[flight] = flights.residual(flight, values) - misfit.at(states[flight]);
+  }
+  return noise;
+}
+
+/// Correlation of the noise against two references in the bins that both have, at least 0.
+double shared_noise(const StaticReference& one, const StaticReference& other) {
+  const auto sums = one.flights->share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
     Eigen::MatrixXd products = Eigen::MatrixXd::Zero(2, 2);
-    const std::vector<double>& time = other.bins(flight).time();
-    const Eigen::VectorXd a = one.residual(flight, values);
-    const Eigen::VectorXd b = other.residual(flight, values);
+    const std::vector<double>& time = other.flights->bins(flight).time();
+    const Eigen::VectorXd& a = one.noise[flight];
+    const Eigen::VectorXd& b = other.noise[flight];
     for (Eigen::Index i = 0; i < a.size(); ++i) {
-      const double at = one.bins(flight).time()[static_cast<std::size_t>(i)];
+      const double at = one.flights->bins(flight).time()[static_cast<std::size_t>(i)];
       const auto bin = std::lower_bound(time.begin(), time.end(), at - 0.5 * Binning::usual_width);
       if (bin == time.end() || *bin > at + 0.5 * Binning::usual_width) continue;
       const Eigen::Vector2d both(a[i], b[bin - time.begin()]);
@@ -130,18 +149,14 @@ double shared_noise(FitFlights& one, FitFlights& other, const Eigen::VectorXd& v
 }
 
 /// Covariance of the scores by noise that references share: each sees the errors of the static pressure under
-/// test. The noise of two references has the correlation of their residuals.
-/// @param roots square roots of the covariance of the scores, for each reference of a static pressure and
-/// each flight
-Eigen::MatrixXd shared_covariance(const std::vector<FitFlights*>& references,
-                                  const std::vector<std::vector<Eigen::MatrixXd>>& roots,
-                                  const Eigen::VectorXd& values, Eigen::Index fitted) {
+/// test.
+Eigen::MatrixXd shared_covariance(const std::vector<StaticReference>& references, Eigen::Index fitted) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(fitted, fitted);
   for (std::size_t a = 0; a < references.size(); ++a) {
     for (std::size_t b = a + 1; b < references.size(); ++b) {
-      const double correlation = shared_noise(*references[a], *references[b], values);
-      for (std::size_t flight = 0; flight < roots[a].size(); ++flight) {
-        const Eigen::MatrixXd both = roots[a][flight] * roots[b][flight].transpose();
+      const double correlation = shared_noise(references[a], references[b]);
+      for (std::size_t flight = 0; flight < references[a].roots.size(); ++flight) {
+        const Eigen::MatrixXd both = references[a].roots[flight] * references[b].roots[flight].transpose();
         sum += correlation * (both + both.transpose());
       }
     }
@@ -149,11 +164,23 @@ Eigen::MatrixXd shared_covariance(const std::vector<FitFlights*>& references,
   return sum;
 }
 
-/// Inverse of a regular matrix with unknowns of different orders of magnitude.
-Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
-  const Eigen::VectorXd scale = matrix.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+/// Inverse of equations with unknowns of different orders of magnitude, over the directions that they
+/// determine. @param scale one over the root of the diagonal of the equations with all blocks
+Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& scale) {
   return scale.asDiagonal() * pseudo_inverse(scale.asDiagonal() * matrix * scale.asDiagonal()) *
          scale.asDiagonal();
+}
+
+/// Whether the equations without a block determine a coefficient, with an error of less than a thousand times
+/// that with all blocks: what rounding leaves of an undetermined coefficient has a much larger error.
+/// @param all inverse of the equations with all blocks
+bool is_determined(Eigen::Index coefficient, const Eigen::MatrixXd& rest,
+                   const Eigen::MatrixXd& inverse_of_rest, const Eigen::MatrixXd& all) {
+  constexpr double min_share = 0.99;  // share of the coefficient in the directions that the rest determines
+  constexpr double max_growth = 1e6;  // ratio of variances
+  return inverse_of_rest.row(coefficient).dot(rest.col(coefficient)) > min_share &&
+         std::abs(inverse_of_rest(coefficient, coefficient)) <
+             max_growth * std::abs(all(coefficient, coefficient));
 }
 
 }  // namespace
@@ -173,8 +200,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitBasis::count());
   Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(doubts.size()));
   std::vector<Eigen::VectorXd> zeros(main.share().flights(), Eigen::VectorXd::Zero(fitted));
-  std::vector<FitFlights*> alike;  // references of a static pressure, which share its errors
-  std::vector<std::vector<Eigen::MatrixXd>> roots;
+  std::vector<StaticReference> alike;
   std::vector<std::vector<StageScores>> stages(main.count());  // one for each local flight, first reference
   Eigen::Index first = 0;
   for (const FitEquations& each : equations) {
@@ -183,8 +209,9 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
     const ScaledLoss loss(task.options.loss, each.solution.deviation);
     for (FitFlights* const flights : each.flights->joint()) {
       const bool is_first_reference = flights == each.flights;
-      const bool is_static = flights->task().reference.is_static_pressure();
-      const bool sees_law = is_first_reference || is_static;
+      const bool is_alike =
+          &each == &last && main.joint().size() > 1 && flights->task().reference.is_static_pressure();
+      const bool sees_law = each.flights->sees_law(*flights);
       const std::vector<Eigen::MatrixXd> states =
           sees_law ? binned_states(*flights) : std::vector<Eigen::MatrixXd>();
       std::vector<Eigen::MatrixXd> doubted;
@@ -235,14 +262,13 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
         return scores;
       };
       auto block = excluded.begin();
-      std::vector<Eigen::MatrixXd> roots_of_reference;
+      std::vector<Eigen::MatrixXd> roots;
       std::size_t number = 0;
       for (const FlightScores& flight :
            main.share().of_each_flight<FlightScores>(scores_of, digest_of(values))) {
         score += flight.covariance;
         zeros[number++] += flight.zero;
-        if (&each == &last && is_static && last.flights->joint().size() > 1)
-          roots_of_reference.push_back(covariance_root(flight.covariance));
+        if (is_alike) roots.push_back(covariance_root(flight.covariance));
         by_misfit.middleRows(first, width) += flight.misfit;
         by_doubt.middleRows(first, width) += flight.doubt;
         for (const BlockSums& sums : flight.blocks) {
@@ -250,15 +276,12 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
           block++->score.segment(first, width) += sums.score;
         }
       }
-      if (!roots_of_reference.empty()) {
-        alike.push_back(flights);
-        roots.push_back(std::move(roots_of_reference));
-      }
+      if (is_alike) alike.push_back({flights, noise_of(*flights, misfit, states, values), std::move(roots)});
     }
     first += width;
   }
   for (const Eigen::VectorXd& zero : zeros) score += misfit.between_flights * zero * zero.transpose();
-  score += shared_covariance(alike, roots, last.solution.values, fitted);
+  score += shared_covariance(alike, fitted);
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   for (const BlockSums& block : excluded) derivatives += block.derivatives;
   const PriorRows prior = prior_rows(task, parameters);
@@ -282,7 +305,10 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
     if (!last.solution.at_bound[parameters[static_cast<std::size_t>(k)]]) varying.push_back(k);
   }
   if (varying.empty()) return found;
-  const Eigen::MatrixXd inverse = scaled_inverse(derivatives(varying, varying));
+  const Eigen::MatrixXd equations_of_all = derivatives(varying, varying);
+  const Eigen::VectorXd scale =
+      equations_of_all.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd inverse = scaled_inverse(equations_of_all, scale);
   const Eigen::MatrixXd carried = -inverse * derivatives(varying, Eigen::all).rightCols(size - fitted);
   Eigen::MatrixXd covariance = inverse * score(varying, varying) * inverse.transpose();
   const Eigen::MatrixXd by_held = carried * doubt * carried.transpose();
@@ -310,13 +336,19 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
 
   // One Newton step from the fit of all blocks to the fit without one block.
   Eigen::MatrixXd moved(as_index(varying.size()), as_index(excluded.size()));
+  Eigen::VectorXd decided = Eigen::VectorXd::Zero(moved.rows());  // infinite if one block alone determines it
   for (std::size_t b = 0; b < excluded.size(); ++b) {
-    const Eigen::MatrixXd rest = derivatives(varying, varying) - excluded[b].derivatives(varying, varying);
-    moved.col(as_index(b)) = scaled_inverse(rest) * excluded[b].score(varying);
+    const Eigen::MatrixXd rest = equations_of_all - excluded[b].derivatives(varying, varying);
+    const Eigen::MatrixXd inverse_of_rest = scaled_inverse(rest, scale);
+    moved.col(as_index(b)) = inverse_of_rest * excluded[b].score(varying);
+    for (Eigen::Index k = 0; k < moved.rows(); ++k) {
+      if (!is_determined(k, rest, inverse_of_rest, inverse)) decided[k] = infinity;
+    }
   }
   const auto count = static_cast<double>(excluded.size());
   moved.colwise() -= moved.rowwise().mean().eval();
-  const Eigen::VectorXd errors = (moved.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt();
+  const Eigen::VectorXd errors =
+      (moved.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt() + decided;
   if (excluded.size() > 2) found.jackknife(varying) = errors;
   return found;
 }

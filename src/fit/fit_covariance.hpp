@@ -33,7 +33,8 @@ struct FitCovariance {
   std::vector<std::string> doubts{};
   Eigen::MatrixXd by_doubt{};
   /// Jackknife standard errors of the equations' parameters, omitting one flight or one part of a flight at a
-  /// time; independent of the noise model.
+  /// time; independent of the noise model. Infinite if one of these alone determines the parameter, NaN with
+  /// fewer than three of them or at a bound.
   Eigen::VectorXd jackknife{};
   std::size_t blocks = 0;    ///< omitted flights, or parts of flights
   double information = 0.0;  ///< information of all bins about a common mean, 1/hPa^2
@@ -46,7 +47,7 @@ struct FitCovariance {
 /// and the covariance of the parameters is A^-1 B A^-T (Newey and McFadden 1994, Handbook of Econometrics 4,
 /// section 6). A score is the sum of weighted derivative times influence (rho' r). Its covariance comes from
 /// the noise (`noise_covariance`), which references of a static pressure share by the correlation of their
-/// residuals, and the misfit of the law. Errors of fixed parameters propagate to the others.
+/// residuals less misfit, and the misfit of the law. Errors of fixed parameters propagate to the others.
 ///
 /// @param equations in the order of the requested parameters; the last ones include all samples
 FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Misfit& misfit);

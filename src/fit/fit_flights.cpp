@@ -264,15 +264,14 @@ void FitFlights::weigh(const Eigen::VectorXd& parameters) {
   }
 }
 
-void FitFlights::measure_noise(const Eigen::VectorXd& parameters,
-                               const std::function<Eigen::VectorXd(std::size_t)>& misfit) {
+void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const MisfitInBins& misfit) {
   weigh(parameters);
   for (FitFlights* const each : joint()) {
     BinnedFit fit;
     fit.columns = [&](std::size_t flight) { return each->columns(flight).leftCols(requested()); };
     fit.left = [&](std::size_t flight) -> Eigen::VectorXd {
-      if (each != this || !misfit) return each->residual(flight, parameters);
-      return residual(flight, parameters) - misfit(flight);
+      if (!misfit || !sees_law(*each)) return each->residual(flight, parameters);
+      return each->residual(flight, parameters) - misfit(*each, flight);
     };
     fit.state = digest_of(parameters);
     each->noise_ = noise_of_flights(share(), each->binned_, fit,

@@ -222,11 +222,18 @@ class FitFlights {
   /// Prepares every flight, and renews the weight of each reference.
   void weigh(const Eigen::VectorXd& parameters);
 
+  /// Whether the misfit of the law enters the residual against a fitted reference: against the first one,
+  /// with which it is estimated, and against each that is a static pressure.
+  bool sees_law(const FitFlights& reference) const {
+    return &reference == this || reference.task().reference.is_static_pressure();
+  }
+
+  /// Misfit of the law in the bins of a local flight with one reference that sees it, hPa.
+  using MisfitInBins = std::function<Eigen::VectorXd(const FitFlights& reference, std::size_t flight)>;
+
   /// Also estimates the noise of each reference.
-  /// @param misfit misfit of the law in the bins of a local flight, hPa, excluded from the noise; may be
-  /// empty
-  void measure_noise(const Eigen::VectorXd& parameters,
-                     const std::function<Eigen::VectorXd(std::size_t flight)>& misfit = {});
+  /// @param misfit excluded from the noise; may be empty
+  void measure_noise(const Eigen::VectorXd& parameters, const MisfitInBins& misfit = {});
 
   /// Combined slow parts of the noise, hPa; zero before the noise was measured.
   double drift_rms() const;

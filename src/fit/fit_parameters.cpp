@@ -9,9 +9,34 @@
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/model/formula.hpp>
 
 namespace pcor::internal {
 namespace {
+
+/// Unit of a coefficient of a formula: the unit of the value, if the formula is a sum of this coefficient
+/// times pure numbers and of a part without it; otherwise empty, because units of formulas are not computed.
+std::string unit_in_formula(const ModelEffect& effect, std::size_t number) {
+  const auto formula = Formula::parse(effect.formula, effect.parameter_names);
+  if (!formula) return "";
+  const std::vector<std::string>& names = formula->variables();
+  const bool are_numbers = std::all_of(names.begin(), names.end(), [](const std::string& name) {
+    const Quantity quantity = quantity_named(name);
+    return quantity != Quantity::count && info_of(quantity).unit == "1";
+  });
+  const std::vector<double> variables(names.size(), 0.3);
+  std::vector<double> coefficients(effect.parameter_names.size(), 1.0);
+  const auto value = [&](double coefficient) {
+    coefficients[number] = coefficient;
+    return formula->value(variables.data(), coefficients.data());
+  };
+  const double slope = value(1.0) - value(0.0);
+  const double curvature = value(2.0) - value(1.0) - slope;
+  std::fill(coefficients.begin(), coefficients.end(), 2.0);
+  const double change = value(1.0) - value(0.0) - slope;  // by the other coefficients
+  const bool is_linear = std::abs(curvature) + std::abs(change) <= 1e-9 * std::abs(slope);
+  return are_numbers && is_linear ? std::string(info_of(effect.location).unit) : "";
+}
 
 void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition& file,
                     const std::string& prefix, bool fitted) {
@@ -26,6 +51,7 @@ void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition
       parameter.bounds = file.bounds(e, p);
       parameter.fixed = !fitted || file.fit(e, p).fixed;
       if (effect.is_surface()) parameter.unit = "1";
+      if (effect.is_formula()) parameter.unit = unit_in_formula(effect, p);
       if (effect.is_formula()) continue;
       const EffectInfo& info = *effect_named(effect.id);
       parameter.unit = info.parameters[p].unit;

@@ -75,7 +75,7 @@ class GpsSolver {
       prior_deviation_[k] =
           gps_prior_in_typical_sizes * task_.parameters[requested_[static_cast<std::size_t>(k)]].typical;
     // A fitted coefficient replaces the nuisance for the same error.
-    constexpr double held = 1e-3;  // of its prior: no result depends on it
+    constexpr double held = 1e-3;  // fraction of its prior deviation; no result depends on it
     for (std::size_t n = 0; n < gps_nuisances.size(); ++n) {
       if (std::any_of(requested.begin(), requested.end(),
                       [&](std::size_t p) { return task_.parameters[p].name == gps_nuisances[n].same_as; }))

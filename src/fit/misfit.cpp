@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include <pcor/physics/constants.hpp>
 #include "numerics/decompositions.hpp"
@@ -232,11 +233,20 @@ Eigen::MatrixXd MisfitBasis::operator()(const Eigen::MatrixXd& values) const {
   return result;
 }
 
+Eigen::VectorXd Misfit::at(const Eigen::MatrixXd& states) const {
+  if (height.size() == 0) return Eigen::VectorXd::Zero(states.rows());
+  return bumps(states) * height;
+}
+
 Misfit find_misfit(FitFlights& flights, const Solution& solution) {
   Misfit misfit;
   flights.measure_noise(solution.values);
   const FlightPartition& share = flights.share();
-  const std::vector<Eigen::MatrixXd> in_bins = binned_states(flights);
+  std::map<const FitFlights*, std::vector<Eigen::MatrixXd>> states_of_reference;
+  for (FitFlights* const each : flights.joint()) {
+    if (flights.sees_law(*each)) states_of_reference[each] = binned_states(*each);
+  }
+  const std::vector<Eigen::MatrixXd>& in_bins = states_of_reference[&flights];
   misfit.bumps = MisfitBasis(share, in_bins);
   if (flights.bins() < min_bins) return misfit;
   const Eigen::Index own = as_index(flights.setup().requested.size());
@@ -263,13 +273,12 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
         weight *
         std::max(0.0, (left * (posterior.covariance + posterior.mean * posterior.mean.transpose())).trace()) /
         sum.bins);
-    flights.measure_noise(solution.values, [&](std::size_t flight) -> Eigen::VectorXd {
-      return misfit.bumps(in_bins[flight]) * misfit.height;
+    flights.measure_noise(solution.values, [&](const FitFlights& reference, std::size_t flight) {
+      return misfit.at(states_of_reference.at(&reference)[flight]);
     });
   }
   misfit.between_flights = variance_between(share.of_each_flight<FlightMean>([&](std::size_t flight) {
-    const Eigen::VectorXd left =
-        flights.residual(flight, solution.values) - misfit.bumps(in_bins[flight]) * misfit.height;
+    const Eigen::VectorXd left = flights.residual(flight, solution.values) - misfit.at(in_bins[flight]);
     if (left.size() == 0) return FlightMean{};
     return FlightMean{left.mean(), 1.0 / information_about_mean(flights.bins(flight), flights.noise(flight))};
   }));

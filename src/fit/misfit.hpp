@@ -38,10 +38,14 @@ struct Misfit {
   Eigen::VectorXd height{};      ///< most likely height of each bump, hPa
   double between_flights = 0.0;  ///< variance of the zero of each flight, hPa^2
   double left = 0.0;             ///< rms of the misfit not absorbed by the law, with its uncertainty, hPa
+
+  /// Most likely misfit in bins with these states, hPa; zero if unknown.
+  Eigen::VectorXd at(const Eigen::MatrixXd& states) const;
 };
 
-/// Estimates misfit and noise of the flights of a fit alternately: each from the residual after the other.
-/// The flights then have that noise.
+/// Estimates misfit and noise of the flights of a fit alternately: each from the residual after the other,
+/// the misfit against the first reference. The flights then have that noise, without the misfit also against
+/// further static pressures.
 Misfit find_misfit(FitFlights& flights, const Solution& solution);
 
 }  // namespace pcor::internal

@@ -22,6 +22,7 @@
 #include "fit/warnings.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
+#include "roles/computed_from.hpp"
 
 namespace pcor {
 
@@ -31,7 +32,35 @@ namespace {
 
 constexpr std::size_t passes_expected = 40;
 
-void require_sense(const FlightSet& flights, const References& references, const RefitOptions& options) {
+/// @throws Error if a second static system reads the static pressure under test, or one computed from it in
+/// the first flight: its noise and its errors cancel, and the fit would copy the law of the second system.
+void require_other_pressures(const FlightSet& flights, const ModelDefinition& model,
+                             const References& references) {
+  const auto pressure_of = [](const ModelDefinition& system) {
+    const auto found = system.variables.find(Quantity::static_pressure);
+    return found == system.variables.end() ? std::string() : found->second;
+  };
+  const std::string own = pressure_of(model);
+  for (const std::shared_ptr<const Reference>& reference : references) {
+    if (own.empty() || !reference->is_static_pressure() || reference->model() == nullptr) continue;
+    const std::string other = pressure_of(*reference->model());
+    const FlightSet first = flights.part(0, 1);
+    const bool is_in_file = !first.path(0).empty();
+    const std::vector<int> is_circular = first.share().of_each_flight<int>([&](std::size_t flight) {
+      return other == own || (is_in_file && is_computed_from(first[flight], other, own)) ? 1 : 0;
+    });
+    if (is_circular.front() == 0) continue;
+    throw Error(
+        Error::Code::usage,
+        fmt::format("reference {}: its static pressure {} {} that of the model '{}', so a fit would be "
+                    "circular; give a system with an independent static pressure",
+                    reference->name(), other,
+                    other == own ? std::string("is") : "is computed from " + own + ",", model.model.name));
+  }
+}
+
+void require_sense(const FlightSet& flights, const ModelDefinition& model, const References& references,
+                   const RefitOptions& options) {
   if (flights.empty()) throw Error(Error::Code::usage, "no flight to fit; give at least one");
   const bool is_in_memory = flights.path(0).empty();
   if (is_in_memory && references.size() > 1)
@@ -51,6 +80,7 @@ void require_sense(const FlightSet& flights, const References& references, const
   const FlightSet all = flights.with(options.holdout);
   all.require_each_once();
   all.require_one_aircraft();
+  require_other_pressures(flights, model, references);
 }
 
 /// Whether two references belong to one system and share its law.
@@ -462,7 +492,7 @@ ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const Mo
   if (std::any_of(references.begin(), references.end(),
                   [](const auto& reference) { return is_by_gps(*reference); }))
     return refit(flights, model, references, options).model;
-  require_sense(flights, references, options);
+  require_sense(flights, model, references, options);
   FitTask task = task_of(model, references, options, flights);
   if (!surfaces.empty()) task.surfaces = surfaces;
   const Fitted fitted = fit_in_stages(task);
@@ -477,7 +507,7 @@ ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const Mo
 
 RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const References& references,
                   const RefitOptions& options) {
-  require_sense(flights, references, options);
+  require_sense(flights, model, references, options);
   References in_order = references;
   const auto gps = std::stable_partition(in_order.begin(), in_order.end(),
                                          [](const auto& reference) { return !is_by_gps(*reference); });

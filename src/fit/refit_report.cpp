@@ -23,15 +23,22 @@ ReportTable coefficient_table(const RefitResult& fit) {
   table.title = "Coefficients";
   table.caption =
       "Standard errors allow for the autocorrelation of the residuals; jackknife errors come from leaving "
-      "out one flight or one part of a flight at a time.";
+      "out one flight or one part of a flight at a time (inf: one alone determines the coefficient).";
   table.headers = {"coefficient", "before", "after", "std. error", "jackknife", "unit", "stage"};
+  if (fit.is_by_gps()) {
+    table.headers[3] = "stated error";
+    table.headers.insert(table.headers.begin() + 4, "likelihood");
+  }
+  const auto number = [](double error) { return std::isnan(error) ? "" : fmt::format("{:.3g}", error); };
   for (const FittedParameter& p : fit.parameters) {
-    table.rows.push_back({p.name, fmt::format("{:.6g}", p.start), fmt::format("{:.6g}", p.value),
-                          !p.fitted    ? "held"
-                          : p.at_bound ? "bound"
-                                       : fmt::format("{:.3g}", p.standard_error),
-                          std::isnan(p.jackknife_error) ? "" : fmt::format("{:.3g}", p.jackknife_error),
-                          p.unit, p.fitted ? std::to_string(p.stage) : ""});
+    std::vector<std::string> row{p.name, fmt::format("{:.6g}", p.start), fmt::format("{:.6g}", p.value),
+                                 !p.fitted    ? "held"
+                                 : p.at_bound ? "bound"
+                                              : fmt::format("{:.3g}", p.standard_error)};
+    if (fit.is_by_gps()) row.push_back(number(p.noise_error));
+    row.insert(row.end(), {number(p.jackknife_error), p.unit.empty() ? "formula unit" : p.unit,
+                           p.fitted ? std::to_string(p.stage) : ""});
+    table.rows.push_back(std::move(row));
   }
   return table;
 }

@@ -93,18 +93,30 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
              return parameter.name.rfind(each.effect + ".", 0) == 0;
            });
   };
+  const char* const part = result.jackknife_parts == flights ? "flight" : "part of the flights";
+  std::string by_one;
   std::string apart;
   for (const FittedParameter& parameter : result.parameters) {
+    if (std::isinf(parameter.jackknife_error)) {
+      by_one += (by_one.empty() ? "" : ", ") + parameter.name;
+      continue;
+    }
     const double ratio = parameter.jackknife_error / parameter.noise_error;
     if (!(ratio > too_small || (ratio < too_large && !has_prior(parameter)))) continue;
     apart += fmt::format("{}{} ({:.2g} against {:.2g})", apart.empty() ? "" : ", ", parameter.name,
                          parameter.jackknife_error, parameter.noise_error);
   }
+  if (!by_one.empty()) {
+    notes.push_back(
+        fmt::format("one {} alone determines {}: its jackknife error is infinite (inf), and no other part "
+                    "verifies its standard error; add a flight that determines it",
+                    part, by_one));
+  }
   if (!apart.empty()) {
     notes.push_back(fmt::format(
         "jackknife errors (without one {} at a time) differ from the errors by the noise model for {}: the "
         "noise model is wrong, or a few minutes dominate the fit; use the larger error",
-        result.jackknife_parts == flights ? "flight" : "part of the flights", apart));
+        part, apart));
   }
   return notes;
 }

@@ -72,6 +72,8 @@ OfferedEffect candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
   }
   if (!diagnosis.rival.empty())
     candidate.caution += fmt::format("; a straight line in {} may be the cause instead", diagnosis.rival);
+  if (!finding.rival.empty())
+    candidate.caution += fmt::format("; {} may be the cause instead", finding.rival);
   return candidate;
 }
 
@@ -418,9 +420,8 @@ class ForwardSelection {
     if (!now.findings.empty())
       return stop(StopReason::in_model, "the effects named by the diagnosis are already in the model");
     const Unexplained& left = now.unexplained;
-    std::string what =
-        fmt::format("structure of {} is not explained by any effect of the catalogue{}{}", shown(left.rms),
-                    left.regime.empty() ? "" : ", most of it in ", left.regime);
+    std::string what = fmt::format("structure of {} is not explained by any effect of the catalogue{}{}",
+                                   shown(left.rms), left.regime.empty() ? "" : ", largest in ", left.regime);
     what +=
         left.variables.empty()
             ? "; it is not correlated with any variable of the files"

@@ -10,6 +10,7 @@
 
 #include <pcor/numerics/noise.hpp>
 #include "base/phrasing.hpp"
+#include "diagnose/diagnosis_panels.hpp"
 #include "fit/coefficient_picture.hpp"
 #include "numerics/missing.hpp"
 
@@ -31,7 +32,7 @@ double independent_samples(const Improvement& improvement, bool held_out) {
 }
 
 std::string held_out_series(const Improvement& improvement) {
-  if (!improvement.holdout_is_flights) return "not in the fit, five parts in turn";
+  if (!improvement.holdout_is_flights) return "not in the fit, every fifth 5 min in turn";
   return "held out: " + join_list(held_out_names(improvement));
 }
 
@@ -57,6 +58,13 @@ std::vector<std::string> held_out_names(const Improvement& improvement) {
   return names;
 }
 
+std::string held_out_text(const Improvement& improvement) {
+  if (improvement.holdout_is_flights) return "";
+  return fmt::format(
+      "Not in the fit: every fifth five minutes in turn, without outliers, with {} to the rest.",
+      refitted_text(improvement.steps.back().diagnosis));
+}
+
 std::string step_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
 
 bool delivers_rivals(const Improvement& improvement) {
@@ -72,6 +80,7 @@ DotPanel steps_picture(const Improvement& improvement) {
       "Rms residual after each effect that was added. Bars are standard errors for the effective sample "
       "size; the dashed line is the noise, a lower limit. All values use the same samples, so a step may be "
       "significant although bars overlap.";
+  if (const std::string text = held_out_text(improvement); !text.empty()) panel.caption += " " + text;
   panel.axis = "rms residual";
   panel.unit = "hPa";
   panel.series = {"fitted", held_out_series(improvement)};

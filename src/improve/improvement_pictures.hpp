@@ -12,6 +12,9 @@ namespace pcor::internal::report {
 /// Description of the held-out samples: "rf03.nc", "the last part of rf01.nc".
 std::vector<std::string> held_out_names(const Improvement& improvement);
 
+/// Sentence on the samples that are not in the fit; empty with held-out flights or parts of them.
+std::string held_out_text(const Improvement& improvement);
+
 /// Label of a step: "refitted", "+ static-lag".
 std::string step_name(const ImproveStep& step);
 

@@ -74,6 +74,7 @@ void add_models_in_time(DiagnosisPanels& panels, const Improvement& improvement,
 ReportTable steps_table(const Improvement& improvement) {
   ReportTable table;
   table.title = "Steps of the selection";
+  table.caption = held_out_text(improvement);
   table.headers = {"model",
                    "free coefficients",
                    "rms in the fit, hPa",
@@ -216,8 +217,8 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
   add_models_in_time(panels, improvement, models);
   const std::vector<std::string> ends =
       residuals.size() < 2 ? residuals : std::vector{residuals.front(), residuals.back()};
-  add_residual_in_time(panels, ends);
-  add_residual_by_regime(panels, ends);
+  add_residual_in_time(panels, ends, refitted_text(top));
+  add_residual_by_regime(panels, ends, refitted_text(top));
   for (std::size_t i = 1; i < steps.size(); ++i) add_step(panels, improvement, i);
   add_distribution_panels(panels, ends);
   panels.add_responses(ends, reads_laser(top));

@@ -64,6 +64,7 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
   }
   WhatIf tried = what_if(flights, improvement.refitted, references, candidates, with);
   tried.panel.start = "refitted";
+  if (tried.panel.held_out.samples > 0.0) tried.panel.is_start_fitted = false;
   return tried;
 }
 

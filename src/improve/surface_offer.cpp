@@ -105,7 +105,7 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
     offer.out_of_fit =
         comparison_of(try_models(flights, {models.without, models.with}, references, options), 0, 1, true);
   } else {
-    offer.held_out = "five blocks, each with coefficients of the other four";
+    offer.held_out = "five consecutive blocks with outliers, each with coefficients of the other four";
     offer.out_of_fit = out_of_blocks(flights, models, references, options);
   }
   return offer;

@@ -502,7 +502,7 @@ class Look {
   void add_missing(const QuantityInfo& info, const std::vector<std::string>& names) {
     MissingRole missing{std::string(info.name), std::string(info.description), names, cost_of(info.name), {}};
     const Quantity role = quantity_named(info.name);
-    if (role == Quantity::mach) return;  // laws find it from the pressures
+    if (role == Quantity::mach || role == Quantity::date) return;  // pressures and times give these
     if (role != Quantity::count) missing.effects = effects_that_need(role);
     if (!missing.cost.empty() || !missing.effects.empty() || !names.empty())
       result_.missing.push_back(std::move(missing));

@@ -92,6 +92,8 @@ Report inspection_report(const std::vector<Inspection>& flights) {
                                                    flight.records, flight.time.gap_count));
     report.info.emplace_back("Aircraft", flight.aircraft.empty() ? "not stated" : flight.aircraft);
     report.info.emplace_back("Names of", flight.family_title);
+    if (const std::string models = applicable_text(flight.laws); !models.empty())
+      report.info.emplace_back("Models for this flight", models);
     for (const Note& note : flight.notes) report.info.emplace_back(label_of(note), note.text);
     if (!flight.samples) continue;
     report.flight_starts.push_back(report.time.size());
@@ -112,10 +114,7 @@ Report inspection_report(const std::vector<Inspection>& flights) {
     columns.add("latitude", "latitude", "deg", [](const Inspection& f) { return f.samples->latitude; });
     columns.add("longitude", "longitude", "deg", [](const Inspection& f) { return f.samples->longitude; });
     add_strip(report);
-    add_if_present(report, TimePanel{"Height",
-                                     "Altitude in time; regimes are shaded. Drag over a time range, or "
-                                     "choose a regime, to restrict every picture to its samples.",
-                                     {"altitude"}});
+    add_if_present(report, TimePanel{"Height", "Altitude in time; regimes are shaded.", {"altitude"}});
     add_if_present(
         report, TimePanel{"Speed", "True airspeed and speed over the ground.", {"airspeed", "ground_speed"}});
     add_if_present(report, TimePanel{"Attitude", "Pitch and roll.", {"pitch", "roll"}});

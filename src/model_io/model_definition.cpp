@@ -27,6 +27,11 @@ std::vector<Quantity> ModelDefinition::roles() const {
   return roles;
 }
 
+std::string ModelDefinition::variable_of(Quantity role) const {
+  const auto found = variables.find(role);
+  return found == variables.end() ? std::string() : found->second;
+}
+
 std::string ModelDefinition::output_name(std::string_view standard_name) const {
   const auto renamed = output.find(std::string(standard_name));
   if (renamed != output.end()) return renamed->second;

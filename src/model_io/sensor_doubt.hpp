@@ -23,8 +23,8 @@ struct SensorDoubt {
 /// Effects whose coefficients describe the calibration of a sensor.
 inline const std::vector<std::string_view> laser_calibration{"lams-scale", "lams-elevation", "lams-azimuth"};
 inline const std::vector<std::string_view> thermometer_calibration{"temp-offset", "recovery-factor"};
-inline const std::vector<std::string_view> pressure_calibration{"psfd-bias", "psfd-gain", "psfd-drift",
-                                                                "qcf-zero"};
+inline const std::vector<std::string_view> static_calibration{"psfd-bias", "psfd-gain", "psfd-drift"};
+inline const std::vector<std::string_view> dynamic_calibration{"qcf-zero"};
 
 /// Whether the coefficient, like "temp-offset.offset", has a default uncertainty (`ParameterInfo::doubt`).
 bool has_doubt(std::string_view coefficient);

@@ -59,6 +59,12 @@ Eigen::MatrixXd information_inverse(const Eigen::MatrixXd& information) {
          scale.asDiagonal();
 }
 
+Eigen::MatrixXd products_of(const Eigen::Ref<const Eigen::MatrixXd>& rows) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
+  result.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  return result.selfadjointView<Eigen::Lower>();
+}
+
 Eigen::MatrixXd products_after(const Eigen::MatrixXd& products, Eigen::Index count) {
   const Eigen::Index rest = products.cols() - count;
   const Eigen::MatrixXd across = products.topRightCorner(count, rest);

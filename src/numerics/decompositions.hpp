@@ -44,6 +44,9 @@ Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen:
 /// The inverse of the information on unknowns in any units, over the directions that it determines.
 Eigen::MatrixXd information_inverse(const Eigen::MatrixXd& information);
 
+/// Products of columns with each other: half the work of rows' rows.
+Eigen::MatrixXd products_of(const Eigen::Ref<const Eigen::MatrixXd>& rows);
+
 /// Products of columns after least squares by the first `count` of them, in any units.
 /// @param products of all columns with each other @return those of the columns after the first `count`
 Eigen::MatrixXd products_after(const Eigen::MatrixXd& products, Eigen::Index count);

@@ -153,13 +153,6 @@ Eigen::VectorXd level_of_bins(const std::vector<NoiseLevel>& levels, const Binni
 
 namespace {
 
-/// The columns' products with each other: half the work of a product of matrices.
-Eigen::MatrixXd squares_of(const Eigen::Ref<const Eigen::MatrixXd>& columns) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-  result.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
-  return result.selfadjointView<Eigen::Lower>();
-}
-
 /// The restricted likelihood of residuals after columns, as the noise model changes.
 class RestrictedLikelihood {
  public:
@@ -195,7 +188,7 @@ class RestrictedLikelihood {
     Eigen::VectorXd innovation = white_.col(width);
     double columns = 0.0;  // the determinant of their information
     if (width > 0) {
-      const Eigen::MatrixXd information = squares_of(white_.leftCols(width));
+      const Eigen::MatrixXd information = products_of(white_.leftCols(width));
       innovation -= white_.leftCols(width) *
                     pseudo_solution(information, white_.leftCols(width).transpose() * innovation);
       const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt();

@@ -31,11 +31,6 @@ std::string series_that_is(const Flight& flight, const std::string& standard_nam
   return {};
 }
 
-std::string variable_of(const ModelDefinition& model, Quantity role) {
-  const auto found = model.variables.find(role);
-  return found == model.variables.end() ? std::string() : found->second;
-}
-
 }  // namespace
 
 void name_coordinates(const Flight& flight, const ModelDefinition& model, FileDescription& description) {
@@ -46,10 +41,10 @@ void name_coordinates(const Flight& flight, const ModelDefinition& model, FileDe
     return named.empty() ? series_that_is(flight, standard_name) : named;
   };
   const VariableNaming& family = family_of(model, flight);
-  description.latitude = coordinate("latitude_coordinate", variable_of(model, Quantity::latitude),
+  description.latitude = coordinate("latitude_coordinate", model.variable_of(Quantity::latitude),
                                     usual_variables(family, Quantity::latitude), "latitude");
   description.longitude = coordinate("longitude_coordinate", "", family.names_of("longitude"), "longitude");
-  description.altitude = coordinate("zaxis_coordinate", variable_of(model, Quantity::altitude),
+  description.altitude = coordinate("zaxis_coordinate", model.variable_of(Quantity::altitude),
                                     usual_heights(family), "altitude");
   if (description.altitude.rfind("PALT", 0) == 0) description.altitude_standard_name = "barometric_altitude";
 }
@@ -59,7 +54,7 @@ Names flown_variables(const Flight& flight, const ModelDefinition& model) {
   Names flown;
   for (const Quantity role : flown_quantities) {
     Names names = role == Quantity::altitude ? usual_heights(family) : usual_variables(family, role);
-    names.insert(names.begin(), variable_of(model, role));
+    names.insert(names.begin(), model.variable_of(role));
     flown.push_back(first_series(flight, names));
   }
   for (const char* velocity : {"ground_speed_east", "ground_speed_north"})

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include <pcor/flight/flight_writer.hpp>
@@ -41,13 +41,30 @@ class DelayLine {
   void add_flag(double bit) { flags_->values[finished_ - 1] += bit; }
 
   /// Takes the results of the last run of the loop. False if they belong to no sample.
-  bool leave(const Loop& loop);
+  bool leave(const Loop& loop) {
+    if (++runs_ <= delay_ || left_ == entered_) return false;
+    for (Output& output : outputs_) output.values.push_back(output.value_in(loop));
+    ++left_;
+    ++finished_;
+    return true;
+  }
 
   /// After a gap nothing is in the loop.
   void reset() { runs_ = entered_ = left_ = 0; }
 
   /// Writes the complete records of delayed outputs.
-  void write(FlightWriter& writer, std::size_t rate);
+  void write(FlightWriter& writer, std::size_t rate) {
+    const RecordBlock block{written_records_, finished_ / rate};
+    const auto samples = static_cast<std::ptrdiff_t>(block.count * rate);
+    const auto write_one = [&](Output& output) {
+      writer.write(output.number, block, output.values.data());
+      output.values.erase(output.values.begin(), output.values.begin() + samples);
+    };
+    for (Output& output : outputs_) write_one(output);
+    if (flags_) write_one(*flags_);
+    finished_ -= static_cast<std::size_t>(samples);
+    written_records_ += block.count;
+  }
 
  private:
   std::size_t delay_;

@@ -19,6 +19,7 @@
 #include "process/origin.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/samples.hpp"
+#include "residuals/time_spans.hpp"
 #include "roles/fast_series.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -64,7 +65,7 @@ void Processing::choose_roles() {
 ModelDefinition Processing::doubted() const {
   const UncertaintyPart part = options_.uncertainty;
   if (part == UncertaintyPart::none || part == UncertaintyPart::random ||
-      variable_of(Quantity::recovery_temperature).empty())
+      file_.variable_of(Quantity::recovery_temperature).empty())
     return file_;
   const ModelUncertainty stated = uncertainty_of(file_);
   const bool is_stated =
@@ -139,17 +140,41 @@ void Processing::find_flaps() {
         "flaps are not recorded and the lift does not determine them: records with extended flaps have no "
         "quality bit");
   } else if (std::find(extended->begin(), extended->end(), true) != extended->end()) {
-    summary_.notes.push_back(warning_note(fmt::format(
-        "flaps are extended in some records{}, and no effect of the model describes them: its delta-p may "
-        "be wrong there, and PCORFLAG has the bit outside_domain",
-        variable.empty() ? " (inferred from the lift)" : "")));
     flaps_ = std::move(*extended);
+    const std::string times = add_outside("flaps extended", flaps_);
+    summary_.notes.push_back(warning_note(fmt::format(
+        "do not use results of {}: flaps extended in {} of {} records{}, without an effect of the model; "
+        "PCORFLAG has the bit outside_domain, and no uncertainty is given",
+        times, std::count(flaps_.begin(), flaps_.end(), true), flaps_.size(),
+        variable.empty() ? " (by the lift)" : "")));
   }
+}
+
+/// Adds the spans of the marked records to the summary, and returns their times as text.
+std::string Processing::add_outside(const std::string& reason, const std::vector<bool>& records,
+                                    std::size_t max_gap) {
+  const std::vector<double> time = record_times(flight_);
+  const std::vector<Segment> segments = marked_segments(records, max_gap);
+  for (const Segment& segment : segments) {
+    const double last = time[segment.first + segment.count - 1];
+    summary_.outside.push_back({reason, time[segment.first], last + flight_.time().step});
+  }
+  return times_of(segments, time);
+}
+
+/// Notes the samples in flight outside the domain of the law, known after the run.
+void Processing::note_domain() {
+  const auto count = std::count(outside_.begin(), outside_.end(), true);
+  if (count == 0) return;
+  // Values that cross a limit many times in a minute give one span.
+  const auto records_per_minute = static_cast<std::size_t>(60.0 / flight_.time().step);
+  note("delta-p is extrapolated in {} of {} records, outside the domain of the law: {}", count,
+       outside_.size(), add_outside("outside the domain", outside_, records_per_minute));
 }
 
 void Processing::choose_rate() {
   for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
-    summary_.rate = std::max(summary_.rate, flight_.variable(variable_of(pressure)).rate);
+    summary_.rate = std::max(summary_.rate, flight_.variable(file_.variable_of(pressure)).rate);
   }
   std::string why;
   const double rate = summary_.rate / flight_.time().step;
@@ -446,6 +471,11 @@ void Processing::note_sample() {
   }
   QualityFlags quality = loop_->quality();
   const std::size_t record = noted_++ / static_cast<std::size_t>(summary_.rate);
+  if (chain_->is_outside_domain(state) &&
+      state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
+    outside_.resize(flight_.records());
+    outside_[record] = true;
+  }
   quality.set(!frozen_.empty() && frozen_[record], Quality::sensor_frozen);
   quality.set(!flaps_.empty() && flaps_[record], Quality::outside_domain);
   double bits = 0.0;
@@ -461,8 +491,16 @@ void Processing::note_sample() {
   filtered_->enter_flags(bits);
 }
 
+/// The stated uncertainty does not apply to records with extended flaps.
+void Processing::remove_uncertainty_with_flaps() {
+  const std::size_t record = noted_ / static_cast<std::size_t>(summary_.rate);
+  if (record >= flaps_.size() || !flaps_[record]) return;
+  for (const UncertainResult& each : uncertain_results) loop_->state()[each.uncertainty] = missing<double>();
+}
+
 /// Takes the results of the last run, which may belong to an earlier sample.
 void Processing::take_results() {
+  remove_uncertainty_with_flaps();
   if (results_->leave(*loop_)) note_sample();
   if (!filtered_->leave(*loop_) || !loop_->quality().has(Quality::filter_window_incomplete)) return;
   filtered_->add_flag(static_cast<double>(Quality::filter_window_incomplete));
@@ -551,6 +589,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
     summary_.mean_defect = summary_.min_defect = summary_.max_defect = missing<double>();
   }
   for (const Input& input : inputs_) note_excluded(input, input.excluded, summary_.notes);
+  note_domain();
   if (summary_.corrected == 0) note("no sample could be corrected: see the quality bits");
   return summary_;
 }

@@ -1,15 +1,22 @@
 #include <pcor/process/process_report.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <set>
 #include <string_view>
+#include <utility>
 
 #include <pcor/base/atomic_file.hpp>
+#include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>
+#include "base/phrasing.hpp"
 #include "report/columns.hpp"
+#include "residuals/samples.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
 
@@ -36,15 +43,63 @@ constexpr std::array<Shown, 7> shown{{{"PCOR", "delta-p", "hPa"},
                                       {"ATX", "ambient temperature", "degC"},
                                       {"TASX", "true airspeed", "m/s"}}};
 
+// Indices in `shown`.
+constexpr std::size_t delta_column = 0;
+constexpr std::size_t static_column = 2;
+constexpr std::size_t dynamic_column = 3;
+
 constexpr const char* own_difference = "own_difference";
 
 /// Static pressure corrected in the flight file, hPa; empty if absent.
-Series own_static_pressure(const Flight& input) {
+RecordedSeries own_static_pressure(const Flight& input) {
   const VariableNaming& family = family_of(input);
-  const std::string variable = processed_static_pressure(input, family);
-  if (variable.empty()) return {};
-  return read_values(input, variable, input.conversion(variable, "hPa", "", family.unit_of(variable))).values;
+  RecordedSeries own{processed_static_pressure(input, family)};
+  if (own.variable.empty()) return own;
+  own.values = read_values(input, own.variable,
+                           input.conversion(own.variable, "hPa", "", family.unit_of(own.variable)))
+                   .values;
+  return own;
 }
+
+/// Records with extended flaps; nullopt if unknown.
+std::optional<std::vector<bool>> flaps_of(const Flight& input, const ModelDefinition& model) {
+  try {
+    return flaps_extended(input, model);
+  } catch (const Error&) {  // a damaged variable; the notes state it
+    return std::nullopt;
+  }
+}
+
+/// Mean and scatter of a series.
+struct Spread {
+  double count = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+
+  void add(double value) {
+    count += 1.0;
+    sum += value;
+    squares += value * value;
+  }
+  double mean() const { return sum / count; }
+  double scatter() const { return std::sqrt(std::max(0.0, squares / count - mean() * mean())); }
+};
+
+/// Differences from the original processing in flight, by the state of the flaps.
+struct FlapsDifferences {
+  std::set<std::string> variables{};
+  Spread flaps_in{};
+  Spread flaps_out{};
+  Spread unknown{};
+
+  /// @param difference in flight, NaN elsewhere
+  void add(const Series& difference, const std::optional<std::vector<bool>>& extended) {
+    for (std::size_t i = 0; i < difference.size(); ++i) {
+      if (std::isnan(difference[i])) continue;
+      (!extended ? unknown : (*extended)[i] ? flaps_out : flaps_in).add(difference[i]);
+    }
+  }
+};
 
 /// The series of the outputs, one flight after another.
 class Outputs {
@@ -55,6 +110,8 @@ class Outputs {
           {each.standard_name, each.title, std::string_view(each.unit) == "1" ? "" : each.unit, {}});
     columns_.push_back({own_difference, "static pressure minus that of the original processing", "hPa", {}});
   }
+
+  const FlapsDifferences& differences() const { return differences_; }
 
   void add(const ProcessedFlight& processed) {
     const Flight output(readable_output(processed.output));
@@ -68,11 +125,7 @@ class Outputs {
       if (output.has(name)) values = read_values(output, name, output.conversion(name, shown[i].unit)).values;
       append(columns_[i], values);
     }
-    Series difference = own_static_pressure(Flight(processed.input));
-    const Series& corrected = columns_[2].values;
-    const std::size_t first = report_.flight_starts.back();
-    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = corrected[first + i] - difference[i];
-    append(columns_.back(), difference);
+    add_difference(processed);
   }
 
   void end() {
@@ -80,6 +133,25 @@ class Outputs {
   }
 
  private:
+  void add_difference(const ProcessedFlight& processed) {
+    const Flight input(processed.input);
+    const RecordedSeries own = own_static_pressure(input);
+    Series difference = own.values;
+    const std::size_t first = report_.flight_starts.back();
+    for (std::size_t i = 0; i < difference.size(); ++i)
+      difference[i] = columns_[static_column].values[first + i] - difference[i];
+    append(columns_.back(), difference);
+    if (difference.empty()) return;
+    differences_.variables.insert(own.variable);
+    if (processed.state != FlightState::processed) return;  // its summary is empty
+    for (std::size_t i = 0; i < difference.size(); ++i) {
+      const double measured =
+          columns_[dynamic_column].values[first + i] + columns_[delta_column].values[first + i];
+      if (!(measured >= processed.summary.flying_dynamic_pressure)) difference[i] = std::nan("");
+    }
+    differences_.add(difference, flaps_of(input, processed.model));
+  }
+
   void append(ReportColumn& column, Series values) const {
     values.resize(report_.time.size() - report_.flight_starts.back(), std::nan(""));
     column.values.insert(column.values.end(), values.begin(), values.end());
@@ -88,14 +160,31 @@ class Outputs {
   Report& report_;
   const std::string& suffix_;
   std::vector<ReportColumn> columns_;
+  FlapsDifferences differences_{};
 };
 
-void add_pictures(Report& report) {
+ReportTable differences_table(const FlapsDifferences& differences) {
+  ReportTable table;
+  table.title = "Difference from the original processing, in flight";
+  table.caption = fmt::format("Corrected static pressure minus {} of the input. Scatter: standard deviation.",
+                              fmt::join(differences.variables, ", "));
+  table.headers = {"flaps", "samples", "mean (hPa)", "scatter (hPa)"};
+  for (const auto& [flaps, spread] :
+       {std::pair("in", differences.flaps_in), std::pair("out", differences.flaps_out),
+        std::pair("unknown", differences.unknown)}) {
+    if (spread.count > 0.0)
+      table.rows.push_back({flaps, fmt::format("{:.0f}", spread.count), fmt::format("{:+.3f}", spread.mean()),
+                            fmt::format("{:.3f}", spread.scatter())});
+  }
+  return table;
+}
+
+void add_pictures(Report& report, const FlapsDifferences& differences) {
   add_if_present(report,
                  TimePanel{"Delta-p in time",
                            "Correction added to the static pressure and subtracted from the dynamic "
                            "pressure; the band is its standard uncertainty, if the model states one. "
-                           "Drag over a time range to restrict all figures to it.",
+                           "Times for which the law was not fitted are shaded.",
                            {"PCOR"},
                            "delta-p",
                            meet(report.columns, {"PCOR", "PCOR_uncertainty"}) ? "PCOR_uncertainty" : ""});
@@ -104,10 +193,13 @@ void add_pictures(Report& report) {
     report.items.emplace_back(BinnedPanel{
         "Delta-p by the state of flight", "The samples, and their mean in each bin.", {"PCOR"}, states});
   add_if_present(report, TimePanel{"Difference from the original processing",
-                                   "Corrected static pressure minus the corrected static pressure of the "
-                                   "input: 1 hPa is about 8 m of height at the ground.",
+                                   fmt::format("Corrected static pressure minus {} of the input: 1 hPa is "
+                                               "about 8 m of height at the ground.",
+                                               fmt::join(differences.variables, ", ")),
                                    {own_difference},
                                    "difference of static pressure"});
+  if (ReportTable table = differences_table(differences); !table.rows.empty())
+    report.items.emplace_back(std::move(table));
   add_if_present(report, TimePanel{"True airspeed", "Computed from the corrected pressures.", {"TASX"}});
   add_if_present(report, TimePanel{"Ambient temperature",
                                    "Computed from the recovery temperature and the corrected Mach number.",
@@ -178,14 +270,21 @@ Report process_report(const std::vector<ProcessedFlight>& flights, const std::st
   Outputs outputs(report, suffix);
   for (const ProcessedFlight& flight : flights) {
     if (flight.state != FlightState::unreadable) outputs.add(flight);
+    for (const OutsideSpan& span : flight.summary.outside)
+      report.intervals.push_back({span.reason, span.begin, span.end});
     for (const Note& note : flight.summary.notes) {
+      if (note.severity == Severity::warning) {
+        const std::string name = flight.input.filename().string() + ": ";
+        report.summary.push_back(sentence((flights.size() > 1 ? name : "") + note.text));
+        continue;
+      }
       const std::pair<std::string, std::string> fact{label_of(note), note.text};
       if (std::find(report.info.begin(), report.info.end(), fact) == report.info.end())
         report.info.push_back(fact);
     }
   }
   outputs.end();
-  add_pictures(report);
+  add_pictures(report, outputs.differences());
   report.items.emplace_back(flights_table(flights));
   ReportTable flags = flags_table(flights);
   if (!flags.rows.empty()) report.items.emplace_back(std::move(flags));

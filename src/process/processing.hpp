@@ -58,11 +58,6 @@ class Processing {
     return fmt::format("{}", fmt::join(texts, "; "));
   }
 
-  std::string variable_of(Quantity role) const {
-    const auto found = file_.variables.find(role);
-    return found == file_.variables.end() ? std::string() : found->second;
-  }
-
   std::string to_string(const std::string& standard) const {
     return file_.output_name(standard) + options_.suffix;
   }
@@ -72,6 +67,9 @@ class Processing {
   void choose_inputs();
   void find_frozen_sensors();
   void find_flaps();
+  std::string add_outside(const std::string& reason, const std::vector<bool>& records,
+                          std::size_t max_gap = 0);
+  void note_domain();
   void choose_rate();
   ShortestPeriods choose_periods();
   void leave_out_noise(Quantity rate, const SignalBand& band);
@@ -90,6 +88,7 @@ class Processing {
   std::size_t define(FlightWriter& writer, const OutputVariable& variable);
   void process_block(RecordBlock block, std::vector<double>& times);
   void note_sample();
+  void remove_uncertainty_with_flaps();
   void take_results();
   void flush();
   std::string temperature_calibration();
@@ -108,6 +107,7 @@ class Processing {
   double sample_step_ = 1.0;           // s
   std::vector<bool> frozen_;           // records in which any sensor is frozen; empty: none
   std::vector<bool> flaps_;            // records outside the law by extended flaps; empty: none
+  std::vector<bool> outside_;          // records in flight outside the domain of the law; empty: none
   std::size_t noted_ = 0;              // samples of which results are available
   std::map<Quantity, std::string> output_names_;
   ProcessSummary summary_;

@@ -215,7 +215,7 @@ class Panel {
 
   svg() {
     const {width, height, shown} = this.exportSize, title = titleLines(this.item.title, width - 16);
-    const pen = new SvgPen(width, height + title.height, this.item.title, shown, this.description);
+    const pen = new SvgPen(width, height + title.height, this.item.title, shown, `${this.description} ${this.report.origin}`.trim());
     this.drawForPaper(pen, width, height, title);
     return pen.svg;
   }
@@ -233,12 +233,7 @@ class Panel {
 
   get caption() { return this.section.querySelector('.caption')?.textContent ?? ''; }
 
-  // Description of the picture and its provenance, for screen readers and for the picture without the page.
-  get description() {
-    const origin = [...document.querySelectorAll('footer div')].map((fact) =>
-      `${fact.querySelector('dt').textContent}: ${fact.querySelector('dd').textContent}.`);
-    return [this.caption, `${this.drawn.alternative}.`, ...origin].filter((words) => words).join(' ');
-  }
+  get description() { return [this.caption, `${this.drawn.alternative}.`].filter((words) => words).join(' '); }
 
   get fileName() {
     const words = this.item.title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);

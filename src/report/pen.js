@@ -3,11 +3,13 @@
 //   rect(x, y, width, height, fill, opacity)
 //   lines(paths, stroke, width, dash, opacity)  each path is x, y, x, y, ... in one array
 //   dots(xy, size, fill, opacity)          squares around x, y, x, y, ...; one per pixel
-//   text(x, y, words, {fill, size, align: start | middle | end, weight, turn: degrees})
+//   text(x, y, words, {fill, size, align: start | middle | end, weight, turn: degrees, halo: colour around it})
 //   clip(box, draw)                        limits drawing to the box {x, y, width, height}
 //   below(height, draw)                    draws `height` further down
 
 const fontFamily = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
+
+const haloWidth = 4;
 
 const measurer = document.createElement('canvas').getContext('2d');
 
@@ -66,7 +68,7 @@ class CanvasPen {
     context.globalAlpha = 1;
   }
 
-  text(x, y, words, {fill, size = 12, align = 'start', weight = 400, turn = 0}) {
+  text(x, y, words, {fill, size = 12, align = 'start', weight = 400, turn = 0, halo = ''}) {
     const {context} = this;
     context.save();
     context.translate(x, y);
@@ -74,6 +76,10 @@ class CanvasPen {
     context.font = `${weight} ${size}px ${fontFamily}`;
     context.fillStyle = fill;
     context.textAlign = align === 'middle' ? 'center' : align;
+    if (halo) {
+      Object.assign(context, {strokeStyle: halo, lineWidth: haloWidth, lineJoin: 'round'});
+      context.strokeText(words, 0, 0);
+    }
     context.fillText(words, 0, 0);
     context.restore();
   }
@@ -139,10 +145,13 @@ class SvgPen {
     this.parts.push(`<path d="${d}" fill="${fill}"${opacity < 1 ? ` fill-opacity="${opacity}"` : ''}/>`);
   }
 
-  text(x, y, words, {fill, size = 12, align = 'start', weight = 400, turn = 0}) {
-    this.parts.push(`<text x="${short(x)}" y="${short(y)}" fill="${fill}" font-size="${size}" text-anchor="${align}"` +
-        `${weight === 400 ? '' : ` font-weight="${weight}"`}` +
+  text(x, y, words, {fill, size = 12, align = 'start', weight = 400, turn = 0, halo = ''}) {
+    const add = (colours) => this.parts.push(`<text x="${short(x)}" y="${short(y)}" ${colours} font-size="${size}" ` +
+        `text-anchor="${align}"${weight === 400 ? '' : ` font-weight="${weight}"`}` +
         `${turn ? ` transform="rotate(${turn} ${short(x)} ${short(y)})"` : ''}>${escapeXml(words)}</text>`);
+    // Separate elements: some programs ignore paint-order.
+    if (halo) add(`fill="${halo}" stroke="${halo}" stroke-width="${haloWidth}" stroke-linejoin="round" aria-hidden="true"`);
+    add(`fill="${fill}"`);
   }
 
   clip({x, y, width, height}, draw) {

@@ -207,7 +207,13 @@ class ReportPage {
   // Pictures that do not depend on interactive changes.
   get figures() { return this.panels.filter(({item}) => !item.isLive); }
 
-  // All figures and their captions, as lines "NAME BASE64".
+  // Provenance of the report, for pictures without the page.
+  get origin() {
+    return [...document.querySelectorAll('footer div')].map((fact) =>
+      `${fact.querySelector('dt').textContent}: ${fact.querySelector('dd').textContent}.`).join(' ');
+  }
+
+  // All figures, their captions and the provenance, as lines "NAME BASE64".
   exportText() {
     const letters = (bytes) => bytes.reduce((text, byte) => text + String.fromCharCode(byte), '');
     const base64 = (text) => btoa(letters(new TextEncoder().encode(text)));
@@ -216,7 +222,9 @@ class ReportPage {
       `${panel.fileName}.png ${panel.png().split(',')[1]}`,
     ]);
     const captions = this.figures.map((panel) => `${panel.fileName}: ${panel.item.title}. ${panel.description}\n`);
-    return [...pictures, `captions.txt ${base64(captions.join('\n') || 'This report has no pictures.\n')}`].join('\n');
+    if (!captions.length) captions.push('This report has no pictures.\n');
+    if (this.origin) captions.push(`${this.origin}\n`);
+    return [...pictures, `captions.txt ${base64(captions.join('\n'))}`].join('\n');
   }
 }
 

@@ -26,9 +26,9 @@ void add_regimes(Report& report, const std::vector<std::string>& residuals) {
   if (shown.empty() || report.intervals.empty()) return;
   report.items.emplace_back(
       RegimePanel{"Residual by regime",
-                  "Dots are the mean of the selected samples of a regime, bars the scatter about it; the rms "
-                  "is at the right. A mean different from zero in one regime indicates a missing effect that "
-                  "depends on the manoeuvre.",
+                  "Dots are the mean in each regime, bars the scatter about it; the rms is at the right. A "
+                  "mean different from zero in one regime indicates a missing effect that depends on the "
+                  "manoeuvre.",
                   shown, "residual"});
 }
 
@@ -64,11 +64,9 @@ void add_distributions(Report& report, const std::vector<std::string>& residuals
 void add_strip(Report& report) {
   std::vector<std::string> shown = present(report, {"altitude", "airspeed", "true_airspeed"});
   if (shown.empty()) return;
-  report.items.emplace_back(
-      StripPanel{"Height, speed and regimes",
-                 "Altitude, speed and regimes of the flight, with a lane for each regime. Drag over a time "
-                 "range to restrict every picture to its samples.",
-                 std::move(shown)});
+  report.items.emplace_back(StripPanel{
+      "Height, speed and regimes", "Altitude, speed and regimes of the flight, with a lane for each regime.",
+      std::move(shown)});
 }
 
 void add_track(Report& report, const std::string& title, const std::string& caption,

@@ -138,7 +138,8 @@ function drawTrack(pen, width, height, item, samples, theme) {
       if (first === undefined) continue;
       const [px, py] = [x(at.get(first)), y(at.get(first))];
       pen.lines([[px - 5, py - 5, px + 5, py - 5, px + 5, py + 5, px - 5, py + 5, px - 5, py - 5]], theme.ink, 1.5);
-      const words = `${flight.name} ${clock(samples.time[first], false)}`.trim();
+      const name = samples.flights.length > 1 ? flight.name : 'start';
+      const words = `${name} ${clock(samples.time[first], false)}`.trim();
       // A place near the mark that covers the fewest samples of the track and no other name.
       const width = textWidth(words, fontSize), end = box.x + box.width - 2;
       const lefts = [px + 9, px - 9 - width, px - width / 2].map((x) => Math.max(Math.min(x, end - width), box.x + 2));
@@ -149,7 +150,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
       const [left, line] = [4, 20, -13, 34, -27, 48, -41, 62, -55].flatMap((down) => lefts.map((left) => [left, py + down]))
         .reduce((best, each) => cost(each) < cost(best) ? each : best);
       taken.push([left, left + width, line]);
-      pen.text(left, line, words, {...small(theme), fill: theme.ink});
+      pen.text(left, line, words, {...small(theme), fill: theme.ink, halo: theme.paper});
     }
   });
   // Barbs that do not overlap.

@@ -3,6 +3,14 @@
 
 const sliderSteps = 1000;
 
+const notFound = 'not found';  // `why` of effects that the search did not find
+
+// Value for a number box: four digits, small values with an exponent, so that nine characters suffice.
+function boxText(value) {
+  const rounded = Number(value.toPrecision(4));
+  return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : String(rounded);
+}
+
 class WhatIf {
   constructor(item, section, report) {
     Object.assign(this, {item, section, report});
@@ -48,6 +56,7 @@ class WhatIf {
       }
     }
     this.residual = samples.columns.get(item.residual);
+    this.again = this.addColumn('what-if-again', 'residual, fitted again', false);
     this.live = this.addColumn('what-if', 'residual, what if', true);
     this.sides = ['what-if-first', 'what-if-second'].map((name) => this.addColumn(name, name, false));
   }
@@ -93,8 +102,19 @@ class WhatIf {
       make('div', {class: 'what-if-general'},
         make('label', {class: 'switch'}, this.ownSwitch, text('The model’s coefficients are fitted again')), this.reset),
       this.commandPart,
-      make('ul', {class: 'what-if-effects', 'aria-label': 'Effects'}, ...this.rows.map(({element}) => element)),
+      ...this.effectLists(),
       make('details', {}, make('summary', {}, 'Coefficients'), scrolling('Coefficients', this.coefficients)));
+  }
+
+  // Lists of the effects; those that the search did not find are apart.
+  effectLists() {
+    const list = (label, isNotFound) => {
+      const shown = this.rows.filter((row, e) => (this.item.effects[e].why === notFound) === isNotFound);
+      return shown.length ? [make('ul', {'class': 'what-if-effects', 'aria-label': label}, ...shown.map(({element}) => element))] : [];
+    };
+    const others = list('Effects that were not found', true);
+    if (others.length) others.unshift(make('p', {}, 'Not found, because not significant. The closest ones, to try:'));
+    return [...list('Effects', false), ...others];
   }
 
   effectRow({id, title, why, note}, e) {
@@ -107,7 +127,7 @@ class WhatIf {
     const sliders = this.fit.coefficientsOf(e).map((c) => this.slider(c, e));
     const about = [title, note].filter((words) => words).join('. ');
     const element = make('li', {},
-      make('label', {class: 'switch'}, box, make('b', {}, id), make('span', {class: 'why'}, why)), gain,
+      make('label', {class: 'switch'}, box, make('b', {}, id), make('span', {class: 'why'}, why === notFound ? '' : why)), gain,
       make('p', {class: 'about'}, about), ...sliders.map((slider) => slider.element));
     return {element, box, gain, sliders};
   }
@@ -164,7 +184,7 @@ class WhatIf {
       this.pictures.append(section);
       return section;
     };
-    const columns = [item.residual, 'what-if'];
+    const columns = [this.again.name, this.live.name];
     const add = (own, caption, ...more) => {
       own.isLive = true;
       const panel = new Panel(own, part(own.kind, own.title, caption, ...more), report);
@@ -176,7 +196,7 @@ class WhatIf {
     this.steps = {kind: 'bars', title: 'What if: steps', bars: this.stepBars(), axis: this.heldOutWords, unit: 'hPa'};
     this.panels.push(add(this.steps, this.fit.heldOut
       ? 'On the hold-out, for each effect in the order in which they were switched on.'
-      : 'On parts of the flights that were excluded from the fit one at a time, without outliers, for each effect in the order in which they were switched on.'));
+      : 'On every fifth five minutes in turn, without outliers, with coefficients fitted to the rest of the flights; for each effect in the order in which they were switched on.'));
     const regimes = {title: 'Bias and rms by regime, what if', columns};
     this.regimes = new Regimes(regimes, part('regimes', 'What if: by regime', 'Bias and rms of the residual of the selected samples.'), report);
     report.tables.push(this.regimes);
@@ -213,13 +233,17 @@ class WhatIf {
   // another.
   stepBars() {
     const {fit, item} = this;
-    const bars = [{label: item.start, value: fit.heldOutRms(fit.fit([], new Map(), false))}];
+    const bars = [{label: item.start, value: this.heldOutRms(fit.fit([], new Map(), false), false)}];
     const on = [...this.on];
     for (let count = this.own ? 0 : 1; count <= on.length; ++count)
       bars.push({label: count ? `+ ${item.effects[on[count - 1]].id}` : 'fitted again',
-                 value: fit.heldOutRms(fit.fit(on.slice(0, count), this.byHand, this.own))});
-    return [...bars, {label: 'noise', value: item.noise}];
+                 value: this.heldOutRms(fit.fit(on.slice(0, count), this.byHand, this.own), this.own)});
+    bars.push({label: item.noiseLabel, value: item.noise});
+    return bars.filter(({value}) => Number.isFinite(value));
   }
+
+  // Unknown with initial coefficients that were fitted to the same samples. @param own they are fitted again
+  heldOutRms(fitted, own) { return own || !this.item.isStartFitted ? this.fit.heldOutRms(fitted) : NaN; }
 
   // Call after a step that can be undone.
   changed() {
@@ -253,6 +277,7 @@ class WhatIf {
 
   update() {
     this.fitNow();
+    this.fillResidual(this.again, this.nothing);
     this.fillLive();
     this.steps.bars = this.stepBars();
     this.showFigures();
@@ -270,7 +295,13 @@ class WhatIf {
       values.fill(NaN);
       return;
     }
-    this.takenOff(this.now.values, values);
+    this.fillResidual(this.live, this.now);
+  }
+
+  // Fills a column with the residual of a fit.
+  fillResidual(column, fitted) {
+    const {values} = column;
+    this.takenOff(fitted.values, values);
     for (let i = 0; i < values.length; ++i) values[i] = this.residual.values[i] - values[i];
   }
 
@@ -282,12 +313,12 @@ class WhatIf {
   showFigures() {
     const {fit, nothing, now, item} = this;
     const given = fit.fit([], new Map(), false);
-    const three = (words, of, digits = 4) => [words, ...[given, nothing, now].map((each, i) =>
-      i === 2 && !this.isChanged ? '–' : number(of(each), 10 ** -digits))];
+    const row = (words, values) => [words, ...values.map((value, i) => i === 2 && !this.isChanged ? '–' : number(value, 1e-4))];
     fillTable(this.figures, {
       headers: ['hPa', item.start, 'fitted again', 'what if'],
-      rows: [three('rms', ({rms}) => rms), three(this.heldOutWords, (each) => fit.heldOutRms(each)),
-             ['noise', '', '', number(item.noise, 1e-4)],
+      rows: [row('rms', [given.rms, nothing.rms, now.rms]),
+             row(this.heldOutWords, [this.heldOutRms(given, false), this.heldOutRms(nothing, true), this.heldOutRms(now, this.own)]),
+             [item.noiseLabel, '', '', number(item.noise, 1e-4)],
              ['χ² falls by', '', '', this.isChanged ? number(this.fallOfNow, 0.1) : '–']],
     });
   }
@@ -299,7 +330,7 @@ class WhatIf {
     const others = [...this.on].filter((other) => other !== e);
     const ifOn = isOn ? this.now : fit.fit([...others, e], this.byHand, this.own);
     const fall = fit.fall(others, [...others, e], this.byHand, this.own);
-    gain.textContent = `χ² ${number(-fall, fall < 10 ? 0.1 : 1)}`;
+    gain.textContent = `χ² ${fall < -0.05 ? 'rises' : 'falls'} by ${number(Math.abs(fall), Math.abs(fall) < 10 ? 0.1 : 1)}`;
     gain.title = isOn ? 'Decrease of chi2 by this effect, in addition to the other active ones' : 'Decrease of chi2 if this effect is added to the active ones';
     for (const slider of sliders) this.showSlider(slider, e, isOn, ifOn);
   }
@@ -315,7 +346,7 @@ class WhatIf {
     const value = byHand ? this.byHand.get(c) : estimate;
     range.value = Math.round((value - from) / (to - from) * sliderSteps);
     range.setAttribute('aria-valuetext', `${number(value, step)} ${unit === '1' ? '' : unit}`.trim());
-    if (document.activeElement !== input || Number(input.value) !== value) input.value = Number(value.toPrecision(5));
+    if (document.activeElement !== input || Number(input.value) !== value) input.value = boxText(value);
     band.hidden = !(error > 0);
     band.style.left = this.place(estimate - error, from, to);
     band.style.right = `calc(100% - ${this.place(estimate + error, from, to)})`;

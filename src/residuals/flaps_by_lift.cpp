@@ -1,15 +1,11 @@
 #include "residuals/flaps_by_lift.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
 
-#include <pcor/base/utc.hpp>
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/lift.hpp>
@@ -287,18 +283,6 @@ std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, cons
   flaps.deficit = where_out.empty() ? 0.0 : median(std::move(where_out));
   flaps.deviation = robust_standard_deviation(std::move(where_in));
   return flaps;
-}
-
-std::string times_of(const FlapsByLift& flaps, const std::vector<double>& time) {
-  std::vector<std::string> spans;
-  for (std::size_t first = 0, end = 0; first < flaps.out.size(); first = end) {
-    end = first + 1;
-    while (end < flaps.out.size() && flaps.out[end] == flaps.out[first]) ++end;
-    if (!flaps.out[first]) continue;
-    spans.push_back(fmt::format("from {} to {} UTC ({} samples)", utc_text(time[first]),
-                                utc_text(time[end - 1], "%H:%M:%S"), end - first));
-  }
-  return fmt::format("{}", fmt::join(spans, " and "));
 }
 
 }  // namespace pcor::internal

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <pcor/residuals/samples.hpp>
@@ -33,8 +32,5 @@ struct FlapsByLift {
 /// @param min_airspeed m/s; slower samples are not used
 std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, const std::vector<double>& angle,
                                               double min_airspeed);
-
-/// Text like "from 2004-02-18 15:04:42 to 15:13:02 UTC (500 samples)", for all intervals.
-std::string times_of(const FlapsByLift& flaps, const std::vector<double>& time);
 
 }  // namespace pcor::internal

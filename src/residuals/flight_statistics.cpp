@@ -12,6 +12,51 @@ namespace {
 
 constexpr double block_length = 300.0;  // s
 
+/// Factor on a variance that is known to some degrees of freedom: 1.645 standard errors are then exceeded by
+/// chance once in 20, as with a known variance (Wallace 1959, Annals of Mathematical Statistics 30, 1121).
+double for_freedom(double freedom) {
+  constexpr double square = 1.645 * 1.645;
+  const double correction = (8.0 * freedom + 3.0) / (8.0 * freedom + 1.0);
+  return freedom / square * std::expm1(square * correction * correction / freedom);
+}
+
+/// Power of a series in each of its cosines, from half a period in the series to almost two values per
+/// period. The mean of the series has no part in it.
+std::vector<double> powers_of(const std::vector<double>& values) {
+  constexpr double pi = 3.14159265358979323846;
+  const auto count = static_cast<double>(values.size());
+  std::vector<double> powers;
+  for (std::size_t j = 1; j < values.size(); ++j) {
+    const double step = pi * static_cast<double>(j) / count;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      sum += values[k] * std::cos(step * (static_cast<double>(k) + 0.5));
+    powers.push_back(2.0 / count * sum * sum);
+  }
+  return powers;
+}
+
+/// Variance of the sum of two or more values in equal steps of time, with any memory shorter than the series:
+/// from the power in the slowest cosines (Lazarus et al. 2018, Journal of Business & Economic Statistics 36,
+/// 541), a band that is halved as long as its slower half has more power than chance explains. Increased for
+/// the number of these cosines.
+double variance_of_sum(const std::vector<double>& values) {
+  constexpr std::size_t min_band = 6;
+  const std::vector<double> powers = powers_of(values);
+  const auto mean = [&powers](std::size_t first, std::size_t end) {
+    const auto begin = powers.begin();
+    return std::accumulate(begin + static_cast<std::ptrdiff_t>(first),
+                           begin + static_cast<std::ptrdiff_t>(end), 0.0) /
+           static_cast<double>(end - first);
+  };
+  std::size_t band = powers.size();
+  // The halves of a white band of n cosines have a ratio of 1 +- sqrt(8/n).
+  while (band >= min_band &&
+         mean(0, band / 2) > (1.0 + 3.0 / std::sqrt(static_cast<double>(band))) * mean(band / 2, band))
+    band /= 2;
+  return static_cast<double>(values.size()) * mean(0, band) * for_freedom(static_cast<double>(band));
+}
+
 }  // namespace
 
 std::vector<double> only_at(const std::vector<double>& values, const std::vector<std::size_t>& samples) {
@@ -68,21 +113,34 @@ Gain gain_between(const FlightSamples& samples, const std::vector<double>& befor
                   const std::vector<double>& after, const NoiseFloor& noise, double window) {
   const double segment = std::max(60.0, 2.0 * window);  // s
   const double weight = window > samples.step ? samples.step / window : 1.0;
-  Gain sum;
-  double squares = 0.0;
+  std::vector<double> gains;
+  std::vector<double> changes;  // squares of the change of the residual
   for (std::size_t i = 0; i < after.size();) {
     const double end = samples.time[i] + segment;
     double gain = 0.0;
+    double change = 0.0;
+    bool is_used = false;
     for (; i < after.size() && samples.time[i] < end; ++i) {
       const double deviation = noise.local_rms[i];
-      if (!std::isnan(after[i]) && !std::isnan(before[i]) && deviation > 0.0)
-        gain += (before[i] * before[i] - after[i] * after[i]) / (deviation * deviation);
+      if (std::isnan(after[i]) || std::isnan(before[i]) || !(deviation > 0.0)) continue;
+      const double unit = deviation * deviation / weight;
+      gain += (before[i] * before[i] - after[i] * after[i]) / unit;
+      change += std::pow(before[i] - after[i], 2) / unit;
+      is_used = true;
     }
-    gain *= weight;
-    sum.value += gain;
-    squares += gain * gain;
+    if (!is_used) continue;
+    gains.push_back(gain);
+    changes.push_back(change);
   }
-  sum.error = std::sqrt(squares);
+  Gain sum;
+  sum.value = std::accumulate(gains.begin(), gains.end(), 0.0);
+  if (gains.size() < 2) {
+    sum.error = std::abs(sum.value) * std::sqrt(for_freedom(1.0));
+    return sum;
+  }
+  // a^2 - b^2 = 2 b (a - b) + (a - b)^2: only the product with the residual b of the better model is noise.
+  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= std::copysign(changes[k], sum.value);
+  sum.error = std::sqrt(variance_of_sum(gains));
   return sum;
 }
 

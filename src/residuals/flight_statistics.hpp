@@ -26,7 +26,7 @@ NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<doubl
 /// possibly from more samples
 ResidualSums sums_of_samples(const std::vector<double>& residual, const NoiseFloor& noise);
 
-/// The same with the variance of their sum.
+/// Sums of a residual and the variance of their sum.
 ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
                             const NoiseFloor& noise);
 
@@ -36,14 +36,16 @@ ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<doub
 /// Sums over the samples that are excluded only because of their flaps.
 ResidualSums flaps_out(const Residuals& residuals, const double* parameters);
 
-/// Decrease of squared residuals, in units of the noise, and its error from the variation between minutes, or
-/// longer independent stretches.
+/// Decrease of squared residuals, in units of the noise, and its standard error with the memory of the noise,
+/// from the variation between minutes, or longer stretches. Increased for its few degrees of freedom: a
+/// change without a gain exceeds 1.645 errors once in 20.
 struct Gain {
   double value = 0.0;
   double error = 0.0;
 };
 
-/// Gain from residuals `before` to residuals `after`, both of all samples; NaN where excluded.
+/// Gain from residuals `before` to residuals `after`, both of all samples; NaN where excluded. Zero without
+/// samples; a single minute is never significant.
 /// @param window of a residual, s: the samples within count as one; 0 for one sample
 Gain gain_between(const FlightSamples& samples, const std::vector<double>& before,
                   const std::vector<double>& after, const NoiseFloor& noise, double window = 0.0);

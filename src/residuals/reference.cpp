@@ -11,8 +11,7 @@
 #include "residuals/references/height.hpp"
 #include "residuals/references/lams.hpp"
 #include "residuals/references/pressure.hpp"
-#include "residuals/references/static_system.hpp"
-#include "residuals/references/total_pressure.hpp"
+#include "residuals/references/second_system.hpp"
 #include "residuals/references/wind.hpp"
 
 namespace pcor {
@@ -81,9 +80,7 @@ constexpr std::array<Form, 6> forms{{
      }},
     {"pressure", "VARIABLE", "a recorded static pressure",
      [](const std::string& variable, const ModelDefinition& model) {
-       const auto measured = model.variables.find(Quantity::static_pressure);
-       return pressure_reference(variable,
-                                 measured == model.variables.end() ? std::string() : measured->second);
+       return pressure_reference(variable, model.variable_of(Quantity::static_pressure));
      }},
     {"total", "OTHER.toml", "the total pressure of a second system, by its model, or of STATIC+DYNAMIC",
      read_total_pressure},
@@ -109,7 +106,7 @@ void ReferenceOnSamples::mark_implausible(std::vector<Mask>&, const std::vector<
 Pointer lams_reference() { return std::make_shared<LamsReference>(); }
 
 Pointer static_system_reference(ModelDefinition system) {
-  return std::make_shared<StaticSystemReference>(std::move(system));
+  return std::make_shared<SecondSystem>(std::move(system), ComparedPressure::static_pressure);
 }
 
 Pointer pressure_reference(std::string variable, std::string of_model) {
@@ -117,7 +114,7 @@ Pointer pressure_reference(std::string variable, std::string of_model) {
 }
 
 Pointer total_pressure_reference(ModelDefinition system) {
-  return std::make_shared<TotalPressureReference>(std::move(system));
+  return std::make_shared<SecondSystem>(std::move(system), ComparedPressure::total_pressure);
 }
 
 Pointer height_reference(const ModelDefinition& model) { return std::make_shared<HeightReference>(model); }

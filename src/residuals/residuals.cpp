@@ -1,7 +1,5 @@
 #include <pcor/residuals/residuals.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <mutex>
 #include <numeric>
@@ -254,19 +252,6 @@ std::vector<double> Residuals::quantity(Quantity quantity, const double* paramet
   const ColumnsAt columns(impl.model, *impl.samples, parameters);
   impl.model.batch().run(columns.inputs(), {{quantity, result.data()}}, size(), parameters);
   return result;
-}
-
-std::vector<std::string> residual_parameter_names(const ModelDefinition& model, const Reference& reference) {
-  std::vector<std::string> names;
-  const auto add = [&names](const Model& of, const char* prefix) {
-    for (const ModelEffect& effect : of.effects) {
-      for (const std::string& parameter : parameter_names(effect))
-        names.push_back(fmt::format("{}{}.{}", prefix, effect.id, parameter));
-    }
-  };
-  add(model.model, "");
-  if (reference.model() != nullptr) add(reference.model()->model, "reference:");
-  return names;
 }
 
 }  // namespace pcor

@@ -22,6 +22,7 @@
 #include "residuals/flaps_by_lift.hpp"
 #include "residuals/mark_frozen.hpp"
 #include "residuals/moving_columns.hpp"
+#include "residuals/time_spans.hpp"
 #include "roles/fast_series.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
@@ -144,10 +145,16 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
                     100.0 * lift->deviation));
     return;
   }
+  std::size_t slow = 0;
+  for (std::size_t i = 0; i < lift->out.size(); ++i)
+    slow += lift->out[i] && samples.motion.airspeed[i] < min_airspeed ? 1 : 0;
   std::string note = fmt::format(
-      "flaps not recorded; inferred as extended in {} samples, {} (angle of attack {:.0f} % below the "
-      "clean-wing value, scatter {:.1f} %). Use --max-flaps 100 to include these samples",
-      out, times_of(*lift, samples.time), 100.0 * lift->deficit, 100.0 * lift->deviation);
+      "flaps out by the lift; --max-flaps 100 includes them: {}, {} samples{}; angle of attack {:.0f} % "
+      "below "
+      "the clean-wing value, scatter {:.1f} %; flaps not recorded",
+      times_of(marked_segments(lift->out), samples.time), out,
+      slow == 0 ? "" : fmt::format(", {} below {:g} m/s", slow, min_airspeed), 100.0 * lift->deficit,
+      100.0 * lift->deviation);
   const double share = static_cast<double>(out) / static_cast<double>(lift->out.size());
   samples.notes.push_back(share > considerable_share ? warning_note(note) : std::move(note));
 }

@@ -78,10 +78,12 @@ double Statistics::scatter() const { return std::sqrt(std::max(rms * rms - mean 
 
 std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_what) {
   if (flaps_out.samples == 0) return "";
-  return fmt::format("not in {}: {} samples with flaps out, residual {:+.2f}{} hPa", of_what,
+  return fmt::format("not in {}: {} samples with flaps out, residual {:+.2f}{}, scatter {:.2f} hPa", of_what,
                      flaps_out.samples, flaps_out.bias,
-                     std::isnan(flaps_out.bias_error) ? " (error unknown)"
-                                                      : fmt::format(" +- {:.2f}", flaps_out.bias_error));
+                     std::isnan(flaps_out.bias_error)
+                         ? " hPa (error unknown)"
+                         : fmt::format(" +- {:.2f} hPa (standard error)", flaps_out.bias_error),
+                     flaps_out.scatter());
 }
 
 bool HeldOutPart::is_off() const {

@@ -23,14 +23,10 @@ std::string day_of(const Flight& flight) { return utc_text(flight.time().first, 
 
 /// Index of the model's pressures among the measured pairs of its aircraft.
 std::size_t place_of_pressures(const ModelDefinition& model, const VariableNaming& family) {
-  const auto variable = [&model](Quantity role) {
-    const auto found = model.variables.find(role);
-    return found == model.variables.end() ? std::string() : found->second;
-  };
   const auto found =
       std::find_if(family.measured.begin(), family.measured.end(), [&](const PressurePair& pair) {
-        return pair.static_pressure == variable(Quantity::static_pressure) &&
-               pair.dynamic_pressure == variable(Quantity::dynamic_pressure);
+        return pair.static_pressure == model.variable_of(Quantity::static_pressure) &&
+               pair.dynamic_pressure == model.variable_of(Quantity::dynamic_pressure);
       });
   return static_cast<std::size_t>(found - family.measured.begin());
 }
@@ -38,7 +34,8 @@ std::size_t place_of_pressures(const ModelDefinition& model, const VariableNamin
 /// The candidate with the smallest rank is first.
 auto rank_of(const ModelCandidate& law, const VariableNaming& family) {
   return std::make_tuple(!law.fits(), -static_cast<int>(law.lacks.empty()) - static_cast<int>(law.is_in_time),
-                         !law.model.law.in_processing, place_of_pressures(law.model, family));
+                         !law.model.law.in_processing, !doubt_of_dates(law.model.law).empty(),
+                         place_of_pressures(law.model, family));
 }
 
 /// Reason why a model cannot correct a flight that has its variables; empty if it can.
@@ -46,9 +43,8 @@ std::string why_not(const Flight& flight, const ModelDefinition& model) {
   try {
     Notes notes;
     const ModelDefinition whole = resolve_variables(model, flight, notes);
-    const auto laser = whole.variables.find(Quantity::lams_airspeed);
     const std::vector<Quantity> roles =
-        roles_of(whole, laser != whole.variables.end() && flight.has(laser->second));
+        roles_of(whole, flight.has(whole.variable_of(Quantity::lams_airspeed)));
     model_inputs(flight, whole, chain_of(whole.model, roles), roles, notes);
     return "";
   } catch (const Error& error) {
@@ -88,6 +84,25 @@ std::string reasons_of(const std::vector<ModelCandidate>& laws) {
 }
 
 }  // namespace
+
+std::string doubt_of_dates(const LawInfo& law) {
+  const bool begins = !law.valid_from.empty();
+  const bool ends = !law.valid_to.empty();
+  if (law.in_processing || (begins && ends)) return "";
+  if (begins) return "end not stated";
+  return (ends ? "beginning not stated" : "dates not stated") +
+         (law.note.empty() ? "" : "; note: " + law.note);
+}
+
+std::string applicable_text(const std::vector<ModelCandidate>& laws) {
+  std::vector<std::string> names;
+  for (const ModelCandidate& law : laws) {
+    if (!law.fits()) continue;
+    const std::string doubt = doubt_of_dates(law.model.law);
+    names.push_back(law.path.stem().string() + (doubt.empty() ? "" : " (" + doubt + ")"));
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
 
 std::vector<ModelCandidate> model_candidates(const Flight& flight,
                                              const std::vector<std::filesystem::path>& models, Notes& notes) {

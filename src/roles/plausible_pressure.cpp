@@ -81,8 +81,7 @@ std::string unit_that_fits(const std::string& own, double ratio) {
 
 /// A GPS height; the pressure height would always agree with the pressure.
 std::string height_of(const Flight& flight, const ModelDefinition& model, const VariableNaming& family) {
-  const auto named = model.variables.find(Quantity::altitude);
-  if (named != model.variables.end()) return named->second;
+  if (std::string named = model.variable_of(Quantity::altitude); !named.empty()) return named;
   for (const std::string& name : family.names_of("altitude")) {
     if (has_values(flight, name, "m", family.unit_of(name))) return name;
   }
@@ -105,26 +104,22 @@ class PressureCheck {
   static constexpr double max_of_other = 0.05;
   static constexpr double max_of_dynamic = 0.1;  // includes the errors of two static pressures
 
-  std::string variable_of(Quantity role) const {
-    const auto named = model_.variables.find(role);
-    return named == model_.variables.end() ? std::string() : named->second;
-  }
-
   /// Whether the unit of a role is that of the file, which may be wrong.
   bool is_in_doubt(Quantity role) const {
-    const std::string variable = variable_of(role);
+    const std::string variable = model_.variable_of(role);
     return !variable.empty() && model_.units.count(role) == 0 && family_.unit_of(variable).empty();
   }
 
   std::vector<double> values_of(Quantity role) const {
-    const std::string variable = variable_of(role);
+    const std::string variable = model_.variable_of(role);
     const auto unit = model_.units.find(role);
     if (variable.empty()) return {};
     return some_values(flight_, family_, variable, role, unit == model_.units.end() ? "" : unit->second);
   }
 
   ImpossiblePressure finding(Quantity role, double ratio, const std::string& against) const {
-    return {role, ratio, against, unit_that_fits(stated_unit(flight_, family_, variable_of(role)), ratio)};
+    return {role, ratio, against,
+            unit_that_fits(stated_unit(flight_, family_, model_.variable_of(role)), ratio)};
   }
 
   /// Calls with the pairs of other systems, and whether they are as measured: what was processed may come
@@ -133,7 +128,7 @@ class PressureCheck {
   void each_other_system(std::string PressurePair::*pressure, Quantity role, const Visit& visit) const {
     for (const auto* pairs : {&family_.measured, &family_.processed}) {
       for (const PressurePair& pair : *pairs) {
-        if (pair.*pressure != variable_of(role)) visit(pair, pairs == &family_.measured);
+        if (pair.*pressure != model_.variable_of(role)) visit(pair, pairs == &family_.measured);
       }
     }
   }

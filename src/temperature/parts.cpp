@@ -51,7 +51,7 @@ std::vector<PartCorrection> corrections_of_flights(const std::vector<HeightRecor
     part.part = record.name;
     part.correction =
         part.common + (one.right[0] - one.information.row(0).dot(unknowns)) / one.information(0, 0);
-    part.standard_error = std::sqrt(1.0 / one.information(0, 0));
+    part.standard_error = part.difference_error = std::sqrt(1.0 / one.information(0, 0));
     parts.push_back(std::move(part));
   }
   return parts;
@@ -72,11 +72,14 @@ std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector
   // The column of a1 as the sum of both of a0, each times a temperature.
   const Eigen::MatrixXd both = equations.information.topLeftCorner(2, 3);
   const Eigen::VectorXd temperature = inverse_of(both.leftCols(2)) * both.col(2);
+  const Eigen::MatrixXd covariance = equations.covariance(2);
+  const double of_difference = covariance(0, 0) + covariance(1, 1) - 2.0 * covariance(0, 1);  // K^2
   for (Eigen::Index k = 0; k < 2; ++k) {
     PartCorrection part = common_at(temperature[k], unknowns);
     part.part = k == 0 ? "climbs" : "descents";
     part.correction = part.common + equations.best(2)[k];
-    part.standard_error = std::sqrt(equations.covariance(2)(k, k));
+    part.standard_error = std::sqrt(covariance(k, k));
+    part.difference_error = std::sqrt(0.5 * of_difference);
     parts.push_back(std::move(part));
   }
   return parts;
@@ -89,14 +92,14 @@ Disagreement disagreement_of(const std::vector<PartCorrection>& parts) {
   double squared_weights = 0.0;
   double mean = 0.0;
   for (const PartCorrection& part : parts) {
-    const double weight = 1.0 / (part.standard_error * part.standard_error);
+    const double weight = 1.0 / (part.difference_error * part.difference_error);
     weights += weight;
     squared_weights += weight * weight;
     mean += weight * (part.correction - part.common);
   }
   mean /= weights;
   for (const PartCorrection& part : parts)
-    result.chi_squared += std::pow((part.correction - part.common - mean) / part.standard_error, 2);
+    result.chi_squared += std::pow((part.correction - part.common - mean) / part.difference_error, 2);
   const auto freedom = static_cast<double>(parts.size() - 1);
   result.chance = chi_squared_tail(result.chi_squared, freedom);
   if (result.chance < rare)

@@ -35,8 +35,10 @@ TEST(Phrasing, MergesNotesOfFlightsBySeverityAndText) {
   const pcor::Notes merged = notes_of_flights({{"a.nc", warning_note("PSFD is frozen")},
                                                {"a.nc", Note("PSFD is frozen")},
                                                {"b.nc", warning_note("PSFD is frozen")},
-                                               {"a.nc", warning_note("PSFD is frozen")}});
+                                               {"a.nc", warning_note("PSFD is frozen")}},
+                                              2);
   EXPECT_EQ(merged, (pcor::Notes{warning_note("a.nc, b.nc: PSFD is frozen"), Note("a.nc: PSFD is frozen")}));
+  EXPECT_EQ(notes_of_flights({{"a.nc", Note("PSFD is frozen")}}, 1), (pcor::Notes{Note("PSFD is frozen")}));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "support/synthetic_samples.hpp"
@@ -10,8 +11,10 @@
 namespace {
 
 using pcor::internal::ReferenceDoubt;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::Not;
 
 TEST(ReferenceDoubt, PressurePriorCoversZeroGainAndDrift) {
   made::Plan plan;
@@ -47,14 +50,40 @@ TEST(ReferenceDoubt, SecondSystemHasStatedAndDefaultUncertainties) {
   second.uncertainty.sensors["psfd-drift.per_hour"] = 0.0;
   const auto reference = pcor::static_system_reference(second);
   const ReferenceDoubt doubt(made::model({"static-constant"}), *reference, false);
-  EXPECT_THAT(doubt.names(), ElementsAre("made: psfd-bias.offset", "made: psfd-gain.gain",
-                                         "made: qcf-zero.offset", "made: static_defect"));
+  EXPECT_THAT(doubt.names(), ElementsAre("PSFRD: psfd-bias.offset", "PSFRD: psfd-gain.gain",
+                                         "QCF: qcf-zero.offset", "made of PSFRD/QCF: static_defect"));
   EXPECT_DOUBLE_EQ(doubt.sizes()[0], 0.1);
   EXPECT_DOUBLE_EQ(doubt.sizes()[3], 0.24);
   // A static defect cancels in a total pressure.
   const auto total = pcor::total_pressure_reference(second);
   EXPECT_THAT(ReferenceDoubt(made::model({"static-constant"}), *total, false).names(),
-              ElementsAre("made: psfd-bias.offset", "made: psfd-gain.gain", "made: qcf-zero.offset"));
+              ElementsAre("PSFRD: psfd-bias.offset", "PSFRD: psfd-gain.gain", "QCF: qcf-zero.offset"));
+}
+
+// Systems are identified by their sensors: with equal names they shared all errors.
+TEST(ReferenceDoubt, SystemsOfOneNameHaveTheirOwnErrors) {
+  const auto names_of = [](const std::string& static_pressure, const std::string& name) {
+    pcor::ModelDefinition system = made::model({"static-constant"});
+    system.model.name = name;
+    system.variables[pcor::Quantity::static_pressure] = static_pressure;
+    system.uncertainty.static_defect = 0.24;
+    system.fits.resize(1);
+    system.fits[0].resize(1);
+    system.fits[0][0].standard_error = 1e-4;
+    return ReferenceDoubt(made::model({"static-constant"}), *pcor::static_system_reference(system), false,
+                          true)
+        .names();
+  };
+  const std::vector<std::string> one = names_of("PSFRD", "second");
+  EXPECT_THAT(one, Contains("second of PSFRD/QCF: law, direction 1"));
+  for (const std::string& name : names_of("PSX", "second")) {
+    if (name == "QCF: qcf-zero.offset") continue;  // the sensor that both systems have
+    EXPECT_THAT(one, Not(Contains(name)));
+  }
+  // Two laws of the same sensors share the errors of the sensors only.
+  const std::vector<std::string> other_law = names_of("PSFRD", "third");
+  EXPECT_THAT(other_law, Contains("PSFRD: psfd-bias.offset"));
+  EXPECT_THAT(other_law, Not(Contains("second of PSFRD/QCF: static_defect")));
 }
 
 }  // namespace

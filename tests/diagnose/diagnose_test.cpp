@@ -147,6 +147,13 @@ TEST(Diagnose, CompleteModelIsSilent) {
     EXPECT_GT(diagnosis.samples, 6000U);
     EXPECT_LE(diagnosis.residual_rms, diagnosis.rms_given * 1.02);
     EXPECT_NEAR(diagnosis.noise_rms, diagnosis.residual_rms, 0.1 * diagnosis.residual_rms);
+    // Also samples that are alone in four seconds.
+    std::ptrdiff_t shown = 0;
+    for (const pcor::FlightDiagnosis& each : diagnosis.flights) {
+      shown +=
+          std::count_if(each.before.begin(), each.before.end(), [](double x) { return std::isfinite(x); });
+    }
+    EXPECT_EQ(static_cast<std::size_t>(shown), diagnosis.samples);
   }
 }
 

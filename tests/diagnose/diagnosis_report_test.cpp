@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <pcor/base/error.hpp>
+#include <pcor/report/json.hpp>
 
 namespace pcor {
 namespace {
@@ -364,15 +365,62 @@ TEST(DiagnosisReport, ShowsOnlySamplesThatWereUsed) {
 TEST(DiagnosisReport, ReportsStructureWithoutExplanation) {
   const Report report = diagnosis_report(unexplained(), model());
   EXPECT_EQ(report.title, "The residual has structure that is not explained by any effect");
-  EXPECT_THAT(report.summary,
-              Contains(HasSubstr(
-                  "0.047 hPa rms is not explained by any effect; most of it lies in the regime level")));
+  EXPECT_THAT(
+      report.summary,
+      Contains(HasSubstr(
+          "0.047 hPa rms is not explained by any effect; the residual is largest in the regime level")));
   EXPECT_THAT(report.summary, Contains(HasSubstr("engine torque (ENGTRQ), which explains 31 %")));
-  EXPECT_NE(item<ReportTable>(report, "Variables that the unexplained structure varies with"), nullptr);
+  const auto* variables = item<ReportTable>(report, "Variables that the unexplained structure varies with");
+  ASSERT_NE(variables, nullptr);
+  EXPECT_THAT(variables->headers, ElementsAre("variable", "R2, curve", "R2, line", "slope of the line",
+                                              "hPa per", "p", "formula", "what"));
+  EXPECT_THAT(variables->caption, HasSubstr("p tests the curve"));
   const auto* binned = item<BinnedPanel>(report, "Remaining residual against ENGTRQ");
   ASSERT_NE(binned, nullptr);
   EXPECT_EQ(binned->x_choices.front(), "variable ENGTRQ");
   split_words(report);
+}
+
+TEST(DiagnosisReport, VariableWithoutALineHasNoSlope) {
+  Diagnosis diagnosis = unexplained();
+  diagnosis.unexplained.variables.front().slope_error = 0.0;
+  const Report report = diagnosis_report(diagnosis, model());
+  const auto* table = item<ReportTable>(report, "Variables that the unexplained structure varies with");
+  ASSERT_NE(table, nullptr);
+  EXPECT_EQ(table->rows[0][2], "");
+  EXPECT_EQ(table->rows[0][3], "no line");
+}
+
+TEST(DiagnosisReport, NamesTheCoefficientsThatAreFittedAgain) {
+  Diagnosis diagnosis = unexplained();
+  const auto first_of = [&] { return diagnosis_report(diagnosis, model()).summary.front(); };
+  EXPECT_THAT(first_of(), HasSubstr("0.196 hPa with the model's own coefficients fitted again"));
+  diagnosis.own = {{"static-constant.a0", "1", 0.0, 0.1}, {"reference:static-constant.a0", "1", 0.0, 0.1}};
+  EXPECT_THAT(
+      first_of(),
+      HasSubstr("0.196 hPa with the coefficients of the model and of the reference system fitted again"));
+  const Report report = diagnosis_report(diagnosis, model());
+  const auto* regimes = item<RegimeTable>(report, "By regime");
+  ASSERT_NE(regimes, nullptr);
+  EXPECT_THAT(regimes->caption, HasSubstr("the reference system fitted again"));
+}
+
+TEST(DiagnosisReport, WhatIfHasTheNoiseOfTheReport) {
+  Diagnosis diagnosis = partial();
+  diagnosis.noise_rms_with_findings = 0.06;
+  WhatIf what_if;
+  what_if.panel.effects = {{"static-beta-odd", "", "found"}};
+  const auto panel_of = [&] {
+    const Report report = diagnosis_report(diagnosis, model(), &what_if);
+    const auto* panel = item<WhatIfPanel>(report, "What if");
+    return panel == nullptr ? WhatIfPanel() : *panel;
+  };
+  EXPECT_EQ(panel_of().noise, 0.06);
+  EXPECT_EQ(panel_of().noise_label, "noise with all findings");
+  diagnosis.findings.clear();
+  diagnosis.verdict = Verdict::silent;
+  EXPECT_EQ(panel_of().noise, 0.081);
+  EXPECT_EQ(panel_of().noise_label, "noise");
 }
 
 TEST(DiagnosisReport, SilentDiagnosisListsUpperLimits) {
@@ -483,6 +531,19 @@ TEST(ImprovementReport, StartsWithInputModelAndShowsHeldOutFlights) {
   split_words(report);
 }
 
+TEST(ImprovementReport, StatesWhatIsNotInTheFit) {
+  Improvement made = improvement();
+  made.holdout_is_flights = false;
+  const Report report = improvement_report(made, model());
+  const auto* steps = item<DotPanel>(report, "Rms of each step");
+  ASSERT_NE(steps, nullptr);
+  EXPECT_EQ(steps->series.back(), "not in the fit, every fifth 5 min in turn");
+  const auto* table = item<ReportTable>(report, "Steps of the selection");
+  ASSERT_NE(table, nullptr);
+  for (const std::string& caption : {steps->caption, table->caption})
+    EXPECT_THAT(caption, HasSubstr("every fifth five minutes in turn, without outliers"));
+}
+
 TEST(ImprovementReport, HeldOutPartDiffersFromHeldOutFlight) {
   Improvement made = improvement();
   made.holdout_is_flights = true;
@@ -499,6 +560,14 @@ TEST(ImprovementReport, HeldOutPartDiffersFromHeldOutFlight) {
   ASSERT_NE(steps, nullptr);
   EXPECT_THAT(steps->series.back(), HasSubstr("the last part of " + name));
   EXPECT_GT(steps->rows[0].dots[0].error, 0.0);
+}
+
+TEST(DiagnosisReport, SlopeIsNullWithoutALine) {
+  EmpiricalPredictor variable;
+  EXPECT_THAT(to_json(variable), AllOf(HasSubstr("\"slope\": null"), HasSubstr("\"slope_stderr\": null")));
+  variable.slope = -0.5;
+  variable.slope_error = 0.25;
+  EXPECT_THAT(to_json(variable), AllOf(HasSubstr("\"slope\": -0.5"), HasSubstr("\"slope_stderr\": 0.25")));
 }
 
 TEST(ImprovementReport, EachStepHasAPageAndPictures) {

@@ -193,6 +193,24 @@ TEST(Search, ColumnsInTheBaseAreAbsorbed) {
   }
 }
 
+// The base imitates the larger column of the group, so that its part of the contribution does not count.
+TEST(Search, RemainingShareIsThatOfTheWholeContribution) {
+  Problem problem(2000, 5, 41);
+  problem.candidate(0) = 2.0 * problem.columns.col(1);
+  problem.one_by_one();
+  problem.groups[0].count = 2;
+  problem.groups[0].bounds = {Bounds{}, Bounds{}};
+  problem.groups.erase(problem.groups.begin() + 1);
+  const Search search = problem.search();
+  const Eigen::Vector2d coefficients(3.0, 0.2);
+  const Eigen::VectorXd whole = problem.columns.middleCols(base, 2) * coefficients;
+  const Eigen::MatrixXd of_base = problem.columns.leftCols(base);
+  const Eigen::VectorXd left = whole - of_base * of_base.colPivHouseholderQr().solve(whole);
+  EXPECT_GT(search.remaining(0), 0.9) << "the best direction of the group is outside the base";
+  EXPECT_NEAR(search.remaining(0, coefficients), left.squaredNorm() / whole.squaredNorm(),
+              1e-9);  // rounding of sums of 2000 products
+}
+
 TEST(Search, EstimatesOutsideBoundsAreRejected) {
   Problem problem(600, 8, 5);
   problem.residual -= 0.5 * problem.candidate(3);

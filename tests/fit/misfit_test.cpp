@@ -4,7 +4,10 @@
 #include <pcor/fit/refit.hpp>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "fit/solver.hpp"
 #include "support/synthetic_samples.hpp"
 
 using namespace pcor;
@@ -70,6 +73,33 @@ TEST(Misfit, MissingRollGivesNoLoadFactor) {
 TEST(Misfit, ConstantStateHasNoBumps) {
   const Eigen::MatrixXd states = Eigen::MatrixXd::Constant(20000, 6, 0.1);
   EXPECT_EQ(MisfitBasis(FlightPartition(1), {states})(states.topRows(10)).norm(), 0.0);
+}
+
+// The misfit of the law is in the residual against each static pressure. It was noise of all but the first.
+TEST(Misfit, IsNoNoiseOfAnyStaticPressure) {
+  made::Plan plan;
+  plan.noise = 0.1;
+  plan.defect = curved;
+  const ModelDefinition model = made::model({"static-constant", "static-alpha", "static-qp"});
+  const References references = made::pressure_reference();
+  const RefitOptions options;
+  const FlightSet set({made::shared(plan)});
+  FitTask task{
+      model, *references.front(), options, set, fit_parameters(model, *references.front(), options), {}, {},
+      [] {}};
+  task.start = Eigen::Vector3d(0.004, 0.02, 0.03);
+  task.doubt = Eigen::Matrix3d::Zero();
+  FitTask same = task;
+  task.further.push_back(std::move(same));
+  FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
+  ASSERT_EQ(flights.joint().size(), 2U);
+  Solution solution{task.start, std::vector<bool>(3, false), 1.0};
+  solution = solve(flights, std::move(solution), {0, 1, 2});
+  EXPECT_GT(find_misfit(flights, solution).left, 0.05);
+  // One reference, given twice.
+  const FitFlights& again = *flights.further().front();
+  EXPECT_EQ(again.noise(0).slow, flights.noise(0).slow);
+  EXPECT_EQ(again.noise(0).common_level, flights.noise(0).common_level);
 }
 
 TEST(Misfit, MisfitEqualsTheSizeOfAMissingTerm) {

@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "support/error_of.hpp"
+#include "support/netcdf_file.hpp"
 #include "support/says.hpp"
 #include "support/synthetic_samples.hpp"
+#include "support/temporary_directory.hpp"
 
 using pcor::Error;
 using pcor::FlightSamples;
@@ -323,6 +325,25 @@ TEST(Refit, StagesFitAllCoefficients) {
               IsError(Error::Code::fit, "--stage", "static-constant.a0"));
 }
 
+// Without that part the coefficient has no derivative, and the step to the fit without it was zero.
+TEST(Refit, CoefficientOfOnePartHasAnInfiniteJackknifeError) {
+  made::Plan plan = plan_18(12);
+  plan.defect = [](double p, double q, double, double) { return 0.004 * p + 0.03 * q; };
+  FlightSamples samples = made::flight(plan);
+  // An hour has 20 parts of 180 s; this is in the sixth.
+  std::vector<double>& attack = *samples.model.find(Quantity::attack_differential_pressure);
+  for (std::size_t i = 0; i < attack.size(); ++i) {
+    if (i < 950 || i >= 1040) attack[i] = 0.0;
+  }
+  const RefitResult result = fit({std::make_shared<const FlightSamples>(samples)}, made::model(equation_18));
+  for (const auto& [name, parameter] : by_name(result)) {
+    EXPECT_GT(parameter.jackknife_error, 0.0) << name;
+    EXPECT_EQ(std::isinf(parameter.jackknife_error), name == "static-alpha.a1") << name;
+    EXPECT_TRUE(std::isfinite(parameter.standard_error)) << name;
+  }
+  EXPECT_THAT(result.notes, testing::Contains(pcor::test::Says("alone determines static-alpha.a1")));
+}
+
 TEST(Refit, PriorDeterminesCollinearCoefficients) {
   // An hour of samples outweighs the prior; the prior decides nearly collinear terms.
   const auto samples = made::shared(plan_18(18));
@@ -506,6 +527,35 @@ TEST(Refit, ImpossibleFitsAreRefused) {
   options.fix = {"static-alfa"};
   EXPECT_THAT(refusal({made::shared(plan)}, model, options),
               IsError(Error::Code::usage, "static-alfa", "static-alpha"));
+}
+
+// The noise of the static pressure cancels in the difference of two laws of it: the fit copied the other law
+// with errors near zero.
+TEST(Refit, SecondSystemWithTheStaticPressureUnderTestIsRefused) {
+  ModelDefinition other = made::model(equation_18);
+  other.model.name = "other law";
+  FlightSamples samples = made::flight(plan_18(17));
+  samples.reference = samples.model;
+  const Flights flights{std::make_shared<const FlightSamples>(samples)};
+  RefitOptions options;
+  options.trust_reference = true;
+  const auto refused = [&](const pcor::FlightSet& set) {
+    return pcor::test::error_of(
+        [&] { pcor::refit(set, made::model(equation_18), {pcor::static_system_reference(other)}, options); });
+  };
+  EXPECT_THAT(refused(flights),
+              IsError(Error::Code::usage, "static:other law", "PSFD", "made", "independent"));
+  other.variables[Quantity::static_pressure] = "PSFDC";
+  const pcor::test::TemporaryDirectory folder;
+  {
+    pcor::test::NetcdfMaker maker(folder.path() / "flight.nc");
+    maker.time(pcor::test::sequence(0, 50));
+    maker.series("PSFD", "hPa", std::vector<double>(50, 700.0));
+    const int corrected = maker.series("PSFDC", "hPa", std::vector<double>(50, 700.0));
+    maker.text(corrected, "Dependencies", "2 PSFD QCF");
+  }
+  EXPECT_THAT(refused({folder.path() / "flight.nc"}),
+              IsError(Error::Code::usage, "static:other law", "PSFDC", "PSFD", "independent"));
 }
 
 TEST(Refit, WrittenModelHasTheFittedValues) {

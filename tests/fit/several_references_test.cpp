@@ -131,8 +131,8 @@ TEST(SeveralReferences, OneReferenceGivenTwiceHasTheErrorsOfOne) {
   for (std::size_t p = 0; p < one.parameters.size(); ++p) {
     const double error = one.parameters[p].standard_error;
     EXPECT_NEAR(both.parameters[p].value, one.parameters[p].value, 0.05 * error);
-    // The noise of the first reference is that of its residual less the misfit.
-    EXPECT_NEAR(both.parameters[p].standard_error, error, 0.1 * error);
+    // The noise of both is that of the residual less the misfit; the fits may differ within their tolerance.
+    EXPECT_NEAR(both.parameters[p].standard_error, error, 0.05 * error);
   }
 }
 

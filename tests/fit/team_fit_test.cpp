@@ -51,8 +51,7 @@ std::string text_of(const RefitResult& result) {
     add(value);
   for (const FlightFit& flight : result.flights) {
     text += flight.flight + " ";
-    for (const double value : {flight.before.rms, flight.after.rms, flight.after.bias, flight.gain})
-      add(value);
+    for (const double value : {flight.before.rms, flight.after.rms, flight.after.bias}) add(value);
   }
   for (const Omission& each : result.omissions) add(each.rms);
   for (const std::string& each : result.warnings) text += each;

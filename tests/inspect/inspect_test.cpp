@@ -73,6 +73,7 @@ TEST(Inspect, MissingRoleStatesSearchedNamesAndConsequence) {
     EXPECT_THAT(missing.cost, Not(IsEmpty()));
   }
   EXPECT_THAT(inspection.missing, Not(Contains(is("static_pressure"))));
+  EXPECT_THAT(inspection.missing, Not(Contains(is("date")))) << "it is that of the records";
 }
 
 TEST(Inspect, FlightWithoutPressuresHasNoModelAndTheReason) {

@@ -27,6 +27,8 @@ TEST(QualityInfo, NamesAreValidFlagMeanings) {
     EXPECT_THAT(std::string(info.name), testing::MatchesRegex("[a-z][a-z0-9_]*"));
     EXPECT_TRUE(names.insert(std::string(info.name)).second) << info.name << " twice";
     EXPECT_FALSE(info.meaning.empty()) << info.name;
+    EXPECT_FALSE(info.brief.empty()) << info.name;
+    EXPECT_LE(info.brief.size(), 55U) << info.name << ": a line of process has 100 characters";
   }
 }
 

@@ -165,6 +165,22 @@ TEST_P(EffectUncertainty, EqualsTheFiniteDifferenceByItsCoefficient) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, EffectUncertainty, testing::ValuesIn(effect_info),
                          [](const auto& effect) { return test::test_name(effect.param.id); });
 
+// The gain multiplies the ratio as recorded. Taken at the corrected ratio, the uncertainty was 30 % too
+// small.
+TEST(ResultUncertainty, GainOfTheAttackRatioActsOnTheRecordedRatio) {
+  constexpr double size = 0.03;
+  const auto with_gain = [](double gain) {
+    Model model = law();
+    model.effects.push_back({"adif-drift", {gain, 0.0, 0.0}});
+    return model;
+  };
+  const Model model = with_gain(0.3);
+  const Recorded recorded =
+      without(everything_recorded(), {Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed});
+  expect_stated(fly(model, recorded, of_parameter(model, parameter_count(law()), size)),
+                fly(with_gain(0.3 + size), recorded), fly(with_gain(0.3 - size), recorded), "gain");
+}
+
 TEST(ResultUncertainty, RoleUncertaintyEqualsTheFiniteDifference) {
   Model model = law();
   model.effects.push_back({"pitot-angle", {0.0001, 0.0}});
@@ -224,6 +240,21 @@ TEST(ResultUncertainty, TaperAndMinimumKeepLawUncertainty) {
   EXPECT_NEAR(of_constant(model), 1e-4 * 700.0, 1e-12);
   model.policy.minimum = 50.0;
   EXPECT_NEAR(of_constant(model), 1e-4 * 700.0, 1e-12) << "the limit is not known better than the law";
+}
+
+TEST(ResultUncertainty, IsMissingOutsideTheDomainOfTheLaw) {
+  Model model = law();
+  const Recorded recorded = everything_recorded();
+  const ModelUncertainty uncertainty = of_parameter(model, 0, 1e-4);
+  model.domain = {{"dynamic_pressure", 20.0, 79.0}};
+  const State<double> outside = fly(model, recorded, uncertainty);
+  model.domain = {{"dynamic_pressure", 20.0, 81.0}};
+  const State<double> inside = fly(model, recorded, uncertainty);
+  for (const UncertainResult& each : uncertain_results) {
+    EXPECT_EQ(outside[each.result], inside[each.result]) << info_of(each.result).name;
+    EXPECT_TRUE(std::isnan(outside[each.uncertainty])) << info_of(each.result).name;
+    EXPECT_FALSE(std::isnan(inside[each.uncertainty])) << info_of(each.result).name;
+  }
 }
 
 TEST(ResultUncertainty, TaperDependsOnTheDynamicPressure) {

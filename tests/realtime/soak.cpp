@@ -95,7 +95,9 @@ constexpr Believed results[] = {
 /// True if a bit gives the reason for a missing result; the other bits state the method of a result. Bits
 /// about the model do not concern the laser that corrected a sample.
 bool says_why(pcor::QualityFlags quality, Quantity result) {
-  if (result >= Quantity::static_defect_uncertainty && quality.has(Quality::corrected_with_lams)) return true;
+  const bool is_uncertainty = result >= Quantity::static_defect_uncertainty;
+  if (is_uncertainty && (quality.has(Quality::corrected_with_lams) || quality.has(Quality::outside_domain)))
+    return true;
   constexpr Quality reasons[] = {Quality::static_pressure_missing,
                                  Quality::dynamic_pressure_missing,
                                  Quality::impossible_static_pressure,

@@ -25,7 +25,12 @@ class Figures(unittest.TestCase):
         self.assertIn("captions.txt", names)
         self.assertEqual(len([name for name in names if name.endswith(".svg")]), len([name for name in names if name.endswith(".png")]))
         text = (FOLDER / "figures" / "captions.txt").read_text()
-        self.assertIn("Command: pcor compare one.nc two.nc -m model.toml", text)
+        *captions, origin = [line for line in text.splitlines() if line]
+        self.assertTrue(origin.startswith("Command: pcor compare one.nc two.nc -m model.toml"), origin)
+        self.assertEqual(len(captions), len([name for name in names if name.endswith(".svg")]))
+        for caption in captions:
+            self.assertNotRegex(caption, r"Command:|\bDrag\b|\bchoose\b")
+        self.assertIn("Command: pcor compare", next((FOLDER / "figures").glob("*.svg")).read_text())
 
     def test_impossible_figures_are_an_error_before_the_run(self):
         words = [str(TOOL), "refit", *FITTED, "-m", "model.toml", "-o", "none.toml", "--figures"]

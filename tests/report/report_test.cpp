@@ -284,6 +284,8 @@ TEST(Report, WhatIfSumsAreStoredExactly) {
   EXPECT_EQ(products, (std::vector<double>{2.0, 1.0, 3.0, 0.5, 0.25, 4.0}));
   EXPECT_EQ(unpacked(item["points"]), (std::vector<std::int64_t>{0, 99}));  // the columns are straight lines
   EXPECT_THAT(values_of(item["columns"][1]), testing::ElementsAre(0.0, testing::DoubleNear(49.5, 1e-9)));
+  EXPECT_EQ(item["isStartFitted"], false);
+  EXPECT_EQ(item["noiseLabel"], "noise");
 }
 
 TEST(Report, ImpossibleWhatIfIsRefused) {

@@ -199,6 +199,27 @@ class Compare(ComparisonTest):
         text = self.done("compare", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
         self.assertIn("process", self.run_as_printed(text))
 
+    def test_command_to_copy_corrects_all_flights(self):
+        self.model()
+        flights = [self.link(flight, name).name for flight, name in ((ONE, "flight 1.nc"), (TWO, "flight 2.nc"))]
+        text = self.done("compare", *flights, "-m", "model.toml", cwd=self.path).stdout
+        self.assertIn("process", self.run_as_printed(text))
+        self.assertEqual(sorted(path.name for path in (self.path / "corrected").iterdir()), flights)
+
+    def test_short_table_has_the_largest_ratio_and_counts_the_other_rows(self):
+        def ratios(text):
+            return {name: float(ratio) for name, ratio in re.findall(r"^  (\S.*?)  +\d+ .* ([\d.]+)$", text, flags=re.MULTILINE)}
+
+        model = self.model(with_a0(0.007))
+        for more in ((), ("--reference", "lams", "--reference", "total:PSFRD+QCFR")):
+            with self.subTest(more):
+                all_rows = ratios(self.done("compare", ONE, "-m", model, *more).stdout.split("worst minutes")[0])
+                text = self.run_tool("compare", ONE, "-m", model, *more).stdout
+                rows = ratios(text)
+                self.assertEqual(max(rows.values()), max(all_rows.values()))
+                omitted = int(re.search(r"(\d+) rows omitted \(--verbose\)", text).group(1))
+                self.assertGreaterEqual(omitted, len(all_rows) - len(rows))
+
     def test_the_advised_command_names_few_of_many_flights(self):
         for many, shown in ((16, 16), (17, 2)):
             flights = [self.link(ONE if i % 2 else TWO, f"flight {many}-{i}.nc").name for i in range(many)]

@@ -31,6 +31,11 @@ class Demo(unittest.TestCase):
     def test_without_a_flight_the_first_line_announces_a_simulation(self):
         self.assertIn("simulated", self.run_demo("").splitlines()[0])
 
+    def test_help_is_not_a_flight(self):
+        result = subprocess.run([SOURCE / "tools/demo", "--help"], capture_output=True, text=True)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("tools/demo [FLIGHT.nc [FOLDER]]", result.stdout)
+
     @unittest.skipUnless(FLIGHTS, "PCOR_FLIGHTS is not set")
     def test_every_real_flight_is_corrected(self):
         for flight in FLIGHTS:

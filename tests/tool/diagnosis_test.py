@@ -175,7 +175,7 @@ class Diagnose(DiagnosisTest):
         self.model(name="my model.toml")
         self.link(ONE, "flight 1.nc")
         text = self.done("diagnose", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
-        self.assertTrue(text.startswith("No missing effect"), text)
+        self.assertTrue(text.startswith("silent: No missing effect"), text)
         self.assertIn("pcor process", self.run_as_printed(text))
         for reference in ("height", "wind"):
             self.assertIn(f"\nnot used as a reference: {reference}: compare shows it", text)
@@ -192,7 +192,7 @@ class Diagnose(DiagnosisTest):
         self.model(name="my model.toml")
         self.link(LAGGING, "flight 1.nc")
         text = self.done("diagnose", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
-        self.assertTrue(text.startswith("An effect is missing"), text)
+        self.assertRegex(text, r"^(identified|cannot be told apart|partial): An effect is missing")
         command = self.run_as_printed(text)
         self.assertRegex(command, r"pcor add .* && \S*pcor refit")
         self.assertTrue((self.path / "fitted.toml").exists())
@@ -473,7 +473,8 @@ class WhatTakesPart(DiagnosisTest):
         # 1.5 hPa at 50 %, which the flaps have most of the time.
         self.assertAlmostEqual(fit["flaps_out"]["bias_hpa"], 1.4, delta=0.3)
         text = self.done("refit", FLAPS, "-m", self.model(), "-o", self.path / "out.toml").stdout
-        self.assertRegex(text, r"not in the fit: \d+ samples with flaps out, residual \+1\.\d\d \+- 0\.\d\d hPa")
+        self.assertRegex(text, r"not in the fit: \d+ samples with flaps out, residual \+1\.\d\d \+- 0\.\d\d hPa \(standard error\), "
+                               r"scatter \d\.\d\d hPa")
 
     def test_diagnose_tests_flap_samples(self):
         found = self.diagnose("--no-file-variables", flights=(FLAPS,), model=self.fitted_to(FLAPS))

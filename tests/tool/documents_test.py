@@ -136,12 +136,12 @@ class Help(PageTest):
 
 
 class Text(unittest.TestCase):
-    def test_programs_are_compiled_examples(self):
+    def test_programs_are_parts_of_compiled_examples(self):
         sources = [path.read_text() for path in (SOURCE / "examples").rglob("*.cpp")]
         for path in PAGES:
             for language, content in blocks(path.read_text()):
                 if language == "cpp":
-                    self.assertIn(content, sources, path.name)
+                    self.assertTrue(any(content in source for source in sources), f"{path.name}: {content}")
 
     def test_build_files_are_those_of_examples(self):
         lines = {re.sub(r"\(\w+ PRIVATE", "(my_program PRIVATE", line)

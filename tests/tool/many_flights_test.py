@@ -337,6 +337,9 @@ class ModelNames(ManyFlightsTest):
             with self.subTest(command=command[0]):
                 result = self.run_tool(*command, "-m", "c130-psfd-eq18")
                 self.assertEqual(result.returncode, 0, result.stderr)
+                advised = result.stdout.rstrip().splitlines()[-1]
+                self.assertNotIn("c130-psfd-eq18.toml", advised, "the name as given")
+                self.assertNotIn("c130-psfrd-eq18.toml", advised)
 
     def test_the_folder_of_the_user_precedes_the_package(self):
         own = self.path / "own"

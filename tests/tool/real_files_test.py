@@ -116,7 +116,9 @@ class Simulated(CaseTest):
         self.assertLessEqual(self.follow(flight), 5)
         with netCDF4.Dataset(self.path / "corrected.nc") as corrected:
             self.assertIn("PSXC_NEW", corrected.variables)
-        self.assertTrue((self.path / "corrected.html").exists())
+        page = (self.path / "corrected.html").read_text()
+        self.assertIn("Corrected static pressure minus PSXC of the input.", page)
+        self.assertRegex(page, r'(in|unknown)</td><td class="number" data-header="samples">\d+</td>')
 
     def test_advised_command_for_a_corrected_flight_runs(self):
         flight = self.write(self.CORRECTED, {"institution": "NCAR"})

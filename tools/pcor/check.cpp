@@ -12,6 +12,7 @@
 #include "communicator.hpp"
 #include "comparison.hpp"
 #include "flight_table.hpp"
+#include "model_name.hpp"
 #include "model_selector.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
@@ -56,9 +57,7 @@ std::string second_model(const CheckArguments& options) {
 }
 
 std::vector<std::filesystem::path> inputs_of(const CheckArguments& options) {
-  std::vector<std::filesystem::path> inputs = input_files(options.flights);
-  inputs.insert(inputs.end(), {options.model, second_model(options)});
-  return inputs;
+  return input_files(options.flights, {options.model, second_model(options)});
 }
 
 ModelDefinition read_second(const CheckArguments& options) {
@@ -97,7 +96,7 @@ void print(const ReportTable& table) {
 /// CheckArguments as on a command line, for the suggested commands.
 std::string command_line(const CheckArguments& options) {
   std::string line = advised_command_line(options.flights);
-  if (!options.model.empty()) line += " -m " + shell_path(options.model);
+  if (!options.model.empty()) line += " -m " + model_argument(options.model);
   return line;
 }
 
@@ -117,7 +116,7 @@ std::string next_step(const Checks& checks, const CheckArguments& options,
     });
   };
   const std::string second =
-      options.reference.empty() ? "" : " --reference " + shell_quote(options.reference);
+      options.reference.empty() ? "" : " --reference " + reference_argument(options.reference);
   std::string pictures = fmt::format("To see the pictures: {} check {}{} --report check.html", program(),
                                      command_line(options), second);
   if (fails("total-pressure")) {
@@ -140,10 +139,10 @@ std::string next_step(const Checks& checks, const CheckArguments& options,
                        command_line(options), has_laser ? "" : second, output_file("improved.toml", inputs));
   }
   if (inconsistent == 0 && model && count_of(checks, CheckVerdict::consistent) > 0) {
-    return fmt::format("No check contradicts the model{}. To apply it: {}",
-                       open > 0 ? fmt::format("; {} check{} inconclusive", open, open == 1 ? "" : "s") : "",
-                       process_command(options.flights.flights.front(), *model, options.model,
-                                       options.flights.timestamp_alignment));
+    return fmt::format(
+        "No check contradicts the model{}. To apply it: {}",
+        open > 0 ? fmt::format("; {} check{} inconclusive", open, open == 1 ? "" : "s") : "",
+        process_command(options.flights.flights, *model, options.model, options.flights.timestamp_alignment));
   }
   return pictures;
 }
@@ -263,11 +262,8 @@ std::function<void()> add_check(CLI::App& program) {
   CLI::Option* const old = command->add_option_function<std::string>(
       "--second", [options](const std::string& model) { options->reference = second_system + model; });
   keep_old_name(*old, "--reference static:OTHER.toml");
-  command
-      ->add_option("--table", options->table,
-                   "write one row per check and flight to FILE.csv, each flight checked separately")
-      ->check(is_file_name())
-      ->type_name("FILE.csv");
+  add_table_option(*command, options->table,
+                   "write one row per check and flight to FILE.csv, each flight checked separately");
   add_common_options<Checks>(*command, options->common);
   add_examples(*command,
                {"check first.nc second.nc third.nc -m best.toml --report check.html",

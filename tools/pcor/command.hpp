@@ -10,7 +10,6 @@
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/report/json.hpp>
-#include "choices.hpp"
 #include "text.hpp"
 
 namespace pcor::tool {
@@ -81,6 +80,16 @@ CLI::Validator is_file_name();
 /// @param inputs files that are never overwritten @throws Error as does `save_model`
 void deliver(const ModelDefinition& model, const std::string& output,
              const std::vector<std::filesystem::path>& inputs);
+
+/// Adds `--force` to a sub-command that writes a model.
+void add_force_option(CLI::App& command, bool& force);
+
+/// Refuses a model that is worse than its input by its statistics. With `force` it is accepted, and its
+/// provenance states the reason in `forced`.
+///
+/// @param worse reason, a sentence without its full stop; empty if the model is not worse
+/// @throws Error with the reason, if `worse` is not empty and `force` is false
+void refuse_worse(const std::string& worse, bool force, ModelDefinition& model);
 
 /// JSON result, written by the first rank. Constructed before the work, so that an unwritable destination
 /// stops it early; the file is written atomically.

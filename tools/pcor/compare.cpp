@@ -16,6 +16,7 @@
 #include "communicator.hpp"
 #include "comparison.hpp"
 #include "flight_table.hpp"
+#include "model_name.hpp"
 #include "model_selector.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
@@ -31,12 +32,6 @@ struct CompareArguments {
   std::string table;
 };
 
-std::vector<std::filesystem::path> inputs_of(const CompareArguments& options) {
-  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
-  inputs.insert(inputs.end(), options.models.begin(), options.models.end());
-  return inputs;
-}
-
 void print_row(const std::string& name, const Statistics& s) {
   const auto known = [](double value, int digits) {
     return std::isnan(value) ? std::string("unknown") : fmt::format("{:.{}f}", value, digits);
@@ -50,22 +45,59 @@ void print_header() {
       "noise", "ratio");
 }
 
-/// At most `max_regimes` regimes, those with most samples, and the `max_bands` bands with the largest errors.
-void print_parts(const ModelComparison& model, std::size_t max_regimes, std::size_t max_bands) {
-  std::vector<std::size_t> samples;
-  for (const PartStatistics& part : model.regimes) samples.push_back(part.statistics.samples);
-  std::sort(samples.rbegin(), samples.rend());
-  for (const PartStatistics& part : model.regimes) {
-    if (samples.size() <= max_regimes || part.statistics.samples >= samples[max_regimes - 1])
-      print_row("  " + part.name, part.statistics);
-  }
+constexpr std::size_t listed_bands = 5;  // with --verbose
+
+/// The `listed_bands` bands with the largest errors.
+std::vector<PartStatistics> worst_bands(const ModelComparison& model) {
   std::vector<PartStatistics> bands = model.bands;
   std::stable_sort(bands.begin(), bands.end(), [](const PartStatistics& a, const PartStatistics& b) {
     return fails_more(a.statistics, b.statistics);
   });
-  if (bands.size() > max_bands) bands.resize(max_bands);
-  if (!bands.empty()) say("worst bands\n");
-  for (const PartStatistics& part : bands) print_row("  " + part.name, part.statistics);
+  if (bands.size() > listed_bands) bands.resize(listed_bands);
+  return bands;
+}
+
+/// Parts that are printed, and the number of the others.
+struct ShownParts {
+  std::vector<PartStatistics> regimes{};
+  std::vector<PartStatistics> bands{};
+  std::size_t omitted = 0;
+};
+
+/// At most `max_regimes` regimes, those with most samples, the `max_bands` worst bands, and the part with the
+/// largest ratio.
+ShownParts shown_parts(const ModelComparison& model, std::size_t max_regimes, std::size_t max_bands) {
+  const std::vector<PartStatistics> bands = worst_bands(model);
+  std::vector<std::size_t> samples;
+  double largest = 0.0;
+  for (const auto* const parts : {&model.regimes, &bands}) {
+    for (const PartStatistics& part : *parts)
+      largest = std::max(largest, part.statistics.rms_over_noise());  // NaN is not larger
+  }
+  for (const PartStatistics& part : model.regimes) samples.push_back(part.statistics.samples);
+  std::sort(samples.rbegin(), samples.rend());
+  const std::size_t min_samples = samples.size() <= max_regimes ? 0 : samples[max_regimes - 1];
+  ShownParts shown;
+  const auto add = [&](const PartStatistics& part, bool is_main, std::vector<PartStatistics>& to) {
+    if (is_main || part.statistics.rms_over_noise() == largest)
+      to.push_back(part);
+    else
+      ++shown.omitted;
+  };
+  for (const PartStatistics& part : model.regimes)
+    add(part, part.statistics.samples >= min_samples, shown.regimes);
+  for (std::size_t i = 0; i < bands.size(); ++i) add(bands[i], i < max_bands, shown.bands);
+  return shown;
+}
+
+/// @param more rows that are omitted elsewhere
+void print_parts(const ShownParts& parts, std::size_t more) {
+  for (const PartStatistics& part : parts.regimes) print_row("  " + part.name, part.statistics);
+  const std::size_t omitted = parts.omitted + more;
+  const std::string rest = omitted == 0 ? "" : fmt::format("{} rows omitted (--verbose)", omitted);
+  if (!parts.bands.empty()) say("worst bands{}{}\n", rest.empty() ? "" : "; ", rest);
+  for (const PartStatistics& part : parts.bands) print_row("  " + part.name, part.statistics);
+  if (parts.bands.empty() && !rest.empty()) say("{}\n", rest);
 }
 
 /// All samples of each model and reference; of a single model its main parts.
@@ -74,10 +106,11 @@ void print_short(const Comparison& comparison) {
   const bool is_single = comparison.models.size() == 1;
   for (const ModelComparison& model : comparison.models) {
     print_row(is_single ? "all" : model.name, model.all);
-    if (is_single && comparison.further.empty())
-      print_parts(model, 5, 2);
-    else if (is_single)
-      print_parts(model, 3, 0);
+    if (!is_single) continue;
+    std::size_t of_further = 0;
+    for (const Comparison& further : comparison.further) of_further += further.models.front().regimes.size();
+    const bool is_alone = comparison.further.empty();
+    print_parts(shown_parts(model, is_alone ? 5 : 3, is_alone ? 2 : 0), of_further);
   }
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models)
@@ -93,7 +126,7 @@ void print_model(const ModelComparison& model, bool with_name) {
   say("\n");
   print_header();
   print_row("all", model.all);
-  print_parts(model, model.regimes.size(), 5);
+  print_parts(shown_parts(model, model.regimes.size(), listed_bands), 0);
   if (model.flights.size() > 1) {
     say("flights\n");
     for (const PartStatistics& part : model.flights) print_row("  " + part.name, part.statistics);
@@ -189,7 +222,7 @@ std::string next_step(const Comparison& comparison, const std::vector<ComparedMo
   const std::string flights = advised_command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
     return fmt::format("{}The residual of {} is close to the noise. To apply it: {}", which, best->name,
-                       process_command(options.comparison.flights.front(), compared->model, model,
+                       process_command(options.comparison.flights, compared->model, model,
                                        options.comparison.timestamp_alignment));
   }
   const std::vector<std::string> undetermined = undetermined_effects(*compared);
@@ -199,8 +232,8 @@ std::string next_step(const Comparison& comparison, const std::vector<ComparedMo
         "with a static pressure, for example --reference static:OTHER.toml",
         which, best->name);
   }
-  const std::vector<std::filesystem::path> inputs = inputs_of(options);
-  std::string refit = fmt::format("{} refit {} -m {} -o {}", program(), flights, shell_path(model),
+  const std::vector<std::filesystem::path> inputs = input_files(options.comparison, options.models);
+  std::string refit = fmt::format("{} refit {} -m {} -o {}", program(), flights, model_argument(model),
                                   output_file("fitted.toml", inputs));
   for (const std::string& id : undetermined) refit += " --fix " + shell_quote(id);
   if (is_verbose() && comparison.total_pressure && comparison.is_static_pressure) {
@@ -319,7 +352,7 @@ void run(const CompareArguments& options) {
     for (std::size_t i = 0; i < options.comparison.flights.size(); ++i)
       outputs.push_back(residual_file(options, i));
   }
-  prepare_outputs(options.common, std::move(outputs), inputs_of(options));
+  prepare_outputs(options.common, std::move(outputs), input_files(options.comparison, options.models));
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
   std::vector<ComparedModel> models;
@@ -391,11 +424,8 @@ std::function<void()> add_compare(CLI::App& program) {
                   "model of the pressure system; several models are shown side by side")
       ->required()
       ->type_name("MODEL.toml");
-  command
-      ->add_option("--table", options->table,
-                   "write samples, bias and rms of each flight and model to FILE.csv")
-      ->check(is_file_name())
-      ->type_name("FILE.csv");
+  add_table_option(*command, options->table,
+                   "write samples, bias and rms of each flight and model to FILE.csv");
   command
       ->add_option("--residuals", options->residuals,
                    "write the residuals of every sample to a netCDF file; for several flights to one file "

@@ -15,8 +15,9 @@
 #include <pcor/base/suggest.hpp>
 #include <pcor/flight/readable_flights.hpp>
 #include <pcor/model/formula.hpp>
-#include "choices.hpp"
+#include <pcor/realtime/chain.hpp>
 #include "communicator.hpp"
+#include "model_name.hpp"
 #include "processes.hpp"
 
 namespace pcor::tool {
@@ -132,7 +133,7 @@ namespace {
 
 std::string with_options(std::string line, const ComparisonOptions& options) {
   for (const std::string& reference : options.references)
-    line += "--reference " + shell_quote(reference) + " ";
+    line += "--reference " + reference_argument(reference) + " ";
   for (const std::string& regime : options.exclude) line += "--exclude " + shell_quote(regime) + " ";
   if (!options.intervals.empty()) line += "--intervals " + shell_path(options.intervals) + " ";
   if (options.min_airspeed != MaskOptions{}.min_airspeed)
@@ -143,9 +144,24 @@ std::string with_options(std::string line, const ComparisonOptions& options) {
   return line;
 }
 
+std::string all_flights(const std::vector<std::string>& flights) {
+  std::string words;
+  for (const std::string& flight : flights) words += shell_path(flight) + " ";
+  return words;
+}
+
+/// Many flights are shortened to the first and the last.
+std::string advised_flights(const std::vector<std::string>& flights) {
+  constexpr std::size_t max_to_read = 16;
+  return flights.size() <= max_to_read
+             ? all_flights(flights)
+             : shell_path(flights.front()) + " ... " + shell_path(flights.back()) + " ";
+}
+
 }  // namespace
 
-std::vector<std::filesystem::path> input_files(const ComparisonOptions& options) {
+std::vector<std::filesystem::path> input_files(const ComparisonOptions& options,
+                                               const std::vector<std::string>& others) {
   std::vector<std::filesystem::path> files = flight_paths(options);
   for (const std::string& reference : options.references) {
     for (const std::string prefix : {"static:", "total:"}) {
@@ -154,13 +170,12 @@ std::vector<std::filesystem::path> input_files(const ComparisonOptions& options)
     }
   }
   files.emplace_back(options.intervals);
+  files.insert(files.end(), others.begin(), others.end());
   return files;
 }
 
 std::string command_line(const ComparisonOptions& options) {
-  std::string flights;
-  for (const std::string& flight : options.flights) flights += shell_path(flight) + " ";
-  return with_options(std::move(flights), options);
+  return with_options(all_flights(options.flights), options);
 }
 
 std::string output_file(const std::string& name, const std::vector<std::filesystem::path>& inputs) {
@@ -174,10 +189,21 @@ std::string output_file(const std::string& name, const std::vector<std::filesyst
 
 namespace {
 
-/// Variables that a model reads, and names in its formulas.
+/// Whether `process` reads a role. Other roles of the model serve comparisons, such as the true airspeed.
+bool is_processed(const std::optional<Chain>& chain, Quantity role) {
+  constexpr std::array<Quantity, 6> air{Quantity::recovery_temperature, Quantity::ambient_temperature,
+                                        Quantity::vapor_pressure,       Quantity::dew_point,
+                                        Quantity::frost_point,          Quantity::lams_airspeed};
+  return !chain || chain->needs(role) || std::find(air.begin(), air.end(), role) != air.end();
+}
+
+/// Variables that `process` reads with a model, and names in its formulas.
 std::vector<std::string> names_read_by(const ModelDefinition& model) {
   std::vector<std::string> names;
-  for (const auto& [role, variable] : model.variables) names.push_back(variable);
+  const std::optional<Chain> chain = Chain::build(model.model, model.roles(), nullptr);
+  for (const auto& [role, variable] : model.variables) {
+    if (is_processed(chain, role)) names.push_back(variable);
+  }
   for (const ModelEffect& effect : model.model.effects) {
     if (!effect.is_formula()) continue;
     const auto formula = Formula::parse(effect.formula, effect.parameter_names);
@@ -197,18 +223,17 @@ bool reads_results(const ModelDefinition& model) {
 
 }  // namespace
 
-std::string process_command(const std::string& flight, const ModelDefinition& model, const std::string& path,
-                            TimestampAlignment alignment) {
-  return fmt::format("{} process {} -m {}{}{} -o {}", program(), shell_path(flight), shell_path(path),
+std::string process_command(const std::vector<std::string>& flights, const ModelDefinition& model,
+                            const std::string& path, TimestampAlignment alignment) {
+  return fmt::format("{} process {}-m {}{}{} -o {}", program(), advised_flights(flights),
+                     model_argument(path),
                      alignment == TimestampAlignment::middle ? " --time-stamp middle" : "",
-                     reads_results(model) ? " --suffix _NEW" : "", output_file("corrected.nc", {flight}));
+                     reads_results(model) ? " --suffix _NEW" : "",
+                     flights.size() == 1 ? output_file("corrected.nc", {flights.front()}) : "corrected");
 }
 
 std::string advised_command_line(const ComparisonOptions& options) {
-  constexpr std::size_t max_to_read = 16;
-  if (options.flights.size() <= max_to_read) return command_line(options);
-  return with_options(
-      shell_path(options.flights.front()) + " ... " + shell_path(options.flights.back()) + " ", options);
+  return with_options(advised_flights(options.flights), options);
 }
 
 ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelDefinition& model,
@@ -235,6 +260,16 @@ void print_references(const ChosenReferences& references) {
 
 void print_flaps_out(const Statistics& flaps_out, const std::string& of_what) {
   if (flaps_out.samples > 0) say("{}\n", flaps_out_text(flaps_out, of_what));
+}
+
+void print_fit_summary(const RefitResult& fit) {
+  const std::optional<HeldOutPart> held_out = worst_held_out(fit.flights);
+  if (held_out && held_out->is_off()) say("Warning: {}.\n", held_out->text());
+  if (fit.left > 0.0)
+    say("Model error varying with the flight state: {:.2f} hPa (rms); slow drift of the noise: {:.2f} hPa.\n",
+        fit.left, fit.drift_rms);
+  if (fit.between_flights > 0.0)
+    say("Standard deviation between flights of the mean residual: {:.2f} hPa.\n", fit.between_flights);
 }
 
 }  // namespace pcor::tool

@@ -8,6 +8,7 @@
 
 #include <pcor/campaign/chosen_references.hpp>
 #include <pcor/compare/compare.hpp>
+#include <pcor/fit/refit.hpp>
 #include "command.hpp"
 
 namespace pcor::tool {
@@ -53,8 +54,9 @@ struct CommandFlights {
   FlightSet all() const { return flights.with(holdout); }
 };
 
-/// Files that the options read, for `refuse_overwriting`.
-std::vector<std::filesystem::path> input_files(const ComparisonOptions& options);
+/// Files that the options read, and others, for `refuse_overwriting`.
+std::vector<std::filesystem::path> input_files(const ComparisonOptions& options,
+                                               const std::vector<std::string>& others);
 
 /// Options as on a command line, for the suggested next commands.
 std::string command_line(const ComparisonOptions& options);
@@ -66,10 +68,10 @@ std::string advised_command_line(const ComparisonOptions& options);
 /// Output file in advice: `name`, with a number before its extension if an input has that name: "best2.toml".
 std::string output_file(const std::string& name, const std::vector<std::filesystem::path>& inputs);
 
-/// Advised command that corrects a flight by the model in the file `path`. It has a suffix if the command
-/// would otherwise give a result the name of an input.
-std::string process_command(const std::string& flight, const ModelDefinition& model, const std::string& path,
-                            TimestampAlignment alignment);
+/// Advised command that corrects the flights by the model in the file `path`, several flights into a folder.
+/// It has a suffix if the command would otherwise give a result the name of an input.
+std::string process_command(const std::vector<std::string>& flights, const ModelDefinition& model,
+                            const std::string& path, TimestampAlignment alignment);
 
 std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options);
 
@@ -86,5 +88,8 @@ void print_references(const ChosenReferences& references);
 
 /// Prints the residual with flaps out, on a separate line; prints no line if there are no such samples.
 void print_flaps_out(const Statistics& flaps_out, const std::string& of_what);
+
+/// Prints a significant bias of held-out parts first, then the model error and the drift of the noise.
+void print_fit_summary(const RefitResult& fit);
 
 }  // namespace pcor::tool

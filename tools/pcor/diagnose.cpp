@@ -14,6 +14,7 @@
 #include "comparison.hpp"
 #include "diagnosis.hpp"
 #include "fit_options.hpp"
+#include "model_name.hpp"
 #include "model_selector.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
@@ -34,10 +35,7 @@ struct DiagnoseArguments {
 };
 
 std::vector<std::filesystem::path> inputs_of(const DiagnoseArguments& options) {
-  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
-  inputs.emplace_back(options.model);
-  inputs.emplace_back(options.candidates.file);
-  return inputs;
+  return input_files(options.comparison, {options.model, options.candidates.file});
 }
 
 /// The first five items, and the number of the others.
@@ -135,15 +133,25 @@ void print_others(const Diagnosis& diagnosis, bool all) {
   print_list("not testable", not_testable, all);
 }
 
+/// Lines of the table [variables] for recognised roles, each once: engine_torque = "ENGTRQ".
+std::string unnamed_roles_text(const Diagnosis& diagnosis) {
+  std::vector<std::string> lines;
+  for (const UnnamedRole& each : diagnosis.unnamed_roles) {
+    std::string line = fmt::format("{} = \"{}\"", each.role, each.variable);
+    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
+  }
+  return fmt::format("{}", fmt::join(lines, " and "));
+}
+
 /// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
 /// for findings that one command cannot add.
 std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diagnosed,
                          const DiagnoseArguments& options) {
   const std::string flights = advised_command_line(options.comparison) + command_line(options.fit);
-  const std::string model = shell_path(options.model);
+  const std::string model = model_argument(options.model);
   if (diagnosis.verdict == Verdict::silent) {
-    return "To apply the model: " + process_command(options.comparison.flights.front(), diagnosed,
-                                                    options.model, options.comparison.timestamp_alignment);
+    return "To apply the model: " + process_command(options.comparison.flights, diagnosed, options.model,
+                                                    options.comparison.timestamp_alignment);
   }
   const std::vector<std::filesystem::path> inputs = inputs_of(options);
   const std::string best = output_file("best.toml", inputs);
@@ -185,6 +193,11 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
     return "To add it and fit: " +
            add_formula(effect.id, effect.formula, std::string(info_of(effect.location).name));
   }
+  if (const std::string roles = unnamed_roles_text(diagnosis); !roles.empty()) {
+    return fmt::format(
+        "First write {} into [variables] of {}. Then test its effect: {} improve {} -m {}{} -o {}", roles,
+        options.model, program(), flights, model, command_line(options.candidates), best);
+  }
   if (!findings.empty()) {
     return fmt::format("To add helpful effects one after another: {} improve {} -m {}{} -o {}", program(),
                        flights, model, command_line(options.candidates), best);
@@ -214,7 +227,7 @@ void print_in_full(const Diagnosis& diagnosis, const ChosenReferences& reference
 
 void print(const Diagnosis& diagnosis, const ModelDefinition& model, const ChosenReferences& references,
            const DiagnoseArguments& options) {
-  say("{}.\n", verdict_text(diagnosis));
+  say("{}: {}.\n", to_string(diagnosis.verdict), verdict_text(diagnosis));
   if (is_verbose() || options.full) {
     print_in_full(diagnosis, references, options);
   } else {

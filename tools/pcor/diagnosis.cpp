@@ -12,6 +12,7 @@
 #include <pcor/flight/flight.hpp>
 #include <pcor/model/formula.hpp>
 #include "comparison.hpp"
+#include "model_name.hpp"
 #include "shaped_effect.hpp"
 
 namespace pcor::tool {
@@ -132,7 +133,7 @@ void add_commands(WhatIf& what_if, const std::string& model, const std::string& 
       coefficient.argument = shell_quote(shown.id + "." + coefficient.name);
     }
   }
-  what_if.panel.commands = {fmt::format("{} add", program()), shell_path(model),
+  what_if.panel.commands = {fmt::format("{} add", program()), model_argument(model),
                             fmt::format("--flight {}", shell_path(first_flight)),
                             fmt::format("{} refit {}", program(), fit), plain_stem(model)};
 }
@@ -148,7 +149,7 @@ void print_unexplained(const Unexplained& unexplained) {
   if (!unexplained.significant) return;
   say("\nunexplained residual: {:.3f} hPa rms (p {}), including {:.3f} hPa of slow drift{}{}\n",
       unexplained.rms, probability(unexplained.p_value), unexplained.drift_rms,
-      unexplained.regime.empty() ? "" : "; most of it in ", unexplained.regime);
+      unexplained.regime.empty() ? "" : "; largest in ", unexplained.regime);
   if (!unexplained.variables.empty()) {
     say("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "correlates with", "unit", "R2", "p", "hPa per unit",
         "formula", "description");

@@ -154,14 +154,12 @@ void print_one(const EffectInfo& info) {
 
 void print_all() {
   say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what", "formula");
-  for (const EffectInfo& info : effect_info) {
+  const auto print_row = [](const EffectInfo& info) {
     say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, component_of(info),
         info_of(info.location).name, info.title, info.formula);
-  }
-  for (const EffectInfo& info : surface_info) {
-    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, component_of(info),
-        info_of(info.location).name, info.title, info.formula);
-  }
+  };
+  for (const EffectInfo& info : effect_info) print_row(info);
+  for (const EffectInfo& info : surface_info) print_row(info);
   say("\nKnown errors that no term of a model can describe\n\n");
   for (const EffectWithoutTrace& effect : effects_without_trace) say("{:<22} {}\n", effect.id, effect.title);
   say("\n");

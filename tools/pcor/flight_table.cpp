@@ -32,6 +32,10 @@ void FlightTable::write(const std::string& path) const {
   AtomicFile(path).write(text);
 }
 
+void add_table_option(CLI::App& command, std::string& table, const std::string& description) {
+  command.add_option("--table", table, description)->check(is_file_name())->type_name("FILE.csv");
+}
+
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 
 }  // namespace pcor::tool

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "command.hpp"
 
 namespace pcor::tool {
 
@@ -20,6 +23,9 @@ class FlightTable {
  private:
   std::vector<std::vector<std::string>> rows_;
 };
+
+/// Adds the option --table, the file of such a table.
+void add_table_option(CLI::App& command, std::string& table, const std::string& description);
 
 /// Number as a cell, with enough digits to restore it; empty for NaN.
 std::string cell(double value);

@@ -14,10 +14,8 @@
 #include "comparison.hpp"
 #include "diagnosis.hpp"
 #include "fit_options.hpp"
-#include "fit_summary.hpp"
 #include "model_selector.hpp"
 #include "progress.hpp"
-#include "refusal.hpp"
 #include "report_origin.hpp"
 
 namespace pcor::tool {
@@ -35,8 +33,8 @@ struct ImproveArguments {
 };
 
 std::string next_step(const Improvement& improvement, const ImproveArguments& options) {
-  return "To apply it: " + process_command(options.comparison.flights.front(), improvement.model,
-                                           options.output, options.comparison.timestamp_alignment);
+  return "To apply it: " + process_command(options.comparison.flights, improvement.model, options.output,
+                                           options.comparison.timestamp_alignment);
 }
 
 void print(const Improvement& improvement, const ChosenReferences& references,
@@ -70,8 +68,8 @@ void print(const Improvement& improvement, const ChosenReferences& references,
   } else if (improvement.holdout_is_flights) {
     say("held out: the last {:.0f} % of every flight\n", 100.0 * (1.0 - options.fit.training_share));
   } else {
-    say("held out: five parts of the flights, one at a time, without outliers; hold out whole flights with "
-        "--holdout\n");
+    say("held out: every fifth five minutes of the flights in turn, without outliers; hold out whole flights "
+        "with --holdout\n");
   }
   print_fit_summary(improvement.fit);
   if (is_verbose()) {
@@ -102,9 +100,8 @@ ImproveOptions improve_options(const ImproveArguments& options, const ModelDefin
 }
 
 void run(const ImproveArguments& options) {
-  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
-  inputs.emplace_back(options.model);
-  inputs.emplace_back(options.candidates.file);
+  std::vector<std::filesystem::path> inputs =
+      input_files(options.comparison, {options.model, options.candidates.file});
   inputs.insert(inputs.end(), options.fit.holdout.begin(), options.fit.holdout.end());
   prepare_outputs(options.common, {options.output}, inputs);
   JsonResult json(options.common);

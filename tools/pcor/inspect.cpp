@@ -60,7 +60,7 @@ std::vector<std::string> next_commands(const InspectArguments& options, const In
   const std::string stamp =
       options.timestamp_alignment == TimestampAlignment::begin ? "" : " --time-stamp middle";
   const auto process = [&](const ModelDefinition& model, const std::string& path) {
-    return process_command(flight.path, model, path, options.timestamp_alignment) +
+    return process_command({flight.path}, model, path, options.timestamp_alignment) +
            " --report corrected.html";
   };
   std::string reference;
@@ -250,19 +250,20 @@ void print_short(const Inspection& flight) {
   for (std::size_t i = 0; i < std::min(flight.problems.size(), max_rows); ++i) print(flight.problems[i]);
   if (flight.problems.size() > max_rows)
     say("{} more problems: add --verbose\n", flight.problems.size() - max_rows);
-  std::vector<std::string> models;
-  for (const ModelCandidate& law : flight.laws) {
-    if (law.fits()) models.push_back(law.path.stem().string());
-  }
-  say("models for this flight: {}\n",
-      models.empty() ? "no published one" : fmt::format("{}", fmt::join(models, ", ")));
+  const std::string models = applicable_text(flight.laws);
+  say("models for this flight: {}\n", models.empty() ? "no published one" : models);
 }
 
 std::string validity_of(const LawInfo& law) {
   if (law.valid_from.empty() && law.valid_to.empty()) return "dates of validity not stated";
-  if (law.valid_from.empty()) return fmt::format("valid until {}, start not stated", law.valid_to);
+  if (law.valid_from.empty()) return fmt::format("valid until {}, beginning not stated", law.valid_to);
   if (law.valid_to.empty()) return fmt::format("valid from {}", law.valid_from);
   return fmt::format("valid from {} to {}", law.valid_from, law.valid_to);
+}
+
+/// Note of a law whose dates are in doubt.
+std::string doubtful_note(const LawInfo& law) {
+  return doubt_of_dates(law).empty() || law.note.empty() ? "" : "; note: " + law.note;
 }
 
 void print_in_full(const Inspection& flight) {
@@ -278,7 +279,8 @@ void print_in_full(const Inspection& flight) {
         !law.lacks.empty()     ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
         : !law.is_in_time      ? "; not for the date of the flight, " + validity_of(law.model.law)
         : !law.why_not.empty() ? "; " + law.why_not
-                               : "; matches the flight's pressures, " + validity_of(law.model.law));
+                               : "; matches the flight's pressures, " + validity_of(law.model.law) +
+                                     doubtful_note(law.model.law));
   }
 }
 
@@ -291,12 +293,30 @@ void print(const Inspection& flight) {
   say_notes(flight.notes);
 }
 
+/// Published models in the commands, if their dates are in doubt.
+std::string doubts_of_next(const Inspection& flight) {
+  std::string text;
+  for (const ModelCandidate& law : flight.laws) {
+    const std::string name = law.path.stem().string();
+    const std::string doubt = doubt_of_dates(law.model.law);
+    const auto uses = [&](const std::string& command) {
+      return command.find(" -m " + name + " ") != std::string::npos ||
+             command.find(":" + name + " ") != std::string::npos;
+    };
+    if (law.fits() && !doubt.empty() && std::any_of(flight.next.begin(), flight.next.end(), uses))
+      text += fmt::format("{}: {}; ", name, doubt.substr(0, doubt.find(';')));
+  }
+  return text.empty()
+             ? ""
+             : fmt::format(" ({}check that it applies to {})", text, utc_text(flight.time.first, "%Y-%m-%d"));
+}
+
 void print_next(const Inspection& flight) {
   if (flight.next.empty()) {
     say("This file allows no correction: {}.\n", flight.why_no_model);
     return;
   }
-  say("{}\n", flight.next.size() == 1 ? "Next:" : "Next, in this order:");
+  say("Next{}{}:\n", flight.next.size() == 1 ? "" : ", in this order", doubts_of_next(flight));
   for (const std::string& each : flight.next) say("  {}\n", each);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include <pcor/base/error.hpp>
+#include <pcor/base/shell_quote.hpp>
 #include <pcor/base/suggest.hpp>
 
 namespace pcor::tool {
@@ -21,6 +23,22 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view model_ending = ".toml";
+
+/// Name that the user gave, by the file that `model_file` found.
+std::map<std::string, std::string> name_of_file;
+
+/// "static:" and the model of a reference, or an empty kind.
+std::pair<std::string, std::string> kind_and_model(const std::string& reference) {
+  for (const std::string kind : {"static:", "total:"}) {
+    if (reference.compare(0, kind.size(), kind) == 0) return {kind, reference.substr(kind.size())};
+  }
+  return {"", reference};
+}
+
+std::string as_given(const std::string& file) {
+  const auto found = name_of_file.find(file);
+  return found == name_of_file.end() ? file : found->second;
+}
 
 bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
@@ -65,7 +83,11 @@ std::string model_file(const std::string& given) {
   std::set<std::string> known;  // a name may occur in several folders
   for (const fs::path& folder : model_folders()) {
     const fs::path file = folder / (given + std::string(model_ending));
-    if (fs::is_regular_file(file, code)) return fs::weakly_canonical(file, code).string();
+    if (fs::is_regular_file(file, code)) {
+      std::string path = fs::weakly_canonical(file, code).string();
+      name_of_file[path] = given;
+      return path;
+    }
     for (const fs::path& other : files_in(folder)) known.insert(other.stem().string());
   }
   const std::string meant = did_you_mean(given, {known.begin(), known.end()});
@@ -102,13 +124,16 @@ std::vector<fs::path> models_in(const fs::path& folder) {
 }
 
 std::string reference_with_model_file(const std::string& given) {
-  for (const std::string_view kind : {"static:", "total:"}) {
-    if (given.compare(0, kind.size(), kind) != 0) continue;
-    const std::string model = given.substr(kind.size());
-    if (model.find('+') != std::string::npos) break;  // pair of variables
-    return std::string(kind) + model_file(model);
-  }
-  return given;
+  const auto [kind, model] = kind_and_model(given);
+  const bool is_pair_of_variables = model.find('+') != std::string::npos;
+  return kind.empty() || is_pair_of_variables ? given : kind + model_file(model);
+}
+
+std::string model_argument(const std::string& file) { return shell_path(as_given(file)); }
+
+std::string reference_argument(const std::string& reference) {
+  const auto [kind, model] = kind_and_model(reference);
+  return shell_quote(kind + as_given(model));
 }
 
 void take_models_by_name(CLI::App& program) {

@@ -23,6 +23,11 @@ std::vector<std::filesystem::path> models_in(const std::filesystem::path& folder
 /// @throws Error as does `model_file`.
 std::string reference_with_model_file(const std::string& given);
 
+/// Model file, and value of --reference, for a command to copy, quoted for a shell: a model that the user
+/// named has this name.
+std::string model_argument(const std::string& file);
+std::string reference_argument(const std::string& reference);
+
 /// Enables names of models in the options --model, --second and --reference of all sub-commands.
 void take_models_by_name(CLI::App& program);
 

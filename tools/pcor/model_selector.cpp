@@ -9,8 +9,6 @@
 #include <pcor/roles/model_candidates.hpp>
 #include <pcor/roles/resolve_variables.hpp>
 
-#include "choices.hpp"
-
 namespace pcor::tool {
 
 ModelDefinition read_model_for(const std::filesystem::path& model, const FlightSet& flights,

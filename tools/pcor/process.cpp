@@ -18,6 +18,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/base/utc.hpp>
 #include "command.hpp"
+#include "comparison.hpp"
 #include "model_name.hpp"
 #include "model_selector.hpp"
 #include "processes.hpp"
@@ -94,7 +95,8 @@ void print_flags(const Flags& flagged) {
     if (flagged[i] == 0) continue;
     if (!any) say("{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
     any = true;
-    say("{:>9}  {:<32} {}\n", flagged[i], quality_info[i].name, quality_info[i].meaning);
+    say("{:>9}  {:<32} {}\n", flagged[i], quality_info[i].name,
+        is_verbose() ? quality_info[i].meaning : quality_info[i].brief);
   }
 }
 
@@ -138,7 +140,7 @@ void print(const ProcessedFlight& of) {
                                       [](const Note& note) { return note.severity == Severity::warning; });
   constexpr std::size_t few = 1, usual = 3;  // fewer below a long table, but all warnings
   say_notes(summary.notes, std::max(bits > 5 ? few : usual, static_cast<std::size_t>(warnings)));
-  say("{} {} to {}\n", wrote(of.output), fmt::join(summary.outputs, " "), of.output.string());
+  say("{} {}: {}\n", wrote(of.output), of.output.string(), fmt::join(summary.outputs, " "));
 }
 
 /// Several flights as a table: a row when a flight is done, and common notes at the end.
@@ -170,21 +172,33 @@ class Table {
   static void end(const std::vector<ProcessedFlight>& flights, const std::string& folder) {
     say("delta-p: mean in flight, hPa, with minimum and maximum\n");
     Flags flagged{};
-    std::map<Note, std::size_t> notes;
     for (const ProcessedFlight& flight : flights) {
       for (std::size_t i = 0; i < flagged.size(); ++i) flagged[i] += flight.summary.flagged[i];
-      for (const Note& note : flight.summary.notes) ++notes[note];
     }
     print_flags(flagged);
-    for (const auto& [note, count] : notes) {
-      say("\n{}, {} of {} flights: {}.\n", label_of(note), count, flights.size(), note.text);
-    }
+    print_notes(flights);
     say("\n{} flights: {} processed into {}, {} up to date, {} unreadable\n", flights.size(),
         count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
         count_of(flights, FlightState::unreadable));
   }
 
  private:
+  /// Each note once, with its flight or the number of its flights.
+  static void print_notes(const std::vector<ProcessedFlight>& flights) {
+    constexpr std::size_t max_notes = 6;
+    std::map<Note, std::vector<std::string>> names;
+    for (const ProcessedFlight& flight : flights) {
+      for (const Note& note : flight.summary.notes) names[note].push_back(flight.input.filename().string());
+    }
+    Notes notes;
+    for (const auto& [note, of] : names) {
+      const std::string whose =
+          of.size() == 1 ? of.front() : fmt::format("{} of {} flights", of.size(), flights.size());
+      notes.emplace_back(note.severity, fmt::format("{}: {}", whose, note.text));
+    }
+    say_notes(notes, max_notes);
+  }
+
   std::string model_of(const ProcessedFlight& flight) const {
     return with_models_ ? "  " + flight.model.model.name : std::string();
   }

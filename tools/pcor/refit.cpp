@@ -16,11 +16,10 @@
 #include "communicator.hpp"
 #include "comparison.hpp"
 #include "fit_options.hpp"
-#include "fit_summary.hpp"
 #include "flight_table.hpp"
+#include "model_name.hpp"
 #include "model_selector.hpp"
 #include "progress.hpp"
-#include "refusal.hpp"
 #include "report_origin.hpp"
 
 namespace pcor::tool {
@@ -121,8 +120,12 @@ bool is_of_surface(const RefitResult& result, const std::string& parameter) {
 
 /// Coefficients except those of surfaces; without --verbose only the fitted ones, at most `max_rows`.
 void print_coefficients(const RefitResult& result, std::size_t max_rows) {
-  say("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error", "jackknife",
-      "unit");
+  const auto number = [](double error) { return std::isnan(error) ? "" : fmt::format("{:.3g}", error); };
+  const auto likelihood = [&result](const std::string& error) {
+    return result.is_by_gps() ? fmt::format("{:>13} ", error) : "";
+  };
+  say("{:<36} {:>13} {:>13} {:>13} {}{:>13}  {}\n", "coefficient", "before", "after",
+      result.is_by_gps() ? "stated error" : "std. error", likelihood("likelihood"), "jackknife", "unit");
   std::size_t rows = 0, omitted = 0;
   for (const FittedParameter& p : result.parameters) {
     if (is_of_surface(result, p.name) || (!is_verbose() && !p.fitted)) continue;
@@ -134,9 +137,9 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
                               : p.at_bound                   ? "bound"
                               : std::isnan(p.standard_error) ? "unknown"
                                                              : fmt::format("{:.3g}", p.standard_error);
-    const std::string jackknife =
-        std::isnan(p.jackknife_error) ? "" : fmt::format("{:.3g}", p.jackknife_error);
-    say("{:<36} {:>13.6g} {:>13.6g} {:>13} {:>13}  {}\n", p.name, p.start, p.value, error, jackknife, p.unit);
+    say("{:<36} {:>13.6g} {:>13.6g} {:>13} {}{:>13}  {}\n", p.name, p.start, p.value, error,
+        likelihood(number(p.noise_error)), number(p.jackknife_error),
+        p.unit.empty() ? "formula unit" : p.unit);
   }
   if (omitted > 0) say("and {} more: add --verbose\n", omitted);
   for (const SurfaceFit& surface : result.surfaces) {
@@ -147,11 +150,20 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
     say("standard error of delta-p over the flights: {:.2f} hPa\n", result.defect_error);
 }
 
+/// Number of the outliers, and their use in the fit.
+std::string outliers_text(const RefitResult& result, const RefitArguments& options) {
+  const char* const use = result.outliers == 0                         ? ""
+                          : result.is_by_gps()                         ? " down-weighted"
+                          : loss_named(options.fit.loss) == Loss::none ? " with full weight"
+                                                                       : " dropped or down-weighted";
+  return fmt::format("{} outliers{}", result.outliers, use);
+}
+
 /// The residual, warnings and the fitted coefficients.
-void print_short(const RefitResult& result) {
+void print_short(const RefitResult& result, const RefitArguments& options) {
   constexpr std::size_t max_rows = 6;
-  say("rms {:.3f} hPa, before {:.3f}; noise {:.3f} hPa; {} samples, {} outliers\n", result.rms,
-      result.rms_before, result.noise_rms, result.samples, result.outliers);
+  say("rms {:.3f} hPa, before {:.3f}; noise {:.3f} hPa; {} samples, {}\n", result.rms, result.rms_before,
+      result.noise_rms, result.samples, outliers_text(result, options));
   print_fit_summary(result);
   for (const std::string& warning : result.warnings) say("Warning: {}.\n", warning);
   print_coefficients(result, max_rows);
@@ -162,7 +174,8 @@ void print_short(const RefitResult& result) {
   }
 }
 
-void print_result(const RefitResult& result, const ChosenReferences& references) {
+void print_result(const RefitResult& result, const ChosenReferences& references,
+                  const RefitArguments& options) {
   print_fit_summary(result);
   print_references(references);
   for (const std::string& warning : result.warnings) say("Warning: {}.\n\n", warning);
@@ -172,10 +185,11 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
   print_flaps_out(result.flaps_out, "the fit");
   say("\n");
   print_coefficients(result, result.parameters.size());
-  say("\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; robust standard deviation {:.3f}; noise {:.3f} hPa; {} "
-      "outliers\n",
-      result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
-      result.outliers);
+  say("\nrms {:.3f} hPa, before {:.3f}; noise {:.3f} hPa; {}\n", result.rms, result.rms_before,
+      result.noise_rms, outliers_text(result, options));
+  say("rms of residual / static pressure {:.5f}; standard deviation by the median of absolute values {:.3f} "
+      "hPa\n",
+      result.rms_over_pressure, result.bulk_rms);
   say("R2 {:.4f}; condition number {:.0f}\n", result.r_squared, result.condition_number);
   if (result.autocorrelation_time > 1.0) {
     say("effective sample size: {1:.0f} of {0} samples, because the noise is correlated and drifts; the "
@@ -206,7 +220,7 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
 std::string next_step(const RefitArguments& options) {
   if (options.reference_output.empty()) {
     return fmt::format("To see where the errors are largest: {} compare {} -m {} -m {}", program(),
-                       advised_command_line(options.comparison), shell_path(options.model),
+                       advised_command_line(options.comparison), model_argument(options.model),
                        shell_path(options.output));
   }
   ComparisonOptions fitted = options.comparison;
@@ -306,8 +320,7 @@ void put_static_systems_first(std::vector<std::string>& references) {
 }
 
 void run(const RefitArguments& options) {
-  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
-  inputs.emplace_back(options.model);
+  std::vector<std::filesystem::path> inputs = input_files(options.comparison, {options.model});
   inputs.insert(inputs.end(), options.fit.holdout.begin(), options.fit.holdout.end());
   prepare_outputs(options.common, {options.output, options.reference_output, options.table}, inputs);
   JsonResult json(options.common);
@@ -348,9 +361,9 @@ void run(const RefitArguments& options) {
   const bool with_text = wants_text(options.common, {options.output, options.reference_output});
   if (with_text) {
     if (is_verbose())
-      print_result(result, references);
+      print_result(result, references, options);
     else
-      print_short(result);
+      print_short(result, options);
     say_notes(result.notes);
     say_written({options.common.report, options.common.figures, options.table, options.common.json});
   }
@@ -370,12 +383,9 @@ std::function<void()> add_refit(CLI::App& program) {
   command->add_option("-o,--output", options->output, "output model (written atomically); - for stdout")
       ->required()
       ->type_name("FITTED.toml");
-  command
-      ->add_option("--table", options->table,
+  add_table_option(*command, options->table,
                    "write a row for each flight to FILE.csv: its residuals before and after, and the "
-                   "coefficients fitted to it alone")
-      ->check(is_file_name())
-      ->type_name("FILE.csv");
+                   "coefficients fitted to it alone");
   command
       ->add_option("--refit-reference", options->reference_output,
                    "fit the model of the second static system as well, and write it to this file")

@@ -8,7 +8,6 @@
 
 #include <pcor/base/utc.hpp>
 #include <pcor/report/figures.hpp>
-#include "choices.hpp"
 #include "communicator.hpp"
 #include "processes.hpp"
 

@@ -13,7 +13,6 @@
 #include "comparison.hpp"
 #include "model_selector.hpp"
 #include "progress.hpp"
-#include "refusal.hpp"
 #include "report_origin.hpp"
 
 namespace pcor::tool {
@@ -151,24 +150,25 @@ void print(const IterativeCalibration& result) {
                                  : "not converged: use the result with care");
 }
 
-/// First used flight, as named by the user.
-const std::string& first_used(const TemperatureResult& result, const TemperatureArguments& options) {
-  const auto used = std::find_if(result.flights.begin(), result.flights.end(),
-                                 [](const FlightHeights& flight) { return flight.excluded.empty(); });
-  return options.comparison.flights.at(static_cast<std::size_t>(used - result.flights.begin()));
+/// Used flights, as named by the user.
+std::vector<std::string> used_flights(const TemperatureResult& result, const TemperatureArguments& options) {
+  std::vector<std::string> used;
+  for (std::size_t i = 0; i < options.comparison.flights.size(); ++i) {
+    if (result.flights.at(i).excluded.empty()) used.push_back(options.comparison.flights[i]);
+  }
+  return used;
 }
 
 std::string next_step(const TemperatureResult& result, const TemperatureArguments& options) {
   if (!result.worse.empty())
     return "Flights that climb and descend by 3 km and more, there and back along the same track, determine "
            "the correction better";
-  return "To apply it: " + process_command(first_used(result, options), result.model, options.output,
+  return "To apply it: " + process_command(used_flights(result, options), result.model, options.output,
                                            options.comparison.timestamp_alignment);
 }
 
 void run(const TemperatureArguments& options) {
-  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
-  inputs.emplace_back(options.model);
+  const std::vector<std::filesystem::path> inputs = input_files(options.comparison, {options.model});
   prepare_outputs(options.common, {options.output}, inputs);
   if (options.iterate && options.archived)
     throw Error(Error::Code::usage,

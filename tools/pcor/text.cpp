@@ -21,6 +21,7 @@ constexpr auto none = std::string_view::npos;
 
 bool is_plain = false;
 bool with_details = false;
+std::vector<std::string> automatic_choices;
 
 std::string& program_name() {
   static std::string name = "pcor";
@@ -173,7 +174,7 @@ void finish_text() {
 }
 
 void say_notes(Notes notes, std::size_t max_notes) {
-  constexpr std::size_t max_width = 120;
+  constexpr std::size_t max_width = 136;
   std::stable_partition(notes.begin(), notes.end(),
                         [](const Note& note) { return note.severity == Severity::warning; });
   if (is_verbose()) {
@@ -192,6 +193,15 @@ void say_notes(Notes notes, std::size_t max_notes) {
   }
   if (notes.size() > max_notes) say("more notes: {} (add --verbose)\n", notes.size() - max_notes);
 }
+
+void tell_choices(const Notes& choices, bool quiet) {
+  for (const Note& choice : choices) {
+    if (!quiet) tell(format_note(choice));
+    automatic_choices.push_back(format_note(choice));
+  }
+}
+
+const std::vector<std::string>& choices_of_this_run() { return automatic_choices; }
 
 namespace {
 

@@ -47,6 +47,14 @@ void say_everything();
 /// full if `is_verbose`.
 void say_notes(Notes notes, std::size_t max_notes = 3);
 
+/// Prints automatic choices on standard error, unless `quiet`, a sentence each, and stores them for
+/// `choices_of_this_run`.
+void tell_choices(const Notes& choices, bool quiet);
+
+/// Automatic choices of this run: variables and models that were not specified, skipped flights. JSON results
+/// and reports include them.
+const std::vector<std::string>& choices_of_this_run();
+
 /// Registers a file that exists before the run, for `say_written`.
 void remember_existing(const std::filesystem::path& file);
 

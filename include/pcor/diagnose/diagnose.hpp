@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -103,6 +104,7 @@ struct Alias {
   ModelEffect correction{};         ///< effect with the estimated coefficients, ready for a model
   std::vector<std::string> held{};  ///< see `Finding::held`
   bool is_alike = false;            ///< see `Finding::is_alike`
+  std::size_t candidate = 0;        ///< index among the tested effects, of which each shape is one
 };
 
 template <class Field>
@@ -192,6 +194,8 @@ struct Finding {
   double probability = 1.0;  ///< posterior probability among the finding and its aliases, 0 to 1
   double times_usual = 0.0;  ///< size divided by the typical size; 0 if unknown
   Advice advice{};
+  std::string
+      rival{};  ///< cause outside the catalogue that may replace it: "the atmosphere"; otherwise empty
 
   /// Id of the effect; on another system "reference:ID", or "reference:PSFRD+QCFR:ID" if there are several.
   std::string id() const;
@@ -307,8 +311,12 @@ void describe(const EmpiricalPredictor& self, Field& field) {
   field("r2", self.r2, "fraction of the residual variance that the variable explains");
   field("p_value", self.p_value, "probability that the best variable does as well by chance");
   field("linear_r2", self.linear_r2, "fraction that a straight line explains");
-  field("slope", self.slope, "slope of that line", "hPa per unit");
-  field("slope_stderr", self.slope_error, "standard error of the slope", "hPa per unit");
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const bool has_line = self.slope_error > 0.0;
+  field("slope", has_line ? self.slope : unknown, "slope of that line; null without a linear trend",
+        "hPa per unit");
+  field("slope_stderr", has_line ? self.slope_error : unknown,
+        "standard error of the slope; null without a linear trend", "hPa per unit");
   field("centre", self.centre, "mean of the variable", "see unit");
   field("formula", self.formula, "formula of a corresponding effect");
   field("places", self.components, "possible instrument components; empty if undetermined");
@@ -382,6 +390,14 @@ struct FlightDiagnosis {
   std::vector<double> sideslip;  ///< deg; NaN if unknown
 };
 
+/// Recorded variable with which the residual is correlated, and which seems to be a role that the model does
+/// not name but an untested effect reads.
+struct UnnamedRole {
+  std::string role;
+  std::string variable;
+  std::string effect;
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::silent;
   std::string reference;
@@ -393,6 +409,7 @@ struct Diagnosis {
   std::vector<AbsorbedEffect> absorbed{};
   std::vector<UpperLimit> limits{};  ///< sorted by decreasing size
   std::vector<NotTestable> not_testable{};
+  std::vector<UnnamedRole> unnamed_roles{};  ///< the notes state them
   /// Free coefficients of the model, refitted (see `residual_rms`), with names like "static-qp.a2", followed
   /// by those of the references' models.
   std::vector<CoefficientEstimate> own{};
@@ -401,7 +418,8 @@ struct Diagnosis {
   /// rms residual of the unchanged model, hPa, as in `compare` and `refit`.
   double rms_given = 0.0;
   double noise_rms = 0.0;  ///< rms noise with the unchanged model, hPa
-  /// rms residual after a linearised generalised least-squares refit of the model's free coefficients, hPa.
+  /// rms residual after a linearised least-squares refit of the free coefficients of the model and of the
+  /// references' models, hPa.
   double residual_rms = 0.0;
   double residual_rms_held_out = 0.0;    ///< cross-validated rms residual (five folds), hPa
   double noise_rms_with_findings = 0.0;  ///< rms noise of the residual with all findings, hPa

@@ -72,7 +72,8 @@ struct FittedParameter {
   double standard_error = 0.0;
   /// Standard error without the misfit of the model and the uncertainty of the calibration.
   double noise_error = 0.0;
-  /// Jackknife standard error over flights, or parts of a flight; independent of the noise model.
+  /// Jackknife standard error over flights, or parts of a flight; independent of the noise model. Infinite if
+  /// one of these alone determines the coefficient; NaN with fewer than three of these.
   double jackknife_error = 0.0;
   bool fitted = false;
   bool at_bound = false;
@@ -105,7 +106,9 @@ void describe(const FittedEffect& self, Field& field) {
   field("stderr_noise", field.named(self.parameters, &Parameter::noise_error),
         "standard errors without misfit and calibration", unit);
   field("stderr_jackknife", field.named(self.parameters, &Parameter::jackknife_error),
-        "standard errors by jackknife over flights or their parts", unit);
+        "standard errors by jackknife over flights or their parts; null if one alone determines the "
+        "coefficient",
+        unit);
   field("start", field.named(self.parameters, &Parameter::start), "coefficients before the fit", unit);
   field("at_bound", names([](const Parameter& each) { return each.at_bound; }),
         "coefficients at a bound; absent if none");
@@ -148,11 +151,7 @@ struct FlightFit {
   Statistics before;
   Statistics after;
   double expected_bias = 0.0;  ///< `HeldOutPart::expected` of a part that was held out, hPa
-  /// Decrease of the sum of squared whitened residuals by the fit; its standard error follows from the
-  /// scatter between minutes.
-  double gain = 0.0;
-  double gain_error = 0.0;
-  std::string reference{};  ///< see `Reference::name`
+  std::string reference{};     ///< see `Reference::name`
 };
 
 template <class Field>
@@ -216,6 +215,10 @@ struct RefitResult {
   double defect_error = 0.0;
   std::string reference_text{};
   std::string_view estimator = refit_estimator;
+  /// True for a fit by wind and height alone. Then `FittedParameter::noise_error` is that of the likelihood,
+  /// and the stated errors are by the likelihood or by the jackknife: the one with the larger error of
+  /// delta-p.
+  bool is_by_gps() const { return estimator == refit_estimator_of_gps; }
   /// Reason for which the model should not be used: the fit is worse than the coefficients of the file, or a
   /// held-out part has a significant bias. Otherwise empty.
   std::string worse{};
@@ -303,9 +306,10 @@ void describe(const RefitResult& self, Field& field) {
 /// prior; without other references the prior has the typical sizes of the effects about the start, and
 /// directions in which delta-p would have an error above 1 hPa are fixed.
 ///
-/// @throws Error if a flight cannot be read, no parameter is free, no sample remains (with the masks),
-/// samples are fewer than coefficients, bounds are empty, or coefficients are not identifiable together on
-/// these flights: the message names them and the ones to fix.
+/// @throws Error if a flight cannot be read, a second static system reads the static pressure under test or
+/// one computed from it, no parameter is free, no sample remains (with the masks), samples are fewer than
+/// coefficients, bounds are empty, or coefficients are not identifiable together on these flights: the
+/// message names them and the ones to fix.
 RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const References& references,
                   const RefitOptions& options = {});
 

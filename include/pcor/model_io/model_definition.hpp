@@ -100,6 +100,9 @@ struct ModelDefinition {
   /// Roles that have a variable, in the order of the enumeration.
   std::vector<Quantity> roles() const;
 
+  /// Variable of a role; empty if the model names no variable for it.
+  std::string variable_of(Quantity role) const;
+
   /// Output name of the result with that default name. An uncertainty without a separate name has the name of
   /// its result with the suffix `_uncertainty`.
   std::string output_name(std::string_view standard_name) const;

@@ -39,6 +39,13 @@ struct ProcessOptions {
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
+/// Time for which the law of a model was not fitted: its results have no stated uncertainty.
+struct OutsideSpan {
+  std::string reason;  ///< "flaps extended" or "outside the domain"
+  double begin = 0.0;  ///< seconds since 1970 UTC
+  double end = 0.0;    ///< end of the last record
+};
+
 /// Result of processing a flight.
 struct ProcessSummary {
   std::string aircraft;
@@ -60,8 +67,9 @@ struct ProcessSummary {
   double max_defect = 0.0;    ///< maximum in flight, hPa
   /// Samples with each quality bit, in flight and on the ground.
   std::array<std::size_t, quality_info.size()> flagged{};
-  std::vector<std::string> outputs;  ///< names of the derived variables, in order
-  Notes notes;                       ///< notes for the user, one sentence each
+  std::vector<OutsideSpan> outside{};  ///< spans without stated uncertainties; of the domain: in flight
+  std::vector<std::string> outputs;    ///< names of the derived variables, in order
+  Notes notes;                         ///< notes for the user, one sentence each
 };
 
 template <class Field>
@@ -84,6 +92,12 @@ void describe(const ProcessSummary& self, Field& field) {
     delta_p("greatest", self.max_defect, "maximum", "hPa");
   });
   field("flags", field.named(quality_info, self.flagged), "samples with each quality bit");
+  field.list("outside", self.outside, "spans for which the law was not fitted",
+             [](const OutsideSpan& span, Field& outside) {
+               outside("reason", span.reason, "flaps extended, or outside the domain");
+               outside.time("begin", span.begin, "first record");
+               outside.time("end", span.end, "last record");
+             });
   field("variables", self.outputs, "derived variables of the output");
   field("notes", self.notes, "notes on the flight");
 }
@@ -113,7 +127,8 @@ void describe(const ProcessSummary& self, Field& field) {
 /// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit. The same
 /// holds for a frozen sensor, detected as in comparisons and fits from its whole series at one sample per
 /// record. Records with extended flaps, recorded or inferred from the lift, have the bit `outside_domain`
-/// unless an effect of the model depends on the flaps; notes state this, or that the flaps are unknown.
+/// unless an effect of the model depends on the flaps; notes state this, or that the flaps are unknown. Their
+/// uncertainties are missing, as outside the domain of the law (`ResultUncertainty`).
 /// Except for the series of these two tests, memory does not depend on the length of the flight.
 ///
 /// @throws Error, and leaves `output` unchanged, if the flight or a variable of the model cannot be read, a

@@ -159,6 +159,7 @@ class BoundModel {
     Quantity quantity;
     double lower;
     double upper;
+    bool is_of_surface;  // its envelope, not the domain of the law
   };
   std::vector<Range> domain_;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -116,6 +117,15 @@ class Chain : public BoundModel {
     defect = select(exceeds, missing<R>(), defect);
     const auto enough = is_tapered ? p >= S(min_static_pressure) && !is_missing(q) : flowing;
     return select(enough, defect, missing<R>());
+  }
+
+  /// True if a quantity is outside the domain of the law, so that its uncertainty does not apply. The
+  /// envelope of a surface does not count.
+  bool is_outside_domain(const State<double>& state) const {
+    return std::any_of(domain_.begin(), domain_.end(), [&state](const Range& range) {
+      const double value = state[range.quantity];
+      return !range.is_of_surface && (value < range.lower || value > range.upper);
+    });
   }
 
   /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum is unchanged.

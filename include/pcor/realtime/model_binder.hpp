@@ -154,7 +154,7 @@ class ModelBinder {
     for (const SurfaceAxis& axis : effect.surface->axes) {
       if (!axis.is_valid()) return fail(Code::formula, who, "has an axis without extent");
       if (!require(axis.quantity, who)) return false;
-      bound_.domain_.push_back({axis.quantity, axis.lower, axis.upper});
+      bound_.domain_.push_back({axis.quantity, axis.lower, axis.upper, true});
     }
     bound_.surfaces_.push_back(*effect.surface);
     add_effect(term, effect);
@@ -253,7 +253,7 @@ class ModelBinder {
     if (quantity == Quantity::count)
       return fail(Code::unknown_quantity, "", "there is no quantity " + quote(range.quantity));
     if (!require(quantity, "the domain of the model")) return false;
-    bound_.domain_.push_back({quantity, range.lower, range.upper});
+    bound_.domain_.push_back({quantity, range.lower, range.upper, false});
     return true;
   }
 

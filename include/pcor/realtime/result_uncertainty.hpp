@@ -46,7 +46,8 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 ///
 /// If delta-p is raised to the minimum of the model, it keeps the uncertainty of the model. If it is tapered,
 /// the contributions of coefficients and inputs are tapered, too; the model's own uncertainty of delta-p is
-/// not. If a result is missing, its uncertainty is missing. If LAMS corrects the
+/// not. If a result is missing, its uncertainty is missing. Outside the domain of the law all uncertainties
+/// are missing, because the law was not fitted there. If LAMS corrects the
 /// sample, only the uncertainty of the model's delta-p is given, because the model covariance does not apply
 /// to the laser.
 class ResultUncertainty final : public Functor {
@@ -79,9 +80,10 @@ class ResultUncertainty final : public Functor {
 
   void compute(State<double>& state, QualityFlags&) noexcept override {
     if (!still_holds(state)) find(state);
-    // The product with zero makes the uncertainty missing if the result is missing.
+    // The product makes the uncertainty missing if the result is missing, and outside the domain of the law.
+    const double zero = chain_->is_outside_domain(state) ? missing<double>() : 0.0;
     for (std::size_t i = 0; i < uncertain_results.size(); ++i)
-      state[uncertain_results[i].uncertainty] = found_[i] + 0.0 * state[uncertain_results[i].result];
+      state[uncertain_results[i].uncertainty] = found_[i] + zero * state[uncertain_results[i].result];
     if (with_ == CorrectWith::lams && !is_missing(state[Quantity::lams_static_defect])) {
       for (std::size_t i = 1; i < uncertain_results.size(); ++i)
         state[uncertain_results[i].uncertainty] = missing<double>();
@@ -478,8 +480,14 @@ class ResultUncertainty final : public Functor {
   // `fraction` is what the taper leaves of the effects at the static ports.
   void add_systematic(const Sensitivity& sensitivity, const State<double>& state, double fraction,
                       Results& variance) noexcept {
+    // Effects at the attack ratio read the ratio before them.
+    State<double> before = state;
+    if (chain_->acts(EffectLocation::attack_ratio) && !is_missing(state[Quantity::attack_ratio]))
+      before[Quantity::attack_ratio] =
+          state[Quantity::attack_differential_pressure] / state[Quantity::radome_dynamic_pressure];
     for (Coefficient& each : coefficients_) {
-      each.shape = shape_of(each, state);
+      const bool is_at_ratio = chain_->location_of(each.effect) == EffectLocation::attack_ratio;
+      each.shape = shape_of(each, is_at_ratio ? before : state);
       // Without a humidity the air counts as dry.
       if (chain_->location_of(each.effect) == EffectLocation::humidity && is_missing(each.shape))
         each.shape = 0.0;

@@ -214,7 +214,8 @@ struct WhatIfCoefficient {
 struct WhatIfEffect {
   std::string id;
   std::string title;
-  std::string why{};  ///< reason for its inclusion, e.g. "found", "instead of static-lag"
+  /// Reason for its inclusion, e.g. "found", "instead of static-lag"; "not found" effects are listed apart.
+  std::string why{};
   /// Index of the effect of `WhatIfWeights` that it represents, itself or another; nullopt if there is no
   /// such effect.
   std::optional<std::size_t> stands_for{};
@@ -263,6 +264,8 @@ struct WhatIfPanel {
   std::string caption;
   std::string residual;               ///< column of the initial residual
   std::string start = "given model";  ///< label of the initial model
+  /// True: the initial coefficients were fitted to the same samples, so they have no rms on unused samples.
+  bool is_start_fitted = false;
   /// Coefficients of the model, followed by those of the effects.
   std::vector<WhatIfCoefficient> coefficients;
   std::size_t own = 0;  ///< number of coefficients of the model
@@ -275,6 +278,7 @@ struct WhatIfPanel {
   WhatIfSums outliers{};          ///< unweighted sums of the outliers
   WhatIfSums held_out{};          ///< unweighted sums of held-out data; empty if there are no held-out data
   double noise = 0.0;             ///< rms, hPa
+  std::string noise_label = "noise";
   std::vector<WhatIfSeparation> separations{};
   WhatIfCommands commands{};
 };

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -126,9 +125,5 @@ class Residuals {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
-
-/// Names of all parameters in the order of `Residuals::parameters`, like "static-qp.a2"; parameters of the
-/// reference's model begin with "reference:".
-std::vector<std::string> residual_parameter_names(const ModelDefinition& model, const Reference& reference);
 
 }  // namespace pcor

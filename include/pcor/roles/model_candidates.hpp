@@ -31,8 +31,16 @@ void describe(const ModelCandidate& self, Field& field) {
   field("why_not", self.why_not, "other reason against the model");
 }
 
+/// Doubt about the dates of a law: "beginning not stated; note: ...". Empty if the law states its first and
+/// last day, or is used operationally.
+std::string doubt_of_dates(const LawInfo& law);
+
+/// Names of the applicable models, each with its doubt: "a, b (beginning not stated; note: ...)".
+std::string applicable_text(const std::vector<ModelCandidate>& laws);
+
 /// Models of a flight's aircraft among model files, sorted: applicable ones first; among these, operational
-/// ones (`LawInfo::in_processing`) first, then those of the pressures that the aircraft's data list first.
+/// ones (`LawInfo::in_processing`) first, then those without a doubt about their dates, then those of the
+/// pressures that the aircraft's data list first.
 /// The aircraft is identified by a common registration: "C-130 N130AR" and "N130AR". `notes` reports
 /// unreadable files.
 std::vector<ModelCandidate> model_candidates(const Flight& flight,

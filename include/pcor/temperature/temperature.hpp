@@ -144,7 +144,10 @@ struct PartCorrection {
   double temperature = 0.0;     ///< weighted mean temperature of the part, degC
   double correction = 0.0;      ///< correction at that temperature, K
   double standard_error = 0.0;  ///< includes noise only, K
-  double common = 0.0;          ///< correction of all data at that temperature, K
+  /// Share in the error of a difference, K: the variance of the difference of two parts is the sum of the
+  /// squares of their shares. `standard_error` for parts with independent errors.
+  double difference_error = 0.0;
+  double common = 0.0;  ///< correction of all data at that temperature, K
 };
 
 template <class Field>

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +13,6 @@
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include "residuals/references/neighbours.hpp"
-#include "residuals/samples_key.hpp"
 #include "roles/jumps.hpp"
 #include "roles/pressure_height.hpp"
 #include "roles/recorded_series.hpp"
@@ -96,21 +94,17 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
   std::vector<double> pressure_of_height_{};  // hPa/m
 };
 
-class HeightReference final : public Reference {
+class HeightReference final : public ReferenceOfNeighbours<HeightOnSamples> {
  public:
-  explicit HeightReference(ModelDefinition model) : model_(std::move(model)) {}
+  using ReferenceOfNeighbours::ReferenceOfNeighbours;
 
   std::string description() const override { return "hydrostatic height against GPS height"; }
   std::string name() const override { return "height"; }
-  bool is_static_pressure() const override { return false; }
-  bool is_of_one_sample() const override { return false; }
   double window() const override { return height_window; }
 
-  std::string inputs() const override { return name() + inputs_of(model_, false); }
-
   ModelSamples read(const Flight& flight, const std::vector<double>& time, Notes& notes) const override {
-    RecordedSeries height = read_role(flight, model_, Quantity::altitude);
-    const RecordedSeries latitude = read_role(flight, model_, Quantity::latitude);
+    RecordedSeries height = read_role(flight, file(), Quantity::altitude);
+    const RecordedSeries latitude = read_role(flight, file(), Quantity::latitude);
     if (height.values.empty() || latitude.values.empty()) {
       throw Error(Error::Code::variable,
                   flight.path().string() +
@@ -118,7 +112,7 @@ class HeightReference final : public Reference {
                       "reference height requires; name them in the table [variables] of the model");
     }
     const HeightEvidence evidence =
-        height_evidence(flight, height.values, static_pressures_of(flight, model_));
+        height_evidence(flight, height.values, static_pressures_of(flight, file()));
     if (evidence.kind == HeightEvidence::Kind::pressure_altitude) {
       throw Error(Error::Code::variable,
                   fmt::format("{}: {} is a pressure altitude, not a GPS height: {}; a fit to it would be "
@@ -137,19 +131,6 @@ class HeightReference final : public Reference {
     samples.variables = {{Quantity::altitude, height.variable}};
     return samples;
   }
-
-  std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
-                                         const ModelOnSamples& model) const override {
-    if (!model.chain().has_temperature()) {
-      throw Error(Error::Code::model,
-                  "the model has no temperature, which the reference height requires; set "
-                  "recovery_temperature or ambient_temperature in the table [variables]");
-    }
-    return std::make_unique<HeightOnSamples>(samples, model);
-  }
-
- private:
-  ModelDefinition model_;
 };
 
 }  // namespace pcor::internal

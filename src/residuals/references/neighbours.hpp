@@ -1,13 +1,21 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include <pcor/base/error.hpp>
+#include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include "residuals/model_on_samples.hpp"
 #include "residuals/reference_on_samples.hpp"
+#include "residuals/samples_key.hpp"
 
 namespace pcor::internal {
 
@@ -138,6 +146,35 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
 
   const ModelOnSamples& model_;
   std::size_t size_;
+};
+
+/// Reference by `OnSamples`, which is `OfNeighbours` and requires the temperature, with variables that the
+/// compared model names.
+template <class OnSamples>
+class ReferenceOfNeighbours : public Reference {
+ public:
+  explicit ReferenceOfNeighbours(ModelDefinition file) : file_(std::move(file)) {}
+
+  bool is_static_pressure() const override { return false; }
+  bool is_of_one_sample() const override { return false; }
+  std::string inputs() const override { return name() + inputs_of(file_, false); }
+
+  std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
+                                         const ModelOnSamples& model) const override {
+    if (!model.chain().has_temperature()) {
+      throw Error(Error::Code::model,
+                  fmt::format("the model has no temperature, which the reference {} requires; set "
+                              "recovery_temperature or ambient_temperature in the table [variables]",
+                              name()));
+    }
+    return std::make_unique<OnSamples>(samples, model);
+  }
+
+ protected:
+  const ModelDefinition& file() const { return file_; }
+
+ private:
+  ModelDefinition file_;
 };
 
 }  // namespace pcor::internal

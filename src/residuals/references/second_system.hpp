@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,13 +14,29 @@
 
 namespace pcor::internal {
 
-/// Second system on the samples of a flight: its inputs, its model, and the reason for a missing sample,
-/// common to all comparisons with the model.
-class SecondSystemOnSamples : public ReferenceOnSamples {
+/// Pressure that is compared with that of a second system.
+enum class ComparedPressure { static_pressure, total_pressure };
+
+/// Second system on the samples of a flight, with its inputs and its model.
+class SecondSystemOnSamples final : public ReferenceOnSamples {
  public:
-  SecondSystemOnSamples(const ModelDefinition& system, const FlightSamples& samples,
-                        const ModelOnSamples& model)
-      : own_(system, samples.reference), model_(model) {}
+  SecondSystemOnSamples(const ModelDefinition& system, ComparedPressure compared,
+                        const FlightSamples& samples, const ModelOnSamples& model)
+      : own_(system, samples.reference), model_(model), compared_(compared) {}
+
+  void residuals(const Block& block, const double* parameters, double* out) const override {
+    std::vector<double> of_model(block.count);
+    find(model_, block.model, block.count, parameters, of_model.data());
+    find(own_, block.reference, block.count, own_of(parameters), out);
+    for (std::size_t i = 0; i < block.count; ++i) out[i] -= of_model[i];
+  }
+
+  void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
+                 Jet* out) const override {
+    for (std::size_t i = 0; i < count; ++i)
+      out[i] =
+          pressure_at(own_, samples[i], own_of(parameters)) - pressure_at(model_, samples[i], parameters);
+  }
 
   std::vector<Batch::Input> columns() const override { return own_.columns(); }
   const ModelOnSamples* model() const override { return &own_; }
@@ -29,27 +46,49 @@ class SecondSystemOnSamples : public ReferenceOnSamples {
     return own_.is_missing_needed(sample) ? Mask::reference : Mask::impossible;
   }
 
- protected:
-  /// The system's model, and the model under comparison.
-  const ModelOnSamples& law() const { return own_; }
-  const ModelOnSamples& compared_model() const { return model_; }
+ private:
   /// Parameters of the system's model, among all.
   template <class S>
   const S* own_of(const S* parameters) const {
     return parameters + model_.parameters().size();
   }
 
- private:
+  void find(const ModelOnSamples& system, const std::vector<Batch::Input>& inputs, std::size_t count,
+            const double* parameters, double* out) const {
+    if (compared_ == ComparedPressure::total_pressure)
+      system.total_pressure(inputs, count, parameters, out);
+    else
+      system.corrected_static_pressure(inputs, count, parameters, out);
+  }
+
+  Jet pressure_at(const ModelOnSamples& system, std::size_t sample, const Jet* parameters) const {
+    if (compared_ == ComparedPressure::total_pressure) return system.total_pressure(sample, parameters);
+    State<Jet> state;
+    return system.corrected_static_pressure(sample, parameters, state);
+  }
+
   ModelOnSamples own_;
   const ModelOnSamples& model_;
+  ComparedPressure compared_;
 };
 
 /// Reference that is another pair of pressures of the aircraft, corrected by a separate model.
-class SecondSystem : public Reference {
+class SecondSystem final : public Reference {
  public:
-  explicit SecondSystem(ModelDefinition system) : system_(std::move(system)) {}
+  SecondSystem(ModelDefinition system, ComparedPressure compared)
+      : system_(std::move(system)), compared_(compared) {}
 
+  std::string description() const override {
+    return (is_total() ? "total pressure of '" : "static system '") + system_.model.name + "'";
+  }
+  std::string name() const override { return (is_total() ? "total:" : "static:") + system_.model.name; }
+  bool is_static_pressure() const override { return !is_total(); }
+  bool sees_static_defect() const override { return !is_total(); }
   const ModelDefinition* model() const override { return &system_; }
+
+  std::shared_ptr<const Reference> with_model(const ModelDefinition& system) const override {
+    return std::make_shared<SecondSystem>(system, compared_);
+  }
 
   std::vector<std::string> variables() const override {
     std::vector<std::string> names;
@@ -63,11 +102,16 @@ class SecondSystem : public Reference {
     return read_model_columns(flight, system_, false, time, notes);
   }
 
- protected:
-  const ModelDefinition& system() const { return system_; }
+  std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
+                                         const ModelOnSamples& model) const override {
+    return std::make_unique<SecondSystemOnSamples>(system_, compared_, samples, model);
+  }
 
  private:
+  bool is_total() const { return compared_ == ComparedPressure::total_pressure; }
+
   ModelDefinition system_;
+  ComparedPressure compared_;
 };
 
 }  // namespace pcor::internal

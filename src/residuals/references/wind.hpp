@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +14,6 @@
 #include "numerics/missing.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "residuals/references/neighbours.hpp"
-#include "residuals/samples_key.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -164,20 +162,16 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
   std::size_t reach_;
 };
 
-class WindReference final : public Reference {
+class WindReference final : public ReferenceOfNeighbours<WindOnSamples> {
  public:
-  explicit WindReference(ModelDefinition model) : model_(std::move(model)) {}
+  using ReferenceOfNeighbours::ReferenceOfNeighbours;
 
   std::string description() const override { return "airspeed against ground speed and a steady wind"; }
   std::string name() const override { return "wind"; }
-  bool is_static_pressure() const override { return false; }
-  bool is_of_one_sample() const override { return false; }
-
-  std::string inputs() const override { return name() + inputs_of(model_, false); }
 
   ModelSamples read(const Flight& flight, const std::vector<double>& time, Notes& notes) const override {
-    RecordedSeries heading = read_role(flight, model_, Quantity::heading);
-    GroundVelocity ground = read_ground_velocity(flight, model_);
+    RecordedSeries heading = read_role(flight, file(), Quantity::heading);
+    GroundVelocity ground = read_ground_velocity(flight, file());
     if (heading.values.empty() || ground.speed.values.empty()) {
       throw Error(Error::Code::variable,
                   flight.path().string() +
@@ -199,19 +193,6 @@ class WindReference final : public Reference {
     add(Quantity::ground_track, ground.track);
     return samples;
   }
-
-  std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
-                                         const ModelOnSamples& model) const override {
-    if (!model.chain().has_temperature()) {
-      throw Error(Error::Code::model,
-                  "the model has no temperature, which the reference wind requires; set recovery_temperature "
-                  "or ambient_temperature in the table [variables]");
-    }
-    return std::make_unique<WindOnSamples>(samples, model);
-  }
-
- private:
-  ModelDefinition model_;
 };
 
 }  // namespace pcor::internal

@@ -1,0 +1,68 @@
+#include "temperature/parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+using namespace pcor::internal;
+
+namespace {
+
+/// Heights of a climb and a descent to half its height, with an error of the thermometer in the climb only.
+/// The first two columns of each block are those of the integral in climbs and in descents.
+HeightRecord climb_and_descent() {
+  HeightRecord record;
+  for (int i = 0; i < 200; ++i) {
+    HeightBlock block;
+    block.starts_segment = i == 0;
+    block.time = 10.0 * i;
+    block.length = 10.0;
+    block.samples = 10;
+    block.pressure = 700.0;
+    block.metres_per_hpa = 11.0;
+    const double climbs = i < 100 ? i : 100.0;
+    const double descents = i < 100 ? 0.0 : -0.5 * (i - 100.0);
+    block.columns = {climbs, descents, 0.0};
+    block.excess = 0.02 * climbs + std::sin(i);
+    record.blocks.push_back(block);
+  }
+  return record;
+}
+
+/// The record with other columns in place of those in climbs and in descents.
+template <class Columns>
+HeightRecord with_columns(const Columns& columns) {
+  HeightRecord record = climb_and_descent();
+  for (HeightBlock& block : record.blocks) block.columns = columns(block.columns[0], block.columns[1]);
+  return record;
+}
+
+// Both corrections depend on the unknown height at the start. Taken as independent, they gave half of the
+// chi-squared.
+TEST(Parts, DifferenceOfClimbsAndDescentsHasTheErrorOfADifference) {
+  HeightNoise noise;
+  noise.white = 1.0;
+  noise.wander = noise.walk = 0.0;
+  HeightPrior prior;
+  prior.slope = 0.0;
+  const Workers workers(pcor::serial_communicator(), 1);
+  const auto integral = [](double climbs, double descents) {
+    return std::array<double, calibration_terms>{climbs + descents, 0.0, 0.0};
+  };
+  const std::vector<pcor::PartCorrection> parts = corrections_of_climbs_and_descents(
+      {with_columns(integral)}, noise, prior, HeightEquations::Vector::Zero(), workers);
+  ASSERT_EQ(parts.size(), 2U);
+  // Half of the difference as an unknown in addition to the mean.
+  const auto half = [](double climbs, double descents) {
+    return std::array<double, calibration_terms>{climbs + descents, climbs - descents, 0.0};
+  };
+  const HeightEquations equations = height_equations(with_columns(half), noise, prior);
+  const double expected = equations.best(2)[1] * equations.best(2)[1] / equations.covariance(2)(1, 1);
+  ASSERT_GT(expected, 10.0);
+  // The unknown start has a variance of 1e8 m2 in the filter: relative errors of 1e-8 times the condition.
+  EXPECT_NEAR(disagreement_of(parts).chi_squared / expected, 1.0, 1e-5);
+}
+
+}  // namespace
