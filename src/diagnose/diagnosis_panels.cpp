@@ -193,7 +193,9 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
       "Switch an effect on, or move its coefficient: residual, table, steps and figures follow, and the "
       "coefficients that were not moved by hand are fitted again. The fit is linear about the current model, "
       "with the weights of pcor refit. It equals the result of pcor refit if the residual is linear in the "
-      "coefficients, and nearly equals it otherwise, for example for a lag. ";
+      "coefficients, and nearly equals it otherwise, for example for a lag. The decrease of chi2 is in units "
+      "of the noise with its drift: for one fitted coefficient, the square of its change over its error. The "
+      "search gives less weight to slow changes, so its chi2 differs. ";
   const auto own_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.own);
   if (std::any_of(panel.coefficients.begin(), own_end,
                   [](const WhatIfCoefficient& each) { return is_of_reference(each.name); }))

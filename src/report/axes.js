@@ -149,8 +149,11 @@ function plotBox(width, height, {left = margin, right = 14, top = 12, bottom = 4
   return {x: left, y: top, width: width - left - right, height: height - top - bottom};
 }
 
+// Two numbers at least, also on a short axis.
 function numberTicks(from, to, length, distance) {
-  const {step, all} = ticks(from, to, length / distance);
+  let about = length / distance;
+  let {step, all} = ticks(from, to, about);
+  for (let finer = 0; all.length < 2 && finer < 4; ++finer) ({step, all} = ticks(from, to, about *= 1.5));
   return all.map((value) => ({value, label: number(value, step)}));
 }
 

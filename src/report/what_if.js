@@ -224,7 +224,7 @@ class WhatIf {
       'Reduction of the residual by each effect alone, with the model fitted again: where the two curves differ, these flights distinguish the effects.',
       make('div', {class: 'what-if-pair'}, ...labels));
     this.panels.push(this.pairPanel);
-    part('table', 'Where the two differ', 'Rms of the reduction of the residual by each effect, and of the difference, over the selected samples; the correlation covers the same samples.',
+    part('table', 'Where the two differ', 'Rms of the reduction of the residual by each effect, and of the difference, over the selected samples; the correlation covers the same samples, the sentence all samples.',
       this.pairWords, scrolling('Two effects by regime', this.pairTable));
     this.report.tables.push({draw: () => this.fillPairTable(), table: this.pairTable});
   }
@@ -331,7 +331,7 @@ class WhatIf {
     const ifOn = isOn ? this.now : fit.fit([...others, e], this.byHand, this.own);
     const fall = fit.fall(others, [...others, e], this.byHand, this.own);
     gain.textContent = `χ² ${fall < -0.05 ? 'rises' : 'falls'} by ${number(Math.abs(fall), Math.abs(fall) < 10 ? 0.1 : 1)}`;
-    gain.title = isOn ? 'Decrease of chi2 by this effect, in addition to the other active ones' : 'Decrease of chi2 if this effect is added to the active ones';
+    gain.title = `Decrease of chi2 ${isOn ? 'by this effect, in addition to the other active ones' : 'if this effect is added to the active ones'}; for one fitted coefficient: (change / error)²`;
     for (const slider of sliders) this.showSlider(slider, e, isOn, ifOn);
   }
 
@@ -407,8 +407,8 @@ class WhatIf {
 
   comparePair() {
     if (!this.selects) return;
-    const {fit, item, nothing} = this;
-    const changes = this.pair.map((e, side) => {
+    const {fit, item, nothing, samples} = this;
+    this.pair.forEach((e, side) => {
       this.selects[side].value = e;
       const {values} = fit.fit([e]);
       const change = values.map((value, c) => value - nothing.values[c]);
@@ -417,13 +417,12 @@ class WhatIf {
       column.title = item.effects[e].id + (this.pair[0] === this.pair[1] && side ? ' again' : '');
       column.label = `${column.title} (hPa)`;
       this.pairPanel.switches[side].lastChild.data = column.title;
-      return change;
     });
     const [a, b] = this.pair;
-    const alike = fit.correlation(...changes);
+    const alike = correlationOf(...this.sides.map(({values}) => values), samples.indices(this.sides, samples.every));
     const separation = item.separations.find(({effect, rival}) => effect === a && rival === b);
     const sentences = a === b ? ['Choose two effects.'] : [
-      `On these flights the two have a correlation of ${number(alike, 0.001)}, in units of the noise and after fitting the model’s coefficients.`,
+      `On these flights the two have a correlation of ${number(alike, 0.001)}, after fitting the model’s coefficients.`,
       separation ? `${separation.text[0].toUpperCase()}${separation.text.slice(1)}.` : 'No tested manoeuvre distinguishes them.'];
     this.pairWords.replaceChildren(...sentences.map((words) => make('p', {}, words)));
   }

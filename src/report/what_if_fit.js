@@ -184,20 +184,22 @@ class WhatIfFit {
   }
 
   // Decrease of chi2 from one fit to another of the same weights, by additional effects, in units of the
-  // autocorrelated noise: the mean of the scores of the effects, or, without additional effects, of the
-  // fitted coefficients.
-  gain(without, {squares, weights: {scores, whole}}, effects) {
-    const added = effects.flatMap((effect) => [...this.coefficientsOf(effect)]);
-    const told = (added.length ? added : without.free).filter((c) => whole.matrix[c][c] > 0);
-    const variance = told.reduce((sum, c) => sum + scores[c][c] / whole.matrix[c][c], 0) / told.length;
-    return variance > 0 ? (without.squares - squares) / variance : 0;
+  // autocorrelated noise. For one coefficient it is the square of its value over its error; for several, the
+  // decrease of the squares over its mean by noise alone, times their number.
+  gain(without, {squares, weights}, effects) {
+    const added = effects.flatMap((effect) => this.coefficientsOf(effect));
+    const before = this.byNoise(weights, without.free);
+    const after = this.byNoise(weights, [...without.free, ...added]);
+    const mean = (after.squares - before.squares) / (after.count - before.count);
+    return mean > 0 ? (without.squares - squares) / mean : 0;
   }
 
-  // Correlation of two changes in units of the residual noise after all findings, -1 to 1.
-  correlation(a, b) {
-    const {matrix} = this.weights.at(-1).whole;
-    const product = (x, y) => x.reduce((sum, value, i) =>
-      sum + value * y.reduce((inner, other, j) => inner + matrix[i][j] * other, 0), 0);
-    return product(a, b) / Math.sqrt(product(a, a) * product(b, b));
+  // Mean decrease of the squares by a fit of some coefficients to noise alone, and the number of those that
+  // the flights determine.
+  byNoise({scores, whole}, free) {
+    const part = (matrix) => free.map((a) => free.map((b) => matrix[a][b]));
+    const factor = new Cholesky(part(whole.matrix));
+    return {squares: part(scores).reduce((sum, row, i) => sum + factor.solve(row)[i], 0),
+            count: factor.lower.filter((row, i) => row[i] > 0).length};
   }
 }

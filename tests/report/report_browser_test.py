@@ -80,6 +80,15 @@ class ReportInBrowser(unittest.TestCase):
     def test_self_test_of_the_narrow_page(self):
         self.self_test(self.report, width=600)
 
+    def test_a_short_axis_has_two_numbers(self):
+        self.browser.open(self.report.as_uri())
+        for start, end, length in ((-1.5, 1.5, 113), (-0.9, 0.9, 60), (0.11, 0.19, 52), (-19, 19, 52), (-0.04, 0.31, 70)):
+            with self.subTest(start=start, end=end, length=length):
+                labels = self.browser.value(f"numberTicks({start}, {end}, {length}, 52).map(({{label}}) => label)")
+                self.assertGreater(len(labels), 1)
+                self.assertEqual(len(set(labels)), len(labels))
+        self.assertEqual(self.browser.value("numberTicks(0, 10, 520, 52).length"), 11)
+
     def test_long_flight(self):
         report = self.folder / "long.html"
         run(SAMPLE_REPORT, report, "18000")

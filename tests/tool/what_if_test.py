@@ -178,6 +178,20 @@ class OneEffect(WhatIfTest):
         for gain in gains:
             self.assertRegex(gain, r"^χ² (falls|rises) by [\d.]+$")
 
+    def test_the_fall_of_chi2_is_the_square_of_a_coefficient_over_its_error(self):
+        self.diagnosed(FIRST, SECOND)
+        found = self.value("""(() => {
+          const {fit, item} = pcorReport.whatIf;
+          return item.effects.map((_, e) => [e, fit.coefficientsOf(e)]).filter(([, all]) => all.length === 1).map(([e, [c]]) => {
+            const {values, errors} = fit.fit([e]);
+            return [values[c] + item.coefficients[c].start - item.coefficients[c].given, errors[c], fit.fall([], [e], new Map(), true)];
+          });
+        })()""")
+        fitted = [each for each in found if each[1] > 0]  # not at a bound
+        self.assertGreater(len(fitted), 0)
+        for change, error, fall in fitted:
+            self.assertAlmostEqual(fall, (change / error) ** 2, delta=1e-3 * fall + 1e-6)
+
     def test_number_boxes_show_all_digits(self):
         self.diagnosed(FIRST)
         for value, text in ((0.00001146, "1.146e-5"), (-0.00049251, "-4.925e-4"), (0.0016814, "0.001681"), (12.3456, "12.35"), (0, "0")):
@@ -250,6 +264,8 @@ class OneEffect(WhatIfTest):
         words = self.value("pcorReport.whatIf.pairWords.textContent")
         self.assertIn(f"separate static-lag from {effects[1]}", words)
         self.assertRegex(words, r"correlation of (−?0\.\d{3})")
+        of_all = self.value("pcorReport.whatIf.pairTable.tBodies[0].lastChild.lastChild.textContent")
+        self.assertIn(f"correlation of {of_all}, after", words)
         rows = self.value("pcorReport.whatIf.pairTable.tBodies[0].rows.length")
         self.assertEqual(rows, self.value("pcorReport.samples.regimes.size") + 1)
         # Contribution of static-lag: the residual with all effects off minus the residual with static-lag.

@@ -390,6 +390,12 @@ void run(const CompareArguments& options) {
                                         "--reference wind separates them from "
                                         "the bias");
   }
+  for (const ModelComparison& model : comparison.models) {
+    // Heights alone hardly determine the level.
+    if (model.reference != "height" || !(model.all.bias_error > model.all.rms)) continue;
+    comparison.notes.emplace_back(
+        fmt::format("biases by height have a common standard error of {:.2f} hPa", model.all.bias_error));
+  }
   if (!is_speaker()) return;
   OutputTransaction together;
   if (!options.residuals.empty()) {
