@@ -367,7 +367,8 @@ ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std
   result.slope = median(slopes);
   for (double& slope : slopes) slope -= result.slope;
   constexpr double of_median = 1.2533141373;  // error of a median / that of a mean
-  result.error = of_median / std::sqrt(slopes.size()) * robust_standard_deviation(std::move(slopes));
+  const auto count = static_cast<double>(slopes.size());
+  result.error = of_median / std::sqrt(count) * robust_standard_deviation(std::move(slopes));
   return result;
 }
 

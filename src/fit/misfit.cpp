@@ -233,9 +233,9 @@ Eigen::MatrixXd MisfitBasis::operator()(const Eigen::MatrixXd& values) const {
   return result;
 }
 
-Eigen::VectorXd Misfit::at(const Eigen::MatrixXd& states) const {
-  if (height.size() == 0) return Eigen::VectorXd::Zero(states.rows());
-  return bumps(states) * height;
+Eigen::VectorXd Misfit::at(const Eigen::MatrixXd& flown) const {
+  if (height.size() == 0) return Eigen::VectorXd::Zero(flown.rows());
+  return bumps(flown) * height;
 }
 
 Misfit find_misfit(FitFlights& flights, const Solution& solution) {

@@ -40,7 +40,7 @@ struct Misfit {
   double left = 0.0;             ///< rms of the misfit not absorbed by the law, with its uncertainty, hPa
 
   /// Most likely misfit in bins with these states, hPa; zero if unknown.
-  Eigen::VectorXd at(const Eigen::MatrixXd& states) const;
+  Eigen::VectorXd at(const Eigen::MatrixXd& flown) const;
 };
 
 /// Estimates misfit and noise of the flights of a fit alternately: each from the residual after the other,
