@@ -26,9 +26,9 @@ class ReferenceDoubt {
   ReferenceDoubt(const ModelDefinition& model, const Reference& reference, bool trusted,
                  bool with_law = false);
 
-  /// Names like "lams-scale.scale"; for a second system with its pressures in front, like "PSFRD/QCFR:
-  /// qcf-zero.offset", for its law also with the name of the law. The same name in several references denotes
-  /// the same error.
+  /// Names like "lams-scale.scale"; for a second system with the variable of the sensor in front, like
+  /// "QCFR: qcf-zero.offset"; for its law with the name of the law and both pressures. The same name in
+  /// several references denotes the same error.
   const std::vector<std::string>& names() const { return names_; }
   /// Standard uncertainties, each in the unit of its coefficient.
   const Eigen::VectorXd& sizes() const { return sizes_; }

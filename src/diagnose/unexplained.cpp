@@ -398,10 +398,10 @@ std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& 
 
 std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
   std::vector<FlightOffset> steps;
-  const std::vector<Eigen::MatrixXd> columns = analysis.columns_of(chosen);
   if (analysis.flights().size() < 2) return steps;
-  const std::vector<MeanOffset> found = find_mean_offsets(
-      analysis.share(), analysis.bins(), columns, analysis.residuals(), analysis.noise_beside_offsets());
+  const std::vector<MeanOffset> found =
+      find_mean_offsets(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
+                        analysis.noise_beside_offsets());
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (found[f].chance < chance)
       steps.push_back({analysis.flights()[f].samples->name, found[f].size, found[f].error, found[f].chance});

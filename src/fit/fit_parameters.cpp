@@ -33,7 +33,7 @@ std::string unit_in_formula(const ModelEffect& effect, std::size_t number) {
   const double slope = value(1.0) - value(0.0);
   const double curvature = value(2.0) - value(1.0) - slope;
   std::fill(coefficients.begin(), coefficients.end(), 2.0);
-  const double change = value(1.0) - value(0.0) - slope;  // by the other coefficients
+  const double change = value(1.0) - value(0.0) - slope;  // caused by the other coefficients
   const bool is_linear = std::abs(curvature) + std::abs(change) <= 1e-9 * std::abs(slope);
   return are_numbers && is_linear ? std::string(info_of(effect.location).unit) : "";
 }

@@ -36,16 +36,12 @@ constexpr std::size_t passes_expected = 40;
 /// the first flight: its noise and its errors cancel, and the fit would copy the law of the second system.
 void require_other_pressures(const FlightSet& flights, const ModelDefinition& model,
                              const References& references) {
-  const auto pressure_of = [](const ModelDefinition& system) {
-    const auto found = system.variables.find(Quantity::static_pressure);
-    return found == system.variables.end() ? std::string() : found->second;
-  };
-  const std::string own = pressure_of(model);
+  const std::string own = model.variable_of(Quantity::static_pressure);
+  const FlightSet first = flights.part(0, 1);
+  const bool is_in_file = !first.path(0).empty();
   for (const std::shared_ptr<const Reference>& reference : references) {
     if (own.empty() || !reference->is_static_pressure() || reference->model() == nullptr) continue;
-    const std::string other = pressure_of(*reference->model());
-    const FlightSet first = flights.part(0, 1);
-    const bool is_in_file = !first.path(0).empty();
+    const std::string other = reference->model()->variable_of(Quantity::static_pressure);
     const std::vector<int> is_circular = first.share().of_each_flight<int>([&](std::size_t flight) {
       return other == own || (is_in_file && is_computed_from(first[flight], other, own)) ? 1 : 0;
     });

@@ -150,8 +150,7 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
     slow += lift->out[i] && samples.motion.airspeed[i] < min_airspeed ? 1 : 0;
   std::string note = fmt::format(
       "flaps out by the lift; --max-flaps 100 includes them: {}, {} samples{}; angle of attack {:.0f} % "
-      "below "
-      "the clean-wing value, scatter {:.1f} %; flaps not recorded",
+      "below the clean-wing value, scatter {:.1f} %; flaps not recorded",
       times_of(marked_segments(lift->out), samples.time), out,
       slow == 0 ? "" : fmt::format(", {} below {:g} m/s", slow, min_airspeed), 100.0 * lift->deficit,
       100.0 * lift->deviation);

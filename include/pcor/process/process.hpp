@@ -96,7 +96,7 @@ void describe(const ProcessSummary& self, Field& field) {
              [](const OutsideSpan& span, Field& outside) {
                outside("reason", span.reason, "flaps extended, or outside the domain");
                outside.time("begin", span.begin, "first record");
-               outside.time("end", span.end, "last record");
+               outside.time("end", span.end, "end of the last record");
              });
   field("variables", self.outputs, "derived variables of the output");
   field("notes", self.notes, "notes on the flight");
