@@ -12,7 +12,6 @@
 #include <vector>
 
 #include <pcor/base/error.hpp>
-#include <pcor/base/error_code.hpp>
 #include <pcor/batch/batch.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/realtime/loop.hpp>

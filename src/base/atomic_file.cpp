@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <pcor/base/error.hpp>
 
@@ -25,6 +26,10 @@ namespace pcor {
 namespace fs = std::filesystem;
 
 namespace {
+
+[[noreturn]] void fail(const fs::path& output, const std::string& what) {
+  throw Error(Error::Code::output, output.string() + what);
+}
 
 // Where a symbolic link leads, also if nothing is there yet. A circle of links ends where it began.
 fs::path behind_links(fs::path path) {
@@ -67,12 +72,9 @@ void take_from_list(const std::string& path) {
 std::string neighbourhood() {
   char host[HOST_NAME_MAX + 1] = {};
   gethostname(host, HOST_NAME_MAX);
-  std::error_code code;
-  const std::string space = fs::read_symlink("/proc/self/ns/pid", code).string();  // such as pid:[4026531836]
-  const std::size_t digits = space.find_first_of("0123456789");
-  return std::string(host) + "-" +
-         (digits == std::string::npos ? "0"
-                                      : space.substr(digits, space.find_last_of("0123456789") - digits + 1));
+  struct stat space {};
+  ::stat("/proc/self/ns/pid", &space);
+  return std::string(host) + "-" + std::to_string(space.st_ino);
 }
 
 // Removes unfinished files of terminated processes of this neighbourhood from a folder. Processes of other
@@ -134,9 +136,7 @@ bool settle(const fs::path& path) {
 void put_in_place(const fs::path& shown, const fs::path& target, const fs::path& path) {
   std::error_code code;
   fs::rename(path, target, code);
-  if (code)
-    throw Error(Error::Code::output,
-                shown.string() + " cannot be put in place: " + code.message() + "; choose another output");
+  if (code) fail(shown, " cannot be put in place: " + code.message() + "; choose another output");
   take_from_list(path.string());
 }
 
@@ -157,26 +157,7 @@ class SignalsWait {
   sigset_t before_{};
 };
 
-// Keeps what was at some paths on the disk, though its names go: to give back the space of a large file takes
-// the time of many renames.
-class SpaceKept {
- public:
-  ~SpaceKept() {
-    for (const int file : files_) ::close(file);
-  }
-
-  SpaceKept() = default;
-  SpaceKept(const SpaceKept&) = delete;
-  SpaceKept& operator=(const SpaceKept&) = delete;
-
-  void keep(const fs::path& path) {
-    const int file = ::open(path.c_str(), O_PATH | O_CLOEXEC);
-    if (file >= 0) files_.push_back(file);
-  }
-
- private:
-  std::vector<int> files_;
-};
+constexpr const char* advice = "; check the space and the permissions there, or choose another output";
 
 OutputTransaction* outputs_together = nullptr;
 
@@ -192,30 +173,24 @@ void remove_unfinished_files() noexcept {
 }
 
 AtomicFile::AtomicFile(const fs::path& target) : shown_(target) {
-  if (target.empty()) throw Error(Error::Code::output, "the output has no name; name a file");
+  if (target.empty()) fail("", "the output has no name; name a file");
   std::error_code code;
   target_ = fs::weakly_canonical(behind_links(fs::absolute(target)), code);
-  if (code)
-    throw Error(Error::Code::output,
-                shown_.string() + " cannot be written: " + code.message() + "; choose another output");
+  if (code) fail(shown_, " cannot be written: " + code.message() + "; choose another output");
   const fs::file_status status = fs::status(target_, code);
-  if (fs::is_directory(status))
-    throw Error(Error::Code::output, shown_.string() + " is a directory; name a file");
+  if (fs::is_directory(status)) fail(shown_, " is a directory; name a file");
   if (fs::exists(status) && !fs::is_regular_file(status))
-    throw Error(Error::Code::output, shown_.string() + " is not a regular file; choose another output");
+    fail(shown_, " is not a regular file; choose another output");
   const fs::path directory = target_.parent_path();
   if (!fs::is_directory(directory, code))
-    throw Error(Error::Code::output, shown_.string() + " cannot be written: there is no directory " +
-                                         directory.string() + "; make it first");
-  if (access(directory.c_str(), W_OK | X_OK) != 0)
-    throw Error(Error::Code::output, shown_.string() + " cannot be written: " + directory.string() + ": " +
-                                         std::strerror(errno) + "; choose another output");
+    fail(shown_, " cannot be written: there is no directory " + directory.string() + "; make it first");
+  const auto cannot_write = [&] {
+    return " cannot be written: " + directory.string() + ": " + std::strerror(errno);
+  };
+  if (access(directory.c_str(), W_OK | X_OK) != 0) fail(shown_, cannot_write() + "; choose another output");
   remove_stale_files(directory);
   path_ = make_hidden_file(directory, target_.filename().string());
-  if (path_.empty())
-    throw Error(Error::Code::output,
-                shown_.string() + " cannot be written: " + directory.string() + ": " + std::strerror(errno) +
-                    "; check the space and the permissions there, or choose another output");
+  if (path_.empty()) fail(shown_, cannot_write() + advice);
 }
 
 AtomicFile::~AtomicFile() {
@@ -232,20 +207,14 @@ void AtomicFile::write(std::string_view text) {
   stream << text;
   stream.close();
   if (!stream)
-    throw Error(
-        Error::Code::output,
-        shown_.string() +
-            " cannot be written: check the space and the permissions there, or choose another output");
+    fail(shown_, " cannot be written: check the space and the permissions there, or choose another output");
   commit();
 }
 
 void AtomicFile::commit() {
   std::error_code code;
   if (fs::exists(target_, code)) fs::permissions(path_, fs::status(target_).permissions(), code);
-  if (!settle(path_))
-    throw Error(Error::Code::output,
-                shown_.string() + " cannot be written: " + std::strerror(errno) +
-                    "; check the space and the permissions there, or choose another output");
+  if (!settle(path_)) fail(shown_, std::string(" cannot be written: ") + std::strerror(errno) + advice);
   if (outputs_together != nullptr) {
     outputs_together->waiting_.push_back({shown_, target_, path_});
   } else {
@@ -282,9 +251,8 @@ void OutputTransaction::make_folder(const fs::path& folder) {
   list_as_unfinished(path.string());
   if (!fs::create_directory(path, code) && !fs::is_directory(path)) {
     take_from_list(path.string());
-    throw Error(Error::Code::output,
-                fmt::format("{} cannot be a folder of outputs: {}; choose another", folder.string(),
-                            code ? code.message() : "the path exists and is not a file"));
+    fail(folder, fmt::format(" cannot be a folder of outputs: {}; choose another",
+                             code ? code.message() : "the path exists and is not a file"));
   }
   whole_->folders_.push_back(path);
 }
@@ -301,8 +269,9 @@ fs::path readable_output(const fs::path& target) {
 
 void OutputTransaction::appear() {
   if (whole_ != this) return;
-  SpaceKept replaced;
-  for (const Waiting& file : waiting_) replaced.keep(file.target);
+  // An open file keeps its space: to give back the space of a large file takes the time of many renames.
+  std::vector<std::ifstream> replaced;
+  for (const Waiting& file : waiting_) replaced.emplace_back(file.target);
   const SignalsWait signals_wait;
   while (!waiting_.empty()) {
     const Waiting& file = waiting_.front();

@@ -7,7 +7,6 @@
 #include <cctype>
 #include <cmath>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
 namespace pcor::internal {
@@ -27,9 +26,9 @@ std::vector<std::string> split_words(const std::string& text) {
   return words;
 }
 
-std::string join_list(const std::vector<std::string>& all) {
+std::string join_list(const std::vector<std::string>& all, std::string_view word) {
   if (all.size() < 2) return all.empty() ? "" : all.front();
-  return fmt::format("{} and {}", fmt::join(all.begin(), all.end() - 1, ", "), all.back());
+  return fmt::format("{} {} {}", fmt::join(all.begin(), all.end() - 1, ", "), word, all.back());
 }
 
 int decimals_of_error(double error) {
@@ -49,10 +48,8 @@ Notes notes_of_flights(const std::vector<FlightNote>& notes, std::size_t flight_
   }
   Notes all;
   for (const auto& [note, flights] : flights_of) {
-    std::string names =
-        flights.size() > max_names ? std::to_string(flights.size()) + " flights" : flights.front();
-    for (std::size_t i = 1; i < flights.size() && flights.size() <= max_names; ++i)
-      names.append(", ").append(flights[i]);
+    const std::string names = flights.size() > max_names ? std::to_string(flights.size()) + " flights"
+                                                         : fmt::format("{}", fmt::join(flights, ", "));
     all.emplace_back(note.severity, flight_count == 1 ? note.text : names + ": " + note.text);
   }
   return all;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,8 +19,8 @@ std::string sentence(std::string text);
 /// The words of a text, which blanks part.
 std::vector<std::string> split_words(const std::string& text);
 
-/// "a", "a and b", "a, b and c".
-std::string join_list(const std::vector<std::string>& all);
+/// "a", "a and b", "a, b and c"; or with another word before the last.
+std::string join_list(const std::vector<std::string>& all, std::string_view word = "and");
 
 /// Flight and a note about it.
 using FlightNote = std::pair<std::string, Note>;

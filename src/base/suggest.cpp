@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <tuple>
+
+#include "base/phrasing.hpp"
 
 namespace pcor {
 namespace {
@@ -16,9 +19,7 @@ std::string lower(std::string_view text) {
 }
 
 std::size_t shared_prefix(const std::string& a, const std::string& b) {
-  const std::size_t shorter = std::min(a.size(), b.size());
-  const auto end = a.begin() + static_cast<std::ptrdiff_t>(shorter);
-  return static_cast<std::size_t>(std::mismatch(a.begin(), end, b.begin()).first - a.begin());
+  return static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
 }
 
 // Optimal string alignment: insertions, deletions, substitutions and swaps of neighbours.
@@ -41,15 +42,11 @@ std::size_t changes_between(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::vector<std::string> suggest(std::string_view wrong, const std::vector<std::string>& known,
-                                 std::size_t maximum) {
-  struct Candidate {
-    std::size_t changes, prefix;
-    const std::string* name;
-  };
+std::vector<std::string> suggest(std::string_view wrong, const std::vector<std::string>& known) {
   const std::string requested = lower(wrong);
   if (requested.empty() || requested.size() > max_name) return {};
-  std::vector<Candidate> candidates;
+  // Number of changes, minus the length of the common prefix, name.
+  std::vector<std::tuple<std::size_t, std::ptrdiff_t, std::string>> candidates;
   for (const std::string& name : known) {
     const std::string candidate = lower(name);
     if (candidate.empty()) continue;
@@ -57,25 +54,18 @@ std::vector<std::string> suggest(std::string_view wrong, const std::vector<std::
     const std::size_t prefix = shared_prefix(requested, candidate);
     const bool one_begins_the_other = prefix >= 2 && prefix == std::min(requested.size(), candidate.size());
     if (2 * changes <= std::max(requested.size(), candidate.size()) || one_begins_the_other)
-      candidates.push_back({changes, prefix, &name});
+      candidates.emplace_back(changes, -static_cast<std::ptrdiff_t>(prefix), name);
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return std::tie(a.changes, b.prefix, *a.name) < std::tie(b.changes, a.prefix, *b.name);
-  });
+  std::sort(candidates.begin(), candidates.end());
+  candidates.resize(std::min<std::size_t>(candidates.size(), 3));
   std::vector<std::string> result;
-  for (const Candidate& candidate : candidates) {
-    if (result.size() == maximum) break;
-    result.push_back(*candidate.name);
-  }
+  for (const auto& candidate : candidates) result.push_back(std::get<std::string>(candidate));
   return result;
 }
 
-std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& known, std::size_t maximum) {
-  const std::vector<std::string> names = suggest(wrong, known, maximum);
-  if (names.empty()) return {};
-  std::string text = "did you mean " + names[0];
-  for (std::size_t i = 1; i < names.size(); ++i) text += (i + 1 == names.size() ? " or " : ", ") + names[i];
-  return text + "?";
+std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& known) {
+  const std::vector<std::string> names = suggest(wrong, known);
+  return names.empty() ? "" : "did you mean " + internal::join_list(names, "or") + "?";
 }
 
 }  // namespace pcor

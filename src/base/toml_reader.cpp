@@ -5,21 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 
 #include <pcor/base/error.hpp>
 
 namespace pcor::internal {
 namespace {
-
-// Days from 1970-01-01 to a date of the Gregorian calendar. The year begins in March, so that the leap day is
-// its last day (Richards, "Calendars", Explanatory Supplement to the Astronomical Almanac, 2013). Counting
-// begins 400 years, of 146097 days, before the year 0, so that all intermediate values are positive.
-std::int64_t days_since_1970(const toml::date& date) {
-  const std::int64_t year = date.year + 400 - (date.month <= 2 ? 1 : 0);
-  const std::int64_t month = (date.month + 9) % 12;  // March is 0
-  return 365 * year + year / 4 - year / 100 + year / 400 + (153 * month + 2) / 5 + date.day - 1 - 719468 -
-         146097;
-}
 
 // Limits of a file. toml++ recurses once for each table level of a key, and readers look entries up one by
 // one; toml++ limits nested values to 256 levels.
@@ -72,21 +63,11 @@ std::optional<Entry> entry_of(const toml::table& table, std::string_view key) {
 }
 
 std::string_view kind_of(const toml::node& node) {
-  switch (node.type()) {
-    case toml::node_type::table:
-      return "a table";
-    case toml::node_type::array:
-      return "a list";
-    case toml::node_type::string:
-      return "a text";
-    case toml::node_type::integer:
-    case toml::node_type::floating_point:
-      return "a number";
-    case toml::node_type::boolean:
-      return "true or false";
-    default:
-      return "a date or time";
-  }
+  if (node.is_table()) return "a table";
+  if (node.is_array()) return "a list";
+  if (node.is_string()) return "a text";
+  if (node.is_number()) return "a number";
+  return node.is_boolean() ? "true or false" : "a date or time";
 }
 
 std::string called(const Entry& entry) {
@@ -98,7 +79,11 @@ double seconds_of(const toml::time& time) {
 }
 
 double seconds_of(const toml::date_time& moment) {
-  return static_cast<double>(days_since_1970(moment.date)) * 86400.0 + seconds_of(moment.time);
+  std::tm midnight{};
+  midnight.tm_year = moment.date.year - 1900;
+  midnight.tm_mon = moment.date.month - 1;
+  midnight.tm_mday = moment.date.day;
+  return static_cast<double>(timegm(&midnight)) + seconds_of(moment.time);
 }
 
 toml::table TomlReader::parse(std::string_view text) const {
@@ -145,12 +130,6 @@ void TomlReader::fail(Position position, const std::string& what) const {
   throw Error(Error::Code::definition, one_line(position_of(position) + ": " + what));
 }
 
-void TomlReader::fail(const toml::node& node, const std::string& what) const {
-  fail(node.source().begin, what);
-}
-
-void TomlReader::fail(const Entry& entry, const std::string& what) const { fail(*entry.node, what); }
-
 void TomlReader::refuse(const Entry& entry, const Names& known) const {
   fail(entry.position, fmt::format("there is no {}; {}", unknown(entry), suggestion_text(entry.key, known)));
 }
@@ -174,26 +153,6 @@ std::string TomlReader::wrong_kind(const Entry& entry, const std::string& reques
   return fmt::format("{} is {}; give {}", called(entry), kind_of(*entry.node), requested);
 }
 
-bool TomlReader::boolean(const Entry& entry) const {
-  return as<bool>(*entry.node, wrong_kind(entry, "true or false"));
-}
-
-std::int64_t TomlReader::whole_number(const Entry& entry, const std::string& requested) const {
-  return as<std::int64_t>(*entry.node, wrong_kind(entry, requested));
-}
-
-std::string TomlReader::text(const Entry& entry, const std::string& requested) const {
-  return as<std::string>(*entry.node, wrong_kind(entry, requested));
-}
-
-const toml::table& TomlReader::table(const Entry& entry, const std::string& requested) const {
-  return as<toml::table>(*entry.node, wrong_kind(entry, requested));
-}
-
-const toml::array& TomlReader::array(const Entry& entry, const std::string& requested) const {
-  return as<toml::array>(*entry.node, wrong_kind(entry, requested));
-}
-
 double TomlReader::finite(const toml::node& node, const std::string& what) const {
   if (!node.is_number()) fail(node, fmt::format("{} is {}; give a number", what, kind_of(node)));
   const auto* whole = node.as_integer();
@@ -201,8 +160,6 @@ double TomlReader::finite(const toml::node& node, const std::string& what) const
   if (!std::isfinite(value)) fail(node, what + " is not finite; give a finite number");
   return value;
 }
-
-double TomlReader::number(const Entry& entry) const { return finite(*entry.node, called(entry)); }
 
 std::vector<double> TomlReader::numbers(const Entry& entry, const std::string& requested) const {
   std::vector<double> values;

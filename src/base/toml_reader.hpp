@@ -79,10 +79,12 @@ class TomlReader {
   const std::string& name() const { return name_; }
 
   [[noreturn]] void fail(Position position, const std::string& what) const;
-  [[noreturn]] void fail(const toml::node& node, const std::string& what) const;
+  [[noreturn]] void fail(const toml::node& node, const std::string& what) const {
+    fail(node.source().begin, what);
+  }
 
   /// An error at the value of `entry`; for an error at the key use its `position`.
-  [[noreturn]] void fail(const Entry& entry, const std::string& what) const;
+  [[noreturn]] void fail(const Entry& entry, const std::string& what) const { fail(*entry.node, what); }
 
   /// An error at a key that is not among the `known` ones.
   [[noreturn]] void refuse(const Entry& entry, const Names& known) const;
@@ -108,17 +110,29 @@ class TomlReader {
     }
   }
 
-  /// Values of an entry. Any other kind than the `requested` one is an error.
-  bool boolean(const Entry& entry) const;
-  std::int64_t whole_number(const Entry& entry, const std::string& requested = "a whole number") const;
-  std::string text(const Entry& entry, const std::string& requested = "a text in quotes") const;
-  const toml::table& table(const Entry& entry, const std::string& requested) const;
+  /// Value of an entry. Any other kind than the `requested` one is an error.
+  template <class Value>
+  const Value& value(const Entry& entry, const std::string& requested) const {
+    return as<Value>(*entry.node, wrong_kind(entry, requested));
+  }
+  bool boolean(const Entry& entry) const { return value<bool>(entry, "true or false"); }
+  std::int64_t whole_number(const Entry& entry, const std::string& requested = "a whole number") const {
+    return value<std::int64_t>(entry, requested);
+  }
+  std::string text(const Entry& entry, const std::string& requested = "a text in quotes") const {
+    return value<std::string>(entry, requested);
+  }
+  const toml::table& table(const Entry& entry, const std::string& requested) const {
+    return value<toml::table>(entry, requested);
+  }
   const toml::table& table(const Entry& entry) const { return table(entry, "a table [" + entry.key + "]"); }
-  const toml::array& array(const Entry& entry, const std::string& requested) const;
+  const toml::array& array(const Entry& entry, const std::string& requested) const {
+    return value<toml::array>(entry, requested);
+  }
 
   /// A finite number; `what` is what messages call it.
   double finite(const toml::node& node, const std::string& what) const;
-  double number(const Entry& entry) const;
+  double number(const Entry& entry) const { return finite(*entry.node, called(entry)); }
   std::vector<double> numbers(const Entry& entry, const std::string& requested) const;
 
   /// The two ends of [lower, upper], of which the lower one is below the upper one.

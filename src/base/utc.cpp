@@ -1,18 +1,15 @@
 #include <pcor/base/utc.hpp>
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 
 namespace pcor {
 
 std::string utc_text(double seconds, const char* pattern) {
   constexpr double year_0 = -62167219200., year_10000 = 253402300800.;
-  if (!(seconds >= year_0 && seconds < year_10000)) {
-    char number[64];
-    return {number,
-            static_cast<std::size_t>(std::snprintf(number, sizeof number, "%g s after 1970-01-01", seconds))};
-  }
+  if (!(seconds >= year_0 && seconds < year_10000)) return fmt::format("{:g} s after 1970-01-01", seconds);
   constexpr double rounding = 1e-5;  // s, of times that are counted in milliseconds
   const auto whole = static_cast<std::time_t>(std::floor(seconds + rounding));
   std::tm fields{};

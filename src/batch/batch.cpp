@@ -18,23 +18,20 @@ using namespace internal;
 namespace {
 
 Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWith with) {
+  const auto fail = [&model](const std::string& what) {
+    throw Error(Error::Code::model, fmt::format("model '{}': {}", model.name, what));
+  };
   BindingError why;
   std::optional<Chain> chain = Chain::build(model, recorded, &why);
-  if (!chain) throw Error(Error::Code::model, fmt::format("model '{}': {}", model.name, why.message()));
+  if (!chain) fail(why.message());
   const auto require = [&](Quantity quantity) {
-    if (!chain->derives(quantity)) return;
-    throw Error(Error::Code::model, fmt::format("model '{}': batch processing requires '{}' among the arrays",
-                                                model.name, info_of(quantity).name));
+    if (chain->derives(quantity))
+      fail(fmt::format("batch processing requires '{}' among the arrays", info_of(quantity).name));
   };
   require(Quantity::time);
   for (const Rate& each : rates) require(each.rate);
-  if (with == CorrectWith::lams && !chain->has_lams()) {
-    throw Error(
-        Error::Code::model,
-        fmt::format("model '{}': correction with LAMS needs the role 'lams_airspeed': name its variable in "
-                    "the table [variables]",
-                    model.name));
-  }
+  if (with == CorrectWith::lams && !chain->has_lams())
+    fail("correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");
   return std::move(*chain);
 }
 
@@ -79,16 +76,6 @@ bool Batch::finds(Quantity quantity) const {
   return recorded_[index(quantity)] ||
          std::any_of(stages_.begin(), stages_.end(),
                      [quantity](const StageInfo& stage) { return stage.writes[index(quantity)]; });
-}
-
-void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& outputs, std::size_t samples,
-                const double* parameters) const {
-  compute(inputs, outputs, {}, samples, parameters);
-}
-
-void Batch::differentiate(const std::vector<Input>& inputs, const std::vector<Derivative>& derivatives,
-                          std::size_t samples, const double* parameters) const {
-  compute(inputs, {}, derivatives, samples, parameters);
 }
 
 void Batch::compute(const std::vector<Input>& inputs, const std::vector<Output>& outputs,

@@ -3,11 +3,9 @@
 #include <ceres/jet.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <utility>
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/physics/constants.hpp>
@@ -144,11 +142,11 @@ System system_of(ModelDefinition model, const CandidateModels& set, bool of_refe
 /// @param at_places for each location the derivative of the residual with respect to an amount added there,
 /// at these samples; if empty, the columns are the added amounts with the sign inverted. Where it is zero,
 /// the columns are zero, even if an input has no value
-/// @param see receives the state of each sample
-template <class See>
+/// @param quantities receive their values at these samples
 void put_candidates(const Chain& chain, const ModelSamples& inputs,
                     const std::vector<Evaluation>& evaluations, const std::vector<std::size_t>& samples,
-                    const Eigen::Ref<const Eigen::MatrixXd>& by_location, const See& see,
+                    const Eigen::Ref<const Eigen::MatrixXd>& by_location,
+                    std::vector<std::pair<Quantity, std::vector<double>>>& quantities,
                     Eigen::MatrixXf& columns) {
   std::vector<std::pair<Quantity, const double*>> read;
   for (const Quantity input : chain.inputs()) read.emplace_back(input, inputs.find(input)->data());
@@ -169,7 +167,7 @@ void put_candidates(const Chain& chain, const ModelSamples& inputs,
         columns(as_index(sample), as_index(each.first_column + p)) =
             by_this_location == 0.0 ? 0.0F : static_cast<float>(-by_this_location * value.v[as_index(p)]);
     }
-    see(sample, state);
+    for (auto& [quantity, values] : quantities) values[sample] = state[quantity];
   }
 }
 
@@ -245,11 +243,11 @@ AddedEffects effects_of(const CandidateModels& set, std::size_t reference, const
                      columns = as_index(effects.at.size())](const ModelSamples& inputs) -> Eigen::MatrixXd {
     std::vector<std::size_t> all(samples.time.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
+    std::vector<std::pair<Quantity, std::vector<double>>> no_quantities;
     Eigen::MatrixXf added = Eigen::MatrixXf::Zero(as_index(all.size()), columns);
-    put_candidates(
-        chain_of(set.extended.model, inputs.roles), inputs,
-        evaluations_of(set, reference, false, system.locations(), inputs, samples), all, Eigen::MatrixXd(),
-        [](std::size_t, const State<double>&) {}, added);
+    put_candidates(chain_of(set.extended.model, inputs.roles), inputs,
+                   evaluations_of(set, reference, false, system.locations(), inputs, samples), all,
+                   Eigen::MatrixXd(), no_quantities, added);
     complete(set, false, used, added);
     return -added.unaryExpr([](float amount) { return std::isfinite(amount) ? amount : 0.0F; })
                 .cast<double>();
@@ -308,11 +306,11 @@ void put_gps(GpsKind kind, const CandidateModels& set, const System& system, con
 
 /// Base and candidate columns of a flight, in bins.
 Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins) {
-  const Eigen::Index base = flight.base.cols();
-  Eigen::MatrixXd columns(as_index(bins.size()), base + flight.candidates.cols());
-  for (Eigen::Index c = 0; c < base; ++c) columns.col(c) = bins.means(flight.base.col(c));
-  for (Eigen::Index c = 0; c < flight.candidates.cols(); ++c)
-    columns.col(base + c) = bins.means(flight.candidates.col(c));
+  Eigen::MatrixXd columns(as_index(bins.size()), flight.base.cols() + flight.candidates.cols());
+  Eigen::Index next = 0;
+  for (const Eigen::MatrixXf* const all : {&flight.base, &flight.candidates}) {
+    for (const auto column : all->colwise()) columns.col(next++) = bins.means(column);
+  }
   return columns;
 }
 
@@ -398,6 +396,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
        {Quantity::attack, Quantity::sideslip, Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate,
         Quantity::normal_acceleration, Quantity::roll})
     columns.quantities.emplace_back(quantity, std::vector<double>(residuals.size(), nan));
+  std::vector<std::pair<Quantity, std::vector<double>>> no_quantities;
   Eigen::Index next = 0;  // next evaluated column
   for (const System& system : systems) {
     const bool is_of_model = &system == &model_system;
@@ -413,14 +412,8 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
     const Model& with_all = is_of_model ? set.extended.model : set.others[reference]->model;
     const std::vector<Evaluation> evaluations =
         evaluations_of(set, reference, !is_of_model, system.locations(), extended->model, *extended);
-    put_candidates(
-        chain_of(with_all, inputs.roles), inputs, evaluations, needed, by_location,
-        [&](std::size_t sample, const State<double>& state) {
-          for (auto& [quantity, values] : columns.quantities) {
-            if (is_of_model) values[sample] = state[quantity];
-          }
-        },
-        columns.candidates);
+    put_candidates(chain_of(with_all, inputs.roles), inputs, evaluations, needed, by_location,
+                   is_of_model ? columns.quantities : no_quantities, columns.candidates);
     if (of_neighbours && !is_wind)
       sum_over_neighbours(residuals, evaluations, system.first_location, used, needed, columns.candidates);
   }
@@ -432,10 +425,6 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
     columns.quantities.emplace_back(quantity, residuals.quantity(quantity, start));
   columns.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, start);
   return columns;
-}
-
-std::size_t BinnedFlights::first_count() const {
-  return static_cast<std::size_t>(std::count(reference.begin(), reference.end(), std::size_t{0}));
 }
 
 BinnedFlights in_bins(const FlightPartition& share, const std::vector<FlightColumns>& flights,

@@ -76,11 +76,8 @@ struct BinnedFlights {
   std::vector<Binning> bins{};
   std::vector<Eigen::MatrixXd> columns{};    ///< base and candidates, in bins
   std::vector<Eigen::VectorXd> residuals{};  ///< hPa, in bins
-  std::vector<std::size_t> reference{};      ///< reference of each flight
+  std::vector<std::size_t> reference{};      ///< reference of each flight; the first reference comes first
   std::vector<NoiseFlight> outlines{};       ///< outlines of all flights
-
-  /// Number of flights against the first reference, which come first.
-  std::size_t first_count() const;
 };
 
 /// Bins in which the residual of each flight of this rank has values, hPa. @param residual_of returns the

@@ -13,7 +13,7 @@
 #include <pcor/base/utc.hpp>
 #include "flight/file_state.hpp"
 #include "parallel/flight_partition.hpp"
-#include "residuals/samples_key.hpp"
+#include "residuals/samples.hpp"
 #include "roles/aircraft_family.hpp"
 
 namespace pcor {
@@ -167,12 +167,6 @@ std::string FlightSet::name(std::size_t flight) const {
 }
 
 const std::filesystem::path& FlightSet::path(std::size_t flight) const { return entries_[flight]->path; }
-
-std::vector<std::filesystem::path> FlightSet::paths() const {
-  std::vector<std::filesystem::path> paths;
-  for (const auto& entry : entries_) paths.push_back(entry->path);
-  return paths;
-}
 
 FlightSet FlightSet::only(std::size_t flight) const {
   return {{entries_[flight]}, FlightPartition(1), serial_communicator()};

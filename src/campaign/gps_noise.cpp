@@ -136,32 +136,58 @@ WhiteRows white_height(const Eigen::VectorXd& sizes, const GpsRows& rows, const 
   return std::move(filter.white());
 }
 
+WhiteRows white_at(const Eigen::VectorXd& logarithms, const GpsRows& rows, const Eigen::VectorXd& more) {
+  const Eigen::VectorXd sizes = logarithms.array().exp();
+  return rows.kind == GpsKind::wind ? white_wind(sizes, rows, more) : white_height(sizes, rows, more);
+}
+
 class Likelihood final : public ceres::FirstOrderFunction {
  public:
-  Likelihood(const GpsNoise& noise, const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior)
-      : noise_(noise), rows_(rows), more_(more), prior_(prior) {}
+  Likelihood(Eigen::Index sizes, const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior)
+      : sizes_(sizes), rows_(rows), more_(more), prior_(prior) {}
 
   bool Evaluate(const double* const at, double* cost, double* gradient) const override {
-    const Eigen::Map<const Eigen::VectorXd> logarithms(at, NumParameters());
-    const auto value = [&](const Eigen::VectorXd& where) {
-      return 0.5 * noise_.cost(where, rows_, more_, prior_);
-    };
-    *cost = value(logarithms);
+    const Eigen::Map<const Eigen::VectorXd> logarithms(at, sizes_);
+    *cost = cost_at(logarithms);
     if (gradient != nullptr) {
       constexpr double step = 1e-3;
-      for (int k = 0; k < NumParameters(); ++k) {
+      for (Eigen::Index k = 0; k < sizes_; ++k) {
         Eigen::VectorXd moved = logarithms;
         moved[k] += step;
-        gradient[k] = (value(moved) - *cost) / step;
+        gradient[k] = (cost_at(moved) - *cost) / step;
       }
     }
     return std::isfinite(*cost);
   }
 
-  int NumParameters() const override { return static_cast<int>(noise_.logarithms().size()); }
+  int NumParameters() const override { return static_cast<int>(sizes_); }
+
+  /// Minus the log likelihood, with the priors, up to a constant.
+  double cost_at(const Eigen::VectorXd& logarithms) const {
+    const WhiteRows white = white_at(logarithms, rows_, more_);
+    const Eigen::Index count = white.rows.cols() - 1;
+    Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count + 1, count + 1);
+    products.selfadjointView<Eigen::Lower>().rankUpdate(white.rows.transpose());
+    products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
+    // In units of the prior the matrix does not depend on the units of the columns.
+    const Eigen::VectorXd& unit = prior_.deviation;
+    Eigen::MatrixXd matrix = unit.asDiagonal() * products.topLeftCorner(count, count) * unit.asDiagonal();
+    matrix.diagonal().array() += 1.0;
+    const Eigen::VectorXd mean = prior_.mean.cwiseQuotient(unit);
+    const Eigen::VectorXd right = unit.cwiseProduct(products.col(count).head(count)) + mean;
+    const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
+    double result = white.log_determinant + products(count, count) + mean.squaredNorm() -
+                    right.dot(factor.solve(right)) + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+    for (Eigen::Index k = 0; k < logarithms.size(); ++k) {
+      const Size& size = size_of(rows_.kind, k);
+      const double off = (logarithms[k] - std::log(size.median)) / size.deviation;
+      result += off * off;
+    }
+    return 0.5 * result;
+  }
 
  private:
-  const GpsNoise& noise_;
+  Eigen::Index sizes_;
   const GpsRows& rows_;
   const Eigen::VectorXd& more_;
   const GpsPrior& prior_;
@@ -170,42 +196,12 @@ class Likelihood final : public ceres::FirstOrderFunction {
 }  // namespace
 
 GpsNoise::GpsNoise(GpsKind kind)
-    : kind_(kind), logarithms_(as_index(kind == GpsKind::wind ? wind_sizes.size() : height_sizes.size())) {
+    : logarithms_(as_index(kind == GpsKind::wind ? wind_sizes.size() : height_sizes.size())) {
   for (Eigen::Index k = 0; k < logarithms_.size(); ++k) logarithms_[k] = std::log(size_of(kind, k).median);
-}
-
-WhiteRows GpsNoise::white_at(const Eigen::VectorXd& logarithms, const GpsRows& rows,
-                             const Eigen::VectorXd& more) const {
-  const Eigen::VectorXd sizes = logarithms.array().exp();
-  return kind_ == GpsKind::wind ? white_wind(sizes, rows, more) : white_height(sizes, rows, more);
 }
 
 WhiteRows GpsNoise::white(const GpsRows& rows, const Eigen::VectorXd& more) const {
   return white_at(logarithms_, rows, more);
-}
-
-double GpsNoise::cost(const Eigen::VectorXd& logarithms, const GpsRows& rows, const Eigen::VectorXd& more,
-                      const GpsPrior& prior) const {
-  const WhiteRows white = white_at(logarithms, rows, more);
-  const Eigen::Index count = white.rows.cols() - 1;
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count + 1, count + 1);
-  products.selfadjointView<Eigen::Lower>().rankUpdate(white.rows.transpose());
-  products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
-  // In units of the prior the matrix does not depend on the units of the columns.
-  const Eigen::VectorXd& unit = prior.deviation;
-  Eigen::MatrixXd matrix = unit.asDiagonal() * products.topLeftCorner(count, count) * unit.asDiagonal();
-  matrix.diagonal().array() += 1.0;
-  const Eigen::VectorXd mean = prior.mean.cwiseQuotient(unit);
-  const Eigen::VectorXd right = unit.cwiseProduct(products.col(count).head(count)) + mean;
-  const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
-  double result = white.log_determinant + products(count, count) + mean.squaredNorm() -
-                  right.dot(factor.solve(right)) + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-  for (Eigen::Index k = 0; k < logarithms.size(); ++k) {
-    const Size& size = size_of(kind_, k);
-    const double off = (logarithms[k] - std::log(size.median)) / size.deviation;
-    result += off * off;
-  }
-  return result;
 }
 
 void GpsNoise::maximise(const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior) {
@@ -213,12 +209,12 @@ void GpsNoise::maximise(const GpsRows& rows, const Eigen::VectorXd& more, const 
   options.max_num_iterations = 15;
   // Half a unit of the logarithm of the likelihood is one standard deviation of a size.
   constexpr double enough = 0.02;
-  const double at_start = 0.5 * cost(logarithms_, rows, more, prior);
-  options.function_tolerance = enough / std::max(1.0, std::abs(at_start));
+  auto* const likelihood = new Likelihood(logarithms_.size(), rows, more, prior);
+  const ceres::GradientProblem problem(likelihood);  // owns it
+  options.function_tolerance = enough / std::max(1.0, std::abs(likelihood->cost_at(logarithms_)));
   options.logging_type = ceres::SILENT;
   ceres::GradientProblemSolver::Summary summary;
   Eigen::VectorXd found = logarithms_;
-  const ceres::GradientProblem problem(new Likelihood(*this, rows, more, prior));
   ceres::Solve(options, problem, found.data(), &summary);
   if (found.allFinite()) logarithms_ = found;
 }

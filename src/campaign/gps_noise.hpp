@@ -35,17 +35,9 @@ class GpsNoise {
   /// Estimates the sizes. @param prior of the columns of the rows
   void maximise(const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior);
 
-  /// Minus twice the log likelihood, with the priors, up to a constant.
-  double cost(const Eigen::VectorXd& logarithms, const GpsRows& rows, const Eigen::VectorXd& more,
-              const GpsPrior& prior) const;
-
   const Eigen::VectorXd& logarithms() const { return logarithms_; }
 
  private:
-  WhiteRows white_at(const Eigen::VectorXd& logarithms, const GpsRows& rows,
-                     const Eigen::VectorXd& more) const;
-
-  GpsKind kind_;
   Eigen::VectorXd logarithms_;  // logarithms of the sizes
 };
 

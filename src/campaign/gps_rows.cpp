@@ -66,7 +66,8 @@ std::vector<bool> without_humidity(const ModelSamples& samples, const ModelOnSam
   return without;
 }
 
-Air air_of(const FlightSamples& samples, const ModelOnSamples& law, const double* parameters) {
+Air air_of(const FlightSamples& samples, const ModelDefinition& file, const double* parameters) {
+  const ModelOnSamples law(file, samples.model);
   const std::size_t size = samples.time.size();
   Air air{Series(size, nan), Series(size, nan), Series(size, nan), Series(size, nan), Series(size, nan)};
   const std::vector<bool> is_dry = without_humidity(samples.model, law);
@@ -83,6 +84,11 @@ Air air_of(const FlightSamples& samples, const ModelOnSamples& law, const double
     air.gas_constant[i] = moist_air(state[Quantity::humidity]).gas_constant;
   }
   return air;
+}
+
+/// Dynamic heating at an airspeed, in units of the temperature.
+double heating_at(const Air& air, std::size_t i, double airspeed) {
+  return airspeed * airspeed / (2.0 * 3.5 * air.gas_constant[i] * air.temperature[i]);
 }
 
 /// A steep low-pass: what a Gaussian of 1 s removes is filtered again, several times. 100 % of an oscillation
@@ -137,8 +143,7 @@ ModelSamples without_gusts(const FlightSamples& samples, const ModelDefinition& 
   }
   for (std::size_t i = 0; i < airspeed.size(); ++i) {
     if (std::isnan(airspeed[i])) continue;
-    const double heat = 2.0 * 3.5 * air.gas_constant[i] * air.temperature[i];
-    const double heating = airspeed[i] * airspeed[i] / heat;
+    const double heating = heating_at(air, i, airspeed[i]);
     dynamic_pressure[i] += air.pressure[i] * (std::pow(1.0 + heating, 3.5) - 1.0) - air.dynamic[i];
   }
   // The static defect depends on the dynamic pressure.
@@ -165,14 +170,13 @@ struct Derivatives {
 
 class Differentiation {
  public:
-  /// @param inputs of the law
-  Differentiation(const ModelOnSamples& law, const ModelSamples& inputs, const double* parameters,
+  Differentiation(const ModelDefinition& file, const ModelSamples& inputs, const double* parameters,
                   const std::vector<std::size_t>& requested, const AddedEffects& effects)
-      : law_(law),
+      : law_(file, inputs),
         parameters_(parameters),
         requested_(requested),
         at_location_(effects.at),
-        dual_(law.parameters().size()) {
+        dual_(law_.parameters().size()) {
     requested_.insert(requested_.end(), effects.amounts_of_model.begin(), effects.amounts_of_model.end());
     for (std::size_t& location : at_location_) location += requested.size();
     own_ = as_index(requested.size());
@@ -225,7 +229,7 @@ class Differentiation {
     }
   }
 
-  const ModelOnSamples& law_;
+  const ModelOnSamples law_;
   const double* parameters_;
   std::vector<std::size_t> requested_;    // including the amounts at the locations of effects
   std::vector<std::size_t> at_location_;  // index of the location of each coefficient of the effects
@@ -235,33 +239,25 @@ class Differentiation {
   Derivatives at_{};
 };
 
-// East and north components of a unit vector along the airspeed. Angles in degrees.
-struct Direction2 {
-  double east, north;
-};
-
-Direction2 along_air(double heading, double pitch, double roll, double attack, double sideslip) {
-  const double down = std::tan(attack * radians_per_degree);
-  const double side = std::tan(sideslip * radians_per_degree);
-  const double length = std::sqrt(1.0 + side * side + down * down);
-  const double cp = std::cos(pitch * radians_per_degree);
-  const double sp = std::sin(pitch * radians_per_degree);
-  const double cr = std::cos(roll * radians_per_degree);
-  const double sr = std::sin(roll * radians_per_degree);
-  const double ahead = cp + side * sr * sp + down * cr * sp;
-  const double right = side * cr - down * sr;
-  const double sh = std::sin(heading * radians_per_degree);
-  const double ch = std::cos(heading * radians_per_degree);
-  return {(ahead * sh + right * ch) / length, (ahead * ch - right * sh) / length};
-}
-
-// Angles of a sample. If pitch or attack is unknown, the path of the aircraft follows from its climb.
+// Angles of a sample, deg. If pitch or attack is unknown, the path of the aircraft follows from its climb.
 struct Angles {
   double heading, pitch, roll, attack, sideslip;
   bool has_attack;
 
-  Direction2 direction(double d_attack = 0.0, double d_sideslip = 0.0) const {
-    return along_air(heading, pitch, roll, attack + d_attack, sideslip + d_sideslip);
+  /// East and north components of a unit vector along the airspeed.
+  Eigen::Vector2d direction(double d_attack = 0.0, double d_sideslip = 0.0) const {
+    const double down = std::tan((attack + d_attack) * radians_per_degree);
+    const double side = std::tan((sideslip + d_sideslip) * radians_per_degree);
+    const double length = std::sqrt(1.0 + side * side + down * down);
+    const double cp = std::cos(pitch * radians_per_degree);
+    const double sp = std::sin(pitch * radians_per_degree);
+    const double cr = std::cos(roll * radians_per_degree);
+    const double sr = std::sin(roll * radians_per_degree);
+    const double ahead = cp + side * sr * sp + down * cr * sp;
+    const double right = side * cr - down * sr;
+    const double sh = std::sin(heading * radians_per_degree);
+    const double ch = std::cos(heading * radians_per_degree);
+    return {(ahead * sh + right * ch) / length, (ahead * ch - right * sh) / length};
   }
 };
 
@@ -333,19 +329,10 @@ Series thickness_of(const Air& air) {
   return thickness;
 }
 
-void add_rises(GpsRows& result, const Series& z) {
-  double before = nan;
-  for (const double height : z) {
-    result.rise.push_back(std::isnan(height - before) ? 0.0 : height - before);
-    if (!std::isnan(height)) before = height;
-  }
-}
-
 GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
                   const std::vector<std::size_t>& used, const double* parameters,
                   const std::vector<std::size_t>& requested, const AddedEffects& effects) {
-  const ModelOnSamples law(file, samples.model);
-  const Air air = air_of(samples, law, parameters);
+  const Air air = air_of(samples, file, parameters);
   const std::size_t size = samples.time.size();
   const Series& heading = *samples.reference.find(Quantity::heading);
   const Series& ground_speed = *samples.reference.find(Quantity::ground_speed);
@@ -361,11 +348,11 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
     ground_east[i] = ground_speed[i] * std::sin(ground_track[i] * radians_per_degree);
     ground_north[i] = ground_speed[i] * std::cos(ground_track[i] * radians_per_degree);
     if (std::isnan(air.airspeed[i])) continue;
-    const Direction2 u = angles_at(samples.motion, heading, air.airspeed, i).direction();
-    east[i] = ground_east[i] - air.airspeed[i] * u.east;
-    north[i] = ground_north[i] - air.airspeed[i] * u.north;
-    level_share[i] = std::hypot(u.east, u.north);
-    double now = std::atan2(u.east, u.north);
+    const Eigen::Vector2d u = angles_at(samples.motion, heading, air.airspeed, i).direction();
+    east[i] = ground_east[i] - air.airspeed[i] * u[0];
+    north[i] = ground_north[i] - air.airspeed[i] * u[1];
+    level_share[i] = std::hypot(u[0], u[1]);
+    double now = std::atan2(u[0], u[1]);
     if (!std::isnan(course_before)) now += 2.0 * M_PI * std::round((course_before - now) / (2.0 * M_PI));
     course[i] = now;
     if (!std::isnan(now)) course_before = now;
@@ -384,11 +371,14 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
   result.airspeed.resize(size, 0.0);
   result.east.resize(size, 0.0);
   result.north.resize(size, 0.0);
-  add_rises(result, z);
+  double height_before = nan;
+  for (const double height : z) {
+    result.rise.push_back(std::isnan(height - height_before) ? 0.0 : height - height_before);
+    if (!std::isnan(height)) height_before = height;
+  }
   result.thickness = thickness_of(air);
   const ModelSamples calm = without_gusts(samples, file, parameters, air, airspeed);
-  const ModelOnSamples calm_law(file, calm);
-  Differentiation differentiate(calm_law, calm, parameters, requested, effects);
+  Differentiation differentiate(file, calm, parameters, requested, effects);
   const Eigen::Index count = differentiate.count();
   const Eigen::Index own = as_index(requested.size());
   const Eigen::Index records = as_index(size);
@@ -407,24 +397,19 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
     result.airspeed[i] = speed;
     result.east[i] = sine;
     result.north[i] = cosine;
-    const double heat = 2.0 * 3.5 * air.gas_constant[i] * air.temperature[i];
-    const double heating = speed * speed / heat;
+    const double heating = heating_at(air, i, speed);
     const double by_temperature = 0.5 * speed / air.temperature[i];
     const double by_recovery = -0.5 * speed * heating / (1.0 + heating);
     // An angle offset moves the direction ahead and to the right.
     const Angles angles = angles_at(samples.motion, heading, air.airspeed, i);
-    const Direction2 raw = angles.direction();
+    const Eigen::Vector2d raw = angles.direction();
     constexpr double small = 0.05;  // deg
-    const Direction2 by_attack = angles.has_attack ? angles.direction(small) : raw;
-    const Direction2 by_sideslip = angles.direction(0.0, small);
-    const double raw_length = std::hypot(raw.east, raw.north);
-    const auto ahead = [&](const Direction2& moved) {
-      return ((moved.east - raw.east) * raw.east + (moved.north - raw.north) * raw.north) / raw_length /
-             small;
-    };
-    const auto right = [&](const Direction2& moved) {
-      return ((moved.east - raw.east) * raw.north - (moved.north - raw.north) * raw.east) / raw_length /
-             small;
+    const Eigen::Vector2d by_attack = (angles.has_attack ? angles.direction(small) : raw) - raw;
+    const Eigen::Vector2d by_sideslip = angles.direction(0.0, small) - raw;
+    const double raw_length = std::hypot(raw[0], raw[1]);
+    const auto ahead = [&](const Eigen::Vector2d& move) { return move.dot(raw) / raw_length / small; };
+    const auto right = [&](const Eigen::Vector2d& move) {
+      return (move[0] * raw[1] - move[1] * raw[0]) / raw_length / small;
     };
     const double acceleration_east = rate_at(calm_ground_east, samples.time, i);
     const double acceleration_north = rate_at(calm_ground_north, samples.time, i);
@@ -455,8 +440,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
 GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
                     const std::vector<std::size_t>& used, const double* parameters,
                     const std::vector<std::size_t>& requested, const AddedEffects& effects, double warmer) {
-  const ModelOnSamples law(file, samples.model);
-  const Air air = air_of(samples, law, parameters);
+  const Air air = air_of(samples, file, parameters);
   const std::size_t size = samples.time.size();
   const Series& altitude = *samples.reference.find(Quantity::altitude);
   Series logarithm(size, nan);
@@ -480,8 +464,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
        {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature}) {
     if (Series* const values = calm.find(input)) *values = low_passed(*values, 5.0 / samples.step);
   }
-  const ModelOnSamples calm_law(file, calm);
-  Differentiation differentiate(calm_law, calm, parameters, requested, effects);
+  Differentiation differentiate(file, calm, parameters, requested, effects);
   const Eigen::Index count = differentiate.count();
   const Eigen::Index own = as_index(requested.size());
   const Eigen::Index columns = count + gps_nuisance_count;
@@ -500,8 +483,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
     const Derivatives by = differentiate(i);
     if (!by.log_pressure.allFinite() || !by.temperature.allFinite()) continue;
     const double temperature = air.temperature[i];
-    const double heating =
-        air.airspeed[i] * air.airspeed[i] / (2.0 * 3.5 * air.gas_constant[i] * temperature);
+    const double heating = heating_at(air, i, air.airspeed[i]);
     const double by_recovery = -temperature * heating / (1.0 + heating);
     result.warmth[i] = 1.0 / temperature;
     const bool is_continuous = last < size && samples.time[i] - samples.time[last] < 3.5 * samples.step;

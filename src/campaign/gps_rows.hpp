@@ -21,27 +21,26 @@ enum class GpsKind { wind, height };
 /// Kind of a GPS reference; nullopt for any other reference.
 std::optional<GpsKind> gps_kind(const Reference& reference);
 
-/// Nuisance parameters of the rows, with their priors: instrument errors, common to all flights, then
-/// parameters of each flight.
+/// Nuisance parameters of the rows, with their priors: `gps_shared_nuisances` instrument errors, common to
+/// all flights, then parameters of each flight.
 struct GpsNuisance {
   std::string_view name;
   double deviation;
-  bool of_flight;
   std::string_view same_as = {};  ///< coefficient of the catalogue for the same error
 };
 
 inline constexpr std::array<GpsNuisance, 11> gps_nuisances{{
-    {"thermometer, K", 0.3, false, "temp-offset.offset"},
-    {"recovery factor", 0.005, false, "recovery-factor.da"},
-    {"heading, deg", 0.2, false},
-    {"sideslip, deg", 0.3, false},
-    {"attack, deg", 0.3, false},
-    {"lag of the velocity, s", 0.2, false},
-    {"lag of the height, s", 0.2, false},
-    {"shear of the east wind, m/s per km", 3.0, true},
-    {"shear of the north wind, m/s per km", 3.0, true},
-    {"slope of isobars to the east, m per 100 km", 10.0, true},
-    {"slope of isobars to the north, m per 100 km", 10.0, true},
+    {"thermometer, K", 0.3, "temp-offset.offset"},
+    {"recovery factor", 0.005, "recovery-factor.da"},
+    {"heading, deg", 0.2},
+    {"sideslip, deg", 0.3},
+    {"attack, deg", 0.3},
+    {"lag of the velocity, s", 0.2},
+    {"lag of the height, s", 0.2},
+    {"shear of the east wind, m/s per km", 3.0},
+    {"shear of the north wind, m/s per km", 3.0},
+    {"slope of isobars to the east, m per 100 km", 10.0},
+    {"slope of isobars to the north, m per 100 km", 10.0},
 }};
 
 inline constexpr Eigen::Index gps_nuisance_count = gps_nuisances.size();

@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <vector>
 

@@ -11,27 +11,27 @@
 namespace pcor::internal {
 namespace {
 
-struct NamedDoubt {
-  SensorDoubt doubt;
-  std::string name;
+struct NamedDoubts {
+  std::vector<SensorDoubt> sensors{};
+  std::vector<std::string> names{};
+
+  void add(const std::vector<SensorDoubt>& more, const std::string& prefix = "") {
+    for (const SensorDoubt& doubt : more) names.push_back(prefix + doubt.name());
+    sensors.insert(sensors.end(), more.begin(), more.end());
+  }
 };
 
-void add(std::vector<NamedDoubt>& doubts, const std::vector<SensorDoubt>& more,
-         const std::string& prefix = "") {
-  for (const SensorDoubt& doubt : more) doubts.push_back({doubt, prefix + doubt.name()});
-}
-
 /// Calibration uncertainties of the sensors of the model, of its laser, and of a measured pressure.
-std::vector<NamedDoubt> own_doubts(const ModelDefinition& model, const Reference& reference) {
-  std::vector<NamedDoubt> doubts;
-  if (reference.reads_laser()) add(doubts, doubts_of(model, laser_calibration));
+NamedDoubts own_doubts(const ModelDefinition& model, const Reference& reference) {
+  NamedDoubts doubts;
+  if (reference.reads_laser()) doubts.add(doubts_of(model, laser_calibration));
   // A measured pressure has no model. An error of the static transducer of the model changes the residual by
   // the same amount with the opposite sign. The sizes come from the catalogue, regardless of the model's
   // statement about its transducer.
   if (reference.is_static_pressure() && !reference.reads_laser() && reference.model() == nullptr)
-    add(doubts, doubts_of(ModelDefinition{}, static_calibration), reference.name() + ": ");
+    doubts.add(doubts_of(ModelDefinition{}, static_calibration), reference.name() + ": ");
   if (model.variables.count(Quantity::recovery_temperature) > 0)
-    add(doubts, doubts_of(model, thermometer_calibration));
+    doubts.add(doubts_of(model, thermometer_calibration));
   return doubts;
 }
 
@@ -43,29 +43,21 @@ std::string law_of(const ModelDefinition& system) {
 
 /// Calibration uncertainties of a second system, and the stated uncertainty of its model, as a zero and a
 /// gain.
-std::vector<NamedDoubt> second_doubts(const ModelDefinition& system, const Reference& reference) {
-  std::vector<NamedDoubt> doubts;
+NamedDoubts second_doubts(const ModelDefinition& system, const Reference& reference) {
+  NamedDoubts doubts;
   // The variable identifies a sensor: two systems may share it, or have the same name.
-  add(doubts, doubts_of(system, static_calibration), system.variable_of(Quantity::static_pressure) + ": ");
-  add(doubts, doubts_of(system, dynamic_calibration), system.variable_of(Quantity::dynamic_pressure) + ": ");
+  doubts.add(doubts_of(system, static_calibration), system.variable_of(Quantity::static_pressure) + ": ");
+  doubts.add(doubts_of(system, dynamic_calibration), system.variable_of(Quantity::dynamic_pressure) + ": ");
   if (!reference.sees_static_defect()) return doubts;
   const StatedUncertainty& stated = system.uncertainty;
   const auto state = [&](const char* effect, const std::optional<double>& size, const char* name) {
     if (!(size.value_or(0.0) > 0.0)) return;
-    NamedDoubt& stated_doubt = doubts.emplace_back();
-    stated_doubt.doubt.effect = effect;
-    stated_doubt.doubt.size = *size;
-    stated_doubt.name = law_of(system) + ": " + name;
+    doubts.sensors.push_back({effect, 0, *size});
+    doubts.names.push_back(law_of(system) + ": " + name);
   };
   state("psfd-bias", stated.static_defect, "static_defect");
   state("psfd-gain", stated.static_defect_ratio, "static_defect_ratio");
   return doubts;
-}
-
-ModelDefinition with_effects_of(const ModelDefinition& model, const std::vector<NamedDoubt>& doubts) {
-  std::vector<SensorDoubt> sensors;
-  for (const NamedDoubt& each : doubts) sensors.push_back(each.doubt);
-  return with_doubts(model, sensors);
 }
 
 /// @param model has the effect
@@ -108,26 +100,25 @@ ReferenceDoubt::ReferenceDoubt(const ModelDefinition& model, const Reference& re
       reference_parameters_(reference.model() != nullptr ? parameter_count(reference.model()->model) : 0) {
   if (with_law && reference.model() != nullptr) law_root_ = root_of_law(*reference.model());
   if (trusted && law_root_.cols() == 0) return;
-  std::vector<NamedDoubt> doubts;
+  NamedDoubts doubts;
   if (!trusted) doubts = own_doubts(model, reference);
-  model_ = with_effects_of(model, doubts);
-  for (const NamedDoubt& each : doubts) indices_.push_back(position_of(model_, each.doubt));
+  model_ = with_doubts(model, doubts.sensors);
+  for (const SensorDoubt& each : doubts.sensors) indices_.push_back(position_of(model_, each));
   if (reference.model() != nullptr) {
-    std::vector<NamedDoubt> second;
+    NamedDoubts second;
     if (!trusted) second = second_doubts(*reference.model(), reference);
-    const ModelDefinition system = with_effects_of(*reference.model(), second);
+    const ModelDefinition system = with_doubts(*reference.model(), second.sensors);
     reference_ = reference.with_model(system);
-    for (const NamedDoubt& each : second)
-      indices_.push_back(parameter_count(model_.model) + position_of(system, each.doubt));
-    doubts.insert(doubts.end(), second.begin(), second.end());
+    for (const SensorDoubt& each : second.sensors)
+      indices_.push_back(parameter_count(model_.model) + position_of(system, each));
+    doubts.sensors.insert(doubts.sensors.end(), second.sensors.begin(), second.sensors.end());
+    doubts.names.insert(doubts.names.end(), second.names.begin(), second.names.end());
   } else {
     reference_ = std::shared_ptr<const Reference>(std::shared_ptr<const Reference>(), &reference);
   }
-  sizes_ = Eigen::VectorXd::Ones(as_index(doubts.size()) + law_root_.cols());
-  for (const NamedDoubt& each : doubts) {
-    sizes_[as_index(names_.size())] = each.doubt.size;
-    names_.push_back(each.name);
-  }
+  names_ = doubts.names;
+  sizes_ = Eigen::VectorXd::Ones(as_index(names_.size()) + law_root_.cols());
+  for (std::size_t k = 0; k < names_.size(); ++k) sizes_[as_index(k)] = doubts.sensors[k].size;
   for (Eigen::Index k = 0; k < law_root_.rows() && law_root_.cols() > 0; ++k)
     indices_.push_back(parameter_count(model_.model) + static_cast<std::size_t>(k));
   for (Eigen::Index k = 0; k < law_root_.cols(); ++k)

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>
@@ -17,17 +19,9 @@ using namespace internal;
 
 namespace {
 
-/// Variables that a flight selects for a model.
-struct Choice {
-  bool completes = false;
-  std::map<Quantity, std::string> variables{};
-  bool moist = false;
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(completes, variables, moist);
-  }
-};
+/// Variables that a flight selects for a model, and whether the model becomes moist; none if the flight does
+/// not resolve it.
+using Choice = std::optional<std::pair<std::map<Quantity, std::string>, bool>>;
 
 }  // namespace
 
@@ -36,17 +30,17 @@ ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flig
     try {
       Notes unsaid;
       const ModelDefinition own = resolve_variables(open, flights[number], unsaid);
-      return Choice{true, own.variables, own.model.moist};
+      return Choice(std::in_place, own.variables, own.model.moist);
     } catch (const Error&) {
       // The caller decides whether a flight may be skipped.
       return Choice{};
     }
   });
-  const auto completes = [](const Choice& choice) { return choice.completes; };
-  const auto first = std::find_if(choices.begin(), choices.end(), completes);
+  const auto first =
+      std::find_if(choices.begin(), choices.end(), [](const Choice& choice) { return choice.has_value(); });
   const auto number_of = [&](auto choice) { return static_cast<std::size_t>(choice - choices.begin()); };
   for (auto other = first; other != choices.end(); ++other) {
-    if (other->completes && (other->variables != first->variables || other->moist != first->moist)) {
+    if (*other && *other != *first) {
       throw Error(
           Error::Code::variable,
           fmt::format("{} and {} need different variables; set [variables] in the model or process the "

@@ -10,7 +10,7 @@
 #include "numerics/median.hpp"
 #include "numerics/noise_covariance.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "parallel/distributed_median.hpp"
+#include "parallel/distributed_quantile.hpp"
 #include "parallel/symmetric_part.hpp"
 
 namespace pcor::internal {
@@ -30,26 +30,10 @@ constexpr double block_time = 60.0;  // s
 
 /// A flight in bins, for the members of a team that do not own it: derivatives or other columns, and the
 /// residual last.
-struct BinnedRows {
-  Binning bins{};
-  Eigen::MatrixXd rows{};
+using BinnedRows = std::pair<Binning, Eigen::MatrixXd>;
 
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(bins, rows);
-  }
-};
-
-/// Contribution of a flight to the counts of all flights.
-struct RowCount {
-  std::size_t rows = 0;
-  Eigen::Index blocks = 0;
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(rows, blocks);
-  }
-};
+/// Rows and minutes of a flight.
+using RowCount = std::pair<std::size_t, Eigen::Index>;
 
 /// The number of the minute of each bin, from 0. @return how many there are
 Eigen::Index find_blocks(const Binning& bins, std::vector<Eigen::Index>& block) {
@@ -82,10 +66,10 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const Bin
     std::vector<Binning> bins;
     std::vector<Eigen::MatrixXd> columns;
     std::vector<Eigen::VectorXd> left;
-    for (const BinnedRows& some : rows_of) {
-      bins.push_back(some.bins);
-      columns.emplace_back(some.rows.leftCols(some.rows.cols() - 1));
-      left.emplace_back(some.rows.rightCols(1));
+    for (const auto& [own, rows] : rows_of) {
+      bins.push_back(own);
+      columns.emplace_back(rows.leftCols(rows.cols() - 1));
+      left.emplace_back(rows.rightCols(1));
     }
     NoiseModel shared = find(bins, columns, left);
     shared.level.clear();
@@ -103,7 +87,8 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const Bin
 NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vector<NoiseModel>& noise) {
   NoiseModel first = noise.front();
   first.level.clear();
-  for (std::size_t f = 0; f < flights.first_count(); ++f) first.level.push_back(noise[f].level[0]);
+  for (std::size_t f = 0; f < noise.size() && flights.reference[f] == 0; ++f)
+    first.level.push_back(noise[f].level[0]);
   return first;
 }
 
@@ -248,8 +233,8 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
   });
   for (std::size_t f = 0; f < counts.size(); ++f) {
     for (Eigen::Index& block : scores.block[f]) block += scores.blocks;
-    scores.blocks += counts[f].blocks;
-    scores.row_count += counts[f].rows;
+    scores.row_count += counts[f].first;
+    scores.blocks += counts[f].second;
   }
   sum_up(scores);
   scores.plain = scores.information;

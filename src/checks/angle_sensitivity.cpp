@@ -24,11 +24,6 @@ struct AngleReference {
   std::vector<double> (*residual)(const Flown& flown);
 };
 
-std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
-  return a;
-}
-
 std::vector<double> from_laser(const Flown& flown) {
   const FlightAir& air = flown.flight->air;
   if (!air.laser || !has_value(air.laser->static_defect)) return {};
@@ -127,13 +122,6 @@ AngleSensitivity sensitivity_of(const Flown& flown, const AngleReference& refere
   return result;
 }
 
-/// Combined result of all manoeuvres.
-Estimate all_of(const std::vector<AngleSensitivity>& manoeuvres, Estimate AngleSensitivity::*number) {
-  std::vector<Estimate> estimates;
-  for (const AngleSensitivity& each : manoeuvres) estimates.push_back(each.*number);
-  return combined(estimates);
-}
-
 /// Names of the references that manoeuvres used, the first one first: "LAMS and GPS height".
 std::string references_of(const std::vector<AngleSensitivity>& manoeuvres) {
   std::vector<std::string> names;
@@ -150,8 +138,7 @@ ReportTable table_of(const std::vector<AngleSensitivity>& manoeuvres, const Angl
       fmt::format("Slope of the residual against the {}, fitted with a drift in time, and its effect from "
                   "one end of the swing to the other.",
                   check.angle),
-      {"manoeuvre", "compared with", "swing, deg", "slope, hPa/deg"},
-      {}};
+      {"manoeuvre", "compared with", "swing, deg", "slope, hPa/deg"}};
   const bool with_ratio = std::any_of(manoeuvres.begin(), manoeuvres.end(),
                                       [](const auto& each) { return std::isfinite(each.per_ratio.value); });
   if (with_ratio) table.headers.emplace_back("per ratio, hPa");
@@ -202,16 +189,12 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
                     info_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
   }
   if (manoeuvres.empty()) return not_flown(flights, check.regime, result.notes);
-  const Estimate slope = all_of(manoeuvres, &AngleSensitivity::slope);
-  const Estimate bend = all_of(manoeuvres, &AngleSensitivity::bend);
-  std::vector<double> swings;
-  std::vector<double> squares;
-  for (const AngleSensitivity& each : manoeuvres) {
-    swings.push_back(ends_of_sine * each.swing);
-    squares.push_back(each.maximum * each.maximum);
-  }
-  const Estimate across = mean_of(swings) * slope;
-  const Estimate bent = mean_of(squares) * bend;
+  const auto swing = [](const AngleSensitivity& each) { return ends_of_sine * each.swing; };
+  const auto square = [](const AngleSensitivity& each) { return each.maximum * each.maximum; };
+  const Estimate slope = combined(each_of(manoeuvres, &AngleSensitivity::slope));
+  const Estimate bend = combined(each_of(manoeuvres, &AngleSensitivity::bend));
+  const Estimate across = mean_of(each_of(manoeuvres, swing)) * slope;
+  const Estimate bent = mean_of(each_of(manoeuvres, square)) * bend;
   std::vector<TestStatistic> numbers{judged(across, min_swing_change, "hPa", "change across the swing")};
   result.finding = fmt::format(
       "Over {} {}{} the residual against {} changes by {} of {}, {} from one end of the swing to the other.",
@@ -239,9 +222,8 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   result.numbers = {{"manoeuvres", static_cast<double>(manoeuvres.size())}};
   add_number("slope", "_hpa_deg", slope, result);
   add_number("across", "_hpa", across, result);
-  if (const Estimate ratio = all_of(manoeuvres, &AngleSensitivity::per_ratio); std::isfinite(ratio.value)) {
-    add_number("per_ratio", "_hpa", ratio, result);
-  }
+  const Estimate ratio = combined(each_of(manoeuvres, &AngleSensitivity::per_ratio));
+  if (std::isfinite(ratio.value)) add_number("per_ratio", "_hpa", ratio, result);
   if (check.with_square) {
     add_number("square", "_hpa_deg2", bend, result);
     add_number("square_at_end", "_hpa", bent, result);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <pcor/base/error.hpp>
@@ -120,11 +121,10 @@ struct FlightPart {
   std::string unusable{};  ///< reason; empty if the flight is usable
   std::string model{};     ///< name of the model
   std::optional<CheckedFlight> flight{};
-  Notes notes{};
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(unusable, model, flight, notes);
+    archive(unusable, model, flight);
   }
 };
 
@@ -142,9 +142,8 @@ FlightPart part_of(const FlightSet& flights, std::size_t number, const std::opti
   if (!part.unusable.empty()) return part;
   part.model = its_model->model.name;
   part.flight = checked(flights, number, *its_model, options);
-  part.notes = part.flight->air.notes;
   if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
-    part.notes.push_back(fmt::format(
+    part.flight->air.notes.push_back(fmt::format(
         "no model is given: the recovery factor of {} is assumed to be {:g}, the published value of such "
         "thermometers; a model (-m) states another",
         its_model->variables.at(Quantity::recovery_temperature), its_model->model.recovery.coefficients[0]));
@@ -179,15 +178,8 @@ Report pictures_of(const CheckedFlights& flights) {
 }  // namespace
 
 std::string_view to_string(CheckVerdict verdict) {
-  switch (verdict) {
-    case CheckVerdict::consistent:
-      return "consistent";
-    case CheckVerdict::inconsistent:
-      return "inconsistent";
-    case CheckVerdict::inconclusive:
-      return "cannot tell";
-  }
-  return "";
+  constexpr std::array names{"consistent", "inconsistent", "cannot tell"};
+  return names[static_cast<std::size_t>(verdict)];
 }
 
 double CheckResult::number(std::string_view of) const {
@@ -226,7 +218,7 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
     read.push_back(std::move(*part.flight));
     checks.flights.push_back(read.back().air.samples->name);
     if (checks.model.empty()) checks.model = part.model;
-    for (Note& note : part.notes) notes.emplace_back(checks.flights.back(), std::move(note));
+    for (const Note& note : read.back().air.notes) notes.emplace_back(checks.flights.back(), note);
   }
   checks.notes = notes_of_flights(notes, flights.size());
   for (const std::string& why : unusable) checks.notes.push_back("Not used: " + why);

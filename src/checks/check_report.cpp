@@ -141,8 +141,7 @@ ReportTable verdicts(const Checks& checks) {
       "Verdicts",
       "Inconsistent: larger than the tolerance and than three standard errors. Consistent: within the "
       "tolerance by two standard errors. Otherwise the check is inconclusive.",
-      {"check", "verdict", "number", "tolerance", "result"},
-      {}};
+      {"check", "verdict", "number", "tolerance", "result"}};
   for (const CheckResult& result : checks.results) {
     if (!result.ran) {
       table.rows.push_back({heading(result.name), "not run", "", "", sentence(result.reason)});
@@ -159,13 +158,13 @@ ReportTable verdicts(const Checks& checks) {
 
 /// Deciding number of each check, in units of its tolerance, with its verdict.
 DotPanel forest(const Checks& checks) {
-  DotPanel panel;
-  panel.title = "Checks at a glance";
-  panel.caption =
+  DotPanel panel{
+      "Checks at a glance",
       "Deciding number of each check divided by its tolerance, with its standard error. A square in the band "
-      "is consistent, a cross inconsistent, an open square inconclusive.";
-  panel.series = {""};
-  panel.axis = "number / tolerance";
+      "is consistent, a cross inconsistent, an open square inconclusive.",
+      {""},
+      {},
+      "number / tolerance"};
   panel.band = "negligible";
   for (const CheckResult& result : checks.results) {
     const TestStatistic& key = result.key;
@@ -185,14 +184,9 @@ DotPanel forest(const Checks& checks) {
 }
 
 ReportTable numbers_of(const CheckResult& result) {
-  ReportTable table;
-  table.title = heading(result.name) + ": numbers";
-  table.caption = "Names as in the JSON result, with the unit at the end of each name.";
-  constexpr std::size_t across = 3;  // cells per row
-  for (std::size_t i = 0; i < across; ++i) {
-    table.headers.emplace_back("number");
-    table.headers.emplace_back("value");
-  }
+  ReportTable table{heading(result.name) + ": numbers",
+                    "Names as in the JSON result, with the unit at the end of each name.",
+                    {"number", "value", "number", "value", "number", "value"}};
   for (const auto& [name, value] : result.numbers) {
     if (!std::isfinite(value)) continue;
     if (table.rows.empty() || table.rows.back().size() == table.headers.size()) table.rows.emplace_back();

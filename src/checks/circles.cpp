@@ -30,13 +30,10 @@ ReportTable table_of(const std::vector<Circle>& circles) {
       "Circles",
       "Wind, error of the airspeed (too high positive) and error of the heading minus the sideslip, from the "
       "ground velocity around one turn. Errors exclude the drift of the wind.",
-      {"circle", "turn, deg", "wind from, deg", "wind, m/s", "airspeed, m/s", "heading, deg", "rms, m/s"},
-      {}};
+      {"circle", "turn, deg", "wind from, deg", "wind, m/s", "airspeed, m/s", "heading, deg", "rms, m/s"}};
   for (const auto& [flown, fit] : circles) {
-    const double from =
-        std::atan2(-fit.east_wind.value, -fit.north_wind.value) / constants::radians_per_degree;
     table.rows.push_back({flown.location(), fmt::format("{:+.0f}", fit.turned),
-                          fmt::format("{:.0f}", from < 0.0 ? from + 360.0 : from),
+                          fmt::format("{:.0f}", direction_of(-fit.east_wind.value, -fit.north_wind.value)),
                           fmt::format("{:.1f}", std::hypot(fit.east_wind.value, fit.north_wind.value)),
                           with_error(fit.airspeed_error, ""), with_error(fit.heading_error, ""),
                           fmt::format("{:.2f}", fit.rms)});
@@ -76,13 +73,12 @@ CheckResult check_circles(const CheckedFlights& flights) {
   const Estimate error = combined(errors);
   const auto to_port = std::count_if(circles.begin(), circles.end(),
                                      [](const Circle& circle) { return circle.fit.turned < 0.0; });
-  std::vector<double> factors;
-  for (const Circle& circle : circles) {
+  const auto sensitivity = [](const Circle& circle) {
     const FlightAir& air = circle.flown.flight->air;
-    factors.push_back(pressure_per_airspeed(circle.flown.mean(air.pressure), circle.flown.mean(air.mach),
-                                            circle.flown.mean(air.airspeed)));
-  }
-  const Estimate hpa = mean_of(factors) * error;
+    return pressure_per_airspeed(circle.flown.mean(air.pressure), circle.flown.mean(air.mach),
+                                 circle.flown.mean(air.airspeed));
+  };
+  const Estimate hpa = mean_of(each_of(circles, sensitivity)) * error;
   decide({judged(error, min_circle_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "

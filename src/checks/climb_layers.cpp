@@ -10,8 +10,6 @@
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include "numerics/decompositions.hpp"
-#include "numerics/least_squares.hpp"
-#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -176,27 +174,22 @@ void note_lag(const std::vector<Piece>& pieces, Notes& notes) {
                   std::abs(lag.value), lag.error, lag.value > 0.0 ? "behind" : "ahead of"));
 }
 
+/// Estimates the missing numbers of the uncertainty.
 /// @param all pieces of the flight; @param level pieces in level flight
-LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<Piece>& all,
-                                const std::vector<Piece>& level, Notes& notes) {
-  LayerUncertainty uncertainty;
-  uncertainty.pressure_noise = options.pressure_noise;
-  uncertainty.static_bias = options.static_bias;
-  uncertainty.static_change = options.static_change;
+void estimate_uncertainty(LayerOptions& uncertainty, const std::vector<Piece>& all,
+                          const std::vector<Piece>& level, Notes& notes) {
   double squares = 0.0;
   double freedom = 0.0;
   for (const Piece& piece : all) {
     squares += piece.squares;
     freedom += piece.freedom;
   }
-  if (options.height_noise) {
-    uncertainty.height_noise = *options.height_noise;
-  } else if (all.empty()) {
+  if (std::isnan(uncertainty.height_noise) && all.empty()) {
     uncertainty.height_noise = usual_height_noise;
     notes.push_back(fmt::format(
         "no segment of {:.0f} s is available to estimate the error of the GPS height; {} m is assumed",
         piece_time, usual_height_noise));
-  } else {
+  } else if (std::isnan(uncertainty.height_noise)) {
     uncertainty.height_noise = std::max(min_height_noise, std::sqrt(squares / freedom));
     notes.push_back(
         fmt::format("the error of the GPS height is estimated as {:.2f} m: rms deviation from the pressure "
@@ -204,8 +197,8 @@ LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<P
                     uncertainty.height_noise, all.size(), piece_time));
   }
   note_lag(all, notes);
-  uncertainty.gradient = options.gradient.value_or(usual_gradient);
-  if (options.gradient || level.empty()) return uncertainty;
+  if (!std::isnan(uncertainty.gradient)) return;
+  uncertainty.gradient = usual_gradient;
   double slopes = 0.0;
   for (const Piece& piece : level) slopes += piece.gradient * piece.gradient;
   const double gradient = std::sqrt(slopes / static_cast<double>(level.size()));
@@ -216,7 +209,6 @@ LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<P
                     "slope is assumed for climbs",
                     gradient));
   }
-  return uncertainty;
 }
 
 Layer make_layer(const FlightAir& air, const std::vector<double>& heights, std::size_t first,
@@ -260,7 +252,7 @@ double per_pressure(const Layer& layer, double pressure) {
   return -layer.hydrostatic_temperature() / std::log(layer.pressure_end / layer.pressure_begin) / pressure;
 }
 
-LayerErrors errors_of(const Layer& layer, const LayerUncertainty& uncertainty) {
+LayerErrors errors_of(const Layer& layer, const LayerOptions& uncertainty) {
   LayerErrors errors;
   const double at_end = per_pressure(layer, layer.pressure_end);
   const double at_begin = per_pressure(layer, layer.pressure_begin);
@@ -273,37 +265,16 @@ LayerErrors errors_of(const Layer& layer, const LayerUncertainty& uncertainty) {
   return errors;
 }
 
-/// Sources of layer errors, one unknown with unit variance each: the error of each layer by each source.
-class Causes {
- public:
+Eigen::MatrixXd covariance_of(const std::vector<FlightLayers>& flights, Eigen::Index count) {
   enum class Kind { height, pressure, bias, change, east, north, climb_east, climb_north };
-
-  explicit Causes(std::size_t layers) : layers_(static_cast<Eigen::Index>(layers)) {}
-
-  void add(Kind kind, std::size_t flight, long position, std::size_t layer, double error) {
-    const auto cause = causes_.try_emplace(Key(kind, flight, position), Eigen::VectorXd::Zero(layers_)).first;
-    cause->second(static_cast<Eigen::Index>(layer)) += error;
-  }
-
-  Eigen::MatrixXd covariance() const {
-    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(layers_, layers_);
-    for (const auto& [key, errors] : causes_) covariance += errors * errors.transpose();
-    return covariance;
-  }
-
- private:
-  using Key = std::tuple<Kind, std::size_t, long>;
-
-  Eigen::Index layers_;
-  std::map<Key, Eigen::VectorXd> causes_;
-};
-
-Eigen::MatrixXd covariance_of(const std::vector<FlightLayers>& flights, std::size_t count) {
-  using Kind = Causes::Kind;
-  Causes causes(count);
-  std::size_t number = 0;
+  // Sources of layer errors, one unknown with unit variance each: the error of each layer by each source.
+  std::map<std::tuple<Kind, std::size_t, long>, Eigen::VectorXd> causes;
+  Eigen::Index number = 0;
+  const auto add = [&](Kind kind, std::size_t flight, long position, double error) {
+    causes.try_emplace({kind, flight, position}, Eigen::VectorXd::Zero(count)).first->second(number) += error;
+  };
   for (std::size_t flight = 0; flight < flights.size(); ++flight) {
-    const LayerUncertainty& uncertainty = flights[flight].uncertainty;
+    const LayerOptions& uncertainty = flights[flight].uncertainty;
     const double slope = metres_per_gradient * uncertainty.gradient;
     const double of_flight = slope * std::sqrt(share_of_flight);
     const double of_climb = slope * std::sqrt(1.0 - share_of_flight);
@@ -311,38 +282,39 @@ Eigen::MatrixXd covariance_of(const std::vector<FlightLayers>& flights, std::siz
       const double metre = per_metre(layer);
       const auto end_point = [&](std::size_t record, double height, double pressure, double sign) {
         const auto position = static_cast<long>(record);
-        causes.add(Kind::height, flight, position, number, sign * metre * uncertainty.height_noise);
+        add(Kind::height, flight, position, sign * metre * uncertainty.height_noise);
         const double hectopascal = sign * per_pressure(layer, pressure);
-        causes.add(Kind::pressure, flight, position, number, hectopascal * uncertainty.pressure_noise);
-        causes.add(Kind::bias, 0, 0, number, hectopascal * uncertainty.static_bias);
-        causes.add(Kind::change, 0, std::lround(height / band), number,
-                   hectopascal * uncertainty.static_change);
+        add(Kind::pressure, flight, position, hectopascal * uncertainty.pressure_noise);
+        add(Kind::bias, 0, 0, hectopascal * uncertainty.static_bias);
+        add(Kind::change, 0, std::lround(height / band), hectopascal * uncertainty.static_change);
       };
       end_point(layer.first, layer.height_begin, layer.pressure_begin, -1.0);
       end_point(layer.last, layer.height_end, layer.pressure_end, 1.0);
       const auto climb = static_cast<long>(layer.climb);
-      causes.add(Kind::east, flight, 0, number, metre * layer.east * of_flight);
-      causes.add(Kind::north, flight, 0, number, metre * layer.north * of_flight);
-      causes.add(Kind::climb_east, flight, climb, number, metre * layer.east * of_climb);
-      causes.add(Kind::climb_north, flight, climb, number, metre * layer.north * of_climb);
+      add(Kind::east, flight, 0, metre * layer.east * of_flight);
+      add(Kind::north, flight, 0, metre * layer.north * of_flight);
+      add(Kind::climb_east, flight, climb, metre * layer.east * of_climb);
+      add(Kind::climb_north, flight, climb, metre * layer.north * of_climb);
       ++number;
     }
   }
-  return causes.covariance();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
+  for (const auto& [cause, errors] : causes) covariance += errors * errors.transpose();
+  return covariance;
 }
 
 }  // namespace
 
 FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
   FlightLayers found;
-  found.flight = air.samples->name;
   const std::vector<double> heights = usable_heights(air);
   const std::vector<Segment> segments = steady_stretches(air, heights);
   const std::vector<double> climb_rate = climb_rates(air, heights, segments);
   const std::vector<Segment> level =
       parts_where(segments, [&](std::size_t i) { return std::abs(climb_rate[i]) < max_level_rate; });
-  found.uncertainty = uncertainty_of(options, look_at_pieces(air, heights, climb_rate, segments),
-                                     look_at_pieces(air, heights, climb_rate, level), found.notes);
+  found.uncertainty = options;
+  estimate_uncertainty(found.uncertainty, look_at_pieces(air, heights, climb_rate, segments),
+                       look_at_pieces(air, heights, climb_rate, level), found.notes);
   std::vector<Segment> climbs;
   for (const double sign : {1.0, -1.0}) {
     const std::vector<Segment> parts =
@@ -386,8 +358,6 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
 LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
   LayerFit fit;
   for (const FlightLayers& flight : flights) fit.layers += flight.layers.size();
-  fit.offset = fit.offset_error = fit.mean_temperature = fit.centre = fit.c0 = fit.c0_error = fit.c1 =
-      fit.c1_error = nan;
   if (fit.layers == 0) return fit;
   const auto count = static_cast<Eigen::Index>(fit.layers);
   Eigen::VectorXd differences(count);
@@ -399,7 +369,7 @@ LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
       temperatures(row++) = layer.measured_temperature();
     }
   }
-  const Eigen::MatrixXd covariance = covariance_of(flights, fit.layers);
+  const Eigen::MatrixXd covariance = covariance_of(flights, count);
   // Whitened by the covariance, the line is ordinary least squares.
   const Eigen::LLT<Eigen::MatrixXd> root(covariance);
   const auto whitened = [&](const Eigen::VectorXd& column) -> Eigen::VectorXd {
@@ -410,29 +380,20 @@ LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
   const double weight = ones.squaredNorm();
   const double mean = ones.dot(y) / weight;
   Eigen::VectorXd rest = y - mean * ones;
-  fit.mean_temperature = temperatures.mean();
-  fit.offset = mean;
-  fit.offset_error = 1.0 / std::sqrt(weight);
-  fit.degrees_of_freedom = fit.layers - 1;
+  fit.offset = {mean, 1.0 / std::sqrt(weight)};
+  std::size_t degrees_of_freedom = fit.layers - 1;
   if (fit.layers >= 3 && temperatures.maxCoeff() - temperatures.minCoeff() >= min_range) {
     fit.centre = ones.dot(whitened(temperatures)) / weight;
     const Eigen::VectorXd tilted = whitened((temperatures.array() - fit.centre).matrix());
-    fit.c0 = mean;
-    fit.c0_error = 1.0 / std::sqrt(weight);
-    fit.c1 = tilted.dot(y) / tilted.squaredNorm();
-    fit.c1_error = 1.0 / tilted.norm();
-    fit.offset = fit.correction_at(fit.mean_temperature);
-    fit.offset_error = fit.correction_error_at(fit.mean_temperature);
-    rest -= fit.c1 * tilted;
-    fit.degrees_of_freedom = fit.layers - 2;
+    fit.c0 = fit.offset;
+    fit.c1 = {tilted.dot(y) / tilted.squaredNorm(), 1.0 / tilted.norm()};
+    fit.offset = fit.correction_at(temperatures.mean());
+    rest -= fit.c1.value * tilted;
+    degrees_of_freedom = fit.layers - 2;
   }
-  fit.chi_squared = rest.squaredNorm();
-  if (fit.degrees_of_freedom > 0) {
-    fit.error_scale = std::max(1.0, std::sqrt(fit.chi_squared / static_cast<double>(fit.degrees_of_freedom)));
-  }
-  fit.offset_error *= fit.error_scale;
-  fit.c0_error *= fit.error_scale;
-  fit.c1_error *= fit.error_scale;
+  if (degrees_of_freedom > 0)
+    fit.error_scale = std::max(1.0, std::sqrt(rest.squaredNorm() / static_cast<double>(degrees_of_freedom)));
+  for (Estimate* const each : {&fit.offset, &fit.c0, &fit.c1}) each->error *= fit.error_scale;
   return fit;
 }
 

@@ -2,41 +2,33 @@
 
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <pcor/base/note.hpp>
 
 #include "campaign/flight_air.hpp"
+#include "numerics/least_squares.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 
-/// Selection of climbs and descents for layers, and uncertainty of pressure and height.
+/// Selection of climbs and descents for layers, and uncertainty of pressure and height: standard deviations.
 struct LayerOptions {
   double min_climb_rate = 2.0;   ///< m/s up or down, over 30 s
   double min_thickness = 500.0;  ///< m: thinner climbs have too large errors
   double thickness = 1000.0;     ///< m: a longer climb is divided into layers of about this thickness
 
-  /// Rms error of one GPS height, m. Absent: rms deviation from the height of the pressure within five
+  /// Rms error of one GPS height, m. NaN: rms deviation from the height of the pressure within five
   /// minutes of the flight, at least 0.15 m, the error of current differential GPS; 1 m, the error of GPS in
   /// 2004, if five minutes without a gap are not available.
-  std::optional<double> height_noise{};
+  double height_noise = nan;
   double pressure_noise = 0.03;  ///< rms error of one pressure, hPa
   double static_bias = 0.3;      ///< standard error of delta-p that is constant over height, hPa
   double static_change = 0.1;    ///< standard error of delta-p that differs between heights, hPa
-  /// Standard deviation of the slope of the pressure surfaces in any direction, m per 100 km. Absent: 5, half
+  /// Standard deviation of the slope of the pressure surfaces in any direction, m per 100 km. NaN: 5, half
   /// of the upper limit of the memo, or the slope found along level legs if it is larger.
-  std::optional<double> gradient{};
-};
-
-/// Uncertainty of the pressures and heights of a flight: standard deviations.
-struct LayerUncertainty {
-  double height_noise = 0.0;    ///< m
-  double pressure_noise = 0.0;  ///< hPa
-  double static_bias = 0.0;     ///< hPa
-  double static_change = 0.0;   ///< hPa
-  double gradient = 0.0;        ///< m per 100 km
+  double gradient = nan;
 };
 
 /// Standard errors of T_p, K, by cause. The sums telescope: noise counts at both ends of a layer, not in
@@ -84,7 +76,7 @@ struct Layer {
 /// Layers of a flight, in the order of time.
 struct FlightLayers {
   std::string flight;
-  LayerUncertainty uncertainty{};
+  LayerOptions uncertainty{};  ///< with the estimates of this flight
   std::vector<Layer> layers{};
   Notes notes{};  ///< notes for the user, one sentence each
 };
@@ -109,26 +101,20 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options = {})
 /// heights is the same for all flights at one height.
 struct LayerFit {
   std::size_t layers = 0;
-  double mean_temperature = 0.0;  ///< mean temperature of the layers, K
-  /// Correction of the thermometer at the mean temperature, K, by the line or the constant.
-  double offset = 0.0;
-  double offset_error = 0.0;  ///< standard error, K
-  double centre = 0.0;        ///< K: the temperature at which the errors of c0 and c1 are independent; may be
-                              ///< outside the layers
-  double c0 = 0.0;        ///< correction at the centre, K; NaN, like c1, with fewer than three layers or a
-                          ///< range below 5 K
-  double c0_error = 0.0;  ///< K
-  double c1 = 0.0;        ///< K per K
-  double c1_error = 0.0;
-  double chi_squared = 0.0;  ///< chi2 of the line, or of the mean if there is no line
-  std::size_t degrees_of_freedom = 0;
+  /// Correction of the thermometer at the mean temperature of the layers, K, by the line or the constant.
+  Estimate offset{nan, nan};
+  double centre = nan;       ///< K: the temperature at which the errors of c0 and c1 are independent; may be
+                             ///< outside the layers
+  Estimate c0{nan, nan};     ///< correction at the centre, K; NaN, like c1, with fewer than three layers or a
+                             ///< range below 5 K
+  Estimate c1{nan, nan};     ///< K per K
   double error_scale = 1.0;  ///< factor on all errors that reduces chi2 per degree of freedom to at most 1
 
   /// Correction of the line at a temperature, K: at 273.15 K it is the c0 of a line in degC, at 0 K the c0 of
   /// the memo, whose temperatures are absolute.
-  double correction_at(double temperature) const { return c0 + c1 * (temperature - centre); }
-  double correction_error_at(double temperature) const {
-    return std::hypot(c0_error, c1_error * (temperature - centre));
+  Estimate correction_at(double temperature) const {
+    return {c0.value + c1.value * (temperature - centre),
+            std::hypot(c0.error, c1.error * (temperature - centre))};
   }
 };
 

@@ -7,14 +7,10 @@
 #include <map>
 
 #include <pcor/base/utc.hpp>
+#include <pcor/physics/constants.hpp>
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
-std::vector<double> Flown::time() const {
-  std::vector<double> times;
-  for (const std::size_t record : records) times.push_back(flight->air.time()[record]);
-  return times;
-}
 
 std::vector<double> Flown::of(const std::vector<double>& series) const {
   std::vector<double> values(records.size(), nan);
@@ -61,10 +57,19 @@ std::pair<double, double> range_of(const std::vector<double>& values) {
 }
 
 double standard_deviation(const std::vector<double>& values) {
-  const double mean = mean_of(values);
-  std::vector<double> squares;
-  for (const double value : values) squares.push_back((value - mean) * (value - mean));
+  std::vector<double> squares = less_mean(values);
+  for (double& value : squares) value *= value;
   return std::sqrt(mean_of(squares));
+}
+
+std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
+  return a;
+}
+
+double direction_of(double east, double north) {
+  const double direction = std::atan2(east, north) / constants::radians_per_degree;
+  return direction < 0.0 ? direction + 360.0 : direction;
 }
 
 std::vector<double> less_mean(std::vector<double> values) {

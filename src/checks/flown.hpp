@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct Flown {
   std::vector<std::size_t> records;  ///< airborne records that are not excluded
 
   /// Times of the samples, s since 1970 UTC.
-  std::vector<double> time() const;
+  std::vector<double> time() const { return of(flight->air.time()); }
   /// Values of the samples in a series of the flight; NaN for a series that the flight does not have.
   std::vector<double> of(const std::vector<double>& series) const;
   double mean(const std::vector<double>& series) const;  ///< Mean of a series; NaN if all values are missing
@@ -36,8 +37,20 @@ std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime);
 /// Minimum and maximum of the known values; NaN if all are missing.
 std::pair<double, double> range_of(const std::vector<double>& values);
 double standard_deviation(const std::vector<double>& values);
+/// The first series minus the second one, of the same length.
+std::vector<double> difference(std::vector<double> a, const std::vector<double>& b);
+/// Direction of a vector, deg, from 0 to 360.
+double direction_of(double east, double north);
 /// Values minus their mean.
 std::vector<double> less_mean(std::vector<double> values);
+
+/// A number of each item. @param of_item function of an item, or pointer to its member
+template <class Items, class Function>
+auto each_of(const Items& items, const Function& of_item) {
+  std::vector<std::decay_t<decltype(std::invoke(of_item, items.front()))>> numbers;
+  for (const auto& item : items) numbers.push_back(std::invoke(of_item, item));
+  return numbers;
+}
 
 /// Natural difference of the tail winds of the two legs of a reverse heading, m/s rms: the wind changes, and
 /// legs of minutes cannot show it. The memo's 18 pairs of the GV reach +-0.2 m/s: 0.2 sqrt(18).

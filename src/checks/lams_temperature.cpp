@@ -108,8 +108,7 @@ Part part_of(const Differences& all, std::string name, const Condition& conditio
 ReportTable part_table(const std::vector<Part>& parts) {
   ReportTable table{"Laser temperature minus thermometer",
                     "Errors include autocorrelation and slow drift of the differences.",
-                    {"where", "samples", "mean, K", "std. error", "scatter, K"},
-                    {}};
+                    {"where", "samples", "mean, K", "std. error", "scatter, K"}};
   for (const Part& part : parts) {
     if (part.fit.samples < min_samples) continue;
     table.rows.push_back(
@@ -146,8 +145,7 @@ void add_noise_by_period(const Differences& all, CheckResult& result) {
   ReportTable table{
       "Noise of the difference by period: numbers",
       "K, means over half the period: out of cloud, in the lowest kilometre above the field, and above it.",
-      {"period, s", "lowest km", "above"},
-      {}};
+      {"period, s", "lowest km", "above"}};
   std::array<std::vector<double>, 2> values;  // near the ground, and above
   std::array<std::vector<Segment>, 2> segments;
   for (const std::size_t part : {0U, 1U}) {
@@ -173,8 +171,7 @@ void add_noise_by_period(const Differences& all, CheckResult& result) {
 ReportTable cloud_table(const CheckedFlights& flights, double outside) {
   ReportTable table{"Clouds",
                     "ATLAMS minus the thermometer in each cloud of 30 samples or more.",
-                    {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"},
-                    {}};
+                    {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"}};
   for (const Flown& cloud : all_flown(flights, Regime::cloud)) {
     const FlightAir& air = cloud.flight->air;
     if (!air.laser || air.temperature.empty() || cloud.records.size() < min_in_cloud) continue;

@@ -40,15 +40,13 @@ void show_layers(const std::vector<FlightLayers>& flights, CheckResult& result) 
       "T_p is the temperature from height and pressure, T_m the temperature of the thermometer; both are "
       "means over the height of the layer. The error applies to T_p.",
       {"flight", "start (UTC)", "end", "from, m", "to, m", "T_p, degC", "T_m, degC", "T_p - T_m, K",
-       "error, K"},
-      {}};
+       "error, K"}};
   ReportTable errors{
       "Sources of the error of a layer",
       "Standard errors of T_p, K. Noise affects only the two ends of a layer, because the steps between "
       "the ends cancel; it does not decrease with the number of samples.",
       {"flight", "start (UTC)", "GPS height", "pressure noise", "delta-p, constant", "delta-p, changing",
-       "isobars"},
-      {}};
+       "isobars"}};
   const auto kelvin = [](double value) { return fmt::format("{:.2f}", value); };
   const auto metres = [](double value) { return fmt::format("{:.0f}", value); };
   for (const FlightLayers& flight : flights) {
@@ -105,11 +103,10 @@ CheckResult check_layers(const CheckedFlights& flights) {
   const LayerFit fit = fit_layers(all);
   if (fit.layers == 0) return not_run(trouble.empty() ? "there is no flight" : trouble);
 
-  std::vector<TestStatistic> numbers{
-      judged({fit.offset, fit.offset_error}, min_thermometer_error, "K", "thermometer")};
+  std::vector<TestStatistic> numbers{judged(fit.offset, min_thermometer_error, "K", "thermometer")};
   result.finding =
       fmt::format("Over {} layer{} the hydrostatic equation implies a thermometer correction of {}",
-                  fit.layers, fit.layers == 1 ? "" : "s", with_error({fit.offset, fit.offset_error}, "K"));
+                  fit.layers, fit.layers == 1 ? "" : "s", with_error(fit.offset, "K"));
   double coldest = std::numeric_limits<double>::infinity();
   double warmest = -coldest;
   for (const FlightLayers& flight : all) {
@@ -121,28 +118,24 @@ CheckResult check_layers(const CheckedFlights& flights) {
   const double range = warmest - coldest;
   const std::string span =
       fmt::format("{:.0f} to {:.0f} degC", coldest - constants::ice_point, warmest - constants::ice_point);
-  const Estimate change{fit.c1 * range, fit.c1_error * range};
-  const Estimate at_freezing{fit.correction_at(constants::ice_point),
-                             fit.correction_error_at(constants::ice_point)};
-  if (std::isnan(fit.c1)) {
+  const Estimate change = range * fit.c1;
+  const Estimate at_freezing = fit.correction_at(constants::ice_point);
+  if (std::isnan(fit.c1.value)) {
     result.finding += fmt::format(
         "; the layers are too few or too similar ({}) to determine a slope with temperature.", span);
   } else {
     // An uncertain slope leaves the verdict to the mean.
     TestStatistic over_range = judged(change, min_thermometer_error, "K", "change from " + span);
     if (over_range.verdict == CheckVerdict::inconsistent) numbers.push_back(std::move(over_range));
-    const Estimate slope{fit.c1, fit.c1_error};
     result.finding += at_freezing.error > max_useful_error
                           ? fmt::format("; its slope from {} is undetermined ({} per degree).", span,
-                                        with_error(slope, "K", 3))
+                                        with_error(fit.c1, "K", 3))
                           : fmt::format("; as a line, {} at 0 degC and {} per degree.",
-                                        with_error(at_freezing, "K"), with_error(slope, "K", 4));
-    const double absolute = fit.correction_at(0.0);
+                                        with_error(at_freezing, "K"), with_error(fit.c1, "K", 4));
     result.notes.push_back(
         fmt::format("the form of Cooper (2012) is T_m + c0 + c1 T_m with absolute temperatures; c0 is {} "
                     "and c1 {}; their errors are almost fully correlated",
-                    with_error({absolute, fit.correction_error_at(0.0)}, "K"),
-                    with_error({fit.c1, fit.c1_error}, "K/K", 4)));
+                    with_error(fit.correction_at(0.0), "K"), with_error(fit.c1, "K/K", 4)));
   }
   decide(std::move(numbers), result);
   if (fit.error_scale > 1.0) {
@@ -158,11 +151,11 @@ CheckResult check_layers(const CheckedFlights& flights) {
       "offset of the thermometer, a wrong recovery factor, heat of de-icing and neglected humidity are "
       "indistinguishable. A lag of a thermometer or a static line causes errors of opposite signs in climb "
       "and descent.";
-  add_number("offset", "_k", {fit.offset, fit.offset_error}, result);
+  add_number("offset", "_k", fit.offset, result);
   add_number("offset_at_0_degc", "_k", at_freezing, result);
-  add_number("slope", "", {fit.c1, fit.c1_error}, result);
+  add_number("slope", "", fit.c1, result);
   result.numbers.emplace_back("layers", static_cast<double>(fit.layers));
-  if (!std::isnan(fit.c1)) add_number("change_over_range", "_k", change, result);
+  if (!std::isnan(fit.c1.value)) add_number("change_over_range", "_k", change, result);
   show_layers(all, result);
   add_column(flights, all, "layers hydrostatic", "T_p, hydrostatic", &Layer::hydrostatic_temperature, result);
   add_column(flights, all, "layers measured", "T_m, thermometer", &Layer::measured_temperature, result);

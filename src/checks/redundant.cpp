@@ -20,10 +20,15 @@ using SeriesOfFlight = std::function<std::vector<double>(const CheckedFlight&)>;
 /// hPa/s.
 constexpr double fastest_of_avionics = 0.1;
 
+/// Sums at each record; empty if the series have different lengths, as if one is not available.
+std::vector<double> sum_of(std::vector<double> a, const std::vector<double>& b) {
+  if (a.size() != b.size()) return {};
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+  return a;
+}
+
 std::vector<double> total_of(const MeasuredPair& pair) {
-  std::vector<double> total = pair.static_pressure;
-  for (std::size_t i = 0; i < total.size(); ++i) total[i] += pair.dynamic_pressure[i];
-  return total;
+  return sum_of(pair.static_pressure, pair.dynamic_pressure);
 }
 
 std::vector<double> static_of(const MeasuredPair& pair) { return pair.static_pressure; }
@@ -34,26 +39,22 @@ bool with_avionics(const CheckedFlight& flight) {
                      [](const MeasuredPair& pair) { return pair.name.rfind("PS_A", 0) == 0; });
 }
 
-/// Airborne records at which the pressure changes no faster than `fastest_of_avionics`.
-std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>& pressure) {
+/// Airborne records; with the avionics, those at which neither pressure changes faster than
+/// `fastest_of_avionics`.
+std::vector<bool> comparable(const CheckedFlight& flight) {
+  std::vector<bool> result = flight.air.flying;
+  if (!with_avionics(flight)) return result;
   const std::vector<double>& time = flight.air.time();
   const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(2.5 / flight.air.step())));
-  std::vector<bool> result(pressure.size(), false);
-  for (std::size_t i = reach; i + reach < pressure.size(); ++i) {
-    const double rate = (pressure[i + reach] - pressure[i - reach]) / (time[i + reach] - time[i - reach]);
-    result[i] = flight.air.flying[i] && std::abs(rate) <= fastest_of_avionics;
+  const MeasuredPair& pair = flight.measured.front();
+  for (const std::vector<double>& pressure : {total_of(pair), pair.static_pressure}) {
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      result[i] = result[i] && i >= reach && i + reach < result.size() &&
+                  std::abs(pressure[i + reach] - pressure[i - reach]) / (time[i + reach] - time[i - reach]) <=
+                      fastest_of_avionics;
+    }
   }
   return result;
-}
-
-std::vector<bool> comparable(const CheckedFlight& flight) {
-  if (!with_avionics(flight)) return flight.air.flying;
-  const MeasuredPair& pair = flight.measured.front();
-  const std::vector<bool> one = steady(flight, total_of(pair));
-  const std::vector<bool> two = steady(flight, pair.static_pressure);
-  std::vector<bool> both(one.size());
-  for (std::size_t i = 0; i < both.size(); ++i) both[i] = one[i] && two[i];
-  return both;
 }
 
 /// Smallest relevant difference of two total pressures, hPa: twice the combined uncertainty of the
@@ -87,8 +88,7 @@ ReportTable table_of(const RedundantFit& fit, std::string title) {
       std::move(title),
       "Standard errors include autocorrelation and slow drift of the differences. The offset is the value at "
       "0 hPa.",
-      {"fit", "slope", "std. error", "offset, hPa", "std. error", "rms, hPa"},
-      {}};
+      {"fit", "slope", "std. error", "offset, hPa", "std. error", "rms, hPa"}};
   const auto row = [&](const char* name, const LineFit& line) {
     table.rows.push_back({name, fmt::format("{:.6f}", line.slope), fmt::format("{:.6f}", line.slope_error),
                           fmt::format("{:+.3f}", line.offset), fmt::format("{:.3f}", line.offset_error),
@@ -99,21 +99,6 @@ ReportTable table_of(const RedundantFit& fit, std::string title) {
   return table;
 }
 
-bool has_both(const CheckedFlight& flight, const SeriesOfFlight& first, const SeriesOfFlight& second) {
-  return has_value(first(flight)) && has_value(second(flight));
-}
-
-/// Record interval with the most records that have both series, s; NaN if no flight has both.
-double step_of(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second) {
-  return usual_step(flights, [&](const CheckedFlight& flight) {
-    std::vector<double> both = first(flight);
-    const std::vector<double> other = second(flight);
-    if (both.size() != other.size()) return std::vector<double>();
-    for (std::size_t i = 0; i < both.size(); ++i) both[i] += other[i];
-    return both;
-  });
-}
-
 /// Two series at the airborne records at which both systems measure the same air, over all flights of one
 /// record interval: with the avionics, PS_A/QC_A, records at which neither static nor total pressure changes
 /// faster than 0.1 hPa/s over five seconds (memo, Supporting Evidence for Accuracy of p_t). Both may be empty
@@ -121,7 +106,8 @@ double step_of(const CheckedFlights& flights, const SeriesOfFlight& first, const
 Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first,
                     const SeriesOfFlight& second) {
   Redundant both;
-  both.step = step_of(flights, first, second);
+  both.step =
+      usual_step(flights, [&](const CheckedFlight& flight) { return sum_of(first(flight), second(flight)); });
   for (const CheckedFlight& flight : flights) {
     const std::vector<double> a = first(flight);
     const std::vector<double> b = second(flight);
@@ -159,7 +145,7 @@ void add_results(const CheckedFlights& flights, const std::string& check, const 
         fastest_of_avionics));
   }
   const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
-    return !has_step(flight, fit.step) && has_both(flight, first, second);
+    return !has_step(flight, fit.step) && has_value(first(flight)) && has_value(second(flight));
   });
   note_other_steps(static_cast<std::size_t>(other_steps), flights.size(), fit.step, result.notes);
   result.tables = {table_of(fit, std::move(table))};
@@ -185,13 +171,10 @@ RedundantFit fit_of(const Redundant& both) {
     each->offset_error = line.coefficients[0].error;
     each->slope_error = line.coefficients[1].error;
   }
-  std::vector<double> difference(both.first.size());
-  std::vector<double> middle(both.first.size());
-  for (std::size_t i = 0; i < difference.size(); ++i) {
-    difference[i] = both.second[i] - both.first[i];
-    middle[i] = 0.5 * (both.second[i] + both.first[i]);
-  }
-  const LeastSquares mean = mean_of(difference, both.time, both.step);
+  const std::vector<double> off = difference(both.second, both.first);
+  std::vector<double> middle = sum_of(both.second, both.first);
+  for (double& value : middle) value *= 0.5;
+  const LeastSquares mean = mean_of(off, both.time, both.step);
   fit.difference = mean.coefficients.front();
   fit.scatter = mean.rms;
   fit.samples = mean.samples;
@@ -200,7 +183,7 @@ RedundantFit fit_of(const Redundant& both) {
   // flight; the ordinary line is then too flat, and the orthogonal one undetermined (Bland and Altman 1986,
   // Lancet 327, 307).
   const LeastSquares change =
-      least_squares({std::vector<double>(middle.size(), 1.0), middle}, difference, both.time, both.step);
+      least_squares({std::vector<double>(middle.size(), 1.0), middle}, off, both.time, both.step);
   fit.across = (maximum - minimum) * change.coefficients[1];
   return fit;
 }

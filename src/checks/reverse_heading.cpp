@@ -38,12 +38,6 @@ struct Pair {
   LegPair result{};
 };
 
-/// Direction of a vector, deg.
-double direction_of(double east, double north) {
-  const double direction = std::atan2(east, north) / constants::radians_per_degree;
-  return direction < 0.0 ? direction + 360.0 : direction;
-}
-
 /// Mean direction of angles, deg.
 double mean_direction(const std::vector<double>& angles) {
   double east = 0.0;
@@ -132,8 +126,7 @@ Mean mean_over(const std::vector<Pair>& pairs) {
 ReportTable table_of_legs(const std::vector<Leg>& legs) {
   ReportTable table{"Legs of reverse headings",
                     "Tail wind: ground speed along the heading minus true airspeed, with its scatter.",
-                    {"leg", "heading, deg", "track, deg", "airspeed, m/s", "tail wind, m/s"},
-                    {}};
+                    {"leg", "heading, deg", "track, deg", "airspeed, m/s", "tail wind, m/s"}};
   for (const auto& [flown, mean] : legs) {
     const FlightAir& air = flown.flight->air;
     const double track = direction_of(flown.mean(air.east_speed), flown.mean(air.north_speed));
@@ -151,8 +144,7 @@ ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
       "headings that are not opposite, the sum is minus twice the error of the airspeed; delta-p and "
       "temperature are the errors that alone would cause it. Errors of the pairs exclude changes of the wind "
       "between the legs.",
-      {"first leg", "sum, m/s", "due to headings", "airspeed, m/s", "delta-p, hPa", "temperature, K"},
-      {}};
+      {"first leg", "sum, m/s", "due to headings", "airspeed, m/s", "delta-p, hPa", "temperature, K"}};
   for (const Pair& pair : pairs) {
     const LegPair& result = pair.result;
     table.rows.push_back({pair.first.flown.location(), with_error(result.sum, ""),
@@ -215,9 +207,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   const Mean mean = mean_over(pairs);
   const Estimate& error = mean.airspeed;
   const auto as_other = [&](double LegPair::*factor) {
-    std::vector<double> factors;
-    for (const Pair& pair : pairs) factors.push_back(pair.result.*factor);
-    return mean_of(factors) * error;
+    return mean_of(each_of(pairs, [=](const Pair& pair) { return pair.result.*factor; })) * error;
   };
   const Estimate hpa = as_other(&LegPair::pressure_per_airspeed);
   const Estimate kelvin = as_other(&LegPair::temperature_per_airspeed);

@@ -36,9 +36,7 @@ std::vector<double> laser_defect(const CheckedFlight& flight) {
 
 std::vector<double> second_system(const CheckedFlight& flight) {
   if (!flight.second || flight.second->pressure.size() != flight.air.size()) return {};
-  std::vector<double> difference = flight.second->pressure;
-  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= flight.air.pressure[i];
-  return masked(std::move(difference), flight.air.flying);
+  return masked(difference(flight.second->pressure, flight.air.pressure), flight.air.flying);
 }
 
 /// D-value as a pressure: rho g for each metre.
@@ -58,11 +56,6 @@ struct Spectrum {
   std::vector<std::vector<double>> periodograms{};  ///< hPa2/Hz at k/(256 steps), k = 1 to 128
 
   double frequency(std::size_t k) const { return static_cast<double>(k + 1) / (segment_length * step); }
-  double mean(std::size_t k) const {
-    double sum = 0.0;
-    for (const std::vector<double>& each : periodograms) sum += each[k];
-    return sum / static_cast<double>(periodograms.size());
-  }
 };
 
 /// One-sided periodogram of a detrended segment with Hann's window. It sums to the variance.
@@ -122,8 +115,7 @@ std::string in_words(const Estimate& fall) {
 struct Octave {
   double longest;  ///< s
   double shortest;
-  double rms;    ///< hPa
-  double error;  ///< hPa
+  Estimate rms;  ///< hPa
 };
 
 std::vector<Octave> octaves_of(const Spectrum& spectrum) {
@@ -143,15 +135,9 @@ std::vector<Octave> octaves_of(const Spectrum& spectrum) {
             : standard_deviation(power) / std::sqrt(static_cast<double>(power.size())) / (2.0 * rms);
     const double length = static_cast<double>(segment_length) * spectrum.step;
     octaves.push_back(
-        {length / static_cast<double>(last) * 2.0, length / static_cast<double>(last), rms, error});
+        {length / static_cast<double>(last) * 2.0, length / static_cast<double>(last), {rms, error}});
   }
   return octaves;
-}
-
-/// Rms, hPa, of white noise with the density of the highest octave at all frequencies.
-Estimate floor_of(const Octave& highest) {
-  // The octave is the upper half of all frequencies.
-  return {std::sqrt(2.0) * highest.rms, std::sqrt(2.0) * highest.error};
 }
 
 /// Magnitude of the change of delta-p from LAMS with the airspeed at the same total temperature, hPa per m/s:
@@ -198,7 +184,8 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   }
   const std::vector<Octave> octaves = octaves_of(spectrum);
   const Estimate fall = fall_of(spectrum);
-  const Estimate floor = floor_of(octaves.front());
+  // Rms of white noise with the density of the highest octave, the upper half of all frequencies.
+  const Estimate floor = std::sqrt(2.0) * octaves.front().rms;
   const double per_speed = pressure_per_speed(flights);
 
   CheckResult result;
@@ -235,12 +222,12 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   ReportTable table{"Power by period: numbers",
                     fmt::format("Spectrum of {}, over {} segments of {} samples.", source->name,
                                 spectrum.periodograms.size(), segment_length),
-                    {"periods, s", "rms, hPa", "std. error"},
-                    {}};
+                    {"periods, s", "rms, hPa", "std. error"}};
   for (const Octave& octave : octaves) {
     const std::string periods = fmt::format("{:.3g} to {:.3g} s", octave.shortest, octave.longest);
-    table.rows.push_back({periods, fmt::format("{:.4f}", octave.rms), fmt::format("{:.4f}", octave.error)});
-    result.bars.push_back({periods, octave.rms, octave.error});
+    table.rows.push_back(
+        {periods, fmt::format("{:.4f}", octave.rms.value), fmt::format("{:.4f}", octave.rms.error)});
+    result.bars.push_back({periods, octave.rms.value, octave.rms.error});
   }
   result.tables = {std::move(table)};
   result.columns = {column_of(flights, "spectrum series", source->name, "hPa", source->series)};

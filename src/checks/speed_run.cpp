@@ -100,12 +100,6 @@ Run run_of(const Flown& flown) {
 
 bool known(const Trend& trend) { return std::isfinite(trend.slope.value); }
 
-Estimate combined_error(const std::vector<Run>& runs, Trend Run::*trend) {
-  std::vector<Estimate> errors;
-  for (const Run& run : runs) errors.push_back((run.*trend).pressure_error);
-  return combined(errors);
-}
-
 /// Height and wind are blind to different errors, so one inconsistent result is enough; otherwise the more
 /// accurate one decides.
 Estimate decisive(const Estimate& height, const Estimate& wind) {
@@ -121,8 +115,7 @@ ReportTable table_of(const std::vector<Run>& runs, Trend Run::*trend, const char
   const bool is_height = trend == &Run::height;
   ReportTable table{title,
                     caption,
-                    {"run", "airspeed, m/s", "sd, " + unit, "range, " + unit, "slope, " + unit + " per m/s"},
-                    {}};
+                    {"run", "airspeed, m/s", "sd, " + unit, "range, " + unit, "slope, " + unit + " per m/s"}};
   if (is_height) table.headers.emplace_back("slope, m per hPa of q");
   table.headers.emplace_back("delta-p, hPa");
   for (const Run& run : runs) {
@@ -159,16 +152,14 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
                                wind.empty() ? "" : " (no flight " + wind + ")"));
   }
   CheckResult result;
-  const Estimate height = combined_error(runs, &Run::height);
-  const Estimate wind = combined_error(runs, &Run::wind);
+  const Estimate height = combined(each_of(runs, [](const Run& run) { return run.height.pressure_error; }));
+  const Estimate wind = combined(each_of(runs, [](const Run& run) { return run.wind.pressure_error; }));
   const bool has_height = std::isfinite(height.value);
   const bool has_wind = std::isfinite(wind.value);
   const Estimate across = decisive(height, wind);
   decide({judged(across, min_run_change, "hPa", "change from slow to fast")}, result);
   const auto average = [&](Trend Run::*trend, double Trend::*number) {
-    std::vector<double> values;
-    for (const Run& run : runs) values.push_back(run.*trend.*number);
-    return mean_of(values);
+    return mean_of(each_of(runs, [=](const Run& run) { return run.*trend.*number; }));
   };
   result.finding = fmt::format("Over {} speed run{}", runs.size(), runs.size() == 1 ? "" : "s");
   if (has_height) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -25,18 +26,14 @@ std::string reason_of(const TestStatistic& key) {
     return fmt::format("{:.3f} {} with two standard errors, {} the tolerance of {:g} {}",
                        magnitude + likely * key.standard_error, key.unit, words, key.matters, key.unit);
   };
-  std::string why;
-  if (key.verdict == CheckVerdict::inconsistent) {
-    why = fmt::format("above the tolerance of {:g} {} and above three standard errors, {:.3f}", key.matters,
-                      key.unit, significant * key.standard_error);
-  } else if (key.verdict == CheckVerdict::consistent) {
-    why = within("within");
-  } else if (magnitude > key.matters) {
-    why = fmt::format("above the tolerance of {:g} {}, but not above three standard errors, {:.3f}",
-                      key.matters, key.unit, significant * key.standard_error);
-  } else {
-    why = within("not within");
-  }
+  const auto above = [&](const char* words) {
+    return fmt::format("above the tolerance of {:g} {}{} above three standard errors, {:.3f}", key.matters,
+                       key.unit, words, significant * key.standard_error);
+  };
+  const std::string why = key.verdict == CheckVerdict::inconsistent ? above(" and")
+                          : key.verdict == CheckVerdict::consistent ? within("within")
+                          : magnitude > key.matters                 ? above(", but not")
+                                                                    : within("not within");
   return fmt::format("{:+.3f} +- {:.3f} {}, {}: {}", key.value, key.standard_error, key.unit, key.what, why);
 }
 
@@ -49,21 +46,19 @@ CheckVerdict judge(const Estimate& number, double size) {
   return CheckVerdict::inconclusive;
 }
 
-CheckVerdict together(CheckVerdict a, CheckVerdict b) {
-  for (const CheckVerdict worst : {CheckVerdict::inconsistent, CheckVerdict::inconclusive}) {
-    if (a == worst || b == worst) return worst;
-  }
-  return CheckVerdict::consistent;
-}
-
 TestStatistic judged(const Estimate& number, double size, std::string unit, std::string what) {
   return {number.value, number.error, size, std::move(unit), std::move(what), judge(number, size)};
 }
 
 void decide(std::vector<TestStatistic> numbers, CheckResult& result) {
   result.ran = true;
-  result.verdict = numbers.front().verdict;
-  for (const TestStatistic& number : numbers) result.verdict = together(result.verdict, number.verdict);
+  const auto has = [&](CheckVerdict verdict) {
+    return std::any_of(numbers.begin(), numbers.end(),
+                       [verdict](const TestStatistic& number) { return number.verdict == verdict; });
+  };
+  result.verdict = has(CheckVerdict::inconsistent)   ? CheckVerdict::inconsistent
+                   : has(CheckVerdict::inconclusive) ? CheckVerdict::inconclusive
+                                                     : CheckVerdict::consistent;
   const TestStatistic* decisive = nullptr;
   for (const TestStatistic& number : numbers) {
     if (number.verdict != result.verdict) continue;

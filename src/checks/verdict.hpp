@@ -14,13 +14,11 @@ namespace pcor::internal {
 /// more than two standard errors below it. Otherwise, and for NaN, inconclusive.
 CheckVerdict judge(const Estimate& number, double size);
 
-/// Combined verdict: inconsistent if either is, otherwise inconclusive if either is.
-CheckVerdict together(CheckVerdict a, CheckVerdict b);
-
 /// Number with its verdict, unit and description.
 TestStatistic judged(const Estimate& number, double size, std::string unit, std::string what);
 
-/// Sets the verdict of a check that was run from several numbers. The deciding number, with the largest ratio
+/// Sets the verdict of a check that was run from several numbers: inconsistent if one is, otherwise
+/// inconclusive if one is. The deciding number, with the largest ratio
 /// to its tolerance, becomes the key number, and `decided` states the reason.
 void decide(std::vector<TestStatistic> numbers, CheckResult& result);
 

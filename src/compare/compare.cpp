@@ -13,7 +13,7 @@
 #include <pcor/flight/flight_writer.hpp>
 
 #include "base/phrasing.hpp"
-#include "campaign/gps_parts.hpp"
+#include "campaign/gps_system.hpp"
 #include "campaign/reference_doubt.hpp"
 #include "campaign/whitened.hpp"
 #include "compare/model_sums.hpp"
@@ -40,19 +40,18 @@ std::vector<double> total_pressure(const ModelSamples& samples) {
 
 /// The noise of a flight is common to all models: the model with the lowest noise determines it.
 NoiseFloor min_noise(const FlightResiduals& flight) {
-  NoiseFloor lowest;
-  for (const std::vector<double>& values : flight.values) {
-    NoiseFloor noise = noise_of_flight(*flight.samples, values);
-    if (&values == &flight.values.front() || noise.rms < lowest.rms) lowest = std::move(noise);
-  }
-  return lowest;
+  std::vector<NoiseFloor> noise;
+  for (const std::vector<double>& values : flight.values)
+    noise.push_back(noise_of_flight(*flight.samples, values));
+  return *std::min_element(noise.begin(), noise.end(),
+                           [](const NoiseFloor& a, const NoiseFloor& b) { return a.rms < b.rms; });
 }
 
 /// Compared model and one of its references.
 struct Pairing {
-  const ComparedModel& compared;
-  const Reference& reference;
-  std::size_t rank = 0;  // position of the model in the order of names
+  const ComparedModel* compared;
+  const Reference* reference;
+  std::size_t rank;  // position of the model in the order of names
 };
 
 /// All models that have one reference, in the order in which they are given.
@@ -73,35 +72,26 @@ std::vector<std::size_t> by_name(const std::vector<ComparedModel>& models) {
   return order;
 }
 
-/// Calls `visit` for each reference with its name, its number among equal names, and itself.
-template <class Visit>
-void each_reference(const ComparedModel& compared, const Visit& visit) {
-  std::map<std::string, std::size_t> met;
-  for (const std::shared_ptr<const Reference>& reference : compared.references)
-    visit(reference->name(), met[reference->name()]++, *reference);
-}
-
 /// Models by reference; first those with the first reference of the first model by name.
 std::vector<Field> fields_of(const std::vector<ComparedModel>& models) {
   std::vector<Field> fields;
-  const auto field_of = [&fields](const std::string& name, std::size_t number) -> Field& {
-    const auto field = std::find_if(fields.begin(), fields.end(), [&](const Field& each) {
-      return each.name == name && each.number == number;
-    });
-    return field == fields.end() ? fields.emplace_back(Field{name, number}) : *field;
-  };
   const std::vector<std::size_t> order = by_name(models);
-  std::vector<std::size_t> ranks(models.size());
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    ranks[order[rank]] = rank;
-    each_reference(models[order[rank]], [&](const std::string& name, std::size_t number, const Reference&) {
-      field_of(name, number);
-    });
+    const ComparedModel& model = models[order[rank]];
+    std::map<std::string, std::size_t> met;
+    for (const std::shared_ptr<const Reference>& reference : model.references) {
+      const std::string name = reference->name();
+      const std::size_t number = met[name]++;
+      auto field = std::find_if(fields.begin(), fields.end(), [&](const Field& each) {
+        return each.name == name && each.number == number;
+      });
+      if (field == fields.end()) field = fields.insert(field, {name, number});
+      field->pairings.push_back({&model, reference.get(), rank});
+    }
   }
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    each_reference(models[i], [&](const std::string& name, std::size_t number, const Reference& reference) {
-      field_of(name, number).pairings.push_back({models[i], reference, ranks[i]});
-    });
+  for (Field& field : fields) {
+    std::sort(field.pairings.begin(), field.pairings.end(),
+              [&order](const Pairing& a, const Pairing& b) { return order[a.rank] < order[b.rank]; });
   }
   return fields;
 }
@@ -125,9 +115,9 @@ FlightResiduals residuals_on(const std::vector<std::shared_ptr<const FlightSampl
        {&result.values, &result.reference_defects, &result.model_defects, &result.corrected_pressures})
     series->resize(pairings.size());
   for (const std::size_t k : by_rank(pairings)) {
-    const Reference& reference = pairings[k].reference;
+    const Reference& reference = *pairings[k].reference;
     const std::shared_ptr<const FlightSamples>& samples = samples_of[k];
-    const Residuals residuals(samples, pairings[k].compared.model, reference, options);
+    const Residuals residuals(samples, pairings[k].compared->model, reference, options);
     const double* const parameters = residuals.parameters().data();
     result.values[k] = residuals.values(parameters);
     result.reference_defects[k] = residuals.target_defect(parameters);
@@ -266,10 +256,10 @@ void add_variances(std::size_t model, const FlightPartition& share,
 /// Adds the products from which the mean residuals against wind and height follow.
 void separate_atmosphere(const Pairing& pairing, const FlightSamples& samples,
                          const std::vector<std::vector<std::size_t>>& parts, ModelSums& sums) {
-  const std::optional<GpsKind> kind = gps_kind(pairing.reference);
+  const std::optional<GpsKind> kind = gps_kind(*pairing.reference);
   if (!kind || parts.front().empty()) return;
   std::vector<Eigen::MatrixXd> products =
-      gps_products_of_parts(*kind, samples, pairing.compared.model, parts.front(), parts);
+      gps_products_of_parts(*kind, samples, pairing.compared->model, parts.front(), parts);
   if (products.empty()) return;
   auto next = products.begin();
   sums.each_part([&](ResidualSums& part) { part.by_gps = std::move(*next++); });
@@ -278,7 +268,7 @@ void separate_atmosphere(const Pairing& pairing, const FlightSamples& samples,
 /// Compares models with a reference. Without samples the result has no models.
 Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& flights,
                         const CompareOptions& options, const std::function<void()>& tell) {
-  const Reference& first = pairings[by_rank(pairings).front()].reference;
+  const Reference& first = *pairings[by_rank(pairings).front()].reference;
   Comparison result;
   result.reference = first.description();
   result.is_static_pressure = first.is_static_pressure();
@@ -286,12 +276,12 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   const auto read = [&](std::size_t number) {
     SamplesOfPairings samples;
     for (const Pairing& each : pairings)
-      samples.push_back(flights.samples(number, each.compared.model, each.reference, options.mask));
+      samples.push_back(flights.samples(number, each.compared->model, *each.reference, options.mask));
     return samples;
   };
   std::vector<ReferenceDoubt> doubts;
   for (const Pairing& each : pairings)
-    doubts.emplace_back(each.compared.model, each.reference, !each.reference.is_of_one_sample());
+    doubts.emplace_back(each.compared->model, *each.reference, !each.reference->is_of_one_sample());
   const auto make = [&](const SamplesOfPairings& samples, bool with_series,
                         std::vector<SummedRecords>& records) {
     Notes notes;
@@ -336,7 +326,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
       sums.add(part.models[m]);
       of_flights.push_back({part.name, part.models[m].all.statistics()});
     }
-    result.models.push_back(comparison_of(pairings[m].compared.name, pairings[m].reference, std::move(sums),
+    result.models.push_back(comparison_of(pairings[m].compared->name, *pairings[m].reference, std::move(sums),
                                           std::move(of_flights)));
   }
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
@@ -359,12 +349,11 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
   for (const ComparedModel& compared : models) first_of(compared.references);
   const std::vector<Field> fields = fields_of(models);
   flights.require_one_aircraft();
-  const auto tell = [&, done = std::size_t{0}]() mutable {
+  const std::function<void()> tell = [&, done = std::size_t{0}]() mutable {
     ++done;
     if (options.progress) options.progress(done, fields.size() * flights.share().local_count());
   };
-  const std::function<void()> progress = tell;
-  Comparison result = compare_with(fields.front().pairings, flights, options, progress);
+  Comparison result = compare_with(fields.front().pairings, flights, options, tell);
   if (result.masks[0] == 0) {
     throw Error(
         Error::Code::samples,
@@ -373,7 +362,7 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
                     flights.size() == 1 ? flights.path(0).string() : "the flights", mask_text(result.masks)));
   }
   for (auto field = fields.begin() + 1; field != fields.end(); ++field) {
-    Comparison further = compare_with(field->pairings, flights, options, progress);
+    Comparison further = compare_with(field->pairings, flights, options, tell);
     if (further.masks[0] == 0) {
       result.notes.push_back(fmt::format("no samples remain to compare with the {}: {}", further.reference,
                                          mask_text(further.masks)));

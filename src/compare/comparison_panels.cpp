@@ -1,9 +1,12 @@
 #include "compare/comparison_panels.hpp"
 
+#include <pcor/compare/comparison_report.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include <pcor/base/utc.hpp>
@@ -33,12 +36,18 @@ std::vector<std::size_t> used(const FlightResiduals& flight) {
   return records;
 }
 
+/// A title with the name of the model, if there are several.
+std::string title_of(const std::string& what, const Comparison& comparison, const ModelComparison& model) {
+  return comparison.models.size() == 1 ? what : what + ", " + model.name;
+}
+
 /// Concatenated series of all flights; NaN for a flight without the series.
+/// @param series a member of `FlightResiduals`, or a function of it
 template <class Series>
 std::vector<double> joined(const Comparison& comparison, const Series& series) {
   std::vector<double> values;
   for (const FlightResiduals& flight : comparison.flights) {
-    const std::vector<double>& part = series(flight);
+    const std::vector<double>& part = std::invoke(series, flight);
     for (const std::size_t i : used(flight)) values.push_back(part.empty() ? nan : part[i]);
   }
   return values;
@@ -47,9 +56,8 @@ std::vector<double> joined(const Comparison& comparison, const Series& series) {
 }  // namespace
 
 template <class Series>
-void ComparisonPanels::add(const std::string& name, const std::string& title, const std::string& unit,
-                           const Series& series) {
-  report_.columns.push_back({name, title, unit, joined(comparison_, series)});
+void ComparisonPanels::add(const std::string& name, const std::string& title, const Series& series) {
+  report_.columns.push_back({name, title, "hPa", joined(comparison_, series)});
 }
 
 ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(comparison) {
@@ -69,9 +77,7 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
     }
   }
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
-    const std::string& name = comparison.models[m].name;
-    const std::string title = comparison.models.size() == 1 ? "residual" : "residual, " + name;
-    add(residual_column(m), title, "hPa",
+    add(residual_column(m), title_of("residual", comparison, comparison.models[m]),
         [m](const FlightResiduals& f) -> const std::vector<double>& { return f.values[m]; });
     residuals_.push_back(residual_column(m));
   }
@@ -83,19 +89,18 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
   };
   using F = FlightResiduals;
   using V = std::vector<double>;
-  variable("mach", "Mach number", "", [](const F& f) -> const V& { return f.mach; });
-  variable("pressure", "measured static pressure", "hPa",
-           [](const F& f) -> const V& { return f.static_pressure; });
-  variable("attack", "angle of attack", "deg",
-           [](const F& f) -> const V& { return f.samples->motion.attack; });
-  variable("sideslip", "sideslip", "deg", [](const F& f) -> const V& { return f.samples->motion.sideslip; });
-  variable("ratio", "measured q/p", "", [](const F& f) -> const V& { return f.dynamic_ratio; });
-  variable("airspeed", "true airspeed", "m/s",
-           [](const F& f) -> const V& { return f.samples->motion.airspeed; });
-  variable("altitude", "altitude", "m", [](const F& f) -> const V& { return f.samples->motion.altitude; });
-  variable("vertical_speed", "vertical speed", "m/s",
-           [](const F& f) -> const V& { return f.samples->motion.vertical_speed; });
-  variable("roll", "roll", "deg", [](const F& f) -> const V& { return f.samples->motion.roll; });
+  const auto motion = [](V FlightMotion::*series) {
+    return [series](const F& f) -> const V& { return f.samples->motion.*series; };
+  };
+  variable("mach", "Mach number", "", &F::mach);
+  variable("pressure", "measured static pressure", "hPa", &F::static_pressure);
+  variable("attack", "angle of attack", "deg", motion(&FlightMotion::attack));
+  variable("sideslip", "sideslip", "deg", motion(&FlightMotion::sideslip));
+  variable("ratio", "measured q/p", "", &F::dynamic_ratio);
+  variable("airspeed", "true airspeed", "m/s", motion(&FlightMotion::airspeed));
+  variable("altitude", "altitude", "m", motion(&FlightMotion::altitude));
+  variable("vertical_speed", "vertical speed", "m/s", motion(&FlightMotion::vertical_speed));
+  variable("roll", "roll", "deg", motion(&FlightMotion::roll));
   variable("wanted", "delta-p, reference", "hPa",
            [](const F& f) -> const V& { return f.reference_defects.front(); });
   defects_.emplace_back("wanted");
@@ -114,7 +119,7 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
 }
 
 void ComparisonPanels::add_panels() {
-  const double memory = comparison_.models.back().autocorrelation_time;
+  const ModelComparison& last = comparison_.models.back();
   TimePanel time;
   time.title = "Residual in time";
   time.caption = "Residual: reference minus model; regimes are shaded.";
@@ -135,12 +140,10 @@ void ComparisonPanels::add_panels() {
   binned.y = residuals_;
   binned.axis = "residual";
   binned.x_choices = variables_;
-  binned.autocorrelation_time = std::max(1.0, memory);
+  binned.autocorrelation_time = std::max(1.0, last.autocorrelation_time);
   report_.items.emplace_back(std::move(binned));
   PlanePanel plane;
-  plane.title = comparison_.models.size() == 1 ? "Residual over Mach number and pressure"
-                                               : fmt::format("Residual over Mach number and pressure, {}",
-                                                             comparison_.models.back().name);
+  plane.title = title_of("Residual over Mach number and pressure", comparison_, last);
   plane.caption = "Errors of the model over its envelope: a region of one colour has a bias.";
   plane.x = "mach";
   plane.y = "pressure";
@@ -153,9 +156,7 @@ void ComparisonPanels::add_panels() {
     const std::vector<ReportBarb> part = wind_of(*flight.samples);
     wind.insert(wind.end(), part.begin(), part.end());
   }
-  add_track(report_,
-            comparison_.models.size() == 1 ? "Residual on the map"
-                                           : "Residual on the map, " + comparison_.models.back().name,
+  add_track(report_, title_of("Residual on the map", comparison_, last),
             "Ground track: one colour over a leg, or for one heading, indicates a dependence on the place or "
             "the direction.",
             residuals_.back(), std::move(wind));
@@ -169,10 +170,7 @@ void ComparisonPanels::add_panels() {
   defect.axis = "delta-p";
   report_.items.emplace_back(std::move(defect));
   PairPanel pair;
-  pair.title = comparison_.models.size() == 1
-                   ? "Delta-p of the reference against that of the model"
-                   : fmt::format("Delta-p of the reference against that of the model, {}",
-                                 comparison_.models.back().name);
+  pair.title = title_of("Delta-p of the reference against that of the model", comparison_, last);
   pair.caption = "A perfect model lies on the line.";
   pair.x = defects_.back();
   pair.y = "wanted";
@@ -197,24 +195,17 @@ void ComparisonPanels::add_pairs() {
     panel.lines = {{1.0, 0.0, "equal"}, {fit.slope, fit.offset, "fitted line"}};
     report_.items.emplace_back(std::move(panel));
   };
-  using F = FlightResiduals;
-  using V = std::vector<double>;
-  const auto column = [this](const char* name, const char* title, const auto& series) {
-    add(name, title, "hPa", series);
-  };
   if (comparison_.total_pressure) {
-    column("total", "total pressure of the model's system",
-           [](const F& f) -> const V& { return f.total_pressure; });
-    column("reference_total", "total pressure of the reference",
-           [](const F& f) -> const V& { return f.reference_total_pressure; });
+    add("total", "total pressure of the model's system", &FlightResiduals::total_pressure);
+    add("reference_total", "total pressure of the reference", &FlightResiduals::reference_total_pressure);
     pair("Total pressures of the two systems",
          "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
          "pitots and the lines. ",
          "total", "reference_total", *comparison_.total_pressure);
   }
   if (!comparison_.is_static_pressure) return;
-  column("corrected", "static pressure of the model",
-         [](const F& f) -> const V& { return f.corrected_pressures.back(); });
+  add("corrected", "static pressure of the model",
+      [](const FlightResiduals& f) -> const std::vector<double>& { return f.corrected_pressures.back(); });
   report_.columns.push_back(report_.columns.back());
   ReportColumn& reference = report_.columns.back();
   reference.name = "reference_corrected";
@@ -238,7 +229,7 @@ void ComparisonPanels::add_tables() {
   report_.items.emplace_back(std::move(masks));
   for (const ModelComparison& model : comparison_.models) {
     ReportTable worst;
-    worst.title = comparison_.models.size() == 1 ? "The worst minutes" : "The worst minutes, " + model.name;
+    worst.title = title_of("The worst minutes", comparison_, model);
     worst.caption = "The minutes with the largest rms residual, and their regimes.";
     worst.headers = {"flight", "begin (UTC)", "end", "bias, hPa", "rms, hPa", "regimes"};
     for (const WorstInterval& interval : model.worst) {
@@ -248,7 +239,7 @@ void ComparisonPanels::add_tables() {
     }
     report_.items.emplace_back(std::move(worst));
     ReportTable bands;
-    bands.title = comparison_.models.size() == 1 ? "By band" : "By band, " + model.name;
+    bands.title = title_of("By band", comparison_, model);
     bands.caption = "Bands with fewer than 30 samples are omitted.";
     bands.headers = {"band", "samples", "bias, hPa", "std. error", "rms, hPa", "rms / noise"};
     for (const PartStatistics& band : model.bands) {
@@ -302,3 +293,33 @@ void ComparisonPanels::summarise() {
 }
 
 }  // namespace pcor::internal
+
+namespace pcor {
+
+Report comparison_report(const Comparison& comparison) {
+  internal::ComparisonPanels panels(comparison);
+  const auto best = std::min_element(
+      comparison.models.begin(), comparison.models.end(),
+      [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
+  panels.report().title = fmt::format("{}{}: rms residual {:.3f} hPa, {:.1f} times the noise",
+                                      comparison.models.size() > 1 ? "Smallest error: " : "", best->name,
+                                      best->all.rms, best->all.rms_over_noise());
+  panels.report().subtitle = "Comparison with " + comparison.reference;
+  panels.summarise();
+  // The further references follow the first sentence.
+  std::vector<std::string> others;
+  for (const Comparison& further : comparison.further) {
+    for (const ModelComparison& model : further.models)
+      others.push_back(fmt::format("{}{}: bias {:+.3f} hPa, rms {:.3f} hPa.",
+                                   comparison.models.size() > 1 ? model.name + ", " : "", further.reference,
+                                   model.all.bias, model.all.rms));
+  }
+  std::vector<std::string>& summary = panels.report().summary;
+  summary.insert(summary.begin() + 1, others.begin(), others.end());
+  panels.add_panels();
+  panels.add_pairs();
+  panels.add_tables();
+  return std::move(panels.report());
+}
+
+}  // namespace pcor

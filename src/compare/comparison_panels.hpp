@@ -23,7 +23,7 @@ class ComparisonPanels {
 
  private:
   template <class Series>
-  void add(const std::string& name, const std::string& title, const std::string& unit, const Series& series);
+  void add(const std::string& name, const std::string& title, const Series& series);
 
   const Comparison& comparison_;
   Report report_;

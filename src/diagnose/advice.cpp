@@ -9,9 +9,9 @@ namespace pcor::internal {
 
 void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
             std::vector<Finding>& findings) {
-  const bool any = std::any_of(findings.begin(), findings.end(),
-                               [](const Finding& finding) { return !finding.aliases.empty(); });
-  if (!any) return;
+  if (std::all_of(findings.begin(), findings.end(),
+                  [](const Finding& finding) { return finding.aliases.empty(); }))
+    return;
   const std::vector<FlownRegime> regimes = flown_regimes(analysis.scores(), [&analysis](std::size_t f) {
     return FlightInBins{analysis.flight(f), analysis.bins(f)};
   });

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <string>
 #include <utility>
 
 #include "campaign/gps_rows.hpp"
@@ -12,7 +10,6 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
-#include "numerics/triangular_factor.hpp"
 #include "numerics/whitening.hpp"
 #include "parallel/workers.hpp"
 
@@ -25,18 +22,6 @@ constexpr double generous_threshold = 9.0;
 constexpr std::size_t generous_effects = 6;
 constexpr double stretch_time = 300.0;  // s
 
-template <class Value>
-std::vector<Value> part(const std::vector<Value>& all, std::size_t first, std::size_t last) {
-  return {all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(last)};
-}
-
-/// Entries of a share that belong to flights against the first reference.
-std::vector<std::size_t> first_entries(const std::vector<FlightColumns>& flights) {
-  std::vector<std::size_t> first;
-  for (std::size_t f = 0; f < flights.size() && flights[f].reference == 0; ++f) first.push_back(f);
-  return first;
-}
-
 }  // namespace
 
 std::size_t held_out_part(const FlightSamples& samples, double time) {
@@ -47,7 +32,7 @@ std::size_t held_out_part(const FlightSamples& samples, double time) {
 Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed,
                    const std::vector<Eigen::VectorXd>& added, Eigen::VectorXd prior)
     : share_(columns.share),
-      first_share_(share_.of_entries(first_entries(columns.flights))),
+      first_share_(columns.share),
       groups_(std::move(groups)),
       seed_(seed),
       prior_(std::move(prior)) {
@@ -55,16 +40,15 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
   if (prior_.size() == 0) prior_ = Eigen::VectorXd::Zero(base_);
   binned_ = in_bins(share_, columns.flights, [&](std::size_t f) { return columns.flights[f].given; });
   for (FlightColumns& flight : columns.flights) {
+    if (flight.is_by_gps) nuisances_ = gps_shared_nuisances;
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
-  first_bins_ = part(binned_.bins, 0, flights_.size());
+  first_share_ = share_.part(0, flights_.size());
+  first_bins_.assign(binned_.bins.begin(), binned_.bins.begin() + as_index(flights_.size()));
   const Eigen::Index columns_count = binned_.columns.front().cols();
   for (const Eigen::VectorXd& effect : added) {
     added_.emplace_back(Eigen::VectorXd::Zero(columns_count));
     added_.back().head(base_) = effect;
-  }
-  for (std::size_t f = 0; f < flight_count(); ++f) {
-    if (flight(f).is_by_gps) nuisances_ = gps_shared_nuisances;
   }
   const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([this](std::size_t f) {
     if (flight(f).is_by_gps) return Eigen::MatrixXd(Eigen::MatrixXd::Zero(base_, base_ + 1));
@@ -93,10 +77,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
   Eigen::VectorXd estimate = start;
   for (int round = generous ? 0 : 1; round < max_rounds; ++round) {
     replace_outliers(chosen, estimate);
-    if (round == 0)
-      find_first_noise(estimate);
-    else
-      find_noise(chosen, estimate);
+    find_noise(chosen, estimate, round == 0);
     find_search(chosen);
     SearchOptions options;
     options.seed = seed_;
@@ -116,18 +97,14 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
 }
 
 std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>& groups) const {
-  return part(all_columns_of(groups), 0, flights_.size());
+  std::vector<Eigen::MatrixXd> result;
+  for (std::size_t f = 0; f < flights_.size(); ++f)
+    result.emplace_back(binned_.columns[f](Eigen::all, indices_of(groups)));
+  return result;
 }
 
 std::vector<Eigen::Index> Analysis::indices_of(const std::vector<std::size_t>& groups) const {
   return internal::indices_of(groups, groups_, base_);
-}
-
-std::vector<Eigen::MatrixXd> Analysis::all_columns_of(const std::vector<std::size_t>& groups) const {
-  const std::vector<Eigen::Index> indices = indices_of(groups);
-  std::vector<Eigen::MatrixXd> result;
-  for (const Eigen::MatrixXd& columns : binned_.columns) result.emplace_back(columns(Eigen::all, indices));
-  return result;
 }
 
 Eigen::VectorXd Analysis::left_of(std::size_t flight, const std::vector<std::size_t>& groups,
@@ -171,7 +148,7 @@ std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std
 void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
     if (!share_.is_local(f)) continue;
-    FlightColumns& flight = this->flight(f);
+    FlightColumns& flight = f < flights_.size() ? flights_[f] : further_[f - flights_.size()];
     std::size_t count = 0;
     const std::vector<double> predicted = added(f, groups, estimate);
     flight.residual =
@@ -179,7 +156,6 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
     // A record outside all bins has no prediction and is not counted.
     binned_.residuals[f] = binned_.bins[f].means(flight.residual);
   }
-  first_residuals_ = part(binned_.residuals, 0, flights_.size());
 }
 
 std::vector<NoiseModel> Analysis::noise_after(const std::vector<std::size_t>& groups,
@@ -192,27 +168,21 @@ std::vector<NoiseModel> Analysis::noise_after(const std::vector<std::size_t>& gr
       find);
 }
 
-void Analysis::find_first_noise(const Eigen::VectorXd& estimate) {
-  noise_ = noise_after({}, estimate, [](const auto& bins, const auto& /*columns*/, const auto& residuals) {
-    return estimate_noise(bins, residuals);
-  });
-  first_noise_ = noise_of_first_reference(binned_, noise_);
-  keep_coefficients({}, estimate);
-}
-
-void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
+void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
+                          bool is_rough) {
   const std::size_t threads = Workers(share_.comm(), 0).threads;
   bool is_first = true;
   likelihood_ = 0.0;
   noise_ = noise_after(groups, estimate, [&](const auto& bins, const auto& columns, const auto& residuals) {
+    if (is_rough) return estimate_noise(bins, residuals);
     const FoundNoise found = internal::find_noise(bins, columns, residuals, threads);
     if (is_first) drift_gain_ = found.drift_gain;
     is_first = false;
     likelihood_ += found.likelihood;
     return with_slower_noise(found.model);  // this likelihood includes only what the flights show
   });
-  first_noise_ = noise_of_first_reference(binned_, noise_);
-  keep_coefficients(groups, estimate);
+  coefficients_ = Eigen::VectorXd::Zero(binned_.columns.front().cols());
+  coefficients_(indices_of(groups)) = estimate;
 }
 
 NoiseModel Analysis::noise_beside_offsets() const {
@@ -234,11 +204,6 @@ NoiseModel Analysis::noise_beside_offsets() const {
         return with_slower_noise(internal::find_noise(bins, with_offsets, about_means, threads).model);
       });
   return noise_of_first_reference(binned_, noise);
-}
-
-void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
-  coefficients_ = Eigen::VectorXd::Zero(binned_.columns.front().cols());
-  coefficients_(indices_of(groups)) = estimate;
 }
 
 std::vector<Eigen::MatrixXd> Analysis::find_shape_uncertainty(const std::vector<std::size_t>& chosen) {
@@ -313,27 +278,27 @@ void Analysis::take_out_common_noise(WhitenedSystem& scores) const {
   sum_up(scores);
 }
 
-WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more,
-                                     Eigen::Index marginalized) const {
+WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more, bool keeps_shapes) const {
   std::vector<Eigen::MatrixXd> columns;
   for (std::size_t f = 0; f < more.size(); ++f) {
     columns.push_back(side_by_side(binned_.columns[f].leftCols(base_), more[f]));
   }
   WhitenedSystem scores = whiten(columns, false);
   take_out_common_noise(scores);
-  marginalize(scores, marginalized + nuisances_);
+  const Eigen::Index of_added = shape_columns * as_index(added_.size());
+  marginalize(scores, (keeps_shapes ? of_added : uncertainty_.front().cols()) + nuisances_);
   return scores;
 }
 
 Competition Analysis::competition(const std::vector<std::size_t>& chosen,
                                   const std::vector<Eigen::MatrixXd>& rivals, std::size_t width) const {
-  const std::vector<Eigen::MatrixXd> effects = all_columns_of(chosen);
+  std::vector<Eigen::Index> effects = indices_of(chosen);
+  effects.erase(effects.begin(), effects.begin() + base_);
   std::vector<Eigen::MatrixXd> more;
-  for (std::size_t f = 0; f < rivals.size(); ++f) {
-    more.push_back(side_by_side(effects[f].rightCols(effects[f].cols() - base_), rivals[f]));
-  }
+  for (std::size_t f = 0; f < rivals.size(); ++f)
+    more.push_back(side_by_side(binned_.columns[f](Eigen::all, effects), rivals[f]));
   Competition result;
-  result.system = scores_with(more, shape_columns * as_index(added_.size()));
+  result.system = scores_with(more, true);
   const Eigen::Index before = binned_.columns.front().cols() - base_;  // first column of the shapes
   Eigen::Index first = 0;
   for (const std::size_t group : chosen) {
@@ -396,9 +361,9 @@ Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) 
 HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const std::vector<Eigen::Index> indices = indices_of(groups);
   const Eigen::Index width = as_index(indices.size()) + 1;
-  const auto part_of = [this](std::size_t f, double time) { return held_out_part(*flight(f).samples, time); };
-  const auto time_of = [this](std::size_t f, Eigen::Index row) {
-    return binned_.bins[f].time()[static_cast<std::size_t>(scores_->bin_of(f, row))];
+  const auto part_of = [this](std::size_t f, Eigen::Index row) {
+    const auto bin = static_cast<std::size_t>(scores_->bin_of(f, row));
+    return held_out_part(*flight(f).samples, binned_.bins[f].time()[bin]);
   };
   std::vector<Eigen::MatrixXd> white(binned_.bins.size());
   // Whitened rows of each part first, then unwhitened ones.
@@ -407,7 +372,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     white[f] = flight(f).is_by_gps ? all : whitened(all, binned_.bins[f], noise_[f], 0);
     PartialSums own(2 * held_out_parts, width);
     for (Eigen::Index i = 0; i < all.rows(); ++i) {
-      const std::size_t part = part_of(f, time_of(f, i));
+      const std::size_t part = part_of(f, i);
       own.add(part, white[f].row(i).transpose());
       // A refit weighs each reference by its noise.
       if (flight(f).reference == 0) own.add(part + held_out_parts, all.row(i).transpose());
@@ -433,7 +398,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   result.chi2 = scores_->by_minutes([&](std::size_t f) {
     Eigen::VectorXd squares(white[f].rows());
     for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
-      const Eigen::VectorXd& estimate = estimates[part_of(f, time_of(f, i))];
+      const Eigen::VectorXd& estimate = estimates[part_of(f, i)];
       const double left = white[f](i, width - 1) - white[f].row(i).head(width - 1) * estimate;
       squares[i] = left * left;
     }
@@ -447,7 +412,8 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
                        predicted.push_back(added(f, groups, estimate));
                      for (const std::size_t record : binned_.bins[f].records()) {
                        if (flights_[f].residual[record] != flights_[f].given[record]) continue;  // an outlier
-                       const std::size_t part = part_of(f, flights_[f].samples->time[record]);
+                       const std::size_t part =
+                           held_out_part(*flights_[f].samples, flights_[f].samples->time[record]);
                        sum.add(flights_[f].given[record] - predicted[part][record]);
                      }
                      return sum;

@@ -10,6 +10,7 @@
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/search.hpp"
 #include "numerics/noise_model.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 
@@ -60,7 +61,7 @@ class Analysis {
   const std::vector<Binning>& bins() const { return first_bins_; }
   const Binning& bins(std::size_t flight) const { return binned_.bins[flight]; }
   /// Noise against the first reference, with the levels of local flights.
-  const NoiseModel& noise() const { return first_noise_; }
+  NoiseModel noise() const { return noise_of_first_reference(binned_, noise_); }
   /// Noise estimated together with an offset for each flight, so that it does not contain the steps between
   /// flights.
   NoiseModel noise_beside_offsets() const;
@@ -69,10 +70,9 @@ class Analysis {
   const Search& search() const { return *search_; }
   const WhitenedSystem& scores() const { return *scores_; }
   /// Scores of the base followed by other columns instead of the candidates'. @param more in bins, of each
-  /// flight against each reference
-  WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more) const {
-    return scores_with(more, uncertainty_.front().cols());
-  }
+  /// flight against each reference @param keeps_shapes the uncertain shapes of the chosen effects stay
+  /// columns
+  WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more, bool keeps_shapes = false) const;
   /// Scores of the base, the chosen effects with their uncertain shapes, and rivals. @param rivals in bins,
   /// of each flight against each reference @param width columns of a rival
   Competition competition(const std::vector<std::size_t>& chosen, const std::vector<Eigen::MatrixXd>& rivals,
@@ -83,8 +83,10 @@ class Analysis {
 
   /// Columns of the base and of some groups in bins, for each flight.
   std::vector<Eigen::MatrixXd> columns_of(const std::vector<std::size_t>& groups) const;
-  /// Residuals in bins, outliers replaced.
-  const std::vector<Eigen::VectorXd>& residuals() const { return first_residuals_; }
+  /// Residuals against the first reference in bins, outliers replaced.
+  std::vector<Eigen::VectorXd> residuals() const {
+    return {binned_.residuals.begin(), binned_.residuals.begin() + as_index(flights_.size())};
+  }
 
   /// Contribution of base and groups to the residual of every record of a flight, hPa. @param estimate of
   /// base and the groups' columns, as `Search::fit` gives it
@@ -112,14 +114,13 @@ class Analysis {
   /// its effects. @param generous removes all candidate effects before the first noise estimate
   double search_from(const Eigen::VectorXd& start, bool generous);
   void replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
-  void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
-  void find_first_noise(const Eigen::VectorXd& estimate);
+  /// @param is_rough a first estimate without slow drift
+  void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate, bool is_rough);
   /// Noise of each flight against each reference after base and groups. The shared part is estimated from a
   /// few flights by `find(bins, columns, residuals)`; the levels of a flight follow from it and the flight's
   /// residual.
   std::vector<NoiseModel> noise_after(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
                                       const FindNoise& find) const;
-  void keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   /// @param chosen effects found so far; the shapes of those of the flow are uncertain
   void find_search(const std::vector<std::size_t>& chosen);
   /// Columns of the uncertain shapes of the chosen effects of the flow: groups first, then the added effects.
@@ -130,12 +131,6 @@ class Analysis {
   WhitenedSystem whiten(const std::vector<Eigen::MatrixXd>& columns, bool of_candidates) const;
   /// Removes the common noise from the rows against further references.
   void take_out_common_noise(WhitenedSystem& scores) const;
-  FlightColumns& flight(std::size_t number) {
-    return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
-  }
-  std::vector<Eigen::MatrixXd> all_columns_of(const std::vector<std::size_t>& groups) const;
-  /// @param marginalized number of last columns of uncertain shapes that count as noise
-  WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more, Eigen::Index marginalized) const;
 
   /// Residual of a flight after base and groups, in bins.
   Eigen::VectorXd left_of(std::size_t flight, const std::vector<std::size_t>& groups,
@@ -158,9 +153,7 @@ class Analysis {
   Eigen::Index base_ = 0;
   BinnedFlights binned_{};
   std::vector<Binning> first_bins_{};
-  std::vector<Eigen::VectorXd> first_residuals_{};
   std::vector<NoiseModel> noise_{};
-  NoiseModel first_noise_{};
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;
   Eigen::Index nuisances_ = 0;                  // columns of nuisances of GPS

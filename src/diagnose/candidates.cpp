@@ -4,17 +4,12 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 
-#include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
-#include <pcor/residuals/residuals.hpp>
-#include <pcor/units/units.hpp>
 #include "campaign/model_parameters.hpp"
 #include "flight/trouble_with_values.hpp"
 #include "parallel/flight_partition.hpp"
-#include "residuals/moving_columns.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -31,17 +26,13 @@ const VariableNaming& family_of(const ModelDefinition& file, const FlightSet& fl
 /// suitable unit. Flow angles stay unchanged if the model computes them from the radome.
 void name_usual_variables(ModelDefinition& file, const FlightSet& flights) {
   const VariableNaming& family = family_of(file, flights);
-  struct Usual {
-    Quantity role;
-    std::string variable;
-  };
-  std::vector<Usual> usual;  // most usual variable of each role first
+  std::vector<std::pair<Quantity, std::string>> usual;  // most usual variable of each role first
   for (std::size_t i = 0; i < role_count; ++i) {
     const auto role = static_cast<Quantity>(i);
     if (file.variables.count(role) != 0) continue;
     if (role == Quantity::attack && file.model.attack_radome.is_calibrated()) continue;
     if (role == Quantity::sideslip && file.model.sideslip_radome.is_calibrated()) continue;
-    for (std::string& variable : usual_variables(family, role)) usual.push_back({role, std::move(variable)});
+    for (std::string& variable : usual_variables(family, role)) usual.emplace_back(role, std::move(variable));
   }
   const auto recorded = flights.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
     std::vector<bool> has;
@@ -86,6 +77,12 @@ std::vector<double> tried_values(const EffectInfo& info, const ParameterInfo& sh
   return {shape.tried.begin(), std::find(shape.tried.begin(), shape.tried.end(), 0.0)};
 }
 
+Candidate& add_variant(std::vector<Candidate>& all, const Candidate& candidate) {
+  Candidate& variant = all.emplace_back(candidate);
+  variant.is_variant = true;
+  return variant;
+}
+
 /// Other shapes of the candidate.
 std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector<double>& dates) {
   std::vector<Candidate> variants;
@@ -96,16 +93,11 @@ std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector
     if (!info.parameters[i].shape || remembers) continue;
     for (const double value : tried_values(info, info.parameters[i], dates)) {
       if (value == candidate.effect.parameters[i]) continue;
-      Candidate& variant = variants.emplace_back(candidate);
-      variant.effect.parameters[i] = value;
-      variant.is_variant = true;
+      add_variant(variants, candidate).effect.parameters[i] = value;
     }
   }
-  for (std::size_t i = 0; i < info.scaling_count(); ++i) {
-    Candidate& variant = variants.emplace_back(candidate);
-    variant.effect.scaling = info.scalings[i];
-    variant.is_variant = true;
-  }
+  for (std::size_t i = 0; i < info.scaling_count(); ++i)
+    add_variant(variants, candidate).effect.scaling = info.scalings[i];
   return variants;
 }
 
@@ -121,20 +113,17 @@ Candidate candidate_of(const ModelEffect& formula) {
   return candidate;
 }
 
-/// Reason why a flight has no values of a variable; empty if it has some.
-std::string trouble_with(const Flight& flight, const std::string& variable) {
-  if (!flight.has(variable)) return fmt::format("{} has no variable {}", flight.path().string(), variable);
-  return value_problem(flight, variable);
-}
-
-/// First variable of a formula that a flight lacks; empty if all are present.
+/// Reason why a flight has no values of a variable of a formula; empty if all have some.
 std::string missing_variable(const ModelEffect& effect, const FlightSet& flights) {
   const auto formula = Formula::parse(effect.formula, effect.parameter_names, nullptr);
   if (!formula) return "";
   for (const std::string& name : formula->variables()) {
     if (quantity_named(name) != Quantity::count) continue;
-    for (std::string& trouble : flights.share().of_each_flight<std::string>(
-             [&](std::size_t number) { return trouble_with(flights[number], name); })) {
+    for (std::string& trouble : flights.share().of_each_flight<std::string>([&](std::size_t number) {
+           const Flight& flight = flights[number];
+           return flight.has(name) ? value_problem(flight, name)
+                                   : fmt::format("{} has no variable {}", flight.path().string(), name);
+         })) {
       if (!trouble.empty()) return std::move(trouble);
     }
   }
@@ -146,17 +135,16 @@ bool is_of_laser(EffectLocation location) {
          location == EffectLocation::beam_speed;
 }
 
-/// Whether an effect there can be one of the other system as well.
-bool has_a_twin(EffectLocation location) {
-  return location == EffectLocation::static_transducer || location == EffectLocation::dynamic_transducer ||
-         location == EffectLocation::static_line || location == EffectLocation::total_line ||
-         location == EffectLocation::static_defect || location == EffectLocation::pitot;
-}
-
 /// Whether an error at this location often occurs on both systems, because tubes and lines are built alike.
 bool is_built_alike(EffectLocation location) {
   return location == EffectLocation::static_line || location == EffectLocation::total_line ||
          location == EffectLocation::pitot;
+}
+
+/// Whether an effect there can be one of the other system as well.
+bool has_a_twin(EffectLocation location) {
+  return location == EffectLocation::static_transducer || location == EffectLocation::dynamic_transducer ||
+         location == EffectLocation::static_defect || is_built_alike(location);
 }
 
 /// Reason why an effect cannot be tested with a model; empty if it can. @param dates on which steps are tried
@@ -175,20 +163,16 @@ std::string why_not_testable(const EffectInfo& info, bool is_moist, const std::v
 void add_derived_ones(CandidateSet& set, bool two_systems) {
   std::vector<Candidate> all;
   for (const Candidate& candidate : set.candidates) {
-    const auto derive = [&all, &candidate]() -> Candidate& {
-      Candidate& derived = all.emplace_back(candidate);
-      derived.is_variant = true;
-      return derived;
-    };
     all.push_back(candidate);
     if (candidate.effect.is_formula()) continue;
-    if (two_systems && is_built_alike(location_of(candidate.effect))) derive().is_shared = true;
+    if (two_systems && is_built_alike(location_of(candidate.effect)))
+      add_variant(all, candidate).is_shared = true;
     const EffectInfo& info = *effect_named(candidate.effect.id);
     if (info.memory.of == Quantity::count) continue;
     const ParameterInfo& over = info.parameters[info.memory.parameter];
     for (const double time : over.tried) {
       if (time == 0.0) break;
-      Candidate& derived = derive();
+      Candidate& derived = add_variant(all, candidate);
       derived.memory = time;
       if (over.shape) derived.effect.parameters[info.memory.parameter] = time;
     }
@@ -211,14 +195,6 @@ bool is_same(const ModelDefinition& a, const ModelDefinition& b) {
 /// system.
 std::string system_of(const ModelDefinition& model) {
   return model.variables.at(Quantity::static_pressure) + "+" + model.variables.at(Quantity::dynamic_pressure);
-}
-
-/// Part of an id that names the system of a reference; empty if there is only one other system.
-std::string name_of_system(const ModelDefinition& model, const References& references) {
-  const bool several = std::any_of(references.begin(), references.end(), [&model](const auto& each) {
-    return each->model() != nullptr && system_of(*each->model()) != system_of(model);
-  });
-  return several ? system_of(model) : "";
 }
 
 std::vector<BaseCoefficient> base_of(const ModelDefinition& model) {
@@ -260,13 +236,16 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     if (model == nullptr) continue;
     ModelDefinition law = *model;
     if (trusted) fix_all(law);
-    const std::string system = name_of_system(*model, references);
-    const auto same = std::find_if(references.begin(), references.begin() + static_cast<std::ptrdiff_t>(r),
-                                   [model](const auto& before) {
-                                     return before->model() != nullptr && is_same(*before->model(), *model);
-                                   });
-    if (same != references.begin() + static_cast<std::ptrdiff_t>(r)) {
-      set.base_of_others.back() = set.base_of_others[static_cast<std::size_t>(same - references.begin())];
+    const bool several = std::any_of(references.begin(), references.end(), [model](const auto& each) {
+      return each->model() != nullptr && system_of(*each->model()) != system_of(*model);
+    });
+    const std::string system = several ? system_of(*model) : "";
+    const auto same = std::find_if(references.begin(), references.end(), [model](const auto& each) {
+      return each->model() != nullptr && is_same(*each->model(), *model);
+    });
+    const auto first = static_cast<std::size_t>(same - references.begin());
+    if (first < r) {
+      set.base_of_others.back() = set.base_of_others[first];
     } else {
       for (BaseCoefficient& coefficient : base_of(law)) {
         coefficient.name = id_on_other_system(system, coefficient.name);
@@ -332,36 +311,26 @@ CandidateSet find_candidates(const ModelDefinition& model, const std::vector<Mod
     set.candidates.push_back(std::move(candidate));
     return true;
   };
-  const auto consider = [&](const Candidate& candidate) {
-    if (add(candidate)) {
+  // @param why the candidate cannot be tested; empty if only the chain may refuse it
+  const auto consider = [&](const Candidate& candidate, const std::string& why) {
+    if (why.empty() && add(candidate)) {
       for (Candidate& variant : variants_of(candidate, dates)) add(std::move(variant));
     } else {
-      set.not_testable.push_back({candidate.effect.id, candidate.title, error.what});
+      set.not_testable.push_back({candidate.effect.id, candidate.title, why.empty() ? error.what : why});
     }
   };
   for (const ModelEffect& formula : formulas) {
     if (has_effect(set.extended, formula.id)) continue;
-    Candidate candidate = candidate_of(formula);
-    if (candidate.tested.empty()) {
-      set.not_testable.push_back({formula.id, candidate.title, "it has no coefficient to fit"});
-      continue;
-    }
-    if (std::string why = missing_variable(formula, flights); !why.empty()) {
-      set.not_testable.push_back({formula.id, candidate.title, std::move(why)});
-      continue;
-    }
-    consider(candidate);
+    const Candidate candidate = candidate_of(formula);
+    consider(candidate,
+             candidate.tested.empty() ? "it has no coefficient to fit" : missing_variable(formula, flights));
   }
   for (const EffectInfo& info : effect_info) {
     if (has_effect(model, info.id)) continue;
     if (trust_reference && is_of_laser(info.location)) continue;
     Candidate candidate = candidate_of(info);
-    if (std::string why = why_not_testable(info, model.model.moist, dates); !why.empty()) {
-      set.not_testable.push_back({candidate.effect.id, candidate.title, std::move(why)});
-      continue;
-    }
-    if (reads_date(info)) candidate.effect.parameters[1] = dates.front();
-    consider(candidate);
+    if (reads_date(info) && !dates.empty()) candidate.effect.parameters[1] = dates.front();
+    consider(candidate, why_not_testable(info, model.model.moist, dates));
   }
   set.base = base_of(model);
   const bool two_systems = std::any_of(references.begin(), references.end(),

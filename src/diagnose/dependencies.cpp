@@ -2,25 +2,14 @@
 
 #include <algorithm>
 #include <map>
-#include <sstream>
 #include <vector>
+
+#include "base/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
 
 using Inputs = std::map<std::string, std::vector<std::string>>;  // keyed by computed variable
-
-std::vector<std::string> inputs_of(const VariableInfo& variable) {
-  std::vector<std::string> inputs;
-  for (const auto& [name, text] : variable.attributes) {
-    if (name != "Dependencies") continue;
-    std::istringstream words(text);
-    std::string word;
-    words >> word;  // number of inputs
-    while (words >> word) inputs.push_back(word);
-  }
-  return inputs;
-}
 
 /// Adds all inputs of the names recursively. Some files contain circular dependencies.
 void add_inputs(const Inputs& inputs, std::set<std::string>& names) {
@@ -39,7 +28,13 @@ void add_inputs(const Inputs& inputs, std::set<std::string>& names) {
 
 std::set<std::string> computed_from(const Flight& flight, const std::set<std::string>& sensors) {
   Inputs inputs;
-  for (const std::string& name : flight.variables()) inputs[name] = inputs_of(flight.variable(name));
+  for (const std::string& name : flight.variables()) {
+    for (const auto& [key, text] : flight.variable(name).attributes) {
+      if (key != "Dependencies") continue;
+      std::vector<std::string>& of_variable = inputs[name] = split_words(text);
+      if (!of_variable.empty()) of_variable.erase(of_variable.begin());  // number of inputs
+    }
+  }
   std::set<std::string> measured = sensors;
   add_inputs(inputs, measured);
   std::set<std::string> computed;

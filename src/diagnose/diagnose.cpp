@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
@@ -36,19 +35,12 @@ using namespace internal;
 
 namespace {
 
-std::string description_of(const References& references) {
-  std::string text;
-  for (const auto& reference : references) text += (text.empty() ? "" : "; ") + reference->description();
-  return text;
-}
-
 /// Inputs of the effects of findings on either system; an angle is also read as its differential pressure.
 EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefinition& model) {
   EffectInputs inputs;
   const auto read = [&](Quantity quantity) {
     inputs.quantities.insert(quantity);
-    const auto variable = model.variables.find(quantity);
-    if (variable != model.variables.end()) inputs.variables.insert(variable->second);
+    inputs.variables.insert(model.variable_of(quantity));
   };
   const auto read_with_angles = [&](Quantity need) {
     read(need);
@@ -182,7 +174,7 @@ double noise_with_findings(const FlightPartition& share, const std::vector<Fligh
 /// Residual of the given model on a flight.
 struct GivenStatistics {
   ResidualSums used{};
-  std::optional<ResidualSums> with_flaps{};
+  ResidualSums with_flaps{};
   std::vector<double> blocks{};  // means
   std::optional<Statistics> held_out{};
   std::size_t held_out_blocks = 0;
@@ -217,7 +209,6 @@ void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnos
   ResidualSums used;
   ResidualSums with_flaps;
   FittedMeans means;
-  std::vector<std::size_t> held_out_blocks;
   const auto found = columns.share.of_each_flight<GivenStatistics>([&](std::size_t f) {
     const FlightColumns& flight = columns.flights[f];
     return flight.reference == 0 ? statistics_of(flight, share) : GivenStatistics();
@@ -226,18 +217,18 @@ void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnos
     if (columns.flights[f].reference != 0) continue;
     used.add(found[f].used);
     means.add(found[f].blocks);
-    if (found[f].with_flaps) with_flaps.add(*found[f].with_flaps);
+    with_flaps.add(found[f].with_flaps);
+  }
+  for (std::size_t f = 0; f < found.size(); ++f) {
     if (!found[f].held_out) continue;
-    diagnosis.held_out.push_back({columns.flights[f].samples->name, *found[f].held_out, 0.0});
-    held_out_blocks.push_back(found[f].held_out_blocks);
+    diagnosis.held_out.push_back({columns.flights[f].samples->name, *found[f].held_out,
+                                  means.expected_bias(found[f].held_out_blocks)});
   }
   const Statistics statistics = used.statistics();
   diagnosis.samples = statistics.samples;
   diagnosis.rms_given = statistics.rms;
   diagnosis.noise_rms = statistics.noise_rms;
   diagnosis.flaps_out = with_flaps.statistics();
-  for (std::size_t i = 0; i < diagnosis.held_out.size(); ++i)
-    diagnosis.held_out[i].expected = means.expected_bias(held_out_blocks[i]);
 }
 
 /// Samples of all flights by reason of exclusion.
@@ -352,20 +343,15 @@ Eigen::VectorXd prior_of(const References& references, const std::vector<BaseCoe
   return precision;
 }
 
-/// Diagnosis, and the search result even if a variable of the files overrules it.
-struct SearchedDiagnosis {
-  Diagnosis diagnosis{};
-  std::vector<Finding> found{};
-};
-
 /// @param dates on which a step is tried
-SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
-                                 const References& all_references, const DiagnoseOptions& options,
-                                 const std::vector<double>& dates) {
-  SearchedDiagnosis result;
-  Diagnosis& diagnosis = result.diagnosis;
+/// @param found receives the findings of the search, even if a variable of the files overrules them
+Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
+                         const References& all_references, const DiagnoseOptions& options,
+                         const std::vector<double>& dates, std::vector<Finding>& found) {
+  Diagnosis diagnosis;
   const References references = in_order_of_diagnosis(all_references);
-  diagnosis.reference = description_of(references);
+  for (const auto& reference : references)
+    diagnosis.reference += (diagnosis.reference.empty() ? "" : "; ") + reference->description();
   CandidateSet set =
       find_candidates(model, options.formulas, files, references, dates, options.trust_reference);
   TeamColumns columns = columns_of_flights(files, files.size(), model, set, options, diagnosis.notes);
@@ -393,7 +379,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates), options.seed,
                           added_of(model, set.base, options.added), prior_of(references, set.base));
   diagnosis.threshold = analysis.result().threshold;
-  result.found = diagnosis.findings = findings_of(analysis, set.candidates);
+  found = diagnosis.findings = findings_of(analysis, set.candidates);
   advise(analysis, set.candidates, diagnosis.findings);
   diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
@@ -401,13 +387,13 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   const Eigen::VectorXd refitted = analysis.least_squares({});
   diagnosis.own = own_of(analysis, set.base, refitted);
   diagnosis.flights = flights_of(analysis, refitted);
-  using Series = const std::vector<double>&;
-  diagnosis.residual_rms =
-      rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].before; });
+  const auto rms = [&](std::vector<double> FlightDiagnosis::*series) {
+    return rms_of(
+        analysis.share(), [&](std::size_t f) -> const auto& { return diagnosis.flights[f].*series; });
+  };
+  diagnosis.residual_rms = rms(&FlightDiagnosis::before);
   diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
   diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
-  const double rms_after =
-      rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].after; });
   UnexplainedStructure structure;
   if (gps_kind(*references.front())) {
     doubt_by_atmosphere(diagnosis);
@@ -417,8 +403,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   } else {
     structure = find_unexplained(
         analysis, files, model, references, effect_inputs(diagnosis.findings, set.extended), options,
-        rms_after, diagnosis.noise_rms_with_findings,
-        rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].drift; }));
+        rms(&FlightDiagnosis::after), diagnosis.noise_rms_with_findings, rms(&FlightDiagnosis::drift));
   }
   diagnosis.unexplained = std::move(structure.found);
   note_unnamed_inputs(files, set.extended, diagnosis);
@@ -442,25 +427,15 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& 
   judge_held_out(diagnosis);
   std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
   diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());
-  return result;
+  return diagnosis;
 }
 
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::silent:
-      return "silent";
-    case Verdict::identified:
-      return "identified";
-    case Verdict::ambiguous:
-      return "cannot be told apart";
-    case Verdict::partial:
-      return "partial";
-    case Verdict::unexplained:
-      return "unexplained";
-  }
-  return "";
+  constexpr std::array<std::string_view, 5> names{"silent", "identified", "cannot be told apart", "partial",
+                                                  "unexplained"};
+  return names[static_cast<std::size_t>(verdict)];
 }
 
 std::string id_on_other_system(const std::string& system, const std::string& name) {
@@ -468,15 +443,16 @@ std::string id_on_other_system(const std::string& system, const std::string& nam
 }
 
 std::string component_text(const EmpiricalPredictor& variable) {
-  const std::string formula =
-      variable.formula.empty() ? ""
-                               : fmt::format("; the formula is written as added to the {} pressure",
-                                             variable.location == EffectLocation::pitot ? "total" : "static");
-  if (variable.components.empty()) return "its location is unknown" + formula;
-  return fmt::format("its location is one of: {}, since the total pressures of the two systems {}{}",
-                     fmt::join(variable.components, ", "),
-                     variable.location == EffectLocation::pitot ? "also vary with it" : "do not vary with it",
-                     formula);
+  const bool is_total = variable.location == EffectLocation::pitot;
+  std::string text = "its location is unknown";
+  if (!variable.components.empty())
+    text = fmt::format("its location is one of: {}, since the total pressures of the two systems {}",
+                       fmt::join(variable.components, ", "),
+                       is_total ? "also vary with it" : "do not vary with it");
+  if (!variable.formula.empty())
+    text +=
+        fmt::format("; the formula is written as added to the {} pressure", is_total ? "total" : "static");
+  return text;
 }
 
 std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }
@@ -507,9 +483,10 @@ Diagnosis diagnose(const FlightSet& flights, const ModelDefinition& model, const
   flights.require_one_aircraft();
   StepDates dates(flights);
   for (;;) {
-    SearchedDiagnosis searched = diagnosis_with(flights, model, all_references, options, dates.tried());
+    std::vector<Finding> found;
+    Diagnosis diagnosis = diagnosis_with(flights, model, all_references, options, dates.tried(), found);
     flights.require_unchanged();
-    if (!dates.refine(searched.found)) return std::move(searched.diagnosis);
+    if (!dates.refine(found)) return diagnosis;
   }
 }
 

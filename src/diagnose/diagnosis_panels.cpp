@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <pcor/base/utc.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/catalogue.hpp>
@@ -12,6 +15,7 @@
 #include "numerics/cross_spectrum.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
+#include "residuals/flight_statistics.hpp"
 #include "residuals/wind.hpp"
 
 namespace pcor::internal::report {
@@ -75,10 +79,6 @@ ReportTable variables_table(const Unexplained& unexplained) {
 
 std::string numbered(const char* name, std::size_t number) { return name + std::to_string(number + 1); }
 
-Series one_of(const std::vector<Series>& all, std::size_t number) {
-  return number < all.size() ? all[number] : Series{};
-}
-
 std::vector<std::string> inputs_of(const ModelEffect& effect) {
   std::vector<std::string> inputs;
   if (effect.is_formula()) {
@@ -96,10 +96,12 @@ std::vector<std::string> inputs_of(const ModelEffect& effect) {
   return inputs;
 }
 
-bool reads_laser(const Diagnosis& diagnosis) {
-  return std::any_of(diagnosis.flights.begin(), diagnosis.flights.end(), [](const FlightDiagnosis& flight) {
-    return flight.samples != nullptr && flight.samples->model.find(Quantity::lams_airspeed) != nullptr;
-  });
+std::string refitted_text(const Diagnosis& diagnosis) {
+  const bool with_reference =
+      std::any_of(diagnosis.own.begin(), diagnosis.own.end(),
+                  [](const CoefficientEstimate& each) { return is_of_reference(each.name); });
+  return with_reference ? "the coefficients of the model and of the reference system fitted again"
+                        : "the model's own coefficients fitted again";
 }
 
 std::string cell(double value, int decimals) {
@@ -131,26 +133,23 @@ DiagnosisPanels::DiagnosisPanels(const Flights& flights) {
   add_variables(flights);
 }
 
-bool DiagnosisPanels::meet(const std::vector<std::string>& names) const {
-  return internal::meet(report_.columns, names);
-}
-
-void DiagnosisPanels::add_time(std::string title, std::string caption, std::vector<std::string> columns,
-                               std::string axis) {
-  if (columns.empty()) return;
-  add(TimePanel{std::move(title), std::move(caption), std::move(columns), std::move(axis)});
+void DiagnosisPanels::add_finding_columns(const Flights& flights, std::size_t finding, const std::string& id,
+                                          std::size_t number) {
+  const auto one_of = [finding](std::vector<Series> FlightDiagnosis::*all) {
+    return [=](const FlightDiagnosis& flight) {
+      return finding < (flight.*all).size() ? (flight.*all)[finding] : Series{};
+    };
+  };
+  add_column(numbered("evidence", number), "evidence for " + id, "1/min", flights,
+             one_of(&FlightDiagnosis::evidence));
+  add_column(numbered("added", number), "added by " + id, "hPa", flights, one_of(&FlightDiagnosis::added));
 }
 
 void DiagnosisPanels::add_binned(std::string title, std::string caption, std::vector<std::string> y,
                                  const std::vector<std::string>& first) {
-  BinnedPanel panel;
-  y.erase(std::remove_if(y.begin(), y.end(), [&](const std::string& name) { return !meet({name}); }),
-          y.end());
-  panel.x_choices = choices(y, first);
+  BinnedPanel panel{std::move(title), std::move(caption), present(report_, std::move(y)), {}};
+  panel.x_choices = choices(panel.y, first);
   if (panel.x_choices.empty()) return;
-  panel.title = std::move(title);
-  panel.caption = std::move(caption);
-  panel.y = std::move(y);
   panel.axis = "residual";
   panel.autocorrelation_time = memory_;
   add(std::move(panel));
@@ -162,7 +161,7 @@ std::vector<std::string> DiagnosisPanels::choices(const std::vector<std::string>
   const auto offer = [&](const std::string& x) {
     const bool known = std::find(all.begin(), all.end(), x) != all.end();
     const bool shown = std::any_of(y.begin(), y.end(), [&](const std::string& name) {
-      return meet({x, name});
+      return meet(report_.columns, {x, name});
     });
     if (!known && shown) all.push_back(x);
   };
@@ -174,7 +173,7 @@ std::vector<std::string> DiagnosisPanels::choices(const std::vector<std::string>
 void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& residual,
                                   const std::vector<std::string>& first, double noise,
                                   const std::string& noise_label) {
-  if (what_if.panel.effects.empty() || !meet({residual})) return;
+  if (what_if.panel.effects.empty() || !meet(report_.columns, {residual})) return;
   WhatIfPanel panel = what_if.panel;
   for (std::size_t c = 0; c < panel.coefficients.size(); ++c) {
     Series& column = panel.coefficients[c].column;
@@ -184,8 +183,7 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
             return each.samples->name == used.samples->name && each.samples->time == used.samples->time;
           });
       for (const std::size_t i : used.records)
-        column.push_back(flight == what_if.flights.end() ? std::numeric_limits<double>::quiet_NaN()
-                                                         : flight->columns[c][i]);
+        column.push_back(flight == what_if.flights.end() ? nan : flight->columns[c][i]);
     }
   }
   panel.title = "What if";
@@ -211,7 +209,7 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
   add(std::move(panel));
 }
 
-void DiagnosisPanels::add_responses(const std::vector<std::string>& residuals, bool by_dynamic_pressure) {
+void DiagnosisPanels::add_responses(const Diagnosis& diagnosis, const std::vector<std::string>& residuals) {
   const ReportColumn* const p = column_named(report_.columns, pressure);
   const ReportColumn* const m = column_named(report_.columns, mach);
   if (p == nullptr || m == nullptr || used_.empty()) return;
@@ -242,14 +240,18 @@ void DiagnosisPanels::add_responses(const std::vector<std::string>& residuals, b
                   "response",
                   "s"};
   const double sample = used_.front().samples->step;
+  const bool by_laser =
+      std::any_of(diagnosis.flights.begin(), diagnosis.flights.end(), [](const auto& flight) {
+        return flight.samples != nullptr && flight.samples->model.find(Quantity::lams_airspeed) != nullptr;
+      });
   for (const std::string& name : residuals) {
     const ReportColumn* const residual = column_named(report_.columns, name);
     if (residual == nullptr) continue;
     std::vector<double> of_model = p->values;
     std::vector<double> of_reference = p->values;
     for (std::size_t i = 0; i < of_model.size(); ++i) {
-      if (by_dynamic_pressure) of_model[i] *= std::pow(1.0 + 0.2 * m->values[i] * m->values[i], 3.5) - 1.0;
-      of_reference[i] = of_model[i] + (by_dynamic_pressure ? -1.0 : 1.0) * residual->values[i];
+      if (by_laser) of_model[i] *= std::pow(1.0 + 0.2 * m->values[i] * m->values[i], 3.5) - 1.0;
+      of_reference[i] = of_model[i] + (by_laser ? -1.0 : 1.0) * residual->values[i];
     }
     const std::string label = residual->title.substr(residual->title.find_first_of(' ') + 1);
     CrossSpectrum found = cross_spectrum(of_model, of_reference, report_.time, sample);
@@ -269,17 +271,8 @@ void DiagnosisPanels::add_responses(const std::vector<std::string>& residuals, b
   }
 }
 
-std::vector<ReportBarb> DiagnosisPanels::wind() const {
-  std::vector<ReportBarb> all;
-  for (const Used& used : used_) {
-    const std::vector<ReportBarb> part = wind_of(*used.samples);
-    all.insert(all.end(), part.begin(), part.end());
-  }
-  return all;
-}
-
 void DiagnosisPanels::add_plane(std::string title, std::string caption, const std::string& colour) {
-  if (meet({mach, pressure, colour}))
+  if (meet(report_.columns, {mach, pressure, colour}))
     add(PlanePanel{std::move(title), std::move(caption), mach, pressure, colour, true});
 }
 
@@ -287,20 +280,26 @@ void DiagnosisPanels::add_table(ReportTable table) {
   if (!table.rows.empty()) add(std::move(table));
 }
 
-void DiagnosisPanels::add_flight_info() {
-  for (const Used& used : used_) {
-    report_.info.emplace_back(
-        "Flight", fmt::format("{}, {} to {} UTC", used.samples->name, utc_text(used.samples->time.front()),
-                              utc_text(used.samples->time.back(), "%H:%M:%S")));
+void DiagnosisPanels::measure_memory(const Flights& flights, Series FlightDiagnosis::*residual) {
+  double samples = 0.0;
+  double independent = 0.0;
+  for (const FlightDiagnosis& flight : flights) {
+    const Series& values = flight.*residual;
+    if (flight.samples == nullptr || values.size() != flight.samples->time.size()) continue;
+    const auto count = static_cast<double>(
+        std::count_if(values.begin(), values.end(), [](double x) { return std::isfinite(x); }));
+    samples += count;
+    independent += count / noise_of_flight(*flight.samples, values).autocorrelation_time;
   }
+  if (independent > 0.0) memory_ = std::max(1.0, samples / independent);
 }
 
 void DiagnosisPanels::add_variables(const Flights& flights) {
   using F = FlightDiagnosis;
-  add_variable(mach, "Mach number", "", flights, [](const F& f) { return f.mach; });
-  add_variable(pressure, "static pressure", "hPa", flights, [](const F& f) { return f.static_pressure; });
-  add_variable("attack", "angle of attack", "deg", flights, [](const F& f) { return f.attack; });
-  add_variable("sideslip", "sideslip", "deg", flights, [](const F& f) { return f.sideslip; });
+  add_variable(mach, "Mach number", "", flights, &F::mach);
+  add_variable(pressure, "static pressure", "hPa", flights, &F::static_pressure);
+  add_variable("attack", "angle of attack", "deg", flights, &F::attack);
+  add_variable("sideslip", "sideslip", "deg", flights, &F::sideslip);
   const auto motion = [&](const char* name, const char* title, const char* unit, Series FlightMotion::*of) {
     add_variable(name, title, unit, flights, [of](const F& f) { return f.samples->motion.*of; });
   };
@@ -327,9 +326,9 @@ void DiagnosisPanels::add_variables(const Flights& flights) {
   }
 }
 
-void add_info(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelDefinition& model,
-              const Info& numbers) {
-  Info& info = panels.report().info;
+void DiagnosisPanels::add_info(const Diagnosis& diagnosis, const ModelDefinition& model,
+                               const Info& numbers) {
+  Info& info = report_.info;
   info.emplace_back("Model", model.model.name);
   info.emplace_back("Reference", diagnosis.reference);
   info.insert(info.end(), numbers.begin(), numbers.end());
@@ -340,104 +339,111 @@ void add_info(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelDe
       excluded.push_back(fmt::format("{} {}", diagnosis.masks[i], mask_info[i].meaning));
   }
   std::string text = shown_text(diagnosis.flights_with_records().size(), diagnosis.flights.size());
-  if (!text.empty()) panels.report().summary.push_back(std::move(text));
+  if (!text.empty()) report_.summary.push_back(std::move(text));
   if (!excluded.empty()) info.emplace_back("Not used", fmt::format("{}", fmt::join(excluded, "; ")));
-  panels.add_flight_info();
+  for (const Used& used : used_) {
+    info.emplace_back(
+        "Flight", fmt::format("{}, {} to {} UTC", used.samples->name, utc_text(used.samples->time.front()),
+                              utc_text(used.samples->time.back(), "%H:%M:%S")));
+  }
   info.emplace_back("Program", "pcor " PCOR_VERSION);
   for (const Note& note : diagnosis.notes) info.emplace_back(label_of(note), note.text);
 }
 
-void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
-  ReportTable limits;
-  limits.title = "Upper limits of effects that were not found";
-  limits.caption =
+void DiagnosisPanels::add_unexplained(const Diagnosis& diagnosis, const std::string& left) {
+  const Unexplained& unexplained = diagnosis.unexplained;
+  if (!unexplained.significant) return;
+  ReportText page{"Unexplained residual", unexplained_text(unexplained)};
+  if (!unexplained.computed.empty())
+    page.paragraphs.push_back(
+        fmt::format("Variables not tested because, according to the files, they are computed from the "
+                    "sensors of the residual: {}.",
+                    join_list(unexplained.computed)));
+  if (!unexplained.shares_noise.empty())
+    page.paragraphs.push_back(
+        fmt::format("Variables not tested because they share the noise of the residual: {}.",
+                    join_list(unexplained.shares_noise)));
+  add(std::move(page));
+  if (add_column("drift", "slow drift", "hPa", diagnosis.flights, &FlightDiagnosis::drift))
+    add(TimePanel{"Remaining residual and its slow drift",
+                  "Drift: slow changes over many minutes.",
+                  {left, "drift"},
+                  "residual"});
+  add_table(variables_table(unexplained));
+  if (unexplained.variables.empty()) return;
+  const std::string& variable = unexplained.variables.front().name;
+  if (meet(report_.columns, {variable_column(variable), left}))
+    add_binned("Remaining residual against " + variable, structure_caption, {left},
+               {variable_column(variable)});
+}
+
+void DiagnosisPanels::add_traced(const Diagnosis& diagnosis) {
+  if (diagnosis.unexplained.variables.empty()) return;
+  const EmpiricalPredictor& variable = diagnosis.unexplained.variables.front();
+  add_variable(variable_column(variable.name), variable.name, variable.unit, diagnosis.flights,
+               &FlightDiagnosis::traced);
+}
+
+void DiagnosisPanels::add_residual_in_time(const Diagnosis& diagnosis,
+                                           const std::vector<std::string>& residuals) {
+  add_if_present(
+      report_,
+      TimePanel{"Residual in time",
+                fmt::format("Static pressure of the reference minus that of the model, with {}; regimes are "
+                            "shaded.",
+                            refitted_text(diagnosis)),
+                residuals, "residual"});
+}
+
+void DiagnosisPanels::add_residual_by_regime(const Diagnosis& diagnosis,
+                                             const std::vector<std::string>& residuals) {
+  if (report_.time.empty()) return;
+  add_strip(report_);
+  add(RegimeTable{
+      "By regime",
+      fmt::format("Bias and rms of the residual in each regime, with {}.", refitted_text(diagnosis)),
+      residuals});
+  add_regimes(report_, residuals);
+}
+
+void DiagnosisPanels::add_last_panels(const Diagnosis& diagnosis, const std::vector<std::string>& residuals) {
+  const std::string left = residuals.empty() ? "" : residuals.back();
+  add_distributions(report_, residuals);
+  std::vector<ReportBarb> wind;
+  for (const Used& used : used_) {
+    const std::vector<ReportBarb> part = wind_of(*used.samples);
+    wind.insert(wind.end(), part.begin(), part.end());
+  }
+  add_track(report_, "Remaining residual on the map",
+            "The track over the ground: one colour over a leg or a heading indicates an error that depends "
+            "on place or direction.",
+            left, std::move(wind));
+  add_responses(diagnosis, residuals);
+  add_unexplained(diagnosis, left);
+  ReportTable limits{
+      "Upper limits of effects that were not found",
       "Limits hold with 95 % confidence; the rms is what an effect at its limit would add beyond the model's "
-      "coefficients.";
-  limits.headers = {"effect", "estimate", "limit", "rms, hPa", "what"};
+      "coefficients.",
+      {"effect", "estimate", "limit", "rms, hPa", "what"},
+      {},
+      true};
   for (const UpperLimit& limit : diagnosis.limits) {
     limits.rows.push_back({limit.effect, estimates_text(limit.estimates), limits_text(limit),
                            cell(limit.rms, 3),
                            limit.note.empty() ? limit.title : limit.title + ": " + limit.note});
   }
-  limits.is_folded = true;
-  panels.add_table(std::move(limits));
-  ReportTable absorbed;
-  absorbed.title = "Effects that the model's own coefficients imitate";
-  absorbed.caption = "Remaining: part of the effect's variance that the coefficients cannot imitate.";
-  absorbed.headers = {"effect", "imitated by", "remains", "what"};
-  for (const AbsorbedEffect& effect : diagnosis.absorbed) {
+  add_table(std::move(limits));
+  ReportTable absorbed{"Effects that the model's own coefficients imitate",
+                       "Remaining: part of the effect's variance that the coefficients cannot imitate.",
+                       {"effect", "imitated by", "remains", "what"},
+                       {}};
+  for (const AbsorbedEffect& effect : diagnosis.absorbed)
     absorbed.rows.push_back({effect.effect, join_list(effect.by), percent(effect.remaining), effect.title});
-  }
-  panels.add_table(std::move(absorbed));
-  ReportTable not_testable;
-  not_testable.title = "Effects that could not be tested";
-  not_testable.is_folded = true;
-  not_testable.headers = {"effect", "what", "why"};
+  add_table(std::move(absorbed));
+  ReportTable not_testable{"Effects that could not be tested", "", {"effect", "what", "why"}, {}, true};
   for (const NotTestable& effect : diagnosis.not_testable)
     not_testable.rows.push_back({effect.effect, effect.title, effect.reason});
-  panels.add_table(std::move(not_testable));
-}
-
-void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const std::string& left) {
-  const Unexplained& unexplained = diagnosis.unexplained;
-  if (!unexplained.significant) return;
-  ReportText page{"Unexplained residual", unexplained_text(unexplained)};
-  for (std::string& text : untested_text(unexplained)) page.paragraphs.push_back(std::move(text));
-  panels.add(std::move(page));
-  if (panels.add_column("drift", "slow drift", "hPa", diagnosis.flights,
-                        [](const FlightDiagnosis& f) { return f.drift; }))
-    panels.add_time("Remaining residual and its slow drift", "Drift: slow changes over many minutes.",
-                    {left, "drift"}, "residual");
-  panels.add_table(variables_table(unexplained));
-  if (unexplained.variables.empty()) return;
-  const std::string& variable = unexplained.variables.front().name;
-  if (panels.meet({variable_column(variable), left}))
-    panels.add_binned("Remaining residual against " + variable, structure_caption, {left},
-                      {variable_column(variable)});
-}
-
-void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
-  if (diagnosis.unexplained.variables.empty()) return;
-  const EmpiricalPredictor& variable = diagnosis.unexplained.variables.front();
-  panels.add_variable(variable_column(variable.name), variable.name, variable.unit, diagnosis.flights,
-                      [](const FlightDiagnosis& f) { return f.traced; });
-}
-
-std::string refitted_text(const Diagnosis& diagnosis) {
-  const bool with_reference =
-      std::any_of(diagnosis.own.begin(), diagnosis.own.end(),
-                  [](const CoefficientEstimate& each) { return is_of_reference(each.name); });
-  return with_reference ? "the coefficients of the model and of the reference system fitted again"
-                        : "the model's own coefficients fitted again";
-}
-
-void add_residual_in_time(DiagnosisPanels& panels, const std::vector<std::string>& residuals,
-                          const std::string& refitted) {
-  if (panels.report().time.empty()) return;
-  panels.add_time(
-      "Residual in time",
-      fmt::format("Static pressure of the reference minus that of the model, with {}; regimes are shaded.",
-                  refitted),
-      residuals, "residual");
-}
-
-void add_residual_by_regime(DiagnosisPanels& panels, const std::vector<std::string>& residuals,
-                            const std::string& refitted) {
-  if (panels.report().time.empty()) return;
-  add_strip(panels.report());
-  panels.add(RegimeTable{"By regime",
-                         fmt::format("Bias and rms of the residual in each regime, with {}.", refitted),
-                         residuals});
-  add_regimes(panels.report(), residuals);
-}
-
-void add_distribution_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
-  if (panels.report().time.empty()) return;
-  add_distributions(panels.report(), residuals);
-  add_track(panels.report(), "Remaining residual on the map",
-            "The track over the ground: one colour over a leg or a heading indicates an error that depends "
-            "on place or direction.",
-            residuals.back(), panels.wind());
+  add_table(std::move(not_testable));
 }
 
 }  // namespace pcor::internal::report

@@ -136,28 +136,6 @@ ReportTable evidence_table(const std::vector<Finding>& findings) {
   return table;
 }
 
-/// Columns of the findings, by name: evidence for each, and its contribution.
-struct FindingColumns {
-  std::vector<std::string> evidence;
-  std::vector<std::string> added;
-};
-
-FindingColumns add_columns(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
-  using F = FlightDiagnosis;
-  FindingColumns columns;
-  for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
-    const std::string id = diagnosis.findings[i].id();
-    if (std::string name = numbered("evidence", i);
-        panels.add_column(name, "evidence for " + id, "1/min", diagnosis.flights,
-                          [i](const F& f) { return one_of(f.evidence, i); }))
-      columns.evidence.push_back(std::move(name));
-    if (std::string name = numbered("added", i); panels.add_column(
-            name, "added by " + id, "hPa", diagnosis.flights, [i](const F& f) { return one_of(f.added, i); }))
-      columns.added.push_back(std::move(name));
-  }
-  return columns;
-}
-
 /// Residual before and after against the inputs of a finding.
 void add_against_inputs(DiagnosisPanels& panels, const Diagnosis& diagnosis,
                         const std::vector<std::string>& residuals, std::size_t number) {
@@ -170,12 +148,20 @@ void add_against_inputs(DiagnosisPanels& panels, const Diagnosis& diagnosis,
 
 /// Pictures of the findings of a diagnosis, and one page per finding.
 void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
-                  const std::vector<std::string>& residuals, const FindingColumns& columns) {
+                  const std::vector<std::string>& residuals) {
   const std::vector<Finding>& findings = diagnosis.findings;
-  panels.add_time("Contributions of the missing effects",
-                  "Contribution to the residual with the estimated coefficients.", columns.added, "added");
-  panels.add_time("Evidence in time", "Decrease of chi2 per minute around each sample.", columns.evidence,
-                  "fall of chi2");
+  TimePanel added{"Contributions of the missing effects",
+                  "Contribution to the residual with the estimated coefficients.",
+                  {},
+                  "added"};
+  TimePanel evidence{
+      "Evidence in time", "Decrease of chi2 per minute around each sample.", {}, "fall of chi2"};
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    added.columns.push_back(numbered("added", i));
+    evidence.columns.push_back(numbered("evidence", i));
+  }
+  add_if_present(panels.report(), std::move(added));
+  add_if_present(panels.report(), std::move(evidence));
   panels.add(ranking_bars(diagnosis));
   panels.add_plane("Remaining residual over Mach number and pressure",
                    "Residual with all findings: one colour over a region is a bias there.", residuals.back());
@@ -240,48 +226,42 @@ std::string limits_text(const UpperLimit& limit) {
 }
 
 Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model, const WhatIf* what_if) {
-  using F = FlightDiagnosis;
   DiagnosisPanels panels(diagnosis.flights);
   Report& report = panels.report();
   report.title = verdict_text(diagnosis);
   report.subtitle = fmt::format("Diagnosis of {} against {}", model.model.name, diagnosis.reference);
   summarise(report, diagnosis);
-  add_info(panels, diagnosis, model, numbers_of(diagnosis));
+  panels.add_info(diagnosis, model, numbers_of(diagnosis));
 
-  const bool found = !diagnosis.findings.empty();
-  add_traced(panels, diagnosis);
+  const std::vector<Finding>& findings = diagnosis.findings;
+  const bool found = !findings.empty();
+  panels.add_traced(diagnosis);
   std::vector<std::string> residuals{"before"};
   panels.add_column("before", found ? "residual before" : "residual", "hPa", diagnosis.flights,
-                    [](const F& f) { return f.before; });
+                    &FlightDiagnosis::before);
   if (found && panels.add_column("after", "residual after, with all findings", "hPa", diagnosis.flights,
-                                 [](const F& f) { return f.after; }))
+                                 &FlightDiagnosis::after))
     residuals.emplace_back("after");
-  panels.measure_memory(diagnosis.flights,
-                        [&](const F& f) -> const Series& { return found ? f.after : f.before; });
-  const FindingColumns columns = add_columns(panels, diagnosis);
+  panels.measure_memory(diagnosis.flights, found ? &FlightDiagnosis::after : &FlightDiagnosis::before);
+  for (std::size_t i = 0; i < findings.size(); ++i)
+    panels.add_finding_columns(diagnosis.flights, i, findings[i].id(), i);
   if (found) add_against_inputs(panels, diagnosis, residuals, 0);
-  add_residual_in_time(panels, residuals, refitted_text(diagnosis));
+  panels.add_residual_in_time(diagnosis, residuals);
   if (what_if != nullptr) {
-    const std::vector<std::string> inputs =
-        found ? inputs_of(diagnosis.findings.front().effect) : std::vector<std::string>{};
-    if (found)
-      panels.add_what_if(*what_if, "before", inputs, diagnosis.noise_rms_with_findings,
-                         "noise with all findings");
-    else
-      panels.add_what_if(*what_if, "before", inputs, diagnosis.noise_rms);
+    panels.add_what_if(*what_if, "before",
+                       found ? inputs_of(findings.front().effect) : std::vector<std::string>{},
+                       found ? diagnosis.noise_rms_with_findings : diagnosis.noise_rms,
+                       found ? "noise with all findings" : "noise");
   }
-  add_residual_by_regime(panels, residuals, refitted_text(diagnosis));
+  panels.add_residual_by_regime(diagnosis, residuals);
   if (found) {
-    add_findings(panels, diagnosis, residuals, columns);
+    add_findings(panels, diagnosis, residuals);
   } else {
     panels.add_binned("Residual against a variable", structure_caption, residuals, {});
     panels.add_plane("Residual over Mach number and pressure", "One colour over a region is a bias there.",
                      "before");
   }
-  add_distribution_panels(panels, residuals);
-  panels.add_responses(residuals, reads_laser(diagnosis));
-  add_unexplained(panels, diagnosis, residuals.back());
-  add_tables(panels, diagnosis);
+  panels.add_last_panels(diagnosis, residuals);
   return std::move(report);
 }
 

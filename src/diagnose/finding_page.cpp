@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
-#include <utility>
 
 #include <pcor/base/utc.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
@@ -20,22 +17,16 @@ constexpr std::size_t max_in_a_sentence = 3;
 
 /// Text of the page about an effect that needs no flight.
 struct Law {
-  std::string formula, unit, added_to, size, confounders, manoeuvre, source;
+  std::string_view formula, unit, added_to, size, confounders, manoeuvre, source;
 };
 
 Law law_of(const ModelEffect& effect) {
-  const EffectInfo* const info = effect_named(effect.id);
-  if (effect.is_formula() || info == nullptr) {
-    return {effect.formula, effect.unit, std::string(info_of(effect.location).adds_to), "", "", "",
-            effect.source};
-  }
-  return {std::string(info->formula),
-          std::string(info_of(info->location).unit),
-          std::string(info_of(info->location).adds_to),
-          std::string(info->size),
-          std::string(info->confounders),
-          std::string(info->manoeuvre),
-          std::string(info->source)};
+  const EffectInfo* const info = effect.is_formula() ? nullptr : effect_named(effect.id);
+  if (info == nullptr)
+    return {effect.formula, effect.unit, info_of(effect.location).adds_to, "", "", "", effect.source};
+  const EffectLocationInfo& location = info_of(info->location);
+  return {info->formula,     location.unit,   location.adds_to, info->size,
+          info->confounders, info->manoeuvre, info->source};
 }
 
 std::string times_usual(double ratio) { return ratio_text(ratio) + " times the usual size"; }
@@ -44,9 +35,9 @@ std::string what_it_is(const Finding& finding, const Law& law) {
   std::string text = "Missing effect: " + name_with_id(finding.title, finding.id()) + ".";
   if (law.formula.empty()) return text;
   const bool defect = law.added_to.rfind("delta-p", 0) == 0;
-  return text + fmt::format(" The correction {}{} is added to {}.", law.formula,
+  return text + fmt::format(" The correction {}{} is added to {}{}.", law.formula,
                             law.unit.empty() || law.unit == "1" ? "" : fmt::format(" ({})", law.unit),
-                            defect ? "delta-p" : "the " + law.added_to);
+                            defect ? "" : "the ", defect ? "delta-p" : law.added_to);
 }
 
 std::string how_large(const Finding& finding, const Law& law) {
@@ -75,17 +66,13 @@ std::string how_sure(const Finding& finding, double threshold) {
   std::vector<std::string> segments;
   for (const Evidence& evidence : finding.evidence) {
     if (segments.size() == max_in_a_sentence) break;
-    segments.push_back(fmt::format("{}, {}", stretch_text(evidence), percent(evidence.share)));
+    segments.push_back(fmt::format("{}, {} to {} UTC{}, {}", evidence.flight, utc_text(evidence.begin),
+                                   utc_text(evidence.end, "%H:%M:%S"),
+                                   evidence.regimes.empty() ? "" : fmt::format(" ({})", evidence.regimes),
+                                   percent(evidence.share)));
   }
   if (!segments.empty()) text += fmt::format(" Most of it lies in {}.", fmt::join(segments, "; "));
   return text;
-}
-
-std::string held_out(const Finding& finding) {
-  if (!std::isfinite(finding.rms_before) || !std::isfinite(finding.rms_after)) return "";
-  return fmt::format("On parts outside the fit the rms residual {} from {} to {} hPa.",
-                     finding.rms_after < finding.rms_before ? "falls" : "does not fall: it changes",
-                     hpa(finding.rms_before), hpa(finding.rms_after));
 }
 
 std::string rival(const Alias& alias) {
@@ -167,12 +154,6 @@ std::string name_with_id(const std::string& title, const std::string& id) {
   return id.empty() ? title : fmt::format("{} ({})", title, id);
 }
 
-std::string stretch_text(const Evidence& evidence) {
-  std::string text = fmt::format("{}, {} to {} UTC", evidence.flight, utc_text(evidence.begin),
-                                 utc_text(evidence.end, "%H:%M:%S"));
-  return evidence.regimes.empty() ? text : text + fmt::format(" ({})", evidence.regimes);
-}
-
 std::string finding_summary(const Finding& finding) {
   std::string text = fmt::format("Missing: {}, {} hPa rms that the model does not absorb.",
                                  name_with_id(finding.title, finding.id()), hpa(finding.rms));
@@ -233,27 +214,15 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
   return all;
 }
 
-std::vector<std::string> untested_text(const Unexplained& unexplained) {
-  std::vector<std::string> all;
-  if (!unexplained.computed.empty()) {
-    all.push_back(
-        fmt::format("Variables not tested because, according to the files, they are computed from the "
-                    "sensors of the residual: {}.",
-                    join_list(unexplained.computed)));
-  }
-  if (!unexplained.shares_noise.empty()) {
-    all.push_back(fmt::format("Variables not tested because they share the noise of the residual: {}.",
-                              join_list(unexplained.shares_noise)));
-  }
-  return all;
-}
-
 ReportText finding_page(const Finding& finding, double threshold, const std::string& heading) {
   const Law law = law_of(finding.effect);
-  ReportText page;
-  page.title = heading;
-  page.paragraphs = {what_it_is(finding, law), how_large(finding, law), how_sure(finding, threshold)};
-  if (std::string text = held_out(finding); !text.empty()) page.paragraphs.push_back(std::move(text));
+  ReportText page{heading, {what_it_is(finding, law), how_large(finding, law), how_sure(finding, threshold)}};
+  if (std::isfinite(finding.rms_before) && std::isfinite(finding.rms_after)) {
+    page.paragraphs.push_back(
+        fmt::format("On parts outside the fit the rms residual {} from {} to {} hPa.",
+                    finding.rms_after < finding.rms_before ? "falls" : "does not fall: it changes",
+                    hpa(finding.rms_before), hpa(finding.rms_after)));
+  }
   page.paragraphs.push_back(rivals(finding, law));
   if (!law.source.empty()) page.paragraphs.push_back(fmt::format("Source: {}.", law.source));
   return page;

@@ -35,18 +35,12 @@ std::string ratio_text(double ratio);
 /// "pneumatic lag of the static line (static-lag)".
 std::string name_with_id(const std::string& title, const std::string& id);
 
-/// "rf01, 2011-11-17 20:10:00 to 20:13:00 UTC (yaw manoeuvre)".
-std::string stretch_text(const Evidence& evidence);
-
 /// A finding in one paragraph for the summary of a report: name, size, rivals with their probabilities,
 /// advice.
 std::string finding_summary(const Finding& finding);
 
 /// Sentences about the unexplained part of a diagnosis.
 std::vector<std::string> unexplained_text(const Unexplained& unexplained);
-
-/// Sentences about file variables that were not tested, with the reason.
-std::vector<std::string> untested_text(const Unexplained& unexplained);
 
 /// Text about a finding, ready for a project report.
 /// @param threshold chi2 that an effect had to exceed

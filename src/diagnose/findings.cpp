@@ -3,14 +3,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include <pcor/effects/catalogue.hpp>
-#include "campaign/model_parameters.hpp"
+#include "diagnose/packed_diagnosis.hpp"
 #include "diagnose/rms.hpp"
-#include "diagnose/shape_doubt.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -55,92 +56,74 @@ std::vector<std::string> held_of(const Candidate& candidate, const std::vector<E
   return held;
 }
 
-/// Consecutive minutes with evidence for an effect.
-struct Event {
-  std::size_t flight = 0;
-  double begin = 0.0;
-  double end = 0.0;
-  double evidence = 0.0;
-  std::string regimes{};  // regimes during the event
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(flight, begin, end, evidence, regimes);
-  }
-};
-
-/// Evidence of every minute for a group: product of the rows that only this group could explain with the
-/// remaining residual. Its sum is chi2.
-Eigen::VectorXd evidence_of(const Analysis& analysis, std::size_t group,
-                            const std::vector<std::size_t>& chosen) {
-  const WhitenedSystem& scores = analysis.scores();
-  const std::vector<Eigen::VectorXd> rows = analysis.search().leftover_rows(group, chosen);
-  std::vector<std::size_t> others = chosen;
-  others.erase(std::find(others.begin(), others.end(), group));
-  const std::vector<Eigen::VectorXd> left = analysis.search().left(others);
-  const double variance = analysis.search().variance(chosen);
-  return scores.by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(left[f]) / variance; });
-}
-
 /// Joins the events of one flight that overlap by more than half, each against another reference.
-std::vector<Event> without_repeats(std::vector<Event> events, const Analysis& analysis) {
-  const auto name_of = [&](const Event& event) { return analysis.flight(event.flight).samples->name; };
-  std::stable_sort(events.begin(), events.end(), [&](const Event& a, const Event& b) {
-    return std::pair(name_of(a), a.begin) < std::pair(name_of(b), b.begin);
+std::vector<Evidence> without_repeats(std::vector<Evidence> events) {
+  std::stable_sort(events.begin(), events.end(), [](const Evidence& a, const Evidence& b) {
+    return std::tie(a.flight, a.begin) < std::tie(b.flight, b.begin);
   });
-  std::vector<Event> joined;
-  for (Event& event : events) {
-    const bool is_of_same = !joined.empty() && name_of(joined.back()) == name_of(event);
+  std::vector<Evidence> joined;
+  for (Evidence& event : events) {
+    const bool is_of_same = !joined.empty() && joined.back().flight == event.flight;
     const double end = is_of_same ? std::min(joined.back().end, event.end) : event.begin;
     if (!(2.0 * (end - event.begin) > event.end - event.begin)) {
       joined.push_back(std::move(event));
       continue;
     }
     joined.back().end = std::max(joined.back().end, event.end);
-    joined.back().evidence += event.evidence;
+    joined.back().share += event.share;
   }
   return joined;
 }
 
-std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& evidence) {
+/// Regimes between two times, e.g. "level, yaw manoeuvre".
+std::string regimes_between(const FlightSamples& samples, double begin, double end) {
+  std::set<Regime> regimes;
+  for (const Interval& interval : samples.intervals) {
+    if (interval.begin < end && interval.end > begin) regimes.insert(interval.regime);
+  }
+  std::vector<std::string_view> names;
+  for (const Regime regime : regimes) names.push_back(info_of(regime).name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Consecutive minutes with evidence for an effect, with the sum of their evidence as the share.
+std::vector<Evidence> events_of(const Analysis& analysis, const Eigen::VectorXd& evidence) {
   constexpr double minute = 60.0;  // s
   const WhitenedSystem& scores = analysis.scores();
   // A minute is part of an event if its evidence is above average.
   const double share = evidence.cwiseMax(0.0).sum() / static_cast<double>(evidence.size());
-  std::vector<Event> events;
-  for (const std::vector<Event>& more :
-       analysis.whole_share().of_each_flight<std::vector<Event>>([&](std::size_t f) {
-         std::vector<Event> of_flight;
+  std::vector<Evidence> events;
+  for (const std::vector<Evidence>& more :
+       analysis.whole_share().of_each_flight<std::vector<Evidence>>([&](std::size_t f) {
+         std::vector<Evidence> of_flight;
+         const FlightSamples& samples = *analysis.flight(f).samples;
          const std::vector<double>& time = analysis.bins(f).time();
          Eigen::Index before = -1;
-         bool open = false;
          for (std::size_t i = 0; i < time.size(); ++i) {
            const Eigen::Index block = scores.block[f][i];
            if (block == before) continue;
            before = block;
            if (evidence[block] > share) {
-             if (!open || time[i] > of_flight.back().end + minute)
-               of_flight.push_back({f, time[i], time[i], 0.0});
-             open = true;
+             if (of_flight.empty() || time[i] > of_flight.back().end + minute)
+               of_flight.push_back({samples.name, time[i], time[i], "", 0.0});
              of_flight.back().end = time[i] + minute;
-             of_flight.back().evidence += evidence[block];
+             of_flight.back().share += evidence[block];
            }
          }
-         for (Event& event : of_flight)
-           event.regimes = regimes_between(*analysis.flight(f).samples, event.begin, event.end);
+         for (Evidence& event : of_flight) event.regimes = regimes_between(samples, event.begin, event.end);
          return of_flight;
        }))
     events.insert(events.end(), more.begin(), more.end());
-  return without_repeats(std::move(events), analysis);
+  return without_repeats(std::move(events));
 }
 
 /// Equivalent number of events of equal weight.
-double count_of(const std::vector<Event>& events) {
+double count_of(const std::vector<Evidence>& events) {
   double sum = 0.0;
   double squares = 0.0;
-  for (const Event& event : events) {
-    sum += event.evidence;
-    squares += event.evidence * event.evidence;
+  for (const Evidence& event : events) {
+    sum += event.share;
+    squares += event.share * event.share;
   }
   return squares > 0.0 ? sum * sum / squares : 0.0;
 }
@@ -158,6 +141,46 @@ struct Rival {
   double less_uncertain;  ///< the same with the uncertain shapes of both
 };
 
+/// Coefficients of all columns in a fit of base and groups.
+Eigen::VectorXd coefficients_of(const Analysis& analysis, const std::vector<std::size_t>& groups) {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(analysis.scores().columns());
+  all(indices_of(groups, analysis.groups(), analysis.base())) = analysis.search().fit(groups).estimate;
+  return all;
+}
+
+/// Part of an effect's chi2 in references where a rival differs from it: the effect's contribution against
+/// each reference before absorption by the base, weighted by the share of the difference of the two fits. At
+/// most the effect's chi2.
+///
+/// The catalogue describes the shape of an effect only to about 10 %. The shape error can favour a rival only
+/// against a reference in which the two differ; equal contributions favour neither.
+///
+/// @param others remaining effects in both fits
+double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::size_t>& others,
+                              std::size_t effect, std::size_t rival) {
+  const double whole = analysis.search().score(effect, others).chi2;
+  const Eigen::VectorXd fitted = coefficients_of(analysis, set_with(others, effect));
+  const Eigen::VectorXd difference = fitted - coefficients_of(analysis, set_with(others, rival));
+  const std::vector<Eigen::Index> own = indices_of(analysis.groups()[effect], analysis.base());
+  using Squares = std::array<double, 2>;  // squares of the contribution and of the difference
+  const auto of_flights = analysis.whole_share().of_each_flight<Squares>([&](std::size_t f) {
+    const auto columns = analysis.scores().rows[f].leftCols(analysis.scores().columns());
+    return Squares{(columns(Eigen::all, own) * fitted(own)).squaredNorm(),
+                   (columns * difference).squaredNorm()};
+  });
+  std::map<std::size_t, Squares> against;  // keyed by reference
+  double differences = 0.0;
+  for (std::size_t f = 0; f < of_flights.size(); ++f) {
+    Squares& sums = against[analysis.flight(f).reference];
+    for (const std::size_t k : {0U, 1U}) sums[k] += of_flights[f][k];
+    differences += of_flights[f][1];
+  }
+  if (!(differences > 0.0)) return whole;
+  double chi2 = 0.0;
+  for (const auto& [reference, sums] : against) chi2 += sums[0] * sums[1] / differences;
+  return std::min(chi2, whole);
+}
+
 /// Groups that may replace a chosen one. The catalogue describes the shape of an effect only to about 10 %,
 /// so a rival of a strong effect may fit better by chance.
 std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
@@ -168,8 +191,7 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
     return 0.5 * (alias_margin + doubt_of_shape * doubt_of_shape * chi2);
   };
   const double widest = margin(search.score(winner, chosen).chi2);
-  std::vector<std::size_t> others = chosen;
-  others.erase(std::find(others.begin(), others.end(), winner));
+  const std::vector<std::size_t> others = set_without(chosen, winner);
   // A rival does not explain what another finding explains by its uncertain shape.
   const double best = search.evidence(chosen, others);
   const double best_uncertain = search.evidence(chosen);
@@ -177,8 +199,7 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (g == winner || search.is_absorbed(g) || is_one_of(candidates[g].id, others, candidates)) continue;
     if (!search.score(g, others).possible) continue;
-    std::vector<std::size_t> instead = others;
-    instead.push_back(g);
+    const std::vector<std::size_t> instead = set_with(others, g);
     const double less = best - search.evidence(instead, others);
     if (less < widest && less < margin(chi2_where_they_differ(analysis, others, winner, g)))
       rivals.push_back({g, less, best_uncertain - search.evidence(instead)});
@@ -191,16 +212,13 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
                               const std::vector<Rival>& rivals) {
   const Search& search = analysis.search();
   const GroupScore best = search.score(winner, chosen);
-  std::vector<std::size_t> others = chosen;
-  others.erase(std::find(others.begin(), others.end(), winner));
+  const std::vector<std::size_t> others = set_without(chosen, winner);
   const double noisier = search.variance(others) / search.variance(chosen);
   std::vector<Alias> aliases;
   for (const Rival& rival : rivals) {
     const std::size_t g = rival.group;
     if (candidates[g].id == candidates[winner].id) continue;
     const GroupScore score = search.score(g, others);
-    std::vector<std::size_t> instead = others;
-    instead.push_back(g);
     Alias alias;
     alias.candidate = g;
     alias.effect = candidates[g].id;
@@ -212,8 +230,9 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     // Each direction explains one unit of noise.
     alias.chi2_less = (best.chi2 - score.chi2) * noisier - (best.freedom - score.freedom);
     alias.log_likelihood_less = rival.less;
-    alias.estimates = estimates_of(candidates[g], search.identifiable(g), score.estimate,
-                                   score.covariance * (search.variance(instead) / search.variance(others)));
+    alias.estimates =
+        estimates_of(candidates[g], search.identifiable(g), score.estimate,
+                     score.covariance * (search.variance(set_with(others, g)) / search.variance(others)));
     const CoefficientEstimate& first = alias.estimates.front();
     if (first.typical != 0.0) alias.size_to_usual = first.value / first.typical;
     aliases.push_back(std::move(alias));
@@ -269,15 +288,10 @@ void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, s
   finding.rms = std::sqrt(analysis.search().remaining(chosen[which], own)) * sum.rms();
 }
 
-/// Part of the tried shape that a model file cannot represent; empty if it can represent all.
-std::string shape_beyond_model(const Candidate& candidate) {
-  return candidate.is_shared ? "alike on the other system" : "";
-}
-
 /// Description of the tried shape; empty for the shape of the catalogue.
 std::string shape_of(const Candidate& candidate) {
   if (!candidate.is_variant) return "";
-  if (std::string beyond = shape_beyond_model(candidate); !beyond.empty()) return beyond;
+  if (candidate.is_shared) return "alike on the other system";
   if (candidate.memory != 0.0 && memory_of(candidate.effect).of == Quantity::airspeed_rate)
     return fmt::format("mean rate over {:g} s", candidate.memory);
   const Scaling& scaling = candidate.effect.scaling;
@@ -308,14 +322,9 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   if (const EffectInfo* const info = effect_named(winning.effect.id))
     finding.family = std::string(info->family);
   finding.shape = shape_of(winning);
-  finding.shape_beyond_model = shape_beyond_model(winning);
   finding.components = {component_of(winning)};
   // Whether the shapes of the catalogue are exact is unknown: both assumptions count the same.
-  struct Weights {
-    double exact = 1.0;
-    double uncertain = 1.0;
-  };
-  std::map<std::string, Weights> weights{{winning.id, {}}};
+  std::map<std::string, Eigen::Array2d> weights{{winning.id, Eigen::Array2d::Ones()}};
   for (const Rival& rival : rivals) {
     const Candidate& candidate = candidates[rival.group];
     if (candidate.id == winning.id) finding.variants.push_back(shape_of(candidate));
@@ -323,16 +332,12 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
     if (std::find(finding.components.begin(), finding.components.end(), component) ==
         finding.components.end())
       finding.components.push_back(component);
-    Weights& weight = weights.try_emplace(candidate.id, Weights{0.0, 0.0}).first->second;
-    weight.exact = std::max(weight.exact, std::exp(-rival.less));
-    weight.uncertain = std::max(weight.uncertain, std::exp(-rival.less_uncertain));
+    Eigen::Array2d& weight = weights.try_emplace(candidate.id, Eigen::Array2d::Zero()).first->second;
+    weight = weight.max(Eigen::Array2d(std::exp(-rival.less), std::exp(-rival.less_uncertain)));
   }
-  Weights sum{0.0, 0.0};
-  for (const auto& [id, weight] : weights) sum = {sum.exact + weight.exact, sum.uncertain + weight.uncertain};
-  const auto probability_of = [&](const std::string& id) {
-    const Weights& weight = weights[id];
-    return 0.5 * (weight.exact / sum.exact + weight.uncertain / sum.uncertain);
-  };
+  Eigen::Array2d sum = Eigen::Array2d::Zero();
+  for (const auto& [id, weight] : weights) sum += weight;
+  const auto probability_of = [&](const std::string& id) { return (weights[id] / sum).mean(); };
   finding.probability = probability_of(winning.id);
   for (Alias& alias : finding.aliases) alias.probability = probability_of(alias.effect);
   for (const CoefficientEstimate& estimate : finding.estimates) {
@@ -341,39 +346,31 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   }
 }
 
-/// Contribution of each identifiable coefficient of an effect at its limit to the samples of a flight.
-std::vector<SquareSum> at_limit(const Analysis& analysis, const Candidate& candidate, std::size_t group,
-                                const UpperLimit& limit, std::size_t number) {
-  const FlightColumns& flight = analysis.flight(number);
-  const Eigen::Index first = analysis.groups()[group].first;
-  const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);
-  std::vector<SquareSum> sums(limit.limits.size());
-  if (!candidate.is_measured_by(flight.reference)) return sums;
-  for (std::size_t i = 0; i < flight.given.size(); ++i) {
-    if (std::isnan(flight.given[i])) continue;
-    for (std::size_t k = 0; k < sums.size(); ++k)
-      sums[k].add(limit.limits[k] *
-                  static_cast<double>(flight.candidates(as_index(i), first + identifiable[k])));
-  }
-  return sums;
+/// Rms over all samples, hPa, of a column of a candidate times a coefficient. @param column of all
+/// candidates'
+double rms_of_column(const Analysis& analysis, const Candidate& candidate, Eigen::Index column,
+                     double coefficient) {
+  return analysis.whole_share()
+      .sum_of_each_flight<SquareSum>([&](std::size_t f) {
+        const FlightColumns& flight = analysis.flight(f);
+        SquareSum sum;
+        if (!candidate.is_measured_by(flight.reference)) return sum;
+        for (std::size_t i = 0; i < flight.given.size(); ++i) {
+          if (!std::isnan(flight.given[i]))
+            sum.add(coefficient * static_cast<double>(flight.candidates(as_index(i), column)));
+        }
+        return sum;
+      })
+      .rms();
 }
 
 }  // namespace
-
-std::string regimes_between(const FlightSamples& samples, double begin, double end) {
-  std::set<Regime> regimes;
-  for (const Interval& interval : samples.intervals) {
-    if (interval.begin < end && interval.end > begin) regimes.insert(interval.regime);
-  }
-  std::vector<std::string_view> names;
-  for (const Regime regime : regimes) names.push_back(info_of(regime).name);
-  return fmt::format("{}", fmt::join(names, ", "));
-}
 
 std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const auto [estimate, covariance] = analysis.search().fit(chosen);
   const HeldOut with_all = chosen.empty() ? HeldOut{} : analysis.held_out(chosen);
+  const std::vector<Eigen::VectorXd> evidence_of_each = evidence_of_findings(analysis);
   std::vector<Finding> findings;
   Eigen::Index position = analysis.base();
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -392,8 +389,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     finding.held = held_of(candidate, identifiable);
     measure(analysis, chosen, i, estimate, estimate.segment(position, count), candidate, finding);
     position += count;
-    std::vector<std::size_t> without = chosen;
-    without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
+    const std::vector<std::size_t> without = set_without(chosen, group);
     // In units of the noise with the effect: the score of the search has the noise without it.
     finding.chi2 = analysis.search().score(group, chosen).chi2 * analysis.search().variance(without) /
                    analysis.search().variance(chosen);
@@ -403,16 +399,14 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     finding.rms_after = with_all.rms;
     finding.gain = (without_it.chi2 - with_all.chi2).sum();
     finding.gain_error = (without_it.chi2 - with_all.chi2).norm();
-    const Eigen::VectorXd evidence = evidence_of(analysis, group, chosen);
-    std::vector<Event> events = events_of(analysis, evidence);
+    const Eigen::VectorXd& evidence = evidence_of_each[i];
+    std::vector<Evidence> events = events_of(analysis, evidence);
     finding.events = count_of(events);
     std::sort(events.begin(), events.end(),
-              [](const Event& a, const Event& b) { return a.evidence > b.evidence; });
-    for (std::size_t k = 0; k < std::min(events.size(), most_evidence); ++k) {
-      finding.evidence.push_back({analysis.flight(events[k].flight).samples->name, events[k].begin,
-                                  events[k].end, events[k].regimes,
-                                  events[k].evidence / evidence.cwiseMax(0.0).sum()});
-    }
+              [](const Evidence& a, const Evidence& b) { return a.share > b.share; });
+    events.resize(std::min(events.size(), most_evidence));
+    for (Evidence& event : events) event.share /= evidence.cwiseMax(0.0).sum();
+    finding.evidence = std::move(events);
     const std::vector<Rival> rivals = rivals_of(analysis, candidates, group, chosen);
     finding.aliases = aliases_of(analysis, candidates, group, chosen, rivals);
     describe(candidates, group, rivals, finding);
@@ -422,9 +416,17 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
 }
 
 std::vector<Eigen::VectorXd> evidence_of_findings(const Analysis& analysis) {
+  const Search& search = analysis.search();
+  const std::vector<std::size_t>& chosen = analysis.result().chosen;
+  const double variance = search.variance(chosen);
   std::vector<Eigen::VectorXd> evidence;
-  for (const std::size_t group : analysis.result().chosen)
-    evidence.push_back(evidence_of(analysis, group, analysis.result().chosen));
+  for (const std::size_t group : chosen) {
+    // Rows that only this group could explain, times the remaining residual.
+    const std::vector<Eigen::VectorXd> rows = search.leftover_rows(group, chosen);
+    const std::vector<Eigen::VectorXd> left = search.left(set_without(chosen, group));
+    evidence.push_back(analysis.scores().by_minutes(
+        [&](std::size_t f) { return rows[f].cwiseProduct(left[f]) / variance; }));
+  }
   return evidence;
 }
 
@@ -444,16 +446,12 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
   constexpr double notable = 0.1;  // fraction of the effect's rms
   std::vector<AbsorbedEffect> absorbed;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
-    if (!analysis.search().is_absorbed(g) || candidates[g].is_variant) continue;
-    AbsorbedEffect effect;
-    effect.effect = candidates[g].id;
-    effect.title = candidates[g].title;
-    effect.remaining = analysis.search().remaining(g);
+    if (!analysis.search().is_absorbed(g) || candidates[g].is_variant || base.empty()) continue;
+    AbsorbedEffect effect{candidates[g].id, candidates[g].title, {}, analysis.search().remaining(g)};
     // Coefficients with large columns in the fit to the effect's columns.
     const Eigen::MatrixXd& information = analysis.scores().information;
     const Eigen::Index column = analysis.base() + analysis.groups()[g].first;
     const Eigen::MatrixXd normal = information.topLeftCorner(analysis.base(), analysis.base());
-    if (analysis.base() == 0) continue;
     const Eigen::VectorXd solution =
         least_norm_solution(normal, information.col(column).head(analysis.base()));
     for (Eigen::Index b = 0; b < analysis.base(); ++b) {
@@ -471,7 +469,6 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const Search& search = analysis.search();
   std::vector<UpperLimit> limits;
-  std::vector<std::size_t> groups;  // group of each finding
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (search.is_absorbed(g) || candidates[g].is_variant) continue;
     if (is_one_of(candidates[g].id, chosen, candidates)) continue;
@@ -482,43 +479,28 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     if (std::any_of(findings.begin(), findings.end(), is_alias)) continue;
     const GroupScore score = search.score(g, chosen);
     if (score.freedom == 0.0) continue;
-    UpperLimit limit;
-    limit.effect = candidates[g].id;
-    limit.title = candidates[g].title;
-    limit.estimates = estimates_of(candidates[g], search.identifiable(g), score.estimate, score.covariance);
+    UpperLimit limit{candidates[g].id, candidates[g].title,
+                     estimates_of(candidates[g], search.identifiable(g), score.estimate, score.covariance)};
+    const ColumnGroup& group = analysis.groups()[g];
     bool seen = false;  // any coefficient determined better than by its bounds
     for (std::size_t k = 0; k < limit.estimates.size(); ++k) {
       const CoefficientEstimate& estimate = limit.estimates[k];
-      const Bounds& bounds = candidates[g].tested[static_cast<std::size_t>(search.identifiable(g)[k])].bounds;
+      const Eigen::Index column = search.identifiable(g)[k];
+      const Bounds& bounds = group.bounds[static_cast<std::size_t>(column)];
       const double largest = std::max(std::abs(bounds.lower), std::abs(bounds.upper));
       const double statistical = std::abs(estimate.value) + two_sided_95 * estimate.standard_error;
       limit.limits.push_back(std::min(statistical, largest));
       seen = seen || statistical < largest;
+      // The part of the coefficient at its limit that the base does not absorb.
+      const double remaining = search.remaining(g, Eigen::VectorXd::Unit(group.count, column));
+      const double rms = rms_of_column(analysis, candidates[g], group.first + column, limit.limits.back());
+      limit.rms = std::max(limit.rms, std::sqrt(remaining) * rms);
     }
     if (!seen) limit.note = "not detectable on these flights, even at its largest possible size";
     if (!score.possible) {
       limit.note = "the size needed to explain the residual is outside its physical bounds";
     }
     limits.push_back(std::move(limit));
-    groups.push_back(g);
-  }
-  // Unit hPa: the largest rms of a coefficient at its limit that the base does not absorb.
-  using OfCoefficients = std::vector<SquareSum>;
-  const auto of_flights =
-      analysis.whole_share().of_each_flight<std::vector<OfCoefficients>>([&](std::size_t f) {
-        std::vector<OfCoefficients> sums;
-        for (std::size_t i = 0; i < limits.size(); ++i)
-          sums.push_back(at_limit(analysis, candidates[groups[i]], groups[i], limits[i], f));
-        return sums;
-      });
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    for (std::size_t k = 0; k < limits[i].limits.size(); ++k) {
-      SquareSum sum;
-      for (const std::vector<OfCoefficients>& of_flight : of_flights) sum += of_flight[i][k];
-      const Eigen::VectorXd one =
-          Eigen::VectorXd::Unit(analysis.groups()[groups[i]].count, search.identifiable(groups[i])[k]);
-      limits[i].rms = std::max(limits[i].rms, std::sqrt(search.remaining(groups[i], one)) * sum.rms());
-    }
   }
   std::sort(limits.begin(), limits.end(),
             [](const UpperLimit& a, const UpperLimit& b) { return a.rms > b.rms; });

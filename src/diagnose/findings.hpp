@@ -1,18 +1,16 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
 #include "diagnose/analysis.hpp"
-#include "diagnose/candidates.hpp"
 
 namespace pcor::internal {
 
 /// Findings of an analysis without advice, sorted by decreasing evidence.
 std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates);
 
-/// Evidence for each finding in each minute of all flights: the gain in chi2.
+/// Evidence for each finding in each minute of all flights: the gain in chi2, whose sum is its chi2.
 std::vector<Eigen::VectorXd> evidence_of_findings(const Analysis& analysis);
 
 /// Evidence of one finding for each record of a local flight, from the minute that contains the record; NaN
@@ -27,8 +25,5 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
 /// Upper limits of the effects that were not found.
 std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                                   const std::vector<Finding>& findings);
-
-/// Regimes between two times, e.g. "level, yaw manoeuvre".
-std::string regimes_between(const FlightSamples& samples, double begin, double end);
 
 }  // namespace pcor::internal

@@ -34,14 +34,6 @@ std::vector<double> all_given(const FlightColumns& flight) {
   return given;
 }
 
-/// A candidate that may be tested, and its columns.
-struct Wanted {
-  const Candidate* candidate;
-  bool reads_flaps;
-  Eigen::Index first;
-  Eigen::Index count;
-};
-
 /// Flights as input of the test; the findings are part of the model.
 TeamColumns flights_of(const Analysis& analysis, const FlapsCandidates& flaps) {
   std::vector<FlightColumns> flights;
@@ -70,28 +62,27 @@ TeamColumns flights_of(const Analysis& analysis, const FlapsCandidates& flaps) {
 FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns& columns) {
   FlapsCandidates flaps;
   const std::vector<FlightColumns>& flights = columns.flights;
-  std::size_t samples = 0;
-  for (const std::size_t count : columns.share.of_each_flight<std::size_t>([&](std::size_t f) {
-         const auto is_out = [](double x) { return !std::isnan(x); };
-         const auto out = std::count_if(flights[f].flaps_out.begin(), flights[f].flaps_out.end(), is_out);
-         return flights[f].reference == 0 ? static_cast<std::size_t>(out) : 0U;
-       }))
-    samples += count;
+  const auto samples = columns.share.sum_of_each_flight<std::size_t>([&](std::size_t f) {
+    const auto is_out = [](double x) { return !std::isnan(x); };
+    const auto out = std::count_if(flights[f].flaps_out.begin(), flights[f].flaps_out.end(), is_out);
+    return flights[f].reference == 0 ? static_cast<std::size_t>(out) : 0U;
+  });
   if (samples < min_with_flaps_out) return flaps;
-  std::vector<Wanted> requested;
+  const auto reads = [&flights](const Candidate& candidate) {
+    return reads_flaps(candidate.effect, flights.front().samples->flaps_variable);
+  };
+  std::vector<std::size_t> requested;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
-    const Candidate& candidate = set.candidates[c];
-    const bool reads = reads_flaps(candidate.effect, flights.front().samples->flaps_variable);
-    if (reads || looks_like_flaps(candidate.effect))
-      requested.push_back(
-          {&candidate, reads, as_index(set.first_column(c)), as_index(candidate.tested.size())});
+    if (reads(set.candidates[c]) || looks_like_flaps(set.candidates[c].effect)) requested.push_back(c);
   }
+  const auto first_of = [&set](std::size_t c) { return as_index(set.first_column(c)); };
+  const auto count_of = [&set](std::size_t c) { return as_index(set.candidates[c].tested.size()); };
   const auto found = columns.share.of_each_flight<std::vector<Testability>>([&](std::size_t f) {
     std::vector<Testability> of_flight(requested.size());
     if (flights[f].reference != 0) return of_flight;
     const std::vector<double> given = all_given(flights[f]);
     for (std::size_t k = 0; k < requested.size(); ++k)
-      of_flight[k] = testability_of(flights[f], given, requested[k].first, requested[k].count);
+      of_flight[k] = testability_of(flights[f], given, first_of(requested[k]), count_of(requested[k]));
     return of_flight;
   });
   std::vector<Eigen::Index> kept;
@@ -100,12 +91,11 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns
     const auto varies = [k](const std::vector<Testability>& of_flight) { return of_flight[k].varies; };
     if (std::any_of(found.begin(), found.end(), misses) || std::none_of(found.begin(), found.end(), varies))
       continue;
-    for (Eigen::Index c = 0; c < requested[k].count; ++c) kept.push_back(requested[k].first + c);
-    flaps.candidates.push_back(*requested[k].candidate);
-    flaps.reads_flaps.push_back(requested[k].reads_flaps);
+    const Candidate& candidate = flaps.candidates.emplace_back(set.candidates[requested[k]]);
+    for (Eigen::Index c = 0; c < count_of(requested[k]); ++c) kept.push_back(first_of(requested[k]) + c);
+    flaps.reads_flaps.push_back(reads(candidate));
   }
-  if (std::find(flaps.reads_flaps.begin(), flaps.reads_flaps.end(), true) == flaps.reads_flaps.end())
-    return {};
+  if (std::count(flaps.reads_flaps.begin(), flaps.reads_flaps.end(), true) == 0) return {};
   for (const FlightColumns& flight : flights) flaps.columns.emplace_back(flight.candidates(Eigen::all, kept));
   return flaps;
 }

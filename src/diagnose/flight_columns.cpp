@@ -8,15 +8,13 @@
 #include <memory>
 #include <utility>
 
-#include <pcor/base/error.hpp>
-#include <pcor/effects/catalogue.hpp>
 #include "diagnose/shape_uncertainty.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "parallel/workers.hpp"
-#include "residuals/mark_frozen.hpp"
 #include "residuals/masks.hpp"
+#include "residuals/samples.hpp"
 
 namespace pcor::internal {
 namespace {

@@ -1,6 +1,5 @@
 #include "diagnose/flown_regimes.hpp"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -19,10 +18,9 @@ struct RegimeSum {
   double longest = 0.0;  ///< duration on that flight, s
 
   RegimeSum& operator+=(const RegimeSum& other) {
-    if (information.matrix.size() == 0)
-      information = other.information;
-    else if (other.information.matrix.size() > 0)
-      information += other.information;
+    if (other.information.matrix.size() == 0) return *this;
+    if (information.matrix.size() == 0) return *this = other;
+    information += other.information;
     intervals += other.intervals;
     duration += other.duration;
     if (other.longest > longest) {
@@ -62,19 +60,14 @@ RegimeSums sums_of(const WhitenedSystem& scores, std::size_t number, const Fligh
   const FlightSamples& samples = *flight.columns.samples;
   const std::vector<double>& time = flight.bins.time();
   const std::vector<RegimeSet> regimes = regimes_of_samples(time, samples.intervals);
-  const auto position = [&time](double when) {
-    return static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), when) - time.begin());
-  };
   RegimeSums sums;
   for (const Interval& interval : samples.intervals) {
     if (!can_be_repeated(interval.regime)) continue;
-    const std::size_t first = position(interval.begin);
-    const std::size_t last = position(interval.end);
     std::vector<Eigen::Index> own;
     double within = 0.0;
     for (Eigen::Index row = 0; row < rows.rows(); ++row) {
       const auto i = static_cast<std::size_t>(scores.bin_of(number, row));
-      if (i < first || i >= last) continue;
+      if (time[i] < interval.begin || time[i] >= interval.end) continue;
       within += 1.0;
       if (!is_phase(interval.regime) || (regimes[i] >> phases).none()) own.push_back(row);
     }

@@ -79,12 +79,17 @@ bool is_in(std::size_t value, const std::vector<std::size_t>& set) {
   return std::find(set.begin(), set.end(), value) != set.end();
 }
 
-std::vector<std::size_t> without(std::vector<std::size_t> set, std::size_t value) {
-  set.erase(std::remove(set.begin(), set.end(), value), set.end());
+}  // namespace
+
+std::vector<std::size_t> set_with(std::vector<std::size_t> set, std::size_t group) {
+  set.push_back(group);
   return set;
 }
 
-}  // namespace
+std::vector<std::size_t> set_without(std::vector<std::size_t> set, std::size_t group) {
+  set.erase(std::remove(set.begin(), set.end(), group), set.end());
+  return set;
+}
 
 std::vector<Eigen::Index> indices_of(const ColumnGroup& group, Eigen::Index base) {
   std::vector<Eigen::Index> indices(static_cast<std::size_t>(group.count));
@@ -136,13 +141,12 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
   for (const ColumnGroup& group : groups) {
     const Eigen::MatrixXd own = left_.block(group.first, group.first, group.count, group.count);
     std::vector<Eigen::Index>& identifiable = identifiable_.emplace_back();
-    remaining_.push_back(0.0);
     // Information after the base and the columns already found identifiable.
     Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
+    remaining_.push_back(std::clamp(left.diagonal().maxCoeff(), 0.0, 1.0));
     while (identifiable.size() < static_cast<std::size_t>(group.count)) {
       Eigen::Index next = 0;
       const double pivot = left.diagonal().maxCoeff(&next);
-      if (identifiable.empty()) remaining_.back() = std::clamp(pivot, 0.0, 1.0);
       if (!(pivot > min_left)) break;
       identifiable.push_back(next);
       left -= Eigen::MatrixXd(left.col(next) * left.row(next) / pivot);
@@ -160,8 +164,8 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
     turned_.push_back(std::move(turned));
     begin_.push_back(width);
     width += kept;
+    candidates_ += group.count;
   }
-  for (const ColumnGroup& group : groups) candidates_ += group.count;
   const Eigen::Index shapes = tested - candidates_;
   Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(tested, width + shapes);
   turn.bottomRightCorner(shapes, shapes).setIdentity();
@@ -180,14 +184,6 @@ double Search::remaining(std::size_t group, const Eigen::VectorXd& coefficients)
       1.0, distinct_squares(scores_->plain, indices_of({}, groups_, base_), own, coefficients) / whole);
 }
 
-std::vector<Eigen::Index> Search::directions_of(const std::vector<std::size_t>& groups) const {
-  std::vector<Eigen::Index> indices;
-  for (const std::size_t group : groups) {
-    for (Eigen::Index k = 0; k < turned_[group].cols(); ++k) indices.push_back(begin_[group] + k);
-  }
-  return indices;
-}
-
 std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set) const {
   std::vector<Eigen::Index> shapes;
   for (const std::size_t group : set) {
@@ -199,7 +195,10 @@ std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set)
 
 Search::Conditional Search::given(const std::vector<std::size_t>& groups) const {
   Conditional result{information_, score_, squares_, 1.0};
-  std::vector<Eigen::Index> indices = directions_of(groups);
+  std::vector<Eigen::Index> indices;  // turned columns of the groups
+  for (const std::size_t group : groups) {
+    for (Eigen::Index k = 0; k < turned_[group].cols(); ++k) indices.push_back(begin_[group] + k);
+  }
   const std::size_t count = indices.size();
   const std::vector<Eigen::Index> shapes = shapes_of(groups);
   const Eigen::Index turned = information_.cols() - (left_.cols() - candidates_);
@@ -231,7 +230,6 @@ GroupScore Search::score_in(const Conditional& conditional, std::size_t group) c
   const Eigen::Index begin = begin_[group];
   result.estimate = Eigen::VectorXd::Zero(columns.count);
   result.covariance = Eigen::MatrixXd::Zero(columns.count, columns.count);
-  result.possible = false;
   if (count == 0 || !(conditional.variance > 0.0)) return result;
   const Eigen::MatrixXd own = conditional.information.block(begin, begin, count, count);
   for (const double value : symmetric_eigenvalues(own)) result.freedom += value > redundant_below ? 1.0 : 0.0;
@@ -255,7 +253,7 @@ GroupScore Search::score_in(const Conditional& conditional, std::size_t group) c
 }
 
 GroupScore Search::score(std::size_t group, const std::vector<std::size_t>& others) const {
-  return score_in(given(without(others, group)), group);
+  return score_in(given(set_without(others, group)), group);
 }
 
 Eigen::MatrixXd Search::normal_turn(const Conditional& conditional, const std::vector<std::size_t>& groups,
@@ -312,7 +310,7 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
           scale_.segment(base_ + own.first, own.count).asDiagonal() * turned_[group].col(kept - 1);
   }
   weight.segment(base_ + own.first, own.count) = found.estimate;
-  const std::vector<Eigen::Index> rest = indices_of(without(others, group), groups_, base_);
+  const std::vector<Eigen::Index> rest = indices_of(set_without(others, group), groups_, base_);
   const Eigen::VectorXd imitated = scores_->information(rest, Eigen::all).leftCols(columns) * weight;
   weight(rest) = -pseudo_solution(scores_->information(rest, rest), imitated);
   std::vector<Eigen::VectorXd> rows(scores_->rows.size());
@@ -322,21 +320,23 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
   return rows;
 }
 
-double Search::effective_blocks(std::size_t group, const std::vector<std::size_t>& others) const {
-  const std::vector<Eigen::VectorXd> rows = leftover_rows(group, others);
+double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen, double threshold) const {
+  const std::vector<Eigen::VectorXd> rows = leftover_rows(winner, chosen);
   const Eigen::VectorXd information =
       scores_->by_minutes([&rows](std::size_t f) { return rows[f].cwiseAbs2(); });
   const double squares = information.squaredNorm();
-  return squares > 0.0 ? information.sum() * information.sum() / squares : 0.0;
-}
-
-double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen, double threshold) const {
-  const double blocks = effective_blocks(winner, chosen);
+  const double blocks = squares > 0.0 ? information.sum() * information.sum() / squares : 0.0;
   if (blocks < enough_blocks) return threshold * (1.0 + few_blocks_penalty / std::max(blocks, 1.0));
-  // Ratio of the observed variation of the group's score noise between minutes to the noise model.
-  std::vector<std::size_t> with = chosen;
-  with.push_back(winner);
-  return threshold * std::max(1.0, own_noise(winner, chosen).squaredNorm() / variance(with));
+  // Noise in the score of the group by minutes: the remainder after its effect is subtracted.
+  const std::vector<std::size_t> with = set_with(chosen, winner);
+  const std::vector<Eigen::VectorXd> left_with = left(with);
+  const Eigen::VectorXd sums =
+      scores_->by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(left_with[f]); });
+  const auto whole =
+      scores_->share.sum_of_each_flight<double>([&rows](std::size_t f) { return rows[f].squaredNorm(); });
+  const Eigen::VectorXd noise = sums / std::sqrt(whole);
+  // Ratio of its observed variation between minutes to the noise model.
+  return threshold * std::max(1.0, noise.squaredNorm() / variance(with));
 }
 
 std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen) const {
@@ -347,18 +347,6 @@ std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen
     if (scores_->share.is_local(f)) result[f] = scores_->left(f, coefficients);
   }
   return result;
-}
-
-Eigen::VectorXd Search::own_noise(std::size_t group, const std::vector<std::size_t>& others) const {
-  std::vector<std::size_t> with = without(others, group);
-  with.push_back(group);
-  const std::vector<Eigen::VectorXd> rows = leftover_rows(group, others);
-  const std::vector<Eigen::VectorXd> noise = left(with);
-  const Eigen::VectorXd sums =
-      scores_->by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(noise[f]); });
-  const auto squares =
-      scores_->share.sum_of_each_flight<double>([&rows](std::size_t f) { return rows[f].squaredNorm(); });
-  return squares > 0.0 ? Eigen::VectorXd(sums / std::sqrt(squares)) : sums;
 }
 
 bool Search::is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const {
@@ -406,13 +394,9 @@ double Search::evidence(const std::vector<std::size_t>& set,
     for (const Eigen::Index column : identifiable_[group]) columns.push_back(groups_[group].first + column);
   }
   if (columns.empty()) return 0.0;
-  Eigen::VectorXd precision(as_index(columns.size()));
-  for (const Eigen::Index shape : shapes_of(uncertain)) {
-    columns.push_back(shape);
-    const double scale = scale_[base_ + shape];
-    precision.conservativeResize(as_index(columns.size()));
-    precision[precision.size() - 1] = std::max(scale * scale, 1e-300);
-  }
+  const std::vector<Eigen::Index> shapes = shapes_of(uncertain);
+  columns.insert(columns.end(), shapes.begin(), shapes.end());
+  Eigen::VectorXd precision = scale_.tail(left_.cols())(columns).cwiseAbs2().cwiseMax(1e-300);
   const auto choose = [&](std::size_t i, const Tail& tail) {
     precision.segment(begin[i], as_index(identifiable_[set[i]].size())) =
         precision_of(set[i], tail.times)(identifiable_[set[i]]);
@@ -451,15 +435,14 @@ void Search::improve(std::vector<std::size_t>& chosen, double price) const {
       moved = true;
     };
     for (const std::size_t out : now) {
-      const std::vector<std::size_t> rest = without(now, out);
+      const std::vector<std::size_t> rest = set_without(now, out);
       consider(rest);
       for (std::size_t in = 0; in < groups_.size(); ++in) {
         if (is_absorbed(in) || is_in(in, now)) continue;
-        std::vector<std::size_t> set = rest;
-        set.push_back(in);
+        const std::vector<std::size_t> set = set_with(rest, in);
         consider(set);
         for (const std::size_t other : rest) {
-          if (other < out) consider(without(set, other));
+          if (other < out) consider(set_without(set, other));
         }
       }
     }
@@ -487,10 +470,6 @@ SearchResult Search::run(const SearchOptions& options) const {
     if (!is_absorbed(g)) open.push_back(g);
   }
   std::vector<std::size_t>& chosen = result.chosen;
-  if (open.empty()) {
-    result.threshold = std::numeric_limits<double>::infinity();
-    return result;
-  }
   // Penalty for the number of effects: each effect of a set needs evidence.
   const double price = std::log(static_cast<double>(open.size()));
   std::vector<std::vector<std::size_t>> seen;
@@ -505,9 +484,7 @@ SearchResult Search::run(const SearchOptions& options) const {
       rest.push_back(group);
       const GroupScore score = score_in(conditional, group);
       if (!score.possible) continue;
-      std::vector<std::size_t> with = chosen;
-      with.push_back(group);
-      const double value = evidence(with);
+      const double value = evidence(set_with(chosen, group));
       if (winner != groups_.size() && value <= best_value) continue;
       best_value = value;
       best = score;
@@ -525,22 +502,19 @@ SearchResult Search::run(const SearchOptions& options) const {
     seen.push_back(chosen);
   }
   if (!options.threshold) prefer_usual_shapes(chosen);
-  for (bool pruned = true; pruned;) {
-    pruned = false;
-    for (const std::size_t group : std::vector<std::size_t>(chosen)) {
+  const auto first_weak = [&] {
+    return std::find_if(chosen.begin(), chosen.end(), [&](std::size_t group) {
       const GroupScore now = score(group, chosen);
-      if (now.possible && now.equivalent > result.threshold) continue;
-      chosen = without(chosen, group);
-      pruned = true;
-      break;
-    }
-  }
+      return !now.possible || !(now.equivalent > result.threshold);
+    });
+  };
+  for (auto weak = first_weak(); weak != chosen.end(); weak = first_weak()) chosen.erase(weak);
   const std::vector<std::size_t> set = chosen;
   std::sort(chosen.begin(), chosen.end(),
             [&](std::size_t a, std::size_t b) { return score(a, set).chi2 > score(b, set).chi2; });
-  // Number of independent groups whose best score has this threshold.
-  const double effective = (1.0 - options.confidence) / chi_squared_tail(result.threshold, 1.0);
   for (const std::size_t group : chosen) {
+    // Number of independent groups whose best score has this threshold.
+    const double effective = (1.0 - options.confidence) / chi_squared_tail(result.threshold, 1.0);
     result.p_values.push_back(
         std::min(1.0, effective * chi_squared_tail(score(group, chosen).equivalent, 1.0)));
   }
@@ -548,7 +522,7 @@ SearchResult Search::run(const SearchOptions& options) const {
 }
 
 double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const {
-  const Conditional conditional = given(without(without(others, a), b));
+  const Conditional conditional = given(set_without(set_without(others, a), b));
   std::vector<Eigen::Index> freedom;
   const Eigen::MatrixXd turn = normal_turn(conditional, {a, b}, freedom);
   if (freedom[0] == 0 || freedom[1] == 0) return 0.0;
@@ -563,12 +537,15 @@ double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::
 }
 
 SearchFit Search::fit(const std::vector<std::size_t>& chosen) const {
-  std::vector<Eigen::Index> indices(static_cast<std::size_t>(base_));  // positions among the scores' columns
-  std::iota(indices.begin(), indices.end(), Eigen::Index{0});
-  std::vector<Eigen::Index> out = indices;  // positions among the estimates
+  std::vector<Eigen::Index> indices = indices_of({}, groups_, base_);  // positions among the scores' columns
+  std::vector<Eigen::Index> out = indices;                             // positions among the estimates
+  Eigen::VectorXd prior = Eigen::VectorXd::Zero(scores_->columns());   // precision of each of these
   Eigen::Index size = base_;
   for (const std::size_t group : chosen) {
+    const Eigen::VectorXd precision = precision_of(group, tails.back().times);
     for (const Eigen::Index column : identifiable_[group]) {
+      if (groups_[group].deviation(static_cast<std::size_t>(column)) != 0.0)
+        prior[as_index(indices.size())] = precision[column];
       indices.push_back(base_ + groups_[group].first + column);
       out.push_back(size + column);
     }
@@ -576,16 +553,7 @@ SearchFit Search::fit(const std::vector<std::size_t>& chosen) const {
   }
   const Eigen::VectorXd scale = scale_(indices);
   Eigen::MatrixXd scaled = scale.asDiagonal() * scores_->information(indices, indices) * scale.asDiagonal();
-  Eigen::Index position = base_;
-  for (const std::size_t group : chosen) {
-    const Eigen::VectorXd precision = precision_of(group, tails.back().times);
-    for (const Eigen::Index column : identifiable_[group]) {
-      const auto k = static_cast<std::size_t>(column);
-      if (k < groups_[group].usual.size() && groups_[group].usual[k] != 0.0)
-        scaled(position, position) += precision[column];
-      ++position;
-    }
-  }
+  scaled.diagonal() += prior.head(scaled.cols());
   const Eigen::MatrixXd inverse =
       scale.asDiagonal() * pseudo_inverse(scaled, rank_limit) * scale.asDiagonal();
   SearchFit result{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
@@ -593,7 +561,5 @@ SearchFit Search::fit(const std::vector<std::size_t>& chosen) const {
   result.covariance(out, out) = variance(chosen) * inverse;
   return result;
 }
-
-double Search::variance(const std::vector<std::size_t>& chosen) const { return given(chosen).variance; }
 
 }  // namespace pcor::internal

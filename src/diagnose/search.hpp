@@ -33,6 +33,10 @@ struct ColumnGroup {
   }
 };
 
+/// A set of groups with one more, and without one of them.
+std::vector<std::size_t> set_with(std::vector<std::size_t> set, std::size_t group);
+std::vector<std::size_t> set_without(std::vector<std::size_t> set, std::size_t group);
+
 /// Columns of a group among those of base and candidates.
 std::vector<Eigen::Index> indices_of(const ColumnGroup& group, Eigen::Index base);
 
@@ -60,7 +64,7 @@ struct GroupScore {
   double equivalent = 0.0;  ///< equivalent chi2 of one degree of freedom
   Eigen::VectorXd estimate{};
   Eigen::MatrixXd covariance{};
-  bool possible = true;  ///< the estimate is within its bounds, given the errors
+  bool possible = false;  ///< the estimate is within its bounds, given the errors
 };
 
 struct SearchResult {
@@ -114,7 +118,7 @@ class Search {
   SearchFit fit(const std::vector<std::size_t>& chosen) const;
 
   /// Variance of the whitened residuals after a fit of base and `chosen`; 1 if the noise model holds.
-  double variance(const std::vector<std::size_t>& chosen) const;
+  double variance(const std::vector<std::size_t>& chosen) const { return given(chosen).variance; }
 
   /// Whitened residuals of each local flight after a fit of base and `chosen`.
   std::vector<Eigen::VectorXd> left(const std::vector<std::size_t>& chosen) const;
@@ -131,8 +135,6 @@ class Search {
     double variance = 1.0;
   };
 
-  /// Turned columns of some groups.
-  std::vector<Eigen::Index> directions_of(const std::vector<std::size_t>& groups) const;
   /// Columns of the uncertain shapes of a set, counted from the first candidate's.
   std::vector<Eigen::Index> shapes_of(const std::vector<std::size_t>& set) const;
   Conditional given(const std::vector<std::size_t>& groups) const;
@@ -146,9 +148,6 @@ class Search {
   /// Score that a winner must exceed: the threshold, raised if the evidence is in a few minutes or if the
   /// noise there is larger than elsewhere.
   double level(std::size_t winner, const std::vector<std::size_t>& chosen, double threshold) const;
-  /// Noise in the score of a group by minutes: the remainder after its effect is subtracted.
-  Eigen::VectorXd own_noise(std::size_t group, const std::vector<std::size_t>& others) const;
-  double effective_blocks(std::size_t group, const std::vector<std::size_t>& others) const;
   /// Gives each effect its shape of the catalogue (the first), unless the flights support another.
   void prefer_usual_shapes(std::vector<std::size_t>& chosen) const;
   /// Exchanges, joins and drops effects while the set becomes more likely.

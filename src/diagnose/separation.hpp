@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <pcor/model_io/model_definition.hpp>
 #include "diagnose/flown_regimes.hpp"
 #include "diagnose/search.hpp"
 

@@ -74,16 +74,16 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
     const auto effect_on = [&](std::size_t f) -> Eigen::VectorXd {
       return binned.columns[f] * effects[static_cast<std::size_t>(e)];
     };
-    const auto squares = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
-      Eigen::VectorXd of_references = Eigen::VectorXd::Zero(2 * as_index(references));
-      const Eigen::Index position = 2 * as_index(flights[f]->reference);
-      of_references[position] = effect_on(f).squaredNorm();
-      of_references[position + 1] = static_cast<double>(binned.columns[f].rows());
+    // Sum of the squares against each reference, and their number.
+    const auto squares = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+      Eigen::MatrixXd of_references = Eigen::MatrixXd::Zero(2, as_index(references));
+      of_references.col(as_index(flights[f]->reference)) << effect_on(f).squaredNorm(),
+          static_cast<double>(binned.columns[f].rows());
       return of_references;
     });
-    const double sum = squares(Eigen::seq(0, Eigen::last, 2)).sum();
+    const double sum = squares.row(0).sum();
     if (!(sum > 0.0)) continue;
-    const double rms = std::sqrt(sum / squares(Eigen::seq(1, Eigen::last, 2)).sum());
+    const double rms = std::sqrt(sum / squares.row(1).sum());
     const auto sums = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
       const Eigen::VectorXd effect = effect_on(f);
       return factors_of(*flights[f], binned.bins[f], effect, rms).transpose() * effect.cwiseAbs2();
@@ -96,9 +96,8 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
       auto columns = result[f].middleCols(shape_columns * e, shape_columns);
       columns.leftCols(factors) = factor_sd * (effect.asDiagonal() * varying);
       columns.col(factors) = delay_sd * rate_of(effect, binned.bins[f]);
-      const Eigen::Index position = 2 * as_index(flights[f]->reference);
-      if (squares[position] > 0.0)
-        columns.col(factors + 1).setConstant(std::sqrt(squares[position] / squares[position + 1]));
+      const Eigen::VectorXd own = squares.col(as_index(flights[f]->reference));
+      if (own[0] > 0.0) columns.col(factors + 1).setConstant(std::sqrt(own[0] / own[1]));
     }
   }
   return result;

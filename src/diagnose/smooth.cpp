@@ -43,7 +43,7 @@ Smooth Smooth::with_knots_at_values(const VariableValues& values, std::size_t co
     return smooth;
   }
   // Quadratic splines without the constant and the straight line have one span per column.
-  const std::size_t spans = columns > degree ? columns - degree + 1 : 1;
+  const std::size_t spans = columns - degree + 1;
   for (const double knot : values.quantiles(spans + 1)) {
     if (smooth.knots_.empty() || knot > smooth.knots_.back()) smooth.knots_.push_back(knot);
   }
@@ -54,11 +54,10 @@ Smooth Smooth::with_knots_at_values(const VariableValues& values, std::size_t co
 Smooth Smooth::with_even_knots(const VariableValues& values, std::size_t columns) {
   Smooth smooth;
   if (columns < degree || !smooth.describe(values)) return smooth;
+  smooth.columns_ = columns;
   // First and last spline are omitted: the straight line replaces one, and the sum of all would be a
   // constant.
-  const std::size_t spans = columns - 1;
-  smooth.columns_ = columns;
-  smooth.distance_ = (values.maximum() - values.minimum()) / static_cast<double>(spans);
+  smooth.distance_ = (values.maximum() - values.minimum()) / static_cast<double>(columns - 1);
   smooth.first_ = values.minimum();
   return smooth;
 }

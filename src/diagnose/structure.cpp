@@ -26,14 +26,6 @@ constexpr Eigen::Index draws = 99;  // draws for each of the two ways of removin
 /// Fractions of the drift rms that may remain after a variable explains part of it.
 constexpr std::array<double, 3> parts_of_drift{1.0, 0.4, 0.0};
 
-/// Series shifted cyclically to a later start.
-Eigen::VectorXd rotated(const Eigen::VectorXd& series, double part) {
-  const auto first = static_cast<Eigen::Index>(part * static_cast<double>(series.size()));
-  Eigen::VectorXd result(series.size());
-  result << series.tail(series.size() - first), series.head(first);
-  return result;
-}
-
 /// @param shift_seed seed of the shifts; @param sign_seed seed of the signs, combined with the minute
 DrawnResiduals drawn(const Eigen::VectorXd& left, const Binning& bins, std::uint64_t shift_seed,
                      std::uint64_t sign_seed) {
@@ -41,7 +33,10 @@ DrawnResiduals drawn(const Eigen::VectorXd& left, const Binning& bins, std::uint
   DrawnResiduals result{Eigen::MatrixXd(left.size(), draws), left};
   std::mt19937_64 shifts(shift_seed);
   std::uniform_real_distribution<double> part(0.1, 0.9);
-  for (Eigen::Index k = 0; k < draws; ++k) result.shifted.col(k) = rotated(left, part(shifts));
+  for (Eigen::Index k = 0; k < draws; ++k) {
+    const auto first = static_cast<Eigen::Index>(part(shifts) * static_cast<double>(left.size()));
+    std::rotate_copy(left.begin(), left.begin() + first, left.end(), result.shifted.col(k).begin());
+  }
   std::vector<double> minutes;
   for (const double time : bins.time()) {
     const double minute = std::floor(time / length);
@@ -80,11 +75,6 @@ std::vector<Eigen::VectorXd> left_of(const WhitenedSystem& scores) {
     if (scores.share.is_local(f)) left[f] = scores.left(f, solution);
   }
   return left;
-}
-
-bool misses_too_much(const VariableValues& values) {
-  const auto missing = static_cast<double>(values.missing());
-  return missing > max_missing * (missing + static_cast<double>(values.count()));
 }
 
 }  // namespace
@@ -140,27 +130,30 @@ double StructureTest::minus_likelihood(const Whitened& flights, double taken) co
   return flights.determinant + static_cast<double>(rows_) * std::log(left);
 }
 
-VariableValues StructureTest::values_of(const std::vector<const double*>& values) const {
-  return {share_, [&](std::size_t f) {
-            std::vector<double> of_flight;
-            for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back(values[f][record]);
-            return of_flight;
-          }};
+std::optional<VariableValues> StructureTest::values_of(const std::vector<const double*>& values) const {
+  const VariableValues found(share_, [&](std::size_t f) {
+    std::vector<double> of_flight;
+    for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back(values[f][record]);
+    return of_flight;
+  });
+  const auto missing = static_cast<double>(found.missing());
+  if (missing > max_missing * (missing + static_cast<double>(found.count()))) return std::nullopt;
+  return found;
 }
 
 bool StructureTest::add(const std::string& name, const std::vector<const double*>& values, double turn) {
-  const VariableValues known = values_of(values);
-  if (misses_too_much(known)) return false;
-  if (turn > 0.0) return add(name, values, Smooth::periodic(known, turn));
+  const std::optional<VariableValues> known = values_of(values);
+  if (!known) return false;
+  if (turn > 0.0) return add(name, values, Smooth::periodic(*known, turn));
   const std::size_t maximum = std::clamp(rows_ / bins_per_column, std::size_t{1}, max_columns);
-  return add(name, values, Smooth::with_knots_at_values(known, maximum));
+  return add(name, values, Smooth::with_knots_at_values(*known, maximum));
 }
 
 bool StructureTest::add_fine(const std::string& name, const std::vector<const double*>& values) {
   const std::size_t maximum = std::min(rows_ / bins_per_column, fine_columns);
   if (maximum <= max_columns) return false;
-  const VariableValues known = values_of(values);
-  return !misses_too_much(known) && add(name, values, Smooth::with_even_knots(known, maximum));
+  const std::optional<VariableValues> known = values_of(values);
+  return known && add(name, values, Smooth::with_even_knots(*known, maximum));
 }
 
 std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,

@@ -104,8 +104,8 @@ class StructureTest {
     Eigen::Index freedom = 0;
   };
 
-  /// Values of all records used.
-  VariableValues values_of(const std::vector<const double*>& values) const;
+  /// Values of all records used; nothing if too many are missing.
+  std::optional<VariableValues> values_of(const std::vector<const double*>& values) const;
   bool add(const std::string& name, const std::vector<const double*>& values, const Smooth& smooth);
   std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth,
                                           const std::vector<const double*>& values) const;

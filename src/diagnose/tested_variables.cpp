@@ -17,14 +17,6 @@ constexpr double full_turn = 360.0;  // deg
 
 using Values = std::shared_ptr<const std::vector<double>>;
 
-/// Series of each local flight, without a copy of the flight data.
-template <class Member>
-std::vector<Values> held_by(const std::vector<FlightColumns>& flights, const Member& member) {
-  std::vector<Values> result;
-  for (const FlightColumns& flight : flights) result.emplace_back(Values(), &member(flight));
-  return result;
-}
-
 TestedVariable product(std::string name, const std::vector<FlightColumns>& flights, Quantity a, Quantity b) {
   TestedVariable variable;
   variable.name = std::move(name);
@@ -51,19 +43,15 @@ double turn_of(const VariableInfo& info) {
 
 /// Number of records between values if a variable has a lower rate; otherwise 1.
 std::size_t spacing_of(const std::vector<double>& values) {
-  std::size_t first = values.size();
-  std::size_t last = 0;
-  std::size_t count = 0;
-  std::size_t widest = 0;
+  std::vector<std::size_t> records;  // with a value
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i])) continue;
-    if (count > 0) widest = std::max(widest, i - last);
-    first = std::min(first, i);
-    last = i;
-    ++count;
+    if (std::isfinite(values[i])) records.push_back(i);
   }
-  if (count < 2) return 1;
-  const double mean = static_cast<double>(last - first) / static_cast<double>(count - 1);
+  if (records.size() < 2) return 1;
+  std::size_t widest = 0;
+  for (std::size_t k = 1; k < records.size(); ++k) widest = std::max(widest, records[k] - records[k - 1]);
+  const double mean =
+      static_cast<double>(records.back() - records.front()) / static_cast<double>(records.size() - 1);
   // Equidistant values with a few missing ones; otherwise these are gaps.
   return mean > 1.5 && static_cast<double>(widest) <= 3.0 * mean ? static_cast<std::size_t>(std::lround(mean))
                                                                  : 1;
@@ -81,20 +69,6 @@ void fill_between(std::vector<double>& values, bool hold) {
   }
 }
 
-/// A variable, as the first file describes it.
-struct Described {
-  std::string name{};
-  std::string unit{};
-  std::string description{};
-  int rate = 0;
-  double turn = 0.0;  // full turn of an angle; 0 for other variables
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(name, unit, description, rate, turn);
-  }
-};
-
 /// Description of a variable in a file, without its values.
 struct Seen {
   double minimum = std::numeric_limits<double>::infinity();
@@ -107,18 +81,24 @@ struct Seen {
   }
 };
 
-std::vector<Described> described_by(const Flight& file, const std::set<std::string>& without) {
-  std::vector<Described> result;
+/// Variables of a file without their values. The turn is that of any angle.
+std::vector<TestedVariable> described_by(const Flight& file, const std::set<std::string>& without) {
+  std::vector<TestedVariable> result;
   for (const std::string& name : file.variables()) {
     const VariableInfo& info = file.variable(name);
-    if (info.is_series && without.count(name) == 0 && !is_truth(info))
-      result.push_back({name, info.units, info.long_name, info.rate, turn_of(info)});
+    if (!info.is_series || without.count(name) != 0 || is_truth(info)) continue;
+    TestedVariable& variable = result.emplace_back();
+    variable.name = name;
+    variable.unit = info.units;
+    variable.description = info.long_name;
+    variable.turn = turn_of(info);
+    if (info.rate > 1) variable.sampling = fmt::format("means of {} samples a record", info.rate);
   }
   return result;
 }
 
 /// Reads a variable, one value a record.
-Values read_variable(const Flight& file, const Described& variable, Seen& seen) {
+Values read_variable(const Flight& file, const TestedVariable& variable, Seen& seen) {
   std::vector<double> values(file.records());
   for (const RecordBlock block : blocks_of(file.records()))
     file.read_at_rate(1, variable.name, block, UnitConversion(), values.data() + block.first);
@@ -130,30 +110,6 @@ Values read_variable(const Flight& file, const Described& variable, Seen& seen) 
     seen.maximum = std::max(seen.maximum, value);
   }
   return std::make_shared<const std::vector<double>>(std::move(values));
-}
-
-/// A variable without its values. @param seen in each file
-TestedVariable tested(const Described& described, const std::vector<Seen>& seen) {
-  TestedVariable variable;
-  variable.name = described.name;
-  variable.unit = described.unit;
-  variable.description = described.description;
-  variable.in_file = true;
-  variable.may_be_cause = true;
-  if (described.rate > 1) variable.sampling = fmt::format("means of {} samples a record", described.rate);
-  double minimum = described.turn;
-  double maximum = -described.turn;
-  for (const Seen& each : seen) {
-    minimum = std::min(minimum, each.minimum);
-    maximum = std::max(maximum, each.maximum);
-    if (each.spacing > 1)
-      variable.sampling = fmt::format("one value in {} records, {} in between", each.spacing,
-                                      described.turn > 0.0 ? "held" : "interpolated");
-  }
-  // An angle within less than half of all directions is treated as an ordinary number.
-  if (described.turn > 0.0 && maximum - minimum > 0.5 * described.turn && maximum - minimum <= described.turn)
-    variable.turn = described.turn;
-  return variable;
 }
 
 /// Climb rate equivalent to climb plus acceleration, m/s: vertical speed + V/g dV/dt. It is thrust less drag
@@ -185,23 +141,20 @@ std::vector<const double*> TestedVariable::pointers() const {
 
 std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& flights) {
   std::vector<TestedVariable> result;
-  for (const auto& each : flights.front().quantities) {
-    const Quantity quantity = each.first;
+  for (const auto& [quantity, column] : flights.front().quantities) {
     TestedVariable& variable = result.emplace_back();
     variable.name = std::string(info_of(quantity).name);
     variable.unit = std::string(info_of(quantity).unit);
     variable.fine = quantity == Quantity::corrected_mach;
-    variable.values = held_by(flights, [quantity](const FlightColumns& flight) -> const std::vector<double>& {
-      return flight.quantity(quantity);
-    });
+    for (const FlightColumns& flight : flights)
+      variable.values.emplace_back(Values(), &flight.quantity(quantity));  // without a copy
   }
   TestedVariable& pressure = result.emplace_back();
   pressure.name = "corrected_static_pressure";
   pressure.unit = "hPa";
   pressure.fine = true;
-  pressure.values = held_by(flights, [](const FlightColumns& flight) -> const std::vector<double>& {
-    return flight.corrected_pressure;
-  });
+  for (const FlightColumns& flight : flights)
+    pressure.values.emplace_back(Values(), &flight.corrected_pressure);
   result.push_back(product("attack times Mach number", flights, Quantity::attack, Quantity::corrected_mach));
   result.push_back(specific_excess_power(flights));
   result.push_back(
@@ -212,37 +165,48 @@ std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& fl
 std::vector<TestedVariable> recorded_variables(const FlightSet& files,
                                                const std::vector<FlightColumns>& flights,
                                                const std::set<std::string>& without) {
-  const std::vector<Described> of_first =
+  const std::vector<TestedVariable> of_first =
       files.share()
-          .of_each_flight<std::vector<Described>>([&](std::size_t number) {
-            return number == 0 ? described_by(files[0], without) : std::vector<Described>();
+          .of_each_flight<std::vector<TestedVariable>>([&](std::size_t number) {
+            return number == 0 ? described_by(files[0], without) : std::vector<TestedVariable>();
           })
           .front();
   const auto has = files.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
     const Flight& file = files[number];
     std::vector<bool> all;
-    for (const Described& each : of_first)
+    for (const TestedVariable& each : of_first)
       all.push_back(file.has(each.name) && file.variable(each.name).is_series);
     return all;
   });
-  std::vector<Described> everywhere;
+  std::vector<TestedVariable> result;
   for (std::size_t k = 0; k < of_first.size(); ++k) {
     if (std::all_of(has.begin(), has.end(), [k](const std::vector<bool>& of_file) { return of_file[k]; }))
-      everywhere.push_back(of_first[k]);
+      result.push_back(of_first[k]);
   }
-  std::vector<std::vector<Values>> values(everywhere.size(), std::vector<Values>(files.size()));
+  std::vector<std::vector<Values>> values(result.size(), std::vector<Values>(files.size()));
   const auto seen = files.share().of_each_flight<std::vector<Seen>>([&](std::size_t number) {
     const Flight& file = files[number];
-    std::vector<Seen> of_file(everywhere.size());
-    for (std::size_t k = 0; k < everywhere.size(); ++k)
-      values[k][number] = read_variable(file, everywhere[k], of_file[k]);
+    std::vector<Seen> of_file(result.size());
+    for (std::size_t k = 0; k < result.size(); ++k)
+      values[k][number] = read_variable(file, result[k], of_file[k]);
     return of_file;
   });
-  std::vector<TestedVariable> result;
-  for (std::size_t k = 0; k < everywhere.size(); ++k) {
-    std::vector<Seen> of_variable;
-    for (const std::vector<Seen>& of_file : seen) of_variable.push_back(of_file[k]);
-    TestedVariable& variable = result.emplace_back(tested(everywhere[k], of_variable));
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    TestedVariable& variable = result[k];
+    variable.in_file = true;
+    variable.may_be_cause = true;
+    double minimum = variable.turn;
+    double maximum = -variable.turn;
+    for (const std::vector<Seen>& of_file : seen) {
+      minimum = std::min(minimum, of_file[k].minimum);
+      maximum = std::max(maximum, of_file[k].maximum);
+      if (of_file[k].spacing > 1)
+        variable.sampling = fmt::format("one value in {} records, {} in between", of_file[k].spacing,
+                                        variable.turn > 0.0 ? "held" : "interpolated");
+    }
+    // An angle within less than half of all directions is treated as an ordinary number.
+    const double range = maximum - minimum;
+    if (!(range > 0.5 * variable.turn && range <= variable.turn)) variable.turn = 0.0;
     for (const FlightColumns& flight : flights) {
       const Values& own = values[k][flight.file];
       variable.values.push_back(own ? own : std::make_shared<const std::vector<double>>());

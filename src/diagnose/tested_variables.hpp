@@ -28,6 +28,12 @@ struct TestedVariable {
   std::vector<std::shared_ptr<const std::vector<double>>> values{};
 
   std::vector<const double*> pointers() const;
+
+  /// Description without values, as the first file gives it to all members of a team.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(name, unit, description, turn, sampling);
+  }
 };
 
 /// Motion of the aircraft, and products of motion variables.

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+
 namespace pcor::internal {
 
 std::string id_of_trace(const std::string& variable) {
   std::string id = "traced-";
-  for (const char letter : variable) {
-    const bool upper = letter >= 'A' && letter <= 'Z';
-    const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9');
-    id += upper ? static_cast<char>(letter - 'A' + 'a') : plain ? letter : '-';
-  }
+  for (const unsigned char letter : variable)
+    id += std::isalnum(letter) != 0 ? static_cast<char>(std::tolower(letter)) : '-';
   return id;
 }
 

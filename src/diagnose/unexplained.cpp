@@ -1,11 +1,10 @@
 #include "diagnose/unexplained.hpp"
 
 #include <fmt/format.h>
+#include <cereal/types/set.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -31,33 +30,25 @@ constexpr double min_drift_gain = 30.0;
 /// Drift of transducers, hPa rms, not exceeded in 95 % of flights: 1.96 times the usual drift, 0.06 hPa.
 constexpr double max_usual_drift = 0.12;
 
+/// Variables that are not tested: those of the reference that the model does not read, times, the laser, and
+/// those of the options.
 std::set<std::string> excluded(const FlightSet& files, const ModelDefinition& model,
                                const Reference& reference, const DiagnoseOptions& options) {
-  std::set<std::string> names(options.not_variables.begin(), options.not_variables.end());
+  std::set<std::string> names;
+  for (const std::string& variable : reference.variables()) names.insert(variable);
+  for (const auto& [role, variable] : model.variables) names.erase(variable);
+  names.insert(options.not_variables.begin(), options.not_variables.end());
   for (const FlightOutline& file : files.outlines()) names.insert(file.time_variable);
   names.insert({"Time", "time", "time_offset", "base_time"});
-  const auto is_read_by_model = [&model](const std::string& variable) {
-    return std::any_of(model.variables.begin(), model.variables.end(),
-                       [&variable](const auto& role) { return role.second == variable; });
-  };
-  for (const std::string& variable : reference.variables()) {
-    if (!is_read_by_model(variable)) names.insert(variable);
-  }
-  const auto laser = model.variables.find(Quantity::lams_airspeed);
-  if (laser != model.variables.end()) names.insert(laser->second);
+  names.insert(model.variable_of(Quantity::lams_airspeed));
   return names;
 }
 
 /// Variables used in the measurement of the residual.
 std::set<std::string> sensors_of(const ModelDefinition& model, const Reference& reference) {
-  std::set<std::string> sensors;
-  const auto add = [&](Quantity role) {
-    const auto found = model.variables.find(role);
-    if (found != model.variables.end()) sensors.insert(found->second);
-  };
-  add(Quantity::static_pressure);
-  add(Quantity::dynamic_pressure);
-  if (reference.reads_laser()) add(Quantity::lams_airspeed);
+  std::set<std::string> sensors{model.variable_of(Quantity::static_pressure),
+                                model.variable_of(Quantity::dynamic_pressure)};
+  if (reference.reads_laser()) sensors.insert(model.variable_of(Quantity::lams_airspeed));
   for (const std::string& variable : reference.variables()) sensors.insert(variable);
   return sensors;
 }
@@ -129,15 +120,11 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
   return after;
 }
 
-/// Variables computed from any of `sensors` according to the first file.
-std::vector<std::string> computed_variables(const FlightSet& files, const std::set<std::string>& sensors) {
-  return files.share()
-      .of_each_flight<std::vector<std::string>>([&](std::size_t number) {
-        if (number > 0) return std::vector<std::string>();
-        const std::set<std::string> computed = computed_from(files[0], sensors);
-        return std::vector<std::string>(computed.begin(), computed.end());
-      })
-      .front();
+/// Test of structure in addition to some effects. @param aside see `StructureTest`
+StructureTest test_beside(const Analysis& analysis, const std::vector<std::size_t>& chosen,
+                          std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {}) {
+  return StructureTest(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
+                       analysis.noise(), seed, aside);
 }
 
 /// Moves variables whose changes are correlated with those of the residual to `variables` if they may be its
@@ -146,8 +133,7 @@ void sort_correlated(const Analysis& analysis,
                      std::vector<std::pair<TestedVariable, ChangeSlope>>& correlated, std::uint64_t seed,
                      std::vector<TestedVariable>& variables, Unexplained& found) {
   if (correlated.empty()) return;
-  StructureTest test(analysis.share(), analysis.bins(), analysis.columns_of(analysis.result().chosen),
-                     analysis.residuals(), analysis.noise(), seed);
+  StructureTest test = test_beside(analysis, analysis.result().chosen, seed);
   for (auto& [variable, slope] : correlated) {
     if (test.add(variable.name, variable.pointers(), variable.turn) &&
         slope.agrees_with(test.structures().back())) {
@@ -166,12 +152,14 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
                                               Unexplained& found) {
   std::vector<TestedVariable> variables = flown_variables(analysis.flights());
   if (!options.whole_file) return variables;
-  const std::vector<std::string> computed = computed_variables(files, sensors_of(model, reference));
-  const auto altitude = model.variables.find(Quantity::altitude);
+  // Variables computed from the sensors according to the first file.
+  const auto computed = files.share().of_each_flight<std::set<std::string>>([&](std::size_t number) {
+    return number > 0 ? std::set<std::string>() : computed_from(files[0], sensors_of(model, reference));
+  });
   std::vector<std::pair<TestedVariable, ChangeSlope>> correlated;
   for (TestedVariable& variable :
        recorded_variables(files, analysis.flights(), excluded(files, model, reference, options))) {
-    if (std::find(computed.begin(), computed.end(), variable.name) != computed.end()) {
+    if (computed.front().count(variable.name) != 0) {
       found.computed.push_back(variable.name);
       continue;
     }
@@ -179,7 +167,7 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
     if (slope.is_correlated()) {
       correlated.emplace_back(std::move(variable), slope);
     } else {
-      variable.fine = altitude != model.variables.end() && altitude->second == variable.name;
+      variable.fine = variable.name == model.variable_of(Quantity::altitude);
       variables.push_back(std::move(variable));
     }
   }
@@ -194,14 +182,12 @@ struct Tested {
 
   Tested(const Analysis& analysis, const std::vector<std::size_t>& chosen,
          const std::vector<TestedVariable>& all, std::uint64_t seed)
-      : test(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
-             analysis.noise(), seed) {
+      : test(test_beside(analysis, chosen, seed)) {
     add(all);
     const std::vector<Eigen::MatrixXd> strong = test.strong_structure();
     if (strong.empty() || explains_most_beyond_chance()) return;
     // The chance level may be too high only because its residuals contain that structure.
-    test = StructureTest(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
-                         analysis.noise(), seed, strong);
+    test = test_beside(analysis, chosen, seed, strong);
     variables.clear();
     add(all);
   }
@@ -309,7 +295,7 @@ bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity
     const std::vector<double>* known = &flight.quantity(quantity);
     if (known->empty()) known = flight.samples->model.find(quantity);
     if (known == nullptr || known->empty()) return own;
-    for (const std::size_t record : analysis.bins()[f].records()) {
+    for (const std::size_t record : analysis.bins(f).records()) {
       const double x = (*variable.values[f])[record];
       const double y = (*known)[record];
       if (std::isfinite(x) && std::isfinite(y)) own += (Sums() << 1.0, x, y, x * x, y * y, x * y).finished();
@@ -424,20 +410,15 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   const std::vector<TestedVariable> variables =
       variables_to_test(analysis, files, model, first_of(references), options, after, found);
 
-  const Tested beside_all(analysis, chosen, variables, options.seed);
-  const double by_variables = beside_all.p_value();
-  for (const Structure& structure : beside_all.test.structures()) {
+  Tested tested(analysis, chosen, variables, options.seed);
+  const double by_variables = tested.p_value();
+  for (const Structure& structure : tested.test.structures()) {
     if (by_variables < chance) result.left = std::max(result.left, structure.gain - structure.freedom);
   }
-  const LineRival line = chosen.empty() ? LineRival() : best_line(analysis, chosen, beside_all, inputs);
+  const LineRival line = chosen.empty() ? LineRival() : best_line(analysis, chosen, tested, inputs);
   result.overrules = line.log_odds > sure;
   if (line.log_odds > -sure) result.rival = line.variable;
-  std::unique_ptr<const Tested> beside_base;
-  if (result.overrules) {
-    beside_base =
-        std::make_unique<const Tested>(analysis, std::vector<std::size_t>(), variables, options.seed);
-  }
-  const Tested& shown = result.overrules ? *beside_base : beside_all;
+  if (result.overrules) tested = Tested(analysis, {}, variables, options.seed);
 
   found.drift_rms = drift_rms;
   const bool drifts = analysis.drift_gain() > min_drift_gain && found.drift_rms > max_usual_drift;
@@ -446,20 +427,20 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   if (!found.significant) return result;
 
   const std::vector<std::vector<double>> left = result.overrules ? residuals_after(analysis, {}) : after;
-  const double rms =
-      result.overrules
-          ? rms_of(analysis.share(), [&left](std::size_t f) -> const std::vector<double>& { return left[f]; })
-          : residual_rms;
-  const std::vector<std::size_t> traced = add_traced(shown, result);
+  double rms = residual_rms;
+  if (result.overrules)
+    rms = rms_of(
+        analysis.share(), [&left](std::size_t f) -> const auto& { return left[f]; });
+  const std::vector<std::size_t> traced = add_traced(tested, result);
   // Retained effects describe a part of every reference that the lines do not include.
-  if (chosen.empty() || result.overrules) find_places(analysis, shown, traced, references, found.variables);
+  if (chosen.empty() || result.overrules) find_places(analysis, tested, traced, references, found.variables);
   // Part beyond the noise; at least the drift and the part that the best variable explains.
   found.rms = std::max(found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)));
   if (!found.variables.empty()) found.rms = std::max(found.rms, std::sqrt(found.variables.front().r2) * rms);
   // A regime is named only if its residual clearly exceeds that of all samples.
   found.regime = worst_regime(analysis, left, std::max(noise_rms, 1.25 * rms));
   found.p_value =
-      std::min(shown.p_value(), drifts ? chi_squared_tail(analysis.drift_gain(), slow_times.size()) : 1.0);
+      std::min(tested.p_value(), drifts ? chi_squared_tail(analysis.drift_gain(), slow_times.size()) : 1.0);
   for (const FlightOffset& step : found.steps) found.p_value = std::min(found.p_value, step.p_value);
   return result;
 }

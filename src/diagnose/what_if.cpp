@@ -36,14 +36,10 @@ constexpr std::size_t max_traced = 2;
 bool is_meant(const Candidate& candidate, const WhatIfCandidate& requested) {
   if (candidate.id != requested.id || candidate.is_shared != requested.is_alike) return false;
   if (!requested.effect) return !candidate.is_variant;
-  if (!(candidate.effect.scaling == requested.effect->scaling)) return false;
-  for (std::size_t p = 0; p < candidate.effect.parameters.size(); ++p) {
-    const bool is_tested =
-        std::any_of(candidate.tested.begin(), candidate.tested.end(),
-                    [p](const CandidateParameter& parameter) { return parameter.index == p; });
-    if (!is_tested && candidate.effect.parameters[p] != requested.effect->parameters[p]) return false;
-  }
-  return true;
+  std::vector<double> parameters = candidate.effect.parameters;
+  for (const CandidateParameter& tested : candidate.tested)
+    parameters[tested.index] = requested.effect->parameters[tested.index];
+  return candidate.effect.scaling == requested.effect->scaling && parameters == requested.effect->parameters;
 }
 
 /// Distance between the candidate's time for the need and that of the requested effect.
@@ -92,7 +88,8 @@ void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& requested) {
 }
 
 /// Sorts candidates and columns into the requested order; returns the requested effects that could be tested.
-std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flights,
+/// @param further flights with the same columns
+std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flights, TeamColumns& further,
                                           const std::vector<WhatIfCandidate>& requested) {
   std::vector<WhatIfCandidate> found;
   std::vector<Candidate> candidates;
@@ -106,18 +103,13 @@ std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flight
       columns.push_back(as_index(set.first_column(position) + k));
   }
   set.candidates = std::move(candidates);
-  for (FlightColumns& flight : flights.flights) flight.keep_candidates(columns);
+  for (TeamColumns* const each : {&flights, &further}) {
+    for (FlightColumns& flight : each->flights) flight.keep_candidates(columns);
+  }
   return found;
 }
 
-/// Unused samples of a flight with their columns: all samples of a held-out flight, otherwise those after the
-/// used part.
-FlightColumns held_out(FlightColumns all, double used_share) {
-  for (const std::size_t i : used_samples(all.mask, used_share)) all.given[i] = nan;
-  return all;
-}
-
-/// Columns of unused samples: files after the fitted ones, and later parts of fitted flights.
+/// Columns of unused samples: all of files after the fitted ones, and later parts of fitted flights.
 TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const TeamColumns& columns,
                              const ModelDefinition& model, const CandidateSet& set,
                              const WhatIfOptions& options) {
@@ -138,8 +130,9 @@ TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const T
   };
   return columns_of_entries(
       files.share().of_entries(file_of_each), read, [&](std::size_t entry, const SamplesOfFlight& samples) {
-        FlightColumns later =
-            held_out(find_columns(samples, model, set, 0, mask, 1.0), entry < whole ? 0.0 : share);
+        FlightColumns later = find_columns(samples, model, set, 0, mask, 1.0);
+        for (const std::size_t i : used_samples(later.mask, entry < whole ? 0.0 : share))
+          later.given[i] = nan;
         later.file = file_of_each[entry];
         return later;
       });
@@ -183,22 +176,6 @@ ResidualAt residual_with(const ModelDefinition& model, const CandidateSet& set, 
     for (std::size_t k = 0; k < records.size(); ++k) result[records[k]] = found[as_index(k)];
     return result;
   };
-}
-
-/// Values row by row.
-std::vector<double> lower_triangle(const Eigen::MatrixXd& matrix) {
-  std::vector<double> values;
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) values.push_back(matrix(i, j));
-  }
-  return values;
-}
-
-std::vector<WhatIfSums> as_sums(const PartialSums& sums) {
-  std::vector<WhatIfSums> result;
-  for (std::size_t part = 0; part < sums.counts.size(); ++part)
-    result.push_back({lower_triangle(sums.products[part]), sums.counts[part]});
-  return result;
 }
 
 /// All columns of a flight by records, in double precision.
@@ -288,13 +265,11 @@ bool is_fitted_to(const ModelDefinition& model, const FlightSet& flights) {
   for (const auto& [key, value] : model.provenance) {
     const auto* const fitted = std::get_if<ProvenanceList>(&value);
     if (key != "flights" || fitted == nullptr) continue;
-    for (std::size_t f = 0; f < flights.size(); ++f) {
-      const std::string flight = flights.name(f);
-      if (std::any_of(fitted->begin(), fitted->end(), [&flight](const ProvenanceValue& each) {
-            const auto* const name = std::get_if<std::string>(&each);
-            return name != nullptr && *name == flight;
-          }))
-        return true;
+    for (const ProvenanceValue& each : *fitted) {
+      const auto* const name = std::get_if<std::string>(&each);
+      for (std::size_t f = 0; name != nullptr && f < flights.size(); ++f) {
+        if (*name == flights.name(f)) return true;
+      }
     }
   }
   return false;
@@ -368,16 +343,14 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   drop_untestable(set, columns);
   TeamColumns others = held_out_columns(files, flights.size(), columns, model, set, options);
   hold_imitated_coefficients(set, columns, &others);
-  CandidateSet ordered = set;
-  const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns, requested);
-  put_in_order(set, others, requested);
+  const std::vector<WhatIfCandidate> found = put_in_order(set, columns, others, requested);
 
   WhatIf result;
   if (found.empty()) return result;
   WhatIfPanel& panel = result.panel;
   panel.is_start_fitted = is_fitted_to(model, files);
-  panel.own = ordered.base.size();
-  for (const BaseCoefficient& coefficient : ordered.base) {
+  panel.own = set.base.size();
+  for (const BaseCoefficient& coefficient : set.base) {
     const auto start =
         std::find_if(options.own.begin(), options.own.end(),
                      [&](const CoefficientEstimate& each) { return each.name == coefficient.name; });
@@ -389,7 +362,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   std::vector<std::size_t> are_found;
   const std::string flaps_variable = columns.flights.front().samples->flaps_variable;
   for (std::size_t e = 0; e < found.size(); ++e) {
-    const Candidate& candidate = ordered.candidates[e];
+    const Candidate& candidate = set.candidates[e];
     result.effects.push_back(candidate.effect);
     const auto stands_for = std::find_if(found.begin(), found.end(), [&](const WhatIfCandidate& each) {
       return each.id == found[e].stands_for;
@@ -413,18 +386,17 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
     if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }
   const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
-                      groups_of(ordered, ordered.candidates), are_found, options.is_robust,
+                      groups_of(set, set.candidates), are_found, options.is_robust,
                       [&](const FlightColumns& flight, const std::vector<std::size_t>& groups) {
-                        return residual_with(model, ordered, flight, groups);
+                        return residual_with(model, set, flight, groups);
                       });
   fit.describe(panel.coefficients);
-  for (const WhatIfFit::Weights& each : fit.weights())
-    panel.weights.push_back({each.found, as_sums(each.parts), lower_triangle(each.score_covariance)});
-  panel.alike = as_sums(fit.alike());
+  panel.weights = fit.weights();
+  panel.alike = fit.alike();
   panel.outliers = std::move(panel.alike.back());
   panel.alike.pop_back();
-  for (WhatIfSums& sums : as_sums(fit.held_out())) {
-    if (sums.samples > 0.0) panel.held_out = std::move(sums);
+  for (const WhatIfSums& sums : fit.held_out()) {
+    if (sums.samples > 0.0) panel.held_out = sums;
   }
   const auto is_shown = [&](std::size_t file) {
     const auto& requested_flights = options.diagnose.series_of;
@@ -435,7 +407,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
     result.flights.push_back({flight.samples, by_records(flight)});
   for (const FlightColumns& flight : shown(fit.others(), is_shown)) add_held_out(result.flights, flight);
   files.require_unchanged();
-  panel.separations = separations_of(fit, ordered.candidates);
+  panel.separations = separations_of(fit, set.candidates);
   return result;
 }
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "diagnose/analysis.hpp"
-#include "diagnose/separation.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/noise_covariance.hpp"
@@ -76,6 +75,18 @@ Eigen::VectorXd row_of(const FlightColumns& flight, std::size_t record) {
   return row;
 }
 
+/// Values row by row.
+std::vector<double> lower_triangle(const Eigen::MatrixXd& matrix) {
+  return upper_triangle(matrix.transpose());
+}
+
+std::vector<WhatIfSums> as_sums(const PartialSums& sums) {
+  std::vector<WhatIfSums> result;
+  for (std::size_t part = 0; part < sums.counts.size(); ++part)
+    result.push_back({lower_triangle(sums.products[part]), sums.counts[part]});
+  return result;
+}
+
 }  // namespace
 
 WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
@@ -97,10 +108,30 @@ WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
         flight.given[i] += flight.base.row(as_index(i)).cast<double>().dot(given_.head(base_));
     }
   }
-  sum_held_out();
+  held_out_ = as_sums(others_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+    const FlightColumns& flight = others_.flights[f];
+    PartialSums sums(1, given_.size() + 1);
+    for (std::size_t i = 0; i < flight.given.size(); ++i) {
+      const Eigen::VectorXd row = row_of(flight, i);
+      if (row.allFinite()) sums.add(0, row);
+    }
+    return sums;
+  }));
   for (const ColumnGroup& group : groups_) identifiable_.push_back(indices_of(group, base_));
   for (const std::vector<std::size_t>& some : subsets_of(found)) find_sums(some, is_robust, residual_with);
-  sum_records();
+  alike_ = as_sums(flights_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+    const FlightColumns& flight = flights_.flights[f];
+    PartialSums sums(held_out_parts + 1, given_.size() + 1);
+    if (flight.reference != 0) return sums;
+    std::vector<bool> counts(flight.given.size(), false);
+    for (const std::size_t record : binned_.bins[f].records()) counts[record] = true;
+    for (std::size_t i = 0; i < flight.given.size(); ++i) {
+      if (std::isnan(flight.given[i])) continue;
+      const std::size_t part = held_out_part(*flight.samples, flight.samples->time[i]);
+      sums.add(counts[i] ? part : held_out_parts, row_of(flight, i));
+    }
+    return sums;
+  }));
 }
 
 std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>& groups) const {
@@ -204,53 +235,24 @@ void WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust,
     for (const Eigen::Index column : search.identifiable(g))
       identifiable_[g].push_back(base_ + groups_[g].first + column);
   }
-  Weights& result = weights_.emplace_back();
-  result.found = found;
-  result.score_covariance = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+  const auto score_covariance = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
     const Eigen::MatrixXd scored = weights[f].asDiagonal() * system.rows[f].leftCols(values.size());
     return noise_covariance(scored, binned_.bins[f], noise[f], 0);
   });
-  result.parts = share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+  const auto parts = share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
     PartialSums sums(held_out_parts, given_.size() + 1);
     for (std::size_t i = 0; i < binned_.bins[f].size(); ++i)
       sums.add(held_out_part(*flights[f].samples, binned_.bins[f].time()[i]),
                system.rows[f].row(as_index(i)).transpose());
     return sums;
   });
+  weights_.push_back({found, as_sums(parts), lower_triangle(score_covariance)});
   regimes_ = flown_regimes(with_noise, [&](std::size_t f) {
     return FlightInBins{flights[f], binned_.bins[f]};
   });
   least_squares_ = system.information;
   information_ = with_noise.information;
   row_count_ = static_cast<double>(with_noise.row_count);
-}
-
-void WhatIfFit::sum_records() {
-  alike_ = flights_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
-    const FlightColumns& flight = flights_.flights[f];
-    PartialSums sums(held_out_parts + 1, given_.size() + 1);
-    if (flight.reference != 0) return sums;
-    std::vector<bool> counts(flight.given.size(), false);
-    for (const std::size_t record : binned_.bins[f].records()) counts[record] = true;
-    for (std::size_t i = 0; i < flight.given.size(); ++i) {
-      if (std::isnan(flight.given[i])) continue;
-      const std::size_t part = held_out_part(*flight.samples, flight.samples->time[i]);
-      sums.add(counts[i] ? part : held_out_parts, row_of(flight, i));
-    }
-    return sums;
-  });
-}
-
-void WhatIfFit::sum_held_out() {
-  held_out_ = others_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
-    const FlightColumns& flight = others_.flights[f];
-    PartialSums sums(1, given_.size() + 1);
-    for (std::size_t i = 0; i < flight.given.size(); ++i) {
-      const Eigen::VectorXd row = row_of(flight, i);
-      if (row.allFinite()) sums.add(0, row);
-    }
-    return sums;
-  });
 }
 
 Eigen::MatrixXd WhatIfFit::information() const {

@@ -44,19 +44,12 @@ class WhatIfFit {
   const std::vector<FlownRegime>& regimes() const { return regimes_; }
 
   /// Sums over the parts of the flights with the weights of a refit with some of the effects that were found.
-  struct Weights {
-    std::vector<std::size_t> found;
-    PartialSums parts;
-    Eigen::MatrixXd
-        score_covariance;  ///< covariance, due to noise, of the columns' products with the residual
-  };
-
   /// The first element is without findings, the last with all findings.
-  const std::vector<Weights>& weights() const { return weights_; }
+  const std::vector<WhatIfWeights>& weights() const { return weights_; }
   /// Unweighted sums of the records of the first reference in the same parts, followed by the outliers.
-  const PartialSums& alike() const { return alike_; }
+  const std::vector<WhatIfSums>& alike() const { return alike_; }
   /// Unweighted sums of the records outside the fit; empty without such records.
-  const PartialSums& held_out() const { return held_out_; }
+  const std::vector<WhatIfSums>& held_out() const { return held_out_; }
 
   /// Information matrix of all columns.
   Eigen::MatrixXd information() const;
@@ -85,8 +78,6 @@ class WhatIfFit {
   std::vector<Eigen::VectorXd> weights_at(const Eigen::VectorXd& values) const;
   WhitenedSystem least_squares(const std::vector<Eigen::Index>& free, bool is_robust, Eigen::VectorXd& values,
                                std::vector<Eigen::VectorXd>& weights) const;
-  void sum_records();
-  void sum_held_out();
 
   TeamColumns flights_;
   TeamColumns others_;
@@ -98,13 +89,13 @@ class WhatIfFit {
   Eigen::VectorXd given_{};  // given values less the start values
   BinnedFlights binned_{};
   std::vector<FlownRegime> regimes_{};
-  std::vector<Weights> weights_{};
+  std::vector<WhatIfWeights> weights_{};
   // Products of (columns, residual): as a refit weighs the rows, and in units of the noise without its memory
   Eigen::MatrixXd least_squares_{};
   Eigen::MatrixXd information_{};
   double row_count_ = 0.0;
-  PartialSums alike_{};
-  PartialSums held_out_{};
+  std::vector<WhatIfSums> alike_{};
+  std::vector<WhatIfSums> held_out_{};
 };
 
 }  // namespace pcor::internal

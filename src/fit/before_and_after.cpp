@@ -51,43 +51,12 @@ struct Compared {
   }
 };
 
-/// @param before residual of each sample with the coefficients of the files
-/// @param after with those of the fit
-FitSums sums_of(const FitFlight& fit, const FitTask& task, const std::vector<double>& before,
-                const std::vector<double>& after, const NoiseFloor& noise) {
-  // Delta-p of the reference from its unchanged file, so that R2 does not grow with a fitted reference.
-  const std::vector<double> reference_defect = fit.residuals().target_defect(task.start.data());
-  FitSums sums;
-  sums.samples = fit.kept().size();
-  std::vector<double> was;
-  std::vector<double> is;
-  for (std::size_t i = 0; i < sums.samples; ++i) {
-    const std::size_t sample = fit.kept()[i];
-    const double relative = after[sample] / fit.static_pressure(i);
-    was.push_back(before[sample]);
-    is.push_back(after[sample]);
-    sums.squares_before += was[i] * was[i];
-    sums.squares += is[i] * is[i];
-    sums.relative_squares += relative * relative;
-    sums.reference_defect += reference_defect[sample];
-    sums.reference_defect_squares += reference_defect[sample] * reference_defect[sample];
-    sums.noise_squares += noise.local_rms[sample] * noise.local_rms[sample];
-  }
-  const auto bulk_squares = [](const std::vector<double>& residual) {
-    const double deviation = robust_standard_deviation(residual);
-    return residual.empty() ? 0.0 : deviation * deviation * static_cast<double>(residual.size());
-  };
-  sums.bulk_squares_before = bulk_squares(was);
-  sums.bulk_squares = bulk_squares(is);
-  return sums;
-}
-
-OutlierRun longest_run_of(const FitFlight& fit, const std::vector<double>& residual,
+OutlierRun longest_run_of(const LinearRows& rows, const std::vector<double>& residual,
                           const NoiseFloor& noise) {
-  const FlightSamples& samples = fit.residuals().samples();
+  const FlightSamples& samples = rows.samples();
   OutlierRun longest{samples.name};
   OutlierRun now;
-  for (const std::size_t i : fit.kept()) {
+  for (const std::size_t i : rows.used()) {
     const bool is_continuous =
         now.samples > 0 && residual[i] * now.mean > 0.0 && samples.time[i] - now.end < 1.5 * samples.step;
     if (!(std::abs(residual[i]) > tukey_width * noise.local_rms[i])) {
@@ -102,36 +71,59 @@ OutlierRun longest_run_of(const FitFlight& fit, const std::vector<double>& resid
   return longest;
 }
 
-/// @param fitted flight of the fit with the first reference; null for others
+/// @param is_of_fit a flight of the fit with the first reference
 Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::VectorXd& values,
-                  const std::vector<std::size_t>& requested, const FitFlight* fitted = nullptr) {
+                  const std::vector<std::size_t>& requested, bool is_of_fit) {
   const Residuals& residuals = rows.residuals();
   const FlightSamples& samples = residuals.samples();
+  const Eigen::VectorXd coefficients = flight_parameters(residuals, task, values);
   const std::vector<double> before = residuals.values(flight_parameters(residuals, task, task.start).data());
-  const std::vector<double> after = residuals.values(flight_parameters(residuals, task, values).data());
+  const std::vector<double> after = residuals.values(coefficients.data());
   const NoiseFloor noise = noise_of_flight(samples, masked(after, residuals.mask(), Mask::none));
   Compared result;
+  FitSums& sums = result.sums;
   const auto add = [&](const std::vector<std::size_t>& part, bool held) {
     if (part.empty()) return;
     const std::vector<double> was = only_at(before, part);
     const std::vector<double> is = only_at(after, part);
-    result.parts.push_back({samples.name, held, sums_of_flight(samples, was, noise).statistics(),
-                            sums_of_flight(samples, is, noise).statistics()});
+    const ResidualSums of_before = sums_of_flight(samples, was, noise);
+    const ResidualSums of_after = sums_of_flight(samples, is, noise);
+    result.parts.push_back({samples.name, held, of_before.statistics(), of_after.statistics()});
     result.parts.back().reference = task.reference.name();
     const std::vector<double> means = means_of_blocks(samples, is);
     if (held) {
       result.held_out_blocks = means.size();
-      result.held_out_derivatives = mean_derivatives(rows, task, part, values, requested);
-    } else {
-      result.fitted_blocks = means;
+      result.held_out_derivatives = sample_rows(rows, task, part, values, requested)
+                                        .leftCols(as_index(requested.size()))
+                                        .colwise()
+                                        .mean()
+                                        .transpose();
+      return;
     }
+    result.fitted_blocks = means;
+    const auto bulk_squares = [&part](const std::vector<double>& residual) {
+      const double deviation = robust_standard_deviation(residual);
+      return deviation * deviation * static_cast<double>(part.size());
+    };
+    sums.before = of_before;
+    sums.after = of_after;
+    sums.bulk_squares_before = bulk_squares(was);
+    sums.bulk_squares = bulk_squares(is);
   };
   add(rows.used(), false);
   add(rows.held_out(), true);
-  if (fitted == nullptr) return result;
-  result.sums = sums_of(*fitted, task, before, after, noise);
-  result.longest_run = longest_run_of(*fitted, after, noise);
-  result.flaps_out = flaps_out(residuals, flight_parameters(residuals, task, values).data());
+  if (!is_of_fit) return result;
+  // Delta-p of the reference from its unchanged file, so that R2 does not grow with a fitted reference.
+  const std::vector<double> reference_defect = residuals.target_defect(task.start.data());
+  const std::vector<double>& static_pressure = *samples.model.find(Quantity::static_pressure);
+  for (const std::size_t i : rows.used()) {
+    const double relative = after[i] / static_pressure[i];
+    sums.relative_squares += relative * relative;
+    sums.reference_defect += reference_defect[i];
+    sums.reference_defect_squares += reference_defect[i] * reference_defect[i];
+  }
+  result.longest_run = longest_run_of(rows, after, noise);
+  result.flaps_out = flaps_out(residuals, coefficients.data());
   for (const Note& note : samples.notes) result.notes.emplace_back(samples.name, note);
   for (const Interval& interval : samples.intervals)
     result.flown.set(static_cast<std::size_t>(interval.regime));
@@ -147,7 +139,7 @@ std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& value
     constexpr double fitted = 0.0;  // fraction of the samples
     const LinearRows rows(residuals_at(samples, task, values), task.model, task.reference,
                           {Inputs::none, {}, fitted});
-    return compared(rows, task, values, requested);
+    return compared(rows, task, values, requested, false);
   });
 }
 
@@ -157,7 +149,7 @@ std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& value
   const std::vector<std::size_t>& requested = flights.setup().requested;
   std::vector<Compared> each = flights.of_each(
       [&](std::size_t, const FitFlight& fit) {
-        return compared(fit.linear_rows(), task, values, requested, is_first_reference ? &fit : nullptr);
+        return compared(fit.linear_rows(), task, values, requested, is_first_reference);
       },
       values);
   for (Compared& one : held_out(task, values, requested)) each.push_back(std::move(one));
@@ -167,30 +159,32 @@ std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& value
 }  // namespace
 
 void FitSums::add(const FitSums& other) {
-  samples += other.samples;
-  squares_before += other.squares_before;
+  before.add(other.before);
+  after.add(other.after);
   bulk_squares_before += other.bulk_squares_before;
-  squares += other.squares;
   bulk_squares += other.bulk_squares;
   relative_squares += other.relative_squares;
   reference_defect += other.reference_defect;
   reference_defect_squares += other.reference_defect_squares;
-  noise_squares += other.noise_squares;
 }
 
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values,
-                                const Eigen::MatrixXd& covariance, double left) {
+                                const Eigen::MatrixXd& covariance, double left, RefitResult& result) {
   const std::vector<Compared> each = compared(flights, values, true);
   BeforeAndAfter all;
   FittedMeans fitted;
   ResidualSums with_flaps;
+  std::vector<FlightNote> notes;
   for (const Compared& one : each) {
     fitted.add(one.fitted_blocks);
     with_flaps.add(one.flaps_out);
     all.sums.add(one.sums);
     if (one.longest_run.duration() > all.longest_run.duration()) all.longest_run = one.longest_run;
+    notes.insert(notes.end(), one.notes.begin(), one.notes.end());
+    all.flown |= one.flown;
   }
-  all.flaps_out = with_flaps.statistics();
+  all.notes = notes_of_flights(notes, each.size());
+  result.flaps_out = with_flaps.statistics();
   for (const Compared& one : each) {
     for (FlightFit part : one.parts) {
       if (part.holdout) {
@@ -200,18 +194,12 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
             one.held_out_derivatives.dot(covariance * one.held_out_derivatives);  // hPa^2
         part.expected_bias = std::sqrt(by_wander * by_wander + by_coefficients + left * left);
       }
-      all.flights.push_back(std::move(part));
+      result.flights.push_back(std::move(part));
     }
   }
-  std::vector<FlightNote> notes;
-  for (const Compared& one : each) {
-    notes.insert(notes.end(), one.notes.begin(), one.notes.end());
-    all.flown |= one.flown;
-  }
-  for (Note& note : notes_of_flights(notes, each.size())) all.notes.push_back(std::move(note));
   for (const std::unique_ptr<FitFlights>& with : flights.further()) {
     for (const Compared& one : compared(*with, values, false))
-      all.further.insert(all.further.end(), one.parts.begin(), one.parts.end());
+      result.further.insert(result.further.end(), one.parts.begin(), one.parts.end());
   }
   return all;
 }

@@ -8,34 +8,33 @@
 #include <pcor/base/note.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include "fit/fit_flights.hpp"
+#include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {
 
 /// Sums over the fitted samples of the first reference.
 struct FitSums {
-  std::size_t samples = 0;
-  double squares_before = 0.0;       ///< residuals with the coefficients of the files, hPa^2
-  double bulk_squares_before = 0.0;  ///< robust deviation with these, hPa^2
-  double squares = 0.0;
+  ResidualSums before{};  ///< residuals with the coefficients of the files
+  ResidualSums after{};
+  double bulk_squares_before = 0.0;  ///< robust deviation with the coefficients of the files, hPa^2
   double bulk_squares = 0.0;
   double relative_squares = 0.0;  ///< residual over static pressure
   double reference_defect = 0.0;  ///< delta-p implied by the reference, hPa
   double reference_defect_squares = 0.0;
-  double noise_squares = 0.0;  ///< noise floor, hPa^2
 
   void add(const FitSums& other);
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(samples, squares_before, bulk_squares_before, squares, bulk_squares, relative_squares,
-            reference_defect, reference_defect_squares, noise_squares);
+    archive(before, after, bulk_squares_before, bulk_squares, relative_squares, reference_defect,
+            reference_defect_squares);
   }
 
-  double rms_of(double sum) const { return std::sqrt(sum / static_cast<double>(samples)); }
+  double rms_of(double sum) const { return std::sqrt(sum / static_cast<double>(after.samples)); }
   /// R^2 of a model with that sum of squared residuals.
   double r_squared(double of_squares) const {
     return 1.0 - of_squares / (reference_defect_squares -
-                               reference_defect * reference_defect / static_cast<double>(samples));
+                               reference_defect * reference_defect / static_cast<double>(after.samples));
   }
 };
 
@@ -58,18 +57,16 @@ struct OutlierRun {
 /// The flights with the coefficients of the files and with those of the fit.
 struct BeforeAndAfter {
   FitSums sums{};
-  OutlierRun longest_run{};          ///< fitted samples, first reference
-  std::vector<FlightFit> flights{};  ///< the parts that were fitted and those that were held out
-  std::vector<FlightFit> further{};  ///< results with each further reference
-  Notes notes{};                     ///< about fitted flights
-  RegimeSet flown{};                 ///< regimes in the fitted flights
-  Statistics flaps_out{};            ///< fitted flights
+  OutlierRun longest_run{};  ///< fitted samples, first reference
+  Notes notes{};             ///< about fitted flights
+  RegimeSet flown{};         ///< regimes in the fitted flights
 };
 
 /// @param covariance of the fitted parameters, without the uncertainty of the reference, which is common to
 /// the held-out samples
 /// @param left misfit of the law, hPa, rms
+/// @param result receives the statistics of the flights with each reference, and of samples with flaps out
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values,
-                                const Eigen::MatrixXd& covariance, double left);
+                                const Eigen::MatrixXd& covariance, double left, RefitResult& result);
 
 }  // namespace pcor::internal

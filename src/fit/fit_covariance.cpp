@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/noise_covariance.hpp"
@@ -50,20 +49,9 @@ class Blocks {
   std::vector<std::size_t> count_;
 };
 
-/// Sums over the bins of a block.
-struct BlockSums {
-  Eigen::MatrixXd derivatives;  ///< derivatives of the scores by all parameters
-  Eigen::VectorXd score;
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(derivatives, score);
-  }
-};
-
 /// Sums over the bins of a flight with one reference, for one set of equations.
 struct FlightScores {
-  std::vector<BlockSums> blocks;
+  std::vector<Eigen::MatrixXd> blocks;  ///< derivatives of the scores by all parameters, and the scores
   Eigen::MatrixXd covariance;  ///< scores of all equations by the noise; zero except for the last equations
   Eigen::VectorXd zero;        ///< derivatives of the scores of all equations by the zero of the flight
   Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
@@ -115,18 +103,6 @@ struct StaticReference {
   std::vector<Eigen::VectorXd> noise{};  ///< residual less misfit in the bins of each local flight, hPa
   std::vector<Eigen::MatrixXd> roots{};  ///< square root of the covariance of the scores of each flight
 };
-
-/// Residual less misfit in the bins of each local flight, hPa. @param states in these bins
-std::vector<Eigen::VectorXd> noise_of(const FitFlights& flights, const Misfit& misfit,
-                                      const std::vector<Eigen::MatrixXd>& states,
-                                      const Eigen::VectorXd& values) {
-  std::vector<Eigen::VectorXd> noise(states.size());
-  for (std::size_t flight = 0; flight < states.size(); ++flight) {
-    if (flights.share().is_local(flight))
-      noise[flight] = flights.residual(flight, values) - misfit.at(states[flight]);
-  }
-  return noise;
-}
 
 /// Correlation of the noise against two references in the bins that both have, at least 0.
 double shared_noise(const StaticReference& one, const StaticReference& other) {
@@ -194,8 +170,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   const Eigen::Index size = fitted + as_index(main.setup().held.size());
   const Blocks blocks(main);
   const std::vector<std::string> doubts = doubts_of(main);
-  std::vector<BlockSums> excluded(blocks.count(),
-                                  {Eigen::MatrixXd::Zero(fitted, size), Eigen::VectorXd::Zero(fitted)});
+  std::vector<Eigen::MatrixXd> excluded(blocks.count(), Eigen::MatrixXd::Zero(fitted, size + 1));
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
   Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitBasis::count());
   Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(doubts.size()));
@@ -214,11 +189,15 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
       const bool sees_law = each.flights->sees_law(*flights);
       const std::vector<Eigen::MatrixXd> states =
           sees_law ? binned_states(*flights) : std::vector<Eigen::MatrixXd>();
+      std::vector<Eigen::VectorXd> noise(states.size());
       std::vector<Eigen::MatrixXd> doubted;
       std::vector<Eigen::Index> doubt_places;  // indices of the uncertainties of this reference
       if (!flights->doubt().empty()) {
         doubted = flights->of_local([&](std::size_t flight, const FitFlight& fit) {
-          return flights->weighted(flight, fit.by_doubts(flights->bins(flight), flights->doubt(), values));
+          const Eigen::MatrixXd columns =
+              flights->doubt().columns(fit.residuals().shared_samples(), fit.kept(),
+                                       flight_parameters(fit.residuals(), flights->task(), values).data());
+          return flights->weighted(flight, fit.linear_rows().bin_means(flights->bins(flight), columns));
         });
       }
       for (const std::string& name : flights->doubt().names())
@@ -229,8 +208,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
                             Eigen::VectorXd::Zero(fitted),
                             Eigen::MatrixXd::Zero(width, by_misfit.cols()),
                             Eigen::MatrixXd::Zero(width, by_doubt.cols())};
-        scores.blocks.assign(blocks.count(flight),
-                             {Eigen::MatrixXd::Zero(width, size), Eigen::VectorXd::Zero(width)});
+        scores.blocks.assign(blocks.count(flight), Eigen::MatrixXd::Zero(width, size + 1));
         const std::vector<double>& time = flights->bins(flight).time();
         if (time.empty()) return scores;
         const FitRows rows = flights->rows(flight, values, loss);
@@ -251,13 +229,14 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
         } else {
           stages[flight].push_back({first, time, weighted});
         }
+        if (is_alike) noise[flight] = flights->residual(flight, values) - misfit.at(states[flight]);
         if (sees_law) scores.misfit = weighted.transpose() * misfit.bumps(states[flight]);
         if (!doubted.empty())
           scores.doubt(Eigen::all, doubt_places) = slope * left.transpose() * doubted[flight];
         for (Eigen::Index i = 0; i < left.rows(); ++i) {
-          BlockSums& block = scores.blocks[blocks(flight, time[static_cast<std::size_t>(i)])];
-          block.derivatives += slope * left.row(i).transpose() * columns.row(i);
-          block.score += weight[i] * rows.innovations[i] * left.row(i).transpose();
+          Eigen::MatrixXd& block = scores.blocks[blocks(flight, time[static_cast<std::size_t>(i)])];
+          block.leftCols(size) += slope * left.row(i).transpose() * columns.row(i);
+          block.col(size) += weight[i] * rows.innovations[i] * left.row(i).transpose();
         }
         return scores;
       };
@@ -271,19 +250,16 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
         if (is_alike) roots.push_back(covariance_root(flight.covariance));
         by_misfit.middleRows(first, width) += flight.misfit;
         by_doubt.middleRows(first, width) += flight.doubt;
-        for (const BlockSums& sums : flight.blocks) {
-          block->derivatives.middleRows(first, width) += sums.derivatives;
-          block++->score.segment(first, width) += sums.score;
-        }
+        for (const Eigen::MatrixXd& sums : flight.blocks) block++->middleRows(first, width) += sums;
       }
-      if (is_alike) alike.push_back({flights, noise_of(*flights, misfit, states, values), std::move(roots)});
+      if (is_alike) alike.push_back({flights, std::move(noise), std::move(roots)});
     }
     first += width;
   }
   for (const Eigen::VectorXd& zero : zeros) score += misfit.between_flights * zero * zero.transpose();
   score += shared_covariance(alike, fitted);
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
-  for (const BlockSums& block : excluded) derivatives += block.derivatives;
+  for (const Eigen::MatrixXd& block : excluded) derivatives += block.leftCols(size);
   const PriorRows prior = prior_rows(task, parameters);
   const double unit = last.solution.deviation * last.solution.deviation;
   derivatives.leftCols(fitted) += unit * prior.rows.transpose() * prior.rows;
@@ -325,22 +301,18 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   found.doubts = doubts;
   found.by_doubt = Eigen::MatrixXd::Zero(fitted, by_one.cols());
   found.by_doubt(varying, Eigen::all) = by_one;
+  found.matrix(varying, varying) = 0.5 * (covariance + covariance.transpose());
   const Eigen::MatrixXd across = carried * doubt;
-  for (std::size_t a = 0; a < varying.size(); ++a) {
-    for (std::size_t b = 0; b < varying.size(); ++b)
-      found.matrix(varying[a], varying[b]) =
-          0.5 * (covariance(as_index(a), as_index(b)) + covariance(as_index(b), as_index(a)));
-    for (Eigen::Index b = fitted; b < size; ++b)
-      found.matrix(varying[a], b) = found.matrix(b, varying[a]) = across(as_index(a), b - fitted);
-  }
+  found.matrix.rightCols(size - fitted)(varying, Eigen::all) = across;
+  found.matrix.bottomRows(size - fitted)(Eigen::all, varying) = across.transpose();
 
   // One Newton step from the fit of all blocks to the fit without one block.
   Eigen::MatrixXd moved(as_index(varying.size()), as_index(excluded.size()));
   Eigen::VectorXd decided = Eigen::VectorXd::Zero(moved.rows());  // infinite if one block alone determines it
   for (std::size_t b = 0; b < excluded.size(); ++b) {
-    const Eigen::MatrixXd rest = equations_of_all - excluded[b].derivatives(varying, varying);
+    const Eigen::MatrixXd rest = equations_of_all - excluded[b](varying, varying);
     const Eigen::MatrixXd inverse_of_rest = scaled_inverse(rest, scale);
-    moved.col(as_index(b)) = inverse_of_rest * excluded[b].score(varying);
+    moved.col(as_index(b)) = inverse_of_rest * excluded[b].col(size)(varying);
     for (Eigen::Index k = 0; k < moved.rows(); ++k) {
       if (!is_determined(k, rest, inverse_of_rest, inverse)) decided[k] = infinity;
     }

@@ -36,6 +36,11 @@ std::vector<Alike> alike_in(const FitTask& task) {
   return alike;
 }
 
+/// Number of first fit parameters that are also the first parameters of the residuals.
+std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
+  return task.shares_system ? residuals.parameters().size() : parameter_count(task.model.model);
+}
+
 /// Derivatives by the requested parameters, and the residual; zero for parameters unknown to the residual.
 /// @param evaluate gives those by known parameters at parameters of the residuals
 Eigen::MatrixXd by_requested(
@@ -60,11 +65,16 @@ Eigen::MatrixXd by_requested(
   return all;
 }
 
-}  // namespace
-
-std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
-  return task.shares_system ? residuals.parameters().size() : parameter_count(task.model.model);
+/// The residuals of a flight with this mask, or with that at these parameters of the fit if it is empty.
+Residuals masked_by(std::vector<Mask>& mask, std::shared_ptr<const FlightSamples> samples,
+                    const FitTask& task, const Eigen::VectorXd& parameters) {
+  if (!mask.empty()) return {std::move(samples), task.model, task.reference, mask};
+  Residuals residuals = residuals_at(std::move(samples), task, parameters);
+  mask = residuals.mask();
+  return residuals;
 }
+
+}  // namespace
 
 Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& task,
                                   const Eigen::VectorXd& parameters) {
@@ -84,37 +94,21 @@ Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTa
   return residuals;
 }
 
-namespace {
-
-/// The residuals of a flight with this mask, or with that at these parameters of the fit if it is empty.
-Residuals masked_by(std::vector<Mask>& mask, std::shared_ptr<const FlightSamples> samples,
-                    const FitTask& task, const Eigen::VectorXd& parameters) {
-  if (!mask.empty()) return {std::move(samples), task.model, task.reference, mask};
-  Residuals residuals = residuals_at(std::move(samples), task, parameters);
-  mask = residuals.mask();
-  return residuals;
-}
-
-}  // namespace
-
-Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
-                                 const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
-                                 const std::vector<std::size_t>& requested) {
-  const Eigen::MatrixXd all = by_requested(rows.residuals(), task, parameters, requested,
-                                           [&](const double* coefficients, const auto& known) {
-                                             return rows.evaluate(samples, coefficients, known, true);
-                                           });
-  return all.leftCols(as_index(requested.size())).colwise().mean().transpose();
+Eigen::MatrixXd sample_rows(const LinearRows& rows, const FitTask& task,
+                            const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
+                            const std::vector<std::size_t>& requested) {
+  return by_requested(rows.residuals(), task, parameters, requested,
+                      [&](const double* coefficients, const auto& known) {
+                        return rows.evaluate(samples, coefficients, known, true);
+                      });
 }
 
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup,
                      const Eigen::VectorXd& parameters, std::vector<Mask>& mask)
     : task_(&task),
-      setup_(&setup),
       moving_(samples->model.moving.empty() ? nullptr : std::make_shared<FlightSamples>(*samples)),
       rows_(masked_by(mask, moving_ ? moving_ : std::move(samples), task, setup.values), task.model,
-            task.reference, {Inputs::recorded, setup.requested, task.options.training_share, setup.regimes}),
-      static_pressure_(rows_.samples().model.find(Quantity::static_pressure)) {
+            task.reference, {Inputs::recorded, setup.requested, task.options.training_share, setup.regimes}) {
   if (!moving_) return;
   const Eigen::VectorXd coefficients = flight_parameters(residuals(), task, parameters);
   // The high-rate airspeed remains that of the input model.
@@ -155,28 +149,13 @@ Eigen::MatrixXd FitFlight::rows(const Binning& bins, const Eigen::VectorXd& para
 
 Eigen::MatrixXd FitFlight::by_offsets(const Binning& bins) const {
   Eigen::MatrixXd offsets = Eigen::MatrixXd::Zero(as_index(bins.size()), as_index(rows_.interval_count()));
+  const std::vector<double>& static_pressure = *rows_.samples().model.find(Quantity::static_pressure);
   for (std::size_t k = 0; k < bins.records().size() && offsets.cols() > 0; ++k) {
     const std::size_t record = bins.records()[k];
     const Eigen::Index bin = bins.bins()[k];
-    offsets(bin, as_index(rows_.intervals()[record])) -= (*static_pressure_)[record] / bins.counts()[bin];
+    offsets(bin, as_index(rows_.intervals()[record])) -= static_pressure[record] / bins.counts()[bin];
   }
   return offsets;
-}
-
-Eigen::MatrixXd FitFlight::by_doubts(const Binning& bins, const ReferenceDoubt& doubt,
-                                     const Eigen::VectorXd& parameters) const {
-  const Eigen::VectorXd coefficients = flight_parameters(residuals(), *task_, parameters);
-  return rows_.bin_means(bins, doubt.columns(residuals().shared_samples(), kept(), coefficients.data()));
-}
-
-Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) const {
-  const Eigen::MatrixXd rows = by_requested(residuals(), *task_, parameters, setup_->requested,
-                                            [&](const double* coefficients, const auto& known) {
-                                              return rows_.evaluate(kept(), coefficients, known, true);
-                                            });
-  TriangularFactor factor(rows.cols());
-  factor.add(rows, Eigen::VectorXd::Ones(rows.rows()));
-  return factor.factor();
 }
 
 }  // namespace pcor::internal

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "campaign/gps_rows.hpp"
 #include "numerics/decompositions.hpp"
@@ -248,7 +249,13 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
 }
 
 Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters) {
-  const auto factor = [&](std::size_t, const FitFlight& fit) { return fit.unweighted_factor(parameters); };
+  const auto factor = [&](std::size_t, const FitFlight& fit) {
+    const Eigen::MatrixXd rows =
+        sample_rows(fit.linear_rows(), task_, fit.kept(), parameters, setup_.requested);
+    TriangularFactor own(rows.cols());
+    own.add(rows, Eigen::VectorXd::Ones(rows.rows()));
+    return own.factor();
+  };
   TriangularFactor sum(requested() + 1);
   for (const Eigen::MatrixXd& part : of_each(factor, parameters)) sum.add(part);
   return sum.factor();
@@ -282,10 +289,9 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const MisfitIn
 }
 
 double FitFlights::drift_rms() const {
-  double squares = 0.0;
-  for (std::size_t k = 0; !noise_.empty() && k < slow_times.size(); ++k)
-    squares += noise_.front().slow[k] * noise_.front().slow[k];
-  return std::sqrt(squares);
+  if (noise_.empty()) return 0.0;
+  const auto& slow = noise_.front().slow;
+  return std::sqrt(std::inner_product(slow.begin(), slow.end(), slow.begin(), 0.0));
 }
 
 double FitFlights::deviation(const Eigen::VectorXd& parameters) {

@@ -31,9 +31,6 @@ struct FitSetup {
   std::vector<Regime> regimes{};
 };
 
-/// Number of first fit parameters that are also the first parameters of the residuals.
-std::size_t shared_parameters(const Residuals& residuals, const FitTask& task);
-
 /// Residual parameters: from the fit where included, otherwise from their file.
 Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& task,
                                   const Eigen::VectorXd& parameters);
@@ -42,10 +39,11 @@ Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& tas
 Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
                        const Eigen::VectorXd& parameters);
 
-/// The derivatives of the residual by the requested parameters of the fit, mean over some samples.
-Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
-                                 const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
-                                 const std::vector<std::size_t>& requested);
+/// Derivatives of the residual by the requested parameters of the fit, and the residual, hPa, at some
+/// samples.
+Eigen::MatrixXd sample_rows(const LinearRows& rows, const FitTask& task,
+                            const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
+                            const std::vector<std::size_t>& requested);
 
 /// The samples of one flight of a fit with one reference.
 ///
@@ -62,7 +60,6 @@ class FitFlight {
   const LinearRows& linear_rows() const { return rows_; }
   const Residuals& residuals() const { return rows_.residuals(); }
   const std::vector<std::size_t>& kept() const { return rows_.used(); }
-  double static_pressure(std::size_t kept) const { return (*static_pressure_)[rows_.used()[kept]]; }
 
   /// Whether other samples are used at these parameters.
   bool masks_change_at(const Eigen::VectorXd& parameters) const;
@@ -78,19 +75,10 @@ class FitFlight {
   /// Derivatives by the offsets of the intervals, hPa, in bins.
   Eigen::MatrixXd by_offsets(const Binning& bins) const;
 
-  /// Effect of one standard uncertainty of each reference error on the residual, hPa, in bins.
-  Eigen::MatrixXd by_doubts(const Binning& bins, const ReferenceDoubt& doubt,
-                            const Eigen::VectorXd& parameters) const;
-
-  /// Triangular factor of rows (derivatives, residual) in hPa, with equal weight for all samples.
-  Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters) const;
-
  private:
   const FitTask* task_;
-  const FitSetup* setup_;
   std::shared_ptr<FlightSamples> moving_;  // samples of `rows_`, if columns depend on coefficients
   LinearRows rows_;
-  const std::vector<double>* static_pressure_;  // one per sample
 };
 
 /// Hash that differs if some bit of the parameters differs.

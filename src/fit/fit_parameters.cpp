@@ -1,4 +1,4 @@
-#include "fit/fit_parameters.hpp"
+#include "fit/fit_task.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,6 +10,7 @@
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
+#include "model_io/model_names.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -40,29 +41,26 @@ std::string unit_in_formula(const ModelEffect& effect, std::size_t number) {
 
 void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition& file,
                     const std::string& prefix, bool fitted) {
-  for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
+  for (const auto& [name, e, p] : named_parameters(file.model)) {
     const ModelEffect& effect = file.model.effects[e];
-    const std::vector<std::string> names = parameter_names(effect);
-    for (std::size_t p = 0; p < names.size(); ++p) {
-      FitParameter& parameter = parameters.emplace_back();
-      parameter.effect = prefix + effect.id;
-      parameter.name = parameter.effect + "." + names[p];
-      parameter.start = effect.parameters[p];
-      parameter.bounds = file.bounds(e, p);
-      parameter.fixed = !fitted || file.fit(e, p).fixed;
-      if (effect.is_surface()) parameter.unit = "1";
-      if (effect.is_formula()) parameter.unit = unit_in_formula(effect, p);
-      if (effect.is_formula()) continue;
-      const EffectInfo& info = *effect_named(effect.id);
-      parameter.unit = info.parameters[p].unit;
-      parameter.neutral = info.parameters[p].neutral;
-      parameter.typical = std::abs(info.parameters[p].typical);
-      parameter.manoeuvre = info.manoeuvre;
-      if (info.memory.of == Quantity::count || info.memory.parameter != p) continue;
-      const auto& tried = info.parameters[p].tried;
-      parameter.tried.assign(tried.begin(), std::find(tried.begin(), tried.end(), 0.0));
-      parameter.tried.push_back(parameter.neutral);
-    }
+    FitParameter& parameter = parameters.emplace_back();
+    parameter.effect = prefix + effect.id;
+    parameter.name = prefix + name;
+    parameter.start = effect.parameters[p];
+    parameter.bounds = file.bounds(e, p);
+    parameter.fixed = !fitted || file.fit(e, p).fixed;
+    if (effect.is_surface()) parameter.unit = "1";
+    if (effect.is_formula()) parameter.unit = unit_in_formula(effect, p);
+    if (effect.is_formula()) continue;
+    const EffectInfo& info = *effect_named(effect.id);
+    parameter.unit = info.parameters[p].unit;
+    parameter.neutral = info.parameters[p].neutral;
+    parameter.typical = std::abs(info.parameters[p].typical);
+    parameter.manoeuvre = info.manoeuvre;
+    if (info.memory.of == Quantity::count || info.memory.parameter != p) continue;
+    const auto& tried = info.parameters[p].tried;
+    parameter.tried.assign(tried.begin(), std::find(tried.begin(), tried.end(), 0.0));
+    parameter.tried.push_back(parameter.neutral);
   }
 }
 

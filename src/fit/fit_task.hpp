@@ -1,15 +1,44 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstddef>
 #include <functional>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "fit/fit_parameters.hpp"
+#include <pcor/fit/refit.hpp>
 #include "fit/surface_roughness.hpp"
 #include "parallel/flight_partition.hpp"
 #include "parallel/workers.hpp"
 
 namespace pcor::internal {
+
+/// Known properties of a parameter before the fit.
+struct FitParameter {
+  std::string name{};    ///< like "static-qp.a2"; of the reference's model "reference:static-qp.a2"
+  std::string effect{};  ///< effect of the parameter, with the prefix of the reference
+  std::string unit{};
+  double start = 0.0;    ///< its value in the file
+  double neutral = 0.0;  ///< value that disables the effect
+  double typical = 0.0;  ///< size; zero if the catalogue has no typical size
+  std::string_view manoeuvre{};
+  std::vector<double> tried{};  ///< other possible values of a time over which a need is estimated
+  Bounds bounds{};
+  bool fixed = false;
+};
+
+/// The parameters of the model, then those of a static system that is the reference, in the order of
+/// `residual`. @throws Error if the options name an unknown parameter, or bounds are empty.
+std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Reference& reference,
+                                         const RefitOptions& options);
+
+/// Indices of the parameters that each stage fits; the last stage fits the remaining ones, possibly no
+/// parameter.
+/// @throws Error if no parameter is free, or a stage names one that is not.
+std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>& parameters,
+                                                 const std::vector<FitStage>& stages,
+                                                 const std::string& model_name);
 
 /// Input shared by all steps of a fit.
 struct FitTask {
@@ -43,6 +72,29 @@ struct FitTask {
 
   bool uses_prior() const { return options.use_prior || options.fit_reference; }
 };
+
+/// The task of a fit of the model with its references; the first one is also fitted if the options request
+/// it. The task refers to the arguments.
+FitTask fit_task(const ModelDefinition& model, const References& references, const RefitOptions& options,
+                 const FlightSet& flights);
+
+/// Covariance of all parameters from the standard errors and covariances in the files, in the order of
+/// `FitTask::parameters`; zero if not stated.
+Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference& reference);
+
+/// Rows W of the Gaussian prior of requested parameters around `centre`: the cost is |W (x - centre)|^2 / 2.
+struct PriorRows {
+  Eigen::MatrixXd rows{};
+  Eigen::VectorXd centre{};
+  /// Weight of each row relative to the prior itself (`SurfaceRoughness::inflation`).
+  Eigen::VectorXd inflation{};
+};
+
+/// If the fit uses a prior, it is centred on the values in the files, with the covariance stated in the
+/// files, otherwise with the typical size of the effect as the standard error. A parameter without either has
+/// no prior. Otherwise coefficients of the effects `RefitOptions::added` have the prior of a diagnosis about
+/// their neutral value. Coefficients of a surface always have the prior of its roughness.
+PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& requested);
 
 /// Current result of a fit.
 struct Solution {

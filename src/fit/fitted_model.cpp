@@ -1,17 +1,36 @@
 #include "fit/fitted_model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <utility>
 
 #include <pcor/base/utc.hpp>
-#include "fit/lineage.hpp"
 #include "model_io/covariance_blocks.hpp"
+#include "model_io/model_names.hpp"
 #include "model_io/sensor_doubt.hpp"
 
 namespace pcor::internal {
 namespace {
+
+constexpr const char* before_key = "before";
+
+const ProvenanceValue* entry(const Provenance& all, const std::string& key) {
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&key](const auto& each) { return each.first == key; });
+  return found == all.end() ? nullptr : &found->second;
+}
+
+/// A model as an entry of the list.
+Provenance entry_of(const ModelDefinition& model) {
+  Provenance all;
+  all.emplace_back("name", ProvenanceValue{model.model.name});
+  if (const ProvenanceValue* const date = entry(model.provenance, "date")) all.emplace_back("date", *date);
+  if (!model.law.source.empty()) all.emplace_back("source", ProvenanceValue{model.law.source});
+  return all;
+}
 
 Provenance provenance_of(const RefitResult& fit, Loss loss) {
   Provenance provenance;
@@ -39,12 +58,28 @@ Provenance provenance_of(const RefitResult& fit, Loss loss) {
   return provenance;
 }
 
-bool is_parameter(const std::string& name, const RefitResult& fit) {
-  return std::any_of(fit.parameters.begin(), fit.parameters.end(),
-                     [&](const FittedParameter& parameter) { return parameter.name == name; });
+}  // namespace
+
+std::string unfitted_name(const ModelDefinition& model) {
+  const std::string& name = model.model.name;
+  if (entry(model.provenance, "program") == nullptr) return name;  // name given by its author
+  return name.substr(0, std::min(name.find(", fitted to "), name.find(", improved on ")));
 }
 
-}  // namespace
+void descend(ModelDefinition& made, const ModelDefinition& from, const std::string& how,
+             const std::string& flights) {
+  ProvenanceList before;
+  if (const ProvenanceValue* const earlier = entry(from.provenance, before_key)) {
+    if (const auto* const list = std::get_if<ProvenanceList>(earlier)) before = *list;
+  }
+  before.emplace_back(entry_of(from));
+  Provenance& all = made.provenance;
+  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& each) { return each.first == before_key; }),
+            all.end());
+  all.emplace_back(before_key, ProvenanceValue{std::move(before)});
+  made.law.in_processing = false;
+  made.model.name = fmt::format("{}, {} {}", unfitted_name(from), how, flights);
+}
 
 ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, const RefitResult& fit,
                              Loss loss, const std::string& flights) {
@@ -54,40 +89,36 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
   Covariance covariance;
   const std::vector<std::string>& known = fit.covariance_names;
   file.fits.resize(std::max(file.fits.size(), file.model.effects.size()));
+  bool any_fitted = false;
   std::size_t p = first;
-  for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
-    ModelEffect& effect = file.model.effects[e];
-    const std::vector<std::string> names = parameter_names(effect);
-    file.fits[e].resize(names.size());
-    for (std::size_t i = 0; i < names.size(); ++i, ++p) {
-      const FittedParameter& parameter = fit.parameters[p];
-      const std::string name = effect.id + "." + names[i];
-      effect.parameters[i] = parameter.value;
-      const bool in_covariance = std::find(known.begin(), known.end(), parameter.name) != known.end();
-      if (!parameter.fitted && !in_covariance) {
-        held.push_back(name);
-        continue;
-      }
-      if (parameter.fitted) {
-        file.fits[e][i].standard_error.reset();
-        if (!std::isfinite(parameter.standard_error)) continue;
-        file.fits[e][i].standard_error = parameter.standard_error;
-      }
-      covariance.parameters.push_back(name);
-      inside.push_back(
-          static_cast<std::size_t>(std::find(known.begin(), known.end(), parameter.name) - known.begin()));
+  for (const auto& [name, e, i] : named_parameters(file.model)) {
+    const FittedParameter& parameter = fit.parameters[p++];
+    file.model.effects[e].parameters[i] = parameter.value;
+    file.fits[e].resize(file.model.effects[e].parameters.size());
+    const auto in_covariance = std::find(known.begin(), known.end(), parameter.name);
+    if (!parameter.fitted && in_covariance == known.end()) {
+      held.push_back(name);
+      continue;
     }
+    if (parameter.fitted) {
+      any_fitted = true;
+      file.fits[e][i].standard_error.reset();
+      if (!std::isfinite(parameter.standard_error)) continue;
+      file.fits[e][i].standard_error = parameter.standard_error;
+    }
+    covariance.parameters.push_back(name);
+    inside.push_back(static_cast<std::size_t>(in_covariance - known.begin()));
   }
   if (first == 0) {
     for (std::size_t k = 0; k < known.size(); ++k) {
-      if (!has_doubt(known[k]) || is_parameter(known[k], fit)) continue;
+      const bool is_parameter =
+          std::any_of(fit.parameters.begin(), fit.parameters.end(),
+                      [&](const FittedParameter& parameter) { return parameter.name == known[k]; });
+      if (!has_doubt(known[k]) || is_parameter) continue;
       covariance.parameters.push_back(known[k]);
       inside.push_back(k);
     }
   }
-  const auto last = fit.parameters.begin() + static_cast<std::ptrdiff_t>(p);
-  const bool any_fitted = std::any_of(fit.parameters.begin() + static_cast<std::ptrdiff_t>(first), last,
-                                      [](const FittedParameter& parameter) { return parameter.fitted; });
   if (!any_fitted) return file;  // all parameters were fixed: the law is unchanged
   for (const std::size_t a : inside) {
     std::vector<double>& row = covariance.matrix.emplace_back();

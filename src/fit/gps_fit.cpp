@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "campaign/gps_noise.hpp"
-#include "campaign/gps_rows.hpp"
 #include "campaign/gps_system.hpp"
 #include "campaign/model_parameters.hpp"
 #include "fit/fit_task.hpp"
@@ -46,15 +45,6 @@ struct FlightState {
   Eigen::VectorXd outliers{};
 };
 
-/// Information of the flights about the requested coefficients and the shared nuisances: normal equations of
-/// all blocks, with the nuisances of each flight eliminated.
-struct Equations {
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd right;
-  Eigen::MatrixXd fixed{};                  // products of these columns with those of fixed coefficients
-  std::vector<Eigen::MatrixXd> products{};  // one per block, with the nuisances of each flight eliminated
-};
-
 class GpsSolver {
  public:
   GpsSolver(const std::vector<FitFlights*>& flights, Eigen::VectorXd start, const BeforeGps& before,
@@ -72,8 +62,7 @@ class GpsSolver {
     values_(requested_) = before.values;
     prior_deviation_.resize(count_);
     for (Eigen::Index k = 0; k < count_; ++k)
-      prior_deviation_[k] =
-          gps_prior_in_typical_sizes * task_.parameters[requested_[static_cast<std::size_t>(k)]].typical;
+      prior_deviation_[k] = gps_prior_in_typical_sizes * parameter(k).typical;
     // A fitted coefficient replaces the nuisance for the same error.
     constexpr double held = 1e-3;  // fraction of its prior deviation; no result depends on it
     for (std::size_t n = 0; n < gps_nuisances.size(); ++n) {
@@ -102,6 +91,10 @@ class GpsSolver {
   Eigen::Index shared() const { return count_ + gps_shared_nuisances; }
   Eigen::Index all() const { return count_ + gps_nuisance_count; }
   Eigen::Index fixed() const { return as_index(columns_.size()) - count_; }
+  const FitParameter& parameter(Eigen::Index k) const {
+    return task_.parameters[requested_[static_cast<std::size_t>(k)]];
+  }
+  Eigen::MatrixXd identity() const { return Eigen::MatrixXd::Identity(shared(), shared()); }
 
   /// Stated covariance of fixed coefficients; zero for those of the law of a reference.
   Eigen::MatrixXd doubt_of(const std::vector<std::size_t>& coefficients) const {
@@ -127,13 +120,6 @@ class GpsSolver {
     return order;
   }
 
-  GpsPrior flight_prior() const {
-    GpsPrior prior{Eigen::VectorXd::Zero(all()), Eigen::VectorXd(all())};
-    prior.deviation << prior_deviation_, nuisance_deviation_;
-    prior.mean.head(count_) = before_.values - values_(requested_);
-    return prior;
-  }
-
   Part part_of(GpsKind kind, const FitFlight& fit, FlightState& state, bool with_noise,
                bool with_outliers) const {
     const Eigen::VectorXd coefficients = flight_parameters(fit.residuals(), task_, values_);
@@ -145,7 +131,9 @@ class GpsSolver {
     part.defects = rows.defect.leftCols(count_).transpose() * rows.defect.leftCols(count_);
     if (part.samples == 0) return part;
     if (state.outliers.size() != rows.rows.rows()) state.outliers = Eigen::VectorXd::Zero(rows.rows.rows());
-    GpsPrior prior = flight_prior();
+    GpsPrior prior{Eigen::VectorXd::Zero(all()), Eigen::VectorXd(all())};
+    prior.deviation << prior_deviation_, nuisance_deviation_;
+    prior.mean.head(count_) = before_.values - values_(requested_);
     if (!state.noise) state.noise.emplace(kind);
     if ((prior.deviation.array() <= 0.0).any()) widen(prior, state.noise->white(rows, state.outliers));
     if (with_noise) state.noise->maximise(rows, state.outliers, prior);
@@ -197,10 +185,10 @@ class GpsSolver {
   void eliminate_own(const std::vector<std::map<std::int64_t, Eigen::MatrixXd>>& flights) {
     const Eigen::Index own = gps_nuisance_count - gps_shared_nuisances;
     const Eigen::Index size = shared();
-    equations_ = {Eigen::MatrixXd::Zero(size, size),
-                  Eigen::VectorXd::Zero(size),
-                  Eigen::MatrixXd::Zero(size, fixed()),
-                  {}};
+    matrix_ = Eigen::MatrixXd::Zero(size, size);
+    right_ = Eigen::VectorXd::Zero(size);
+    by_fixed_ = Eigen::MatrixXd::Zero(size, fixed());
+    products_.clear();
     for (const auto& blocks : flights) {
       Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(all() + 1, all() + 1 + fixed());
       sum.diagonal().segment(size, own) = nuisance_deviation_.tail(own).cwiseAbs2().cwiseInverse();
@@ -212,15 +200,15 @@ class GpsSolver {
       without.middleRows(size, own) =
           -sum.block(size, size, own, own).ldlt().solve(sum.block(size, 0, own, all() + 1) * without);
       for (const auto& [block, products] : blocks)
-        equations_.products.emplace_back(without.transpose() * products.leftCols(all() + 1) * without);
+        products_.emplace_back(without.transpose() * products.leftCols(all() + 1) * without);
       const Eigen::MatrixXd left = without.transpose() * sum.leftCols(all() + 1) * without;
-      equations_.matrix += left.topLeftCorner(size, size);
-      equations_.right += left.col(size).head(size);
-      equations_.fixed += without.leftCols(size).transpose() * sum.rightCols(fixed());
+      matrix_ += left.topLeftCorner(size, size);
+      right_ += left.col(size).head(size);
+      by_fixed_ += without.leftCols(size).transpose() * sum.rightCols(fixed());
     }
     for (Eigen::Index k = 0; k < count_; ++k) {
       if (prior_deviation_[k] > 0.0) continue;
-      const double information = equations_.matrix(k, k);
+      const double information = matrix_(k, k);
       prior_deviation_[k] = information > 0.0 ? 100.0 / std::sqrt(information) : 1.0;
     }
   }
@@ -242,14 +230,13 @@ class GpsSolver {
   void find_free() {
     free_ = held_ = weak_ = Eigen::MatrixXd(count_, 0);
     if (before_.covariance.size() > 0) return;
-    Eigen::MatrixXd nuisances =
-        equations_.matrix.bottomRightCorner(gps_shared_nuisances, gps_shared_nuisances);
+    Eigen::MatrixXd nuisances = matrix_.bottomRightCorner(gps_shared_nuisances, gps_shared_nuisances);
     nuisances.diagonal() += nuisance_deviation_.head(gps_shared_nuisances).cwiseAbs2().cwiseInverse();
-    const Eigen::MatrixXd cross = equations_.matrix.bottomLeftCorner(gps_shared_nuisances, count_);
-    const Eigen::MatrixXd information = prior_deviation_.asDiagonal() *
-                                        (equations_.matrix.topLeftCorner(count_, count_) -
-                                         cross.transpose() * nuisances.ldlt().solve(cross)) *
-                                        prior_deviation_.asDiagonal();
+    const Eigen::MatrixXd cross = matrix_.bottomLeftCorner(gps_shared_nuisances, count_);
+    const Eigen::MatrixXd information =
+        prior_deviation_.asDiagonal() *
+        (matrix_.topLeftCorner(count_, count_) - cross.transpose() * nuisances.ldlt().solve(cross)) *
+        prior_deviation_.asDiagonal();
     const SymmetricEigen eigen = symmetric_eigen(information);
     std::vector<Eigen::Index> known;
     std::vector<Eigen::Index> unknown;
@@ -279,26 +266,24 @@ class GpsSolver {
   /// Step of the coefficients to the optimum of flights and prior.
   void step() {
     find_free();
-    const Eigen::MatrixXd prior = prior_covariance();
-    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(shared(), shared());
-    posterior_ = (identity + prior * equations_.matrix).partialPivLu().solve(prior);
+    prior_ = prior_covariance();
+    posterior_ = (identity() + prior_ * matrix_).partialPivLu().solve(prior_);
     Eigen::VectorXd from = Eigen::VectorXd::Zero(shared());
     const Eigen::VectorXd now = values_(requested_);
     from.head(count_) = now - before_.values;
-    change_ = posterior_ * (equations_.right + equations_.matrix * from);
+    change_ = posterior_ * (right_ + matrix_ * from);
     change_.head(count_) = level_held() * change_.head(count_);
     keep_bounds();
     values_(requested_) = before_.values + change_.head(count_);
     warmer_ = change_[count_];
   }
 
-  const Bounds& bounds_of(Eigen::Index k) const {
-    return task_.parameters[requested_[static_cast<std::size_t>(k)]].bounds;
-  }
-
   /// Sets coefficients beyond a bound to the bound. The others get their best values with the bound held.
   void keep_bounds() {
     at_bound_.assign(requested_.size(), false);
+    const auto within = [this](Eigen::Index k, double value) {
+      return std::clamp(value, parameter(k).bounds.lower, parameter(k).bounds.upper);
+    };
     const Eigen::MatrixXd level = level_held();
     Eigen::MatrixXd covariance = posterior_;
     covariance.topRows(count_) = level * covariance.topRows(count_).eval();
@@ -308,7 +293,7 @@ class GpsSolver {
       double beyond = 0.0;  // unit: standard deviations of the prior
       for (Eigen::Index k = 0; k < count_; ++k) {
         const double value = before_.values[k] + change_[k];
-        const double off = std::abs(value - std::clamp(value, bounds_of(k).lower, bounds_of(k).upper));
+        const double off = std::abs(value - within(k, value));
         if (off / prior_deviation_[k] > beyond && !at_bound_[static_cast<std::size_t>(k)]) {
           beyond = off / prior_deviation_[k];
           worst = k;
@@ -317,7 +302,7 @@ class GpsSolver {
       if (worst < 0) break;
       at_bound_[static_cast<std::size_t>(worst)] = true;
       const double value = before_.values[worst] + change_[worst];
-      const double missing = std::clamp(value, bounds_of(worst).lower, bounds_of(worst).upper) - value;
+      const double missing = within(worst, value) - value;
       const double variance = covariance(worst, worst);
       if (variance > 0.0) {
         const Eigen::VectorXd with = covariance.col(worst) / variance;
@@ -326,8 +311,7 @@ class GpsSolver {
       }
       for (Eigen::Index k = 0; k < count_; ++k) {
         if (!at_bound_[static_cast<std::size_t>(k)]) continue;
-        const double held = before_.values[k] + change_[k];
-        change_[k] = std::clamp(held, bounds_of(k).lower, bounds_of(k).upper) - before_.values[k];
+        change_[k] = within(k, before_.values[k] + change_[k]) - before_.values[k];
       }
     }
   }
@@ -352,17 +336,15 @@ class GpsSolver {
     Eigen::VectorXd left = change_;
     left.head(count_).setZero();
     residual_weights << -left, 1.0;
-    const Eigen::MatrixXd prior = prior_covariance();
-    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(shared(), shared());
-    const Eigen::MatrixXd drawn = identity - posterior_ * equations_.matrix;
-    Eigen::MatrixXd sandwich = drawn * prior * drawn.transpose();
-    for (const Eigen::MatrixXd& products : equations_.products) {
-      const Eigen::MatrixXd others = equations_.matrix - products.topLeftCorner(shared(), shared());
+    const Eigen::MatrixXd drawn = identity() - posterior_ * matrix_;
+    Eigen::MatrixXd sandwich = drawn * prior_ * drawn.transpose();
+    for (const Eigen::MatrixXd& products : products_) {
+      const Eigen::MatrixXd others = matrix_ - products.topLeftCorner(shared(), shared());
       const Eigen::VectorXd score = (products * residual_weights).head(shared());
-      const Eigen::VectorXd without = (identity + prior * others).partialPivLu().solve(prior * score);
+      const Eigen::VectorXd without = (identity() + prior_ * others).partialPivLu().solve(prior_ * score);
       sandwich += without * without.transpose();
     }
-    fit.parts = equations_.products.size();
+    fit.parts = products_.size();
     const Eigen::MatrixXd level = level_held();
     fit.by_noise = level * posterior_.topLeftCorner(count_, count_) * level.transpose();
     fit.kept = drawn.topLeftCorner(count_, count_);
@@ -370,23 +352,17 @@ class GpsSolver {
     fit.jackknife = by_scatter.diagonal().cwiseMax(0.0).cwiseSqrt();
     fit.covariance = error_of(by_scatter) > error_of(fit.by_noise) ? by_scatter : fit.by_noise;
     determined_ = error_of(fit.covariance);
-    fit.by_fixed = level * (fit.kept * before_.carried - (posterior_ * equations_.fixed).topRows(count_));
+    fit.by_fixed = level * (fit.kept * before_.carried - (posterior_ * by_fixed_).topRows(count_));
     fit.by_noise += covariance_by_fixed(fit.by_fixed);
     fit.covariance += covariance_by_fixed(fit.by_fixed);
-    if (held_.cols() > 0) {
-      const Eigen::MatrixXd doubt = doubt_of_held();
-      fit.covariance += doubt;
-      fit.held = error_of(doubt);
-    }
+    if (held_.cols() > 0) fit.covariance += doubt_of_held();
     fit.covariance = 0.5 * (fit.covariance + fit.covariance.transpose()).eval();
     fit.stated = error_of(fit.covariance);
-    const Eigen::MatrixXd matrix = equations_.matrix.topLeftCorner(count_, count_);
+    const Eigen::MatrixXd matrix = matrix_.topLeftCorner(count_, count_);
     const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::VectorXd eigenvalues =
         symmetric_eigenvalues(scale.asDiagonal() * matrix * scale.asDiagonal());
     fit.condition_number = std::sqrt(eigenvalues.maxCoeff() / std::max(eigenvalues.minCoeff(), 1e-20));
-    fit.thermometer = change_[count_];
-    fit.thermometer_error = std::sqrt(posterior_(count_, count_));
     add_notes(fit);
     return fit;
   }
@@ -401,11 +377,6 @@ class GpsSolver {
     return onto * stated * onto.transpose();
   }
 
-  bool has(GpsKind kind) const {
-    return std::any_of(flights_.begin(), flights_.end(),
-                       [kind](const FitFlights* each) { return gps_kind(each->task().reference) == kind; });
-  }
-
   /// "static-constant.a0 against static-qp.a2"
   std::string names_of(const Eigen::MatrixXd& directions) const {
     constexpr double much = 0.1;
@@ -414,7 +385,7 @@ class GpsSolver {
       const Eigen::VectorXd shares = directions.col(h).cwiseQuotient(prior_deviation_).cwiseAbs2();
       std::vector<std::string> some;
       for (Eigen::Index k = 0; k < count_; ++k) {
-        if (shares[k] > much) some.push_back(task_.parameters[requested_[static_cast<std::size_t>(k)]].name);
+        if (shares[k] > much) some.push_back(parameter(k).name);
       }
       names.push_back(fmt::format("{}", fmt::join(some, " against ")));
     }
@@ -436,7 +407,8 @@ class GpsSolver {
 
   void add_notes(GpsFit& fit) const {
     const std::string_view what_tells =
-        has(GpsKind::wind)
+        std::any_of(flights_.begin(), flights_.end(),
+                    [](const FitFlights* each) { return gps_kind(each->task().reference) == GpsKind::wind; })
             ? "four circles of one bank, or reverse headings, for the level; a speed run for the change with "
               "the airspeed; a pitch manoeuvre for the attack term"
             : "--reference wind with circles or reverse headings, for the level; a speed run or a pitch "
@@ -445,7 +417,7 @@ class GpsSolver {
       fit.warnings.push_back(
           fmt::format("the flights do not determine {}: delta-p was kept near the starting model, with an "
                       "error of {:.2f} hPa; to determine it: {}",
-                      names_of(held_), fit.held, what_tells));
+                      names_of(held_), error_of(doubt_of_held()), what_tells));
     }
     if (weak_.cols() > 0) {
       fit.notes.push_back(
@@ -453,10 +425,11 @@ class GpsSolver {
                       names_of(weak_), what_tells));
     }
     const bool is_fitted = nuisance_deviation_[0] < gps_nuisances.front().deviation;
-    if (!is_fitted && std::abs(fit.thermometer) > 2.0 * fit.thermometer_error) {
+    const double thermometer = change_[count_];  // negative bias, K
+    const double error = std::sqrt(posterior_(count_, count_));
+    if (!is_fitted && std::abs(thermometer) > 2.0 * error) {
       fit.notes.push_back(fmt::format("the thermometer reads {} by {:.2f} +- {:.2f} K, by GPS",
-                                      fit.thermometer > 0.0 ? "low" : "high", std::abs(fit.thermometer),
-                                      fit.thermometer_error));
+                                      thermometer > 0.0 ? "low" : "high", std::abs(thermometer), error));
     }
   }
 
@@ -472,12 +445,18 @@ class GpsSolver {
   Eigen::VectorXd nuisance_deviation_ = gps_nuisance_deviations();
   double warmer_ = 0.0;                           // nuisance of the thermometer, K
   std::vector<std::vector<FlightState>> states_;  // indexed by reference and flight
-  Equations equations_{};
+  // Information of the flights about the requested coefficients and the shared nuisances: normal equations,
+  // with the nuisances of each flight eliminated.
+  Eigen::MatrixXd matrix_{};
+  Eigen::VectorXd right_{};
+  Eigen::MatrixXd by_fixed_{};               // products of these columns with those of fixed coefficients
+  std::vector<Eigen::MatrixXd> products_{};  // one per block
   Eigen::MatrixXd defects_{};
   std::size_t samples_ = 0;
   Eigen::MatrixXd free_{};       // directions that the flights determine, one deviation of the prior long
   Eigen::MatrixXd held_{};       // the others
   Eigen::MatrixXd weak_{};       // free directions that hardly leave the start
+  Eigen::MatrixXd prior_{};      // covariance of coefficients and shared nuisances before the flights
   Eigen::MatrixXd posterior_{};  // covariance of coefficients and shared nuisances
   std::vector<bool> at_bound_{};
   Eigen::VectorXd change_{};  // changes of coefficients; values of nuisances
@@ -485,8 +464,6 @@ class GpsSolver {
 };
 
 }  // namespace
-
-bool is_by_gps(const Reference& reference) { return gps_kind(reference).has_value(); }
 
 GpsFit fit_gps(const std::vector<FitFlights*>& flights, const Eigen::VectorXd& start, const BeforeGps& before,
                const std::vector<std::size_t>& requested) {

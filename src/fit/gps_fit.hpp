@@ -6,6 +6,7 @@
 
 #include <pcor/base/note.hpp>
 
+#include "campaign/gps_rows.hpp"
 #include "fit/fit_flights.hpp"
 
 namespace pcor::internal {
@@ -29,16 +30,10 @@ struct GpsFit {
   Eigen::VectorXd jackknife{};   ///< standard errors from omitting parts of the flights
   std::size_t parts = 0;         ///< parts of five minutes
   double condition_number = 1.0;
-  double stated = 0.0;       ///< standard error of delta-p, hPa, rms over the flights
-  double held = 0.0;         ///< part of `stated` from fixed directions
-  double thermometer = 0.0;  ///< negative bias of the thermometer, K
-  double thermometer_error = 0.0;
+  double stated = 0.0;                  ///< standard error of delta-p, hPa, rms over the flights
   std::vector<std::string> warnings{};  ///< held coefficients, and manoeuvres that determine them
   Notes notes{};
 };
-
-/// Whether a reference is one of GPS, wind or height.
-bool is_by_gps(const Reference& reference);
 
 /// Fits the requested coefficients to GPS: maximum a posteriori, with the latent processes of `GpsNoise` and
 /// the nuisances of `gps_nuisances`. Without other references each coefficient has a prior about its start,

@@ -15,7 +15,10 @@ namespace pcor::internal {
 class ScaledLoss {
  public:
   ScaledLoss() = default;  // least squares
-  ScaledLoss(Loss loss, double deviation);
+  ScaledLoss(Loss loss, double deviation) {
+    if (loss == Loss::huber && deviation > 0.0)
+      function_ = std::make_shared<ceres::HuberLoss>(huber_width * deviation);
+  }
 
   /// The loss of a residual, and its first and second derivative by the square of the residual.
   std::array<double, 3> operator()(double residual) const {
@@ -25,7 +28,9 @@ class ScaledLoss {
   }
 
   /// Weight of each residual: the first derivative.
-  Eigen::VectorXd weights(const Eigen::VectorXd& residuals) const;
+  Eigen::VectorXd weights(const Eigen::VectorXd& residuals) const {
+    return residuals.unaryExpr([this](double residual) { return (*this)(residual)[1]; });
+  }
 
   bool is_least_squares() const { return function_ == nullptr; }
 

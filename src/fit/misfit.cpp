@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <pcor/physics/constants.hpp>
 #include "numerics/decompositions.hpp"
@@ -52,31 +53,13 @@ std::array<std::vector<double>, states> states_of(const FlightSamples& samples) 
           *model.find(Quantity::static_pressure)};
 }
 
-/// Products of (derivatives, bumps, residual), whitened and unwhitened.
-struct Products {
-  Eigen::MatrixXd white{};
-  Eigen::MatrixXd plain{};
-  double bins = 0.0;
-
-  Products& operator+=(const Products& other) {
-    white += other.white;
-    plain += other.plain;
-    bins += other.bins;
-    return *this;
-  }
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(white, plain, bins);
-  }
-};
-
 /// Information about the heights of the bumps: derivatives have no prior, bumps have the variance of their
 /// state.
 class Heights {
  public:
-  Heights(const Products& products, Eigen::Index derivatives)
-      : left_(products_after(products.white, derivatives)) {}
+  /// @param products of the whitened rows (derivatives, bumps, residual)
+  Heights(const Eigen::MatrixXd& products, Eigen::Index derivatives)
+      : left_(products_after(products, derivatives)) {}
 
   struct Posterior {
     Eigen::MatrixXd covariance;
@@ -143,37 +126,28 @@ Eigen::VectorXd variances_of(const Heights& heights, double rms) {
   return variance;
 }
 
-/// Mean residual of a flight without the misfit, and its variance from the noise.
-struct FlightMean {
-  double value = 0.0;
-  double variance = 0.0;  ///< hPa^2; 0 where the flight has no bin
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(value, variance);
-  }
-};
-
 /// Variance between the means of flights beyond the noise (DerSimonian and Laird 1986, Controlled Clinical
 /// Trials 7, 177), hPa^2. Zero for a single flight.
-double variance_between(const std::vector<FlightMean>& flights) {
+/// @param flights mean residual of each flight without the misfit, and its variance from the noise, zero
+/// where the flight has no bin
+double variance_between(const std::vector<std::pair<double, double>>& flights) {
   double weights = 0.0;
   double squares = 0.0;
   double sum = 0.0;
   double count = 0.0;
-  for (const FlightMean& flight : flights) {
-    if (!(flight.variance > 0.0)) continue;
-    const double weight = 1.0 / flight.variance;
+  for (const auto& [mean, variance] : flights) {
+    if (!(variance > 0.0)) continue;
+    const double weight = 1.0 / variance;
     weights += weight;
     squares += weight * weight;
-    sum += weight * flight.value;
+    sum += weight * mean;
     count += 1.0;
   }
   if (count < 2.0) return 0.0;
   double scatter = 0.0;
-  for (const FlightMean& flight : flights) {
-    const double from = flight.value - sum / weights;
-    if (flight.variance > 0.0) scatter += from * from / flight.variance;
+  for (const auto& [mean, variance] : flights) {
+    const double from = mean - sum / weights;
+    if (variance > 0.0) scatter += from * from / variance;
   }
   return std::max(0.0, (scatter - (count - 1.0)) / (weights - squares / weights));
 }
@@ -251,37 +225,48 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
   if (flights.bins() < min_bins) return misfit;
   const Eigen::Index own = as_index(flights.setup().requested.size());
   const Eigen::Index count = MisfitBasis::count();
+  const auto rows_of = [&](std::size_t flight) {
+    Eigen::MatrixXd all(in_bins[flight].rows(), own + count + 1);
+    all << flights.columns(flight).leftCols(own), misfit.bumps(in_bins[flight]),
+        flights.residual(flight, solution.values);
+    return all;
+  };
+  const auto plain = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+    const Eigen::MatrixXd all = rows_of(flight);
+    return Eigen::MatrixXd(all.transpose() * all);
+  });
+  const auto bins = share.sum_of_each_flight<double>(
+      [&](std::size_t flight) { return static_cast<double>(in_bins[flight].rows()); });
+  const double rms = std::sqrt(plain(own + count, own + count) / bins);
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
-    const auto sum = share.sum_of_each_flight<Products>([&](std::size_t flight) {
-      Eigen::MatrixXd all(in_bins[flight].rows(), own + count + 1);
-      all << flights.columns(flight).leftCols(own), misfit.bumps(in_bins[flight]),
-          flights.residual(flight, solution.values);
-      const Eigen::MatrixXd white = whitened(all, flights.bins(flight), flights.noise(flight), 0);
-      return Products{white.transpose() * white, all.transpose() * all, static_cast<double>(all.rows())};
+    const auto white = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+      const Eigen::MatrixXd all = whitened(rows_of(flight), flights.bins(flight), flights.noise(flight), 0);
+      return Eigen::MatrixXd(all.transpose() * all);
     });
-    const double rms = std::sqrt(sum.plain(own + count, own + count) / sum.bins);
-    if (!(rms > 0.0) || !sum.white.allFinite()) return misfit;
-    const Heights heights(sum, own);
+    if (!(rms > 0.0) || !white.allFinite()) return misfit;
+    const Heights heights(white, own);
     const Eigen::VectorXd variance = variances_of(heights, rms);
     const Heights::Posterior posterior = heights.posterior(variance);
     const double weight = weight_of(posterior, variance, rms);
     misfit.variance = weight * variance;
     misfit.height = weight * posterior.mean;
-    const Eigen::MatrixXd left = products_after(sum.plain, own).topLeftCorner(count, count);
+    const Eigen::MatrixXd left = products_after(plain, own).topLeftCorner(count, count);
     misfit.left = std::sqrt(
         weight *
         std::max(0.0, (left * (posterior.covariance + posterior.mean * posterior.mean.transpose())).trace()) /
-        sum.bins);
+        bins);
     flights.measure_noise(solution.values, [&](const FitFlights& reference, std::size_t flight) {
       return misfit.at(states_of_reference.at(&reference)[flight]);
     });
   }
-  misfit.between_flights = variance_between(share.of_each_flight<FlightMean>([&](std::size_t flight) {
-    const Eigen::VectorXd left = flights.residual(flight, solution.values) - misfit.at(in_bins[flight]);
-    if (left.size() == 0) return FlightMean{};
-    return FlightMean{left.mean(), 1.0 / information_about_mean(flights.bins(flight), flights.noise(flight))};
-  }));
+  misfit.between_flights =
+      variance_between(share.of_each_flight<std::pair<double, double>>([&](std::size_t flight) {
+        const Eigen::VectorXd left = flights.residual(flight, solution.values) - misfit.at(in_bins[flight]);
+        if (left.size() == 0) return std::pair(0.0, 0.0);
+        return std::pair(left.mean(),
+                         1.0 / information_about_mean(flights.bins(flight), flights.noise(flight)));
+      }));
   return misfit;
 }
 

@@ -3,16 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
-namespace {
-
-constexpr int max_omissions = 8;
-
-}  // namespace
 
 SquaredResiduals::SquaredResiduals(FitFlights& flights, const Solution& solution)
     : flights_(flights), solution_(solution) {
@@ -102,7 +96,8 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
     const auto refitted = [&](bool is_from_fit) {
       Eigen::VectorXd values = changed;
       Eigen::VectorXd x = solution.values(parameters);
-      for (int round = 0; round < (squares.is_linear() ? 1 : max_omissions) && !others.empty(); ++round) {
+      const int max_rounds = squares.is_linear() ? 1 : 8;
+      for (int round = 0; round < max_rounds && !others.empty(); ++round) {
         const bool extrapolates = round == 0 && is_from_fit;
         const Eigen::MatrixXd rows = extrapolates ? rows_of_fit : rows_at(values);
         const Eigen::MatrixXd columns = rows(Eigen::all, others);

@@ -1,4 +1,4 @@
-#include "fit/prior.hpp"
+#include "fit/fit_task.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,29 +4,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
 #include <pcor/base/error.hpp>
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include "campaign/model_parameters.hpp"
 #include "fit/before_and_after.hpp"
 #include "fit/fit_covariance.hpp"
-#include "fit/fitted_coefficients.hpp"
 #include "fit/fitted_model.hpp"
 #include "fit/gps_fit.hpp"
-#include "fit/identifiability.hpp"
-#include "fit/lineage.hpp"
 #include "fit/omissions.hpp"
-#include "fit/prior.hpp"
 #include "fit/solver.hpp"
 #include "fit/warnings.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
+#include "parallel/workers.hpp"
 #include "roles/computed_from.hpp"
 
 namespace pcor {
 
 using namespace internal;
+
+template <class Archive>
+void serialize(Archive& archive, FittedParameter& parameter) {
+  archive(parameter.name, parameter.unit, parameter.start, parameter.value, parameter.standard_error,
+          parameter.noise_error, parameter.jackknife_error, parameter.fitted, parameter.at_bound,
+          parameter.stage);
+}
 
 namespace {
 
@@ -77,32 +84,6 @@ void require_sense(const FlightSet& flights, const ModelDefinition& model, const
   all.require_each_once();
   all.require_one_aircraft();
   require_other_pressures(flights, model, references);
-}
-
-/// Whether two references belong to one system and share its law.
-bool share_system(const Reference& a, const Reference& b) {
-  if (a.model() == nullptr || b.model() == nullptr) return false;
-  return a.model()->model.name == b.model()->model.name && a.model()->variables == b.model()->variables;
-}
-
-FitTask task_of(const ModelDefinition& model, const References& references, const RefitOptions& options,
-                const FlightSet& flights) {
-  const Reference& reference = first_of(references);
-  FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
-  task.doubt = stated_covariance(model, reference);
-  task.surfaces = surfaces_of(model.model, reference.model());
-  task.start.resize(as_index(task.parameters.size()));
-  for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
-  task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
-    ++passes;
-    if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);
-  };
-  for (std::size_t i = 1; i < references.size(); ++i) {
-    FitTask with{model, *references[i], options, flights, task.parameters, task.start, task.doubt, [] {}};
-    with.shares_system = share_system(reference, *references[i]);
-    task.further.push_back(std::move(with));
-  }
-  return task;
 }
 
 /// Result of the stages of a fit.
@@ -242,10 +223,10 @@ Fitted prepared_for_gps(const FitTask& task) {
 std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance& covariance,
                               bool is_masked_again = false) {
   std::vector<FitFlights*> by_gps;
-  const bool is_alone = is_by_gps(task.reference);
+  const bool is_alone = gps_kind(task.reference).has_value();
   if (is_alone) by_gps.push_back(fitted.flights.get());
   for (const std::unique_ptr<FitFlights>& each : fitted.flights->further()) {
-    if (is_by_gps(each->task().reference)) by_gps.push_back(each.get());
+    if (gps_kind(each->task().reference)) by_gps.push_back(each.get());
   }
   if (by_gps.empty()) return std::nullopt;
   Solution& solution = fitted.solution;
@@ -291,17 +272,11 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
 void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& fitted,
                        const FitCovariance& covariance) {
   for (std::size_t p = 0; p < task.parameters.size(); ++p) {
-    FittedParameter& parameter = result.parameters.emplace_back();
-    parameter.name = task.parameters[p].name;
-    parameter.unit = task.parameters[p].unit;
-    parameter.start = task.start[as_index(p)];
-    parameter.value = fitted.solution.values[as_index(p)];
-    parameter.standard_error = nan;
-    parameter.noise_error = nan;
-    parameter.jackknife_error = nan;
-    parameter.stage = fitted.stage_of[p];
-    parameter.fitted = parameter.stage > 0;
-    parameter.at_bound = fitted.solution.at_bound[p];
+    const FitParameter& parameter = task.parameters[p];
+    const int stage = fitted.stage_of[p];
+    result.parameters.push_back({parameter.name, parameter.unit, task.start[as_index(p)],
+                                 fitted.solution.values[as_index(p)], nan, nan, nan, stage > 0,
+                                 fitted.solution.at_bound[p], stage});
   }
   std::vector<std::size_t> all = fitted.parameters;
   all.insert(all.end(), fitted.held.begin(), fitted.held.end());
@@ -352,7 +327,7 @@ Notes notes_of(const RefitResult& result, const FitTask& task, const Fitted& fit
   Notes notes;
   const auto add = [&notes](const auto& more) { notes.insert(notes.end(), more.begin(), more.end()); };
   if (gps) add(gps->notes);
-  if (!is_by_gps(task.reference)) {
+  if (!gps_kind(task.reference)) {
     add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,
                               compared.flown));
     add(error_notes(result, fitted.flights->count(), fitted.has_converged,
@@ -376,7 +351,7 @@ std::string reference_text(FitFlights& flights) {
   for (const FitFlights* const each : flights.joint())
     descriptions.push_back(each->task().reference.description());
   for (const std::unique_ptr<FitFlights>& each : flights.further()) {
-    if (is_by_gps(each->task().reference)) descriptions.push_back(each->task().reference.description());
+    if (gps_kind(each->task().reference)) descriptions.push_back(each->task().reference.description());
   }
   return fmt::format("{}", fmt::join(descriptions, ", "));
 }
@@ -386,17 +361,14 @@ std::string reference_text(FitFlights& flights) {
 Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
   TriangularFactor sum(as_index(flights.setup().requested.size()) + 1);
   for (FitFlights* const each : flights.joint()) sum.add(each->unweighted_factor(values));
-  Reduction result;
-  result.factor = sum.factor();
-  result.absorbed = Eigen::VectorXd::Zero(sum.columns() - 1);
-  return result;
+  return {sum.factor(), Eigen::VectorXd::Zero(sum.columns() - 1)};
 }
 
 RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, const References& references,
                 const RefitOptions& options) {
   const Reference& reference = first_of(references);
-  FitTask task = task_of(model, references, options, fitted_flights);
-  const bool by_gps_alone = is_by_gps(reference);
+  FitTask task = fit_task(model, references, options, fitted_flights);
+  const bool by_gps_alone = gps_kind(reference).has_value();
   Fitted fitted = by_gps_alone ? prepared_for_gps(task) : fit_in_stages(task);
   const Solution& solution = fitted.solution;
   RefitResult result;
@@ -426,30 +398,27 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.reference_text = reference_text(flights);
   result.masks = flights.masks();
   result.jackknife_parts = covariance.blocks;
-  BeforeAndAfter compared = before_and_after(flights, solution.values, covariance.by_flights, misfit.left);
+  const BeforeAndAfter compared =
+      before_and_after(flights, solution.values, covariance.by_flights, misfit.left, result);
   task.tell();
   const FitSums& sums = compared.sums;
-  result.samples = sums.samples;
-  result.rms_before = sums.rms_of(sums.squares_before);
-  result.rms = sums.rms_of(sums.squares);
+  result.samples = sums.after.samples;
+  result.rms_before = sums.rms_of(sums.before.squares);
+  result.rms = sums.rms_of(sums.after.squares);
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
   result.bulk_rms = sums.rms_of(sums.bulk_squares);
-  result.noise_rms = sums.rms_of(sums.noise_squares);
+  result.noise_rms = sums.rms_of(sums.after.noise_squares);
   if (covariance.information > 0.0) {
+    const auto samples = static_cast<double>(result.samples);
     result.autocorrelation_time =
-        std::max(static_cast<double>(sums.samples) /
-                     (sums.bulk_squares / static_cast<double>(sums.samples) * covariance.information),
-                 1.0);
+        std::max(samples / (sums.bulk_squares / samples * covariance.information), 1.0);
   } else if (by_gps_alone) {
     result.autocorrelation_time = nan;
   }
-  result.r_squared = sums.r_squared(sums.squares);
+  result.r_squared = sums.r_squared(sums.after.squares);
   result.outliers = flights.outliers(solution.values, tukey_width * solution.deviation);
   const SquaredResiduals squares(flights, solution);
   if (!gps) result.omissions = omissions(flights, solution, sums, squares);
-  result.flights = std::move(compared.flights);
-  result.further = std::move(compared.further);
-  result.flaps_out = compared.flaps_out;
   list_coefficients(result, task, fitted, covariance);
   add_thermometer(result, fitted, covariance);
   for (const SurfaceRoughness& surface : task.surfaces) {
@@ -482,14 +451,37 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
 
 }  // namespace
 
+FitTask internal::fit_task(const ModelDefinition& model, const References& references,
+                           const RefitOptions& options, const FlightSet& flights) {
+  const Reference& reference = first_of(references);
+  FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
+  task.doubt = stated_covariance(model, reference);
+  task.surfaces = surfaces_of(model.model, reference.model());
+  task.start.resize(as_index(task.parameters.size()));
+  for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
+  task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
+    ++passes;
+    if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);
+  };
+  for (std::size_t i = 1; i < references.size(); ++i) {
+    FitTask with{model, *references[i], options, flights, task.parameters, task.start, task.doubt, [] {}};
+    const ModelDefinition* const own = reference.model();
+    const ModelDefinition* const other = references[i]->model();
+    with.shares_system = own != nullptr && other != nullptr && own->model.name == other->model.name &&
+                         own->variables == other->variables;
+    task.further.push_back(std::move(with));
+  }
+  return task;
+}
+
 ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const ModelDefinition& model,
                                               const References& references, const RefitOptions& options,
                                               std::vector<SurfaceRoughness>& surfaces) {
   if (std::any_of(references.begin(), references.end(),
-                  [](const auto& reference) { return is_by_gps(*reference); }))
+                  [](const auto& reference) { return gps_kind(*reference).has_value(); }))
     return refit(flights, model, references, options).model;
   require_sense(flights, model, references, options);
-  FitTask task = task_of(model, references, options, flights);
+  FitTask task = fit_task(model, references, options, flights);
   if (!surfaces.empty()) task.surfaces = surfaces;
   const Fitted fitted = fit_in_stages(task);
   surfaces = task.surfaces;
@@ -506,7 +498,7 @@ RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const 
   require_sense(flights, model, references, options);
   References in_order = references;
   const auto gps = std::stable_partition(in_order.begin(), in_order.end(),
-                                         [](const auto& reference) { return !is_by_gps(*reference); });
+                                         [](const auto& reference) { return !gps_kind(*reference); });
   RefitResult result;
   try {
     result = fit(flights, model, in_order, options);
@@ -526,6 +518,56 @@ RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const 
   }
   flights.with(options.holdout).require_unchanged();
   return result;
+}
+
+std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelDefinition& model,
+                                       const References& references, const MaskOptions& mask) {
+  References gps;
+  std::copy_if(references.begin(), references.end(), std::back_inserter(gps),
+               [](const auto& reference) { return gps_kind(*reference).has_value(); });
+  if (gps.empty()) return std::nullopt;
+  const std::string constant = "static-constant";
+  ModelDefinition with = has_effect(model, constant) ? model : add_effects(model, {neutral_effect(constant)});
+  // GPS alone is used, without the result of an earlier fit.
+  with.covariance = {};
+  for (EffectFit& fit : with.fits) {
+    for (ParameterFit& parameter : fit) parameter.standard_error.reset();
+  }
+  RefitOptions options;
+  options.mask = mask;
+  for (const ModelEffect& effect : model.model.effects) {
+    if (effect.id != constant) options.fix.push_back(effect.id);
+  }
+  options.free.push_back(constant);
+  const RefitResult found = refit(flights, with, gps, options);
+  for (const FittedParameter& parameter : found.parameters) {
+    if (!parameter.fitted || !(parameter.standard_error > 0.0)) continue;
+    const double pressure = found.defect_error / parameter.standard_error;
+    return LevelByGps{pressure * (parameter.value - parameter.start), found.defect_error};
+  }
+  return std::nullopt;
+}
+
+std::vector<std::vector<FittedParameter>> refit_per_flight(const FlightSet& flights,
+                                                           const ModelDefinition& model,
+                                                           const References& references,
+                                                           const RefitOptions& options) {
+  const FlightPartition& share = flights.share();
+  RefitOptions own = options;
+  own.threads = Workers(flights.comm(), options.threads).threads;
+  own.holdout = FlightSet();
+  own.progress = nullptr;
+  std::size_t done = 0;
+  return share.of_each_flight<std::vector<FittedParameter>>([&](std::size_t number) {
+    std::vector<FittedParameter> found;
+    try {
+      found = refit(flights.only(number), model, references, own).parameters;
+    } catch (const Error& error) {
+      if (error.code() == Error::Code::file) throw;
+    }
+    if (options.progress) options.progress(++done, share.local_count());
+    return found;
+  });
 }
 
 std::vector<FittedEffect> fitted_effects(const std::vector<FittedParameter>& parameters) {

@@ -8,9 +8,8 @@
 
 #include "base/phrasing.hpp"
 #include "compare/comparison_panels.hpp"
-#include "fit/coefficient_picture.hpp"
-#include "fit/held_out_panel.hpp"
-#include "fit/lineage.hpp"
+#include "fit/fit_pictures.hpp"
+#include "fit/fitted_model.hpp"
 
 namespace pcor {
 

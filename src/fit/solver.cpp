@@ -1,18 +1,21 @@
 #include "fit/solver.hpp"
 
+#include <ceres/cost_function.h>
+#include <ceres/normal_prior.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include <pcor/base/error.hpp>
-#include "fit/global_search.hpp"
-#include "fit/minimise.hpp"
-#include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/missing.hpp"
 
@@ -62,6 +65,56 @@ void require_samples(const FitFlights& flights, std::size_t free, bool is_stage)
   }
 }
 
+Error not_finite() {
+  return {Error::Code::fit,
+          "the residuals are not finite at the starting coefficients of the model; give other starting "
+          "values, or use --search"};
+}
+
+/// Suppresses Ceres messages about failed trials on standard error; its summary has the relevant information.
+class QuietLog {
+ public:
+  QuietLog() : before_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
+  ~QuietLog() { FLAGS_minloglevel = before_; }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  int before_;
+};
+
+using Reduce = std::function<Reduction(const Eigen::VectorXd& unknowns)>;  // one pass over the flights
+
+/// All flights as one residual block of a few rows: the triangular factor of the weighted derivatives and
+/// residuals has the same gradient and the same normal matrix as all samples, and the last row brings the
+/// cost to that of the loss.
+class ReducedCost final : public ceres::CostFunction {
+ public:
+  ReducedCost(Reduce reduce, Eigen::Index size) : reduce_(std::move(reduce)), size_(size) {
+    set_num_residuals(static_cast<int>(size) + 1);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(size));
+  }
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const Reduction reduction = reduce_(Eigen::Map<const Eigen::VectorXd>(blocks[0], size_));
+    if (!reduction.valid) return false;
+    Eigen::Map<Eigen::VectorXd> all(residuals, size_ + 1);
+    all.head(size_) = reduction.factor.col(size_).head(size_);
+    const double rest = 2.0 * reduction.cost - all.head(size_).squaredNorm();
+    all[size_] = std::sqrt(std::max(rest, 0.0));
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<ceres::Matrix> jacobian(jacobians[0], size_ + 1, size_);
+      jacobian.setZero();
+      jacobian.topRows(size_) = reduction.factor.topLeftCorner(size_, size_);
+    }
+    return true;
+  }
+
+ private:
+  Reduce reduce_;
+  Eigen::Index size_;
+};
+
 /// The unknowns are the free parameters.
 class Solver {
  public:
@@ -79,16 +132,12 @@ class Solver {
       lower_[k] = bounds.lower;
       upper_[k] = bounds.upper;
     }
-    unknowns_ = solution_.values(free_).cwiseMax(lower_).cwiseMin(upper_);
+    set(unknowns().cwiseMax(lower_).cwiseMin(upper_));
     solution_.at_bound.resize(task_.parameters.size(), false);
-    spread();
   }
 
   Solution solve() {
-    if (task_.options.search) {
-      unknowns_ = global_search(flights_, solution_.values, free_);
-      spread();
-    }
+    if (task_.options.search) set(global_search(flights_, solution_.values, free_));
     flights_.prepare(solution_.values);
     // A stage starts at a solution.
     if (!is_stage_) {
@@ -99,7 +148,7 @@ class Solver {
       // The noise is that of residuals at the solution.
       constexpr int maximum = 5;
       for (int round = 0; round < maximum && flights_.has_moving_columns(); ++round) {
-        const Eigen::VectorXd before = unknowns_;
+        const Eigen::VectorXd before = unknowns();
         flights_.prepare(solution_.values);
         settles();
         if (has_converged(before)) break;
@@ -109,13 +158,13 @@ class Solver {
     constexpr int rounds = 10;
     // The weight of each reference is that of its residuals at the solution.
     for (int round = 0; round < rounds && flights_.joint().size() > 1; ++round) {
-      const Eigen::VectorXd before = unknowns_;
+      const Eigen::VectorXd before = unknowns();
       settles();
       if (has_converged(before)) break;
       measure();
     }
     for (int round = 0; round < rounds; ++round) {
-      const Eigen::VectorXd before = unknowns_;
+      const Eigen::VectorXd before = unknowns();
       const bool settled = settles();
       if (!flights_.uses_fixed_jacobian()) {
         if (settled) break;
@@ -129,23 +178,22 @@ class Solver {
   }
 
  private:
-  /// Writes the unknowns to their positions in the solution.
-  void spread() { solution_.values(free_) = unknowns_; }
+  Eigen::VectorXd unknowns() const { return solution_.values(free_); }
+  void set(const Eigen::VectorXd& values) { solution_.values(free_) = values; }
 
   /// Start with the least squares for each time over which a need is estimated: the sum of squares may have
   /// several minima, like a wave shifted by more than its length.
   void choose_times() {
-    for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
+    for (Eigen::Index k = 0; k < lower_.size(); ++k) {
       std::vector<double> times = task_.parameters[free_[static_cast<std::size_t>(k)]].tried;
       if (times.empty()) continue;
-      times.insert(times.begin(), unknowns_[k]);
+      const Eigen::VectorXd start = unknowns();
+      times.insert(times.begin(), start[k]);
       const auto [lower, upper] = std::pair(lower_[k], upper_[k]);
       std::vector<Eigen::VectorXd> solutions;
       double deviation = infinity;  // minimum of all, so that the start does not matter
-      const Eigen::VectorXd start = unknowns_;
       const auto put = [&](const Eigen::VectorXd& unknowns) {
-        unknowns_ = unknowns;
-        spread();
+        set(unknowns);
         flights_.prepare(solution_.values);
       };
       for (const double time : times) {
@@ -156,7 +204,7 @@ class Solver {
         linear_step({});
         find_deviation();
         deviation = std::min(deviation, solution_.deviation);
-        solutions.push_back(unknowns_);
+        solutions.push_back(unknowns());
       }
       // Outliers do not matter either.
       const ScaledLoss huber(Loss::huber, deviation);
@@ -194,24 +242,23 @@ class Solver {
   Step linear_step(const ScaledLoss& loss) {
     const Reduction reduction = flights_.reduce(solution_.values, loss, free_);
     task_.tell();
-    const Eigen::Index size = unknowns_.size();
+    const Eigen::VectorXd before = unknowns();
+    const Eigen::Index size = before.size();
     const Eigen::MatrixXd drawn = solution_.deviation * prior_.rows;
     Eigen::MatrixXd rows(size + drawn.rows(), size);
     Eigen::VectorXd right(rows.rows());
     rows << reduction.factor.topLeftCorner(size, size), drawn;
-    right << -reduction.factor.col(size).head(size), drawn * (prior_.centre - unknowns_);
+    right << -reduction.factor.col(size).head(size), drawn * (prior_.centre - before);
     if (!reduction.valid || !right.allFinite()) return {};
-    const Eigen::VectorXd before = unknowns_;
-    unknowns_ = bounded_least_squares(rows, right + rows * unknowns_, lower_, upper_, unknowns_);
-    spread();
+    set(bounded_least_squares(rows, right + rows * before, lower_, upper_, before));
     return {reduction.cost + 0.5 * right.tail(drawn.rows()).squaredNorm(),
-            (rows * (unknowns_ - before)).norm()};
+            (rows * (unknowns() - before)).norm()};
   }
 
   /// True if no unknown moved by a hundredth of its uncertainty from flights and prior.
   bool has_converged(const Eigen::VectorXd& before) {
     const Reduction reduction = flights_.reduce(solution_.values, {}, free_);
-    const Eigen::VectorXd step = unknowns_ - before;
+    const Eigen::VectorXd step = unknowns() - before;
     const double by_flights = (reduction.factor.leftCols(step.size()) * step).norm();
     const double by_prior = (prior_.rows * step).norm();
     return std::max(by_flights, by_prior) < 0.01 * std::max(solution_.deviation, 1e-300);
@@ -219,28 +266,21 @@ class Solver {
 
   /// Records parameters at a bound.
   void find_bounds() {
-    for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
-      const double near = 1e-9 * std::max(std::abs(unknowns_[k]), 1e-12);
-      solution_.at_bound[free_[static_cast<std::size_t>(k)]] =
-          unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
+    for (Eigen::Index k = 0; k < lower_.size(); ++k) {
+      const std::size_t parameter = free_[static_cast<std::size_t>(k)];
+      const double value = solution_.values[as_index(parameter)];
+      const double near = 1e-9 * std::max(std::abs(value), 1e-12);
+      solution_.at_bound[parameter] = value <= lower_[k] + near || value >= upper_[k] - near;
     }
   }
 
   /// Minimises the loss; true if the deviation that scales it is then unchanged.
   bool settles() {
     const ScaledLoss scaled(task_.options.loss, solution_.deviation);
-    if (flights_.rows_are_linear()) {
+    if (flights_.rows_are_linear())
       reweight(scaled);
-    } else {
-      const auto reduce = [&](const Eigen::VectorXd& unknowns) {
-        Eigen::VectorXd values = solution_.values;
-        values(free_) = unknowns;
-        task_.tell();
-        return flights_.reduce(values, scaled, free_);
-      };
-      minimise({reduce, solution_.deviation * prior_.rows, prior_.centre, lower_, upper_}, unknowns_);
-      spread();
-    }
+    else
+      minimise(scaled);
     const double before = solution_.deviation;
     find_deviation();
     return std::abs(solution_.deviation - before) < 1e-3 * before;
@@ -251,20 +291,14 @@ class Solver {
   /// halved.
   void reweight(const ScaledLoss& loss) {
     constexpr int max_steps = 200;
-    Eigen::VectorXd best = unknowns_;
+    Eigen::VectorXd best = unknowns();
     double minimum = infinity;
     for (int step = 0; step < max_steps; ++step) {
-      const Eigen::VectorXd now = unknowns_;
+      const Eigen::VectorXd now = unknowns();
       const auto [cost, length] = linear_step(loss);
-      if (!std::isfinite(cost) && !std::isfinite(minimum)) {
-        throw Error(Error::Code::fit,
-                    "the residuals are not finite at the starting coefficients of the model; give other "
-                    "starting values, "
-                    "or use --search");
-      }
+      if (!std::isfinite(cost) && !std::isfinite(minimum)) throw not_finite();
       if (cost > (1.0 + 1e-12) * minimum) {
-        unknowns_ = 0.5 * (now + best);
-        spread();
+        set(0.5 * (now + best));
         continue;
       }
       best = now;
@@ -273,13 +307,51 @@ class Solver {
     }
   }
 
+  /// Minimises the loss of residuals that are not linear, with Ceres.
+  void minimise(const ScaledLoss& loss) {
+    Eigen::VectorXd x = unknowns();
+    const auto reduce = [&](const Eigen::VectorXd& unknowns) {
+      Eigen::VectorXd values = solution_.values;
+      values(free_) = unknowns;
+      task_.tell();
+      return flights_.reduce(values, loss, free_);
+    };
+    ceres::Problem problem;
+    problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
+    problem.AddResidualBlock(new ReducedCost(reduce, x.size()), nullptr, x.data());
+    if (prior_.rows.rows() > 0) {
+      problem.AddResidualBlock(new ceres::NormalPrior(solution_.deviation * prior_.rows, prior_.centre),
+                               nullptr, x.data());
+    }
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      const int position = static_cast<int>(k);
+      if (std::isfinite(lower_[k])) problem.SetParameterLowerBound(x.data(), position, lower_[k]);
+      if (std::isfinite(upper_[k])) problem.SetParameterUpperBound(x.data(), position, upper_[k]);
+    }
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_QR;
+    // The problem is nearly linear: the first step may reach the solution.
+    options.initial_trust_region_radius = 1e12;
+    options.max_num_iterations = 200;
+    options.function_tolerance = 1e-12;
+    options.parameter_tolerance = 1e-9;
+    options.gradient_tolerance = 1e-14;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    {
+      const QuietLog quiet;
+      ceres::Solve(options, &problem, &summary);
+    }
+    if (!summary.IsSolutionUsable() || !x.allFinite()) throw not_finite();
+    set(x);
+  }
+
   FitFlights& flights_;
   const FitTask& task_;
   const std::vector<std::size_t>& free_;
   const bool is_stage_;
   Solution solution_;
   const PriorRows prior_;
-  Eigen::VectorXd unknowns_;
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;
 };

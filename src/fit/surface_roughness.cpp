@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "fit/fit_flights.hpp"
-#include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/noise_covariance.hpp"
@@ -17,35 +16,6 @@ constexpr double min_size = 1e-5;
 constexpr double max_size = 0.1;
 constexpr double next_size = 1.7782794100389228;  // a quarter of a decade
 
-/// Products of (derivatives, residual) with each other in bins, weighted as least squares weighs them,
-/// and the covariance of the products with the noise.
-struct SurfaceProducts {
-  Eigen::MatrixXd squares{};
-  Eigen::MatrixXd noise{};
-
-  SurfaceProducts& operator+=(const SurfaceProducts& other) {
-    squares += other.squares;
-    noise += other.noise;
-    return *this;
-  }
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(squares, noise);
-  }
-};
-
-SurfaceProducts products_of(FitFlights& flights, const Eigen::VectorXd& values) {
-  const Eigen::Index count = as_index(flights.setup().requested.size());
-  return flights.share().sum_of_each_flight<SurfaceProducts>([&](std::size_t flight) {
-    const FitRows rows = flights.rows(flight, values, {});
-    const Eigen::MatrixXd all = side_by_side(rows.columns.leftCols(count), rows.innovations);
-    const Eigen::MatrixXd weighted = flights.weighted(flight, all.leftCols(count));
-    return SurfaceProducts{all.transpose() * all,
-                           noise_covariance(weighted, flights.bins(flight), flights.noise(flight), 0)};
-  });
-}
-
 /// Information of the flights on one surface, all other coefficients fitted.
 struct Determined {
   Eigen::MatrixXd information{};
@@ -53,16 +23,17 @@ struct Determined {
   Eigen::VectorXd right{};
 };
 
-Determined determined(const SurfaceProducts& products, const PriorRows& prior, double unit,
-                      const std::vector<Eigen::Index>& own) {
-  const Eigen::Index count = products.noise.cols();
+/// @param all products of (derivatives, residual) with each other, weighted as least squares weighs them
+/// @param noise covariance of the products of the derivatives with the noise
+Determined determined(const Eigen::MatrixXd& all, const Eigen::MatrixXd& noise, const PriorRows& prior,
+                      double unit, const std::vector<Eigen::Index>& own) {
+  const Eigen::Index count = noise.cols();
   std::vector<Eigen::Index> others;
   for (Eigen::Index k = 0; k < count; ++k) {
     if (std::find(own.begin(), own.end(), k) == own.end()) others.push_back(k);
   }
-  const Eigen::MatrixXd& all = products.squares;
   const Eigen::VectorXd y = all.col(count).head(count);
-  Determined found{all(own, own), products.noise(own, own), y(own)};
+  Determined found{all(own, own), noise(own, own), y(own)};
   if (others.empty()) return found;
   Eigen::MatrixXd of_others = all(others, others);
   const Eigen::MatrixXd drawn = prior.rows(Eigen::all, others);
@@ -71,8 +42,8 @@ Determined determined(const SurfaceProducts& products, const PriorRows& prior, d
   const Eigen::MatrixXd taken = information_inverse(of_others) * across;  // others by own
   found.information -= across.transpose() * taken;
   found.right -= taken.transpose() * y(others);
-  const Eigen::MatrixXd shared = products.noise(own, others) * taken;
-  found.noise += taken.transpose() * products.noise(others, others) * taken - shared - shared.transpose();
+  const Eigen::MatrixXd shared = noise(own, others) * taken;
+  found.noise += taken.transpose() * noise(others, others) * taken - shared - shared.transpose();
   return found;
 }
 
@@ -125,7 +96,17 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
   const std::vector<std::size_t>& requested = flights.setup().requested;
   if (has_new_noise) flights.measure_noise(solution.values);
   const double unit = solution.deviation * solution.deviation;
-  const SurfaceProducts products = products_of(flights, solution.values);
+  const Eigen::Index count = as_index(requested.size());
+  const auto all = flights.share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+    const FitRows rows = flights.rows(flight, solution.values, {});
+    const Eigen::MatrixXd own = side_by_side(rows.columns.leftCols(count), rows.innovations);
+    return Eigen::MatrixXd(own.transpose() * own);
+  });
+  const auto noise = flights.share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+    const Eigen::MatrixXd weighted =
+        flights.weighted(flight, flights.rows(flight, solution.values, {}).columns.leftCols(count));
+    return noise_covariance(weighted, flights.bins(flight), flights.noise(flight), 0);
+  });
   bool changed = false;
   for (SurfaceRoughness& surface : surfaces) {
     std::vector<Eigen::Index> own;
@@ -135,8 +116,8 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
       own.push_back(as_index(k));
       coefficients.push_back(as_index(requested[k] - surface.first));
     }
-    if (own.empty() || !products.squares.allFinite()) continue;
-    Determined found = determined(products, prior_rows(flights.task(), requested), unit, own);
+    if (own.empty() || !all.allFinite()) continue;
+    Determined found = determined(all, noise, prior_rows(flights.task(), requested), unit, own);
     // About zero, not about the solution.
     found.right -= found.information * solution.values(requested)(own);
     const auto precision = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {

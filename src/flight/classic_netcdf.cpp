@@ -143,16 +143,15 @@ std::optional<ClassicLayout> layout_of_classic(const std::filesystem::path& path
     ++record_variables;
     record_bytes = plus(record_bytes, padded(variable.bytes));
   }
-  ClassicLayout layout{0, record_bytes, std::numeric_limits<std::uint64_t>::max()};
-  std::uintmax_t& size = layout.size;
+  ClassicLayout layout{0, record_bytes, maximum};
   for (const Extent& variable : variables) {
     if (variable.record) layout.records_begin = std::min(layout.records_begin, variable.begin);
     const std::uint64_t stride = record_variables == 1 ? variable.bytes : record_bytes;
     const std::uint64_t end = plus(variable.begin, variable.bytes);
     if (!variable.record)
-      size = std::max(size, end);
+      layout.size = std::max(layout.size, end);
     else if (records > 0)
-      size = std::max(size, plus(end, times(records - 1, stride)));
+      layout.size = std::max(layout.size, plus(end, times(records - 1, stride)));
   }
   return layout;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <sys/types.h>
-
+#include <array>
 #include <cstdint>
 #include <filesystem>
 
@@ -14,18 +13,16 @@ class FileState {
   FileState() = default;
   explicit FileState(const std::filesystem::path& path);
 
-  bool operator==(const FileState& other) const;
+  bool operator==(const FileState& other) const { return facts_ == other.facts_; }
   bool operator!=(const FileState& other) const { return !(*this == other); }
 
   /// @throws Error unless the path still names this file, unchanged
   void require(const std::filesystem::path& path) const;
 
  private:
-  dev_t device_ = 0;
-  ino_t inode_ = 0;
-  off_t size_ = 0;
-  std::int64_t modified_ = 0;  // ns
-  std::int64_t changed_ = 0;   // ns; a program cannot set it, unlike the time of modification
+  // Device, inode, size in bytes, and the times in ns of the last modification and of the last change. A
+  // program cannot set the time of change.
+  std::array<std::int64_t, 5> facts_{};
 };
 
 }  // namespace pcor::internal

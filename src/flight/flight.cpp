@@ -8,21 +8,21 @@
 #include <pcor/flight/flight.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdlib>
-#include <iterator>
+#include <cstring>
+#include <initializer_list>
 #include <limits>
 #include <set>
 #include <unordered_map>
 
-#include "flight/absent_variable.hpp"
+#include "base/phrasing.hpp"
+#include "base/quoting.hpp"
 #include "flight/current_input.hpp"
 #include "flight/flight_file.hpp"
 #include "flight/registration.hpp"
 #include "flight/status_flags.hpp"
 #include "flight/time_source.hpp"
-#include "flight/unpacking.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor {
 
@@ -30,9 +30,7 @@ using namespace internal;
 
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double day = 86400;
-constexpr std::size_t max_gaps_listed = 1000;
 // Writers mark missing values with 1e30, 1e35, 1e300 or infinity. No measured value is that large in any
 // unit.
 constexpr double no_value = 1e30;
@@ -70,17 +68,6 @@ std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
   return static_cast<int>(length);
 }
 
-/// Reads what turns the stored numbers into values.
-void describe_numbers(const FlightFile& file, Variable& variable) {
-  variable.missing_values = file.missing_values(variable.id);
-  variable.valid_range = file.valid_range(variable.id);
-  variable.info.ignored_range = file.ignored_range(variable.id);
-  variable.unpacking = unpacking_of(file, variable.id);
-  variable.flags = StatusFlags::of(file, variable.id);
-  for (const StatusFlags& flags : variable.flags)
-    variable.info.flags.push_back(file.variable_name(flags.variable()));
-}
-
 Variable describe(const FlightFile& file, int id, int time_dimension) {
   Variable variable;
   variable.id = id;
@@ -94,7 +81,6 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
   if (modulus.size() == 2 && modulus[0] < modulus[1]) info.modulus_range = {modulus[0], modulus[1]};
 
   const std::vector<int> dimensions = file.dimensions_of(id);
-  for (const int dimension : dimensions) info.dimensions.push_back(file.dimension_name(dimension));
   if (!file.is_numeric(id) || dimensions.empty() || dimensions[0] != time_dimension || dimensions.size() > 2)
     return variable;
   if (dimensions.size() == 1) {
@@ -107,18 +93,17 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
   }
   info.is_series = true;
   try {
-    describe_numbers(file, variable);
+    variable.missing_values = file.missing_values(id);
+    variable.valid_range = file.valid_range(id);
+    info.ignored_range = file.ignored_range(id);
+    variable.unpacking = file.unpacking_of(id);
+    variable.flags = StatusFlags::of(file, id);
+    for (const StatusFlags& flags : variable.flags)
+      info.flags.push_back(file.variable_name(flags.variable()));
   } catch (const Error& error) {
     variable.refusal = error;
   }
   return variable;
-}
-
-// Median; for an even count the lower of the two middle values. Changes the order of the values.
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double mean(const double* values, int count) {
@@ -129,7 +114,7 @@ double mean(const double* values, int count) {
     sum += values[i];
     ++present;
   }
-  return present == 0 ? missing : sum / present;
+  return present == 0 ? nan : sum / present;
 }
 
 double mean_on_circle(const double* values, int count, const std::array<double, 2>& range) {
@@ -142,9 +127,32 @@ double mean_on_circle(const double* values, int count, const std::array<double, 
     cosine += std::cos(angle);
   }
   // Nothing there, or directions that cancel: there is no mean direction.
-  if (std::hypot(sine, cosine) < 1e-9 * count) return missing;
+  if (std::hypot(sine, cosine) < 1e-9 * count) return nan;
   const double angle = std::atan2(sine, cosine) / turn;
   return range[0] + width * (angle < 0 ? angle + 1 : angle);
+}
+
+// UDUNITS treats an angle as a plain number, so a count would convert to it.
+bool is_angle(const std::string& unit) {
+  const std::string standard = standard_unit(unit);
+  return (standard.rfind("deg", 0) == 0 || standard.rfind("rad", 0) == 0) && is_convertible(unit, "radian");
+}
+
+// Number of words of a role ("recovery_temperature") in a text, without regard to case.
+std::ptrdiff_t shared_words(std::string role, const std::string& text) {
+  std::replace(role.begin(), role.end(), '_', ' ');
+  const std::vector<std::string> words = split_words(role);
+  return std::count_if(words.begin(), words.end(), [&text](const std::string& word) {
+    return strcasestr(text.c_str(), word.c_str()) != nullptr;
+  });
+}
+
+/// The first of some global attributes that has a text; empty without such an attribute.
+std::string first_attribute(const Flight& flight, std::initializer_list<const char*> names) {
+  for (const char* const name : names) {
+    if (std::string text = flight.attribute(name); !text.empty()) return text;
+  }
+  return {};
 }
 
 }  // namespace
@@ -176,25 +184,22 @@ struct Flight::Implementation {
         records(file->dimension_length(source.dimension)),
         bytes(size_of(file->path())) {
     if (records > min_doubted && records > bytes)
-      throw Error(Error::Code::file,
-                  fmt::format("{} has {} records in {} bytes, more than one record per byte, so most records "
-                              "are empty; cut it with ncks -d {}",
-                              path(), records, bytes,
-                              shell_quote(file->dimension_name(source.dimension) + ",FIRST,LAST")));
+      file->refuse(
+          Error::Code::file,
+          " has {} records in {} bytes, more than one record per byte, so most records are empty; cut "
+          "it with {}",
+          records, bytes, cut_to("FIRST,LAST"));
     if (records > max_records)
-      throw Error(Error::Code::file,
-                  fmt::format("{} has {} records, and a flight has at most {}; cut it with ncks -d {}",
-                              path(), records, max_records,
-                              shell_quote(file->dimension_name(source.dimension) + ",FIRST,LAST")));
+      file->refuse(Error::Code::file, " has {} records, and a flight has at most {}; cut it with {}", records,
+                   max_records, cut_to("FIRST,LAST"));
     // In files of HDF5 every question how many there are looks at each.
     const int count = file->variable_count();
     for (int id = 0; id < count; ++id) {
       names.push_back(file->variable_name(id));
       if (!index.emplace(names.back(), names.size() - 1).second)
-        throw Error(
-            Error::Code::file,
-            fmt::format("{} has two variables {}, which is ambiguous; fetch the file again from its source",
-                        path(), names.back()));
+        file->refuse(Error::Code::file,
+                     " has two variables {}, which is ambiguous; fetch the file again from its source",
+                     names.back());
     }
     variables.resize(names.size());
     scan_time();
@@ -211,14 +216,69 @@ struct Flight::Implementation {
 
   std::string path() const { return file->path().string(); }
 
+  /// Command that shortens the file to some records.
+  std::string cut_to(const std::string& range) const {
+    return "ncks -d " + shell_quote(file->dimension_name(source.dimension) + "," + range);
+  }
+
   Variable& find(const std::string& name) {
     const auto found = index.find(name);
     if (found != index.end()) return variable(found->second);
     const std::vector<std::string> alike = suggest(name, names);
-    throw Error(Error::Code::variable, path() + ": " + name + " is not in this file; it has " +
-                                           (alike.empty() ? fmt::format("{} others, see ncdump -h {}",
-                                                                        names.size(), shell_path(path()))
-                                                          : fmt::format("{}", fmt::join(alike, ", "))));
+    file->refuse(Error::Code::variable, ": {} is not in this file; it has {}", name,
+                 alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), shell_path(path()))
+                               : fmt::format("{}", fmt::join(alike, ", ")));
+  }
+
+  // Error for a variable of the model that is absent from the file, with the time series that could replace
+  // it: series whose unit converts to `requested` and whose name is similar to `name`; if no name is similar,
+  // up to six series whose long names share most words with the role.
+  [[noreturn]] void refuse_missing(const std::string& name, const std::string& requested,
+                                   const std::string& role) {
+    std::vector<const VariableInfo*> fitting;
+    std::vector<std::string> namesakes;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const VariableInfo& each = variable(i).info;
+      if (!each.is_series || !is_convertible(each.units, requested) ||
+          is_angle(each.units) != is_angle(requested))
+        continue;
+      fitting.push_back(&each);
+      if (each.name.compare(0, 2, name, 0, 2) == 0) namesakes.push_back(each.name);
+    }
+    const std::vector<std::string> alike = suggest(name, namesakes);
+    const std::string shown = shortened(name);
+    if (!alike.empty())
+      file->refuse(Error::Code::variable,
+                   ": {} is not in this file; it has {}; change {} in the [variables] of the model", shown,
+                   fmt::format("{}", fmt::join(alike, ", ")), role);
+    if (fitting.empty())
+      file->refuse(Error::Code::variable,
+                   ": {} ({} of the model) is not in this file; it has no time series in {} or a unit that "
+                   "converts to "
+                   "it, see ncdump -h {}; change [variables] of the model",
+                   shown, role, requested, shell_path(path()));
+
+    constexpr std::size_t max_named = 6;
+    // Files call the temperature of the recovery probe "total".
+    const std::string words = role == "recovery_temperature" ? role + "_total" : role;
+    std::stable_sort(fitting.begin(), fitting.end(), [&](const VariableInfo* a, const VariableInfo* b) {
+      return shared_words(words, a->long_name) > shared_words(words, b->long_name);
+    });
+    const std::size_t others = fitting.size() - std::min(fitting.size(), max_named);
+    fitting.resize(fitting.size() - others);
+    std::string named;
+    for (std::size_t i = 0; i < fitting.size(); ++i) {
+      named += (i == 0 ? "" : ", ") + fitting[i]->name;
+      const bool unit_changes =
+          i + 1 == fitting.size() || standard_unit(fitting[i]->units) != standard_unit(fitting[i + 1]->units);
+      if (unit_changes) named += " in " + standard_unit(fitting[i]->units);
+    }
+    if (others > 0) named += fmt::format(" and {} more", others);
+    file->refuse(
+        Error::Code::variable,
+        ": {} ({} of the model) is not in this file; it has {} (units that fit); change [variables] of "
+        "the model",
+        shown, role, named);
   }
 
   // The names of rates that can be brought to the requested one, as this file has them: "1, 5 or 25".
@@ -228,69 +288,53 @@ struct Flight::Implementation {
       const int rate = variable(i).info.rate;
       if (rate > 0 && (rate % requested == 0 || requested % rate == 0)) rates.insert(rate);
     }
-    std::string text;
-    for (auto rate = rates.begin(); rate != rates.end(); ++rate)
-      text += (rate == rates.begin()            ? ""
-               : std::next(rate) == rates.end() ? " or "
-                                                : ", ") +
-              std::to_string(*rate);
-    return text;
+    std::vector<std::string> texts;
+    for (const int rate : rates) texts.push_back(std::to_string(rate));
+    return join_list(texts, "or");
   }
 
   Variable& find_series(const std::string& name) {
     Variable& variable = find(name);
-    if (variable.info.is_series) {
-      check_size(variable.info);
-      return variable;
+    const VariableInfo& info = variable.info;
+    if (!info.is_series) {
+      std::string dimensions;
+      for (const int each : file->dimensions_of(variable.id)) {
+        dimensions += (dimensions.empty() ? "" : ", ") + file->dimension_name(each);
+        const bool is_rate = file->dimension_name(each).rfind("sps", 0) == 0;
+        if (is_rate && !rate_of_dimension(*file, each))
+          dimensions += fmt::format(" = {}", file->dimension_length(each));
+      }
+      file->refuse(
+          Error::Code::variable,
+          ": {}({}) is not a time series of numbers over (Time) or (Time, spsN); choose another variable",
+          name, dimensions);
     }
-    std::string dimensions;
-    for (const int each : file->dimensions_of(variable.id)) {
-      dimensions += (dimensions.empty() ? "" : ", ") + file->dimension_name(each);
-      const bool is_rate = file->dimension_name(each).rfind("sps", 0) == 0;
-      if (is_rate && !rate_of_dimension(*file, each))
-        dimensions += fmt::format(" = {}", file->dimension_length(each));
-    }
-    throw Error(
-        Error::Code::variable,
-        fmt::format(
-            "{}: {}({}) is not a time series of numbers over (Time) or (Time, spsN); choose another variable",
-            path(), name, dimensions));
-  }
-
-  void check_size(const VariableInfo& info) const {
     const std::size_t samples = records * static_cast<std::size_t>(info.rate);
     if (samples > min_samples_doubted && samples > bytes)
-      throw Error(Error::Code::variable,
-                  fmt::format("{}: {} has {} samples in a file of {} bytes (expected: at most one sample a "
-                              "byte); cut it with ncks -d {}",
-                              path(), info.name, samples, bytes,
-                              shell_quote(file->dimension_name(source.dimension) + ",FIRST,LAST")));
+      file->refuse(
+          Error::Code::variable,
+          ": {} has {} samples in a file of {} bytes (expected: at most one sample a byte); cut it with {}",
+          info.name, samples, bytes, cut_to("FIRST,LAST"));
     const double rate = info.rate / axis.step;
-    if (rate <= max_samples_a_second * (1 + rounding)) return;
-    throw Error(Error::Code::variable,
-                fmt::format("{}: {} has {:.6g} samples a second, {} in each record of {:.6g} s; at most {:g} "
-                            "a second are supported; average the variable, or correct "
-                            "the times of the records",
-                            path(), info.name, rate, info.rate, axis.step, max_samples_a_second));
+    if (rate > max_samples_a_second * (1 + rounding))
+      file->refuse(
+          Error::Code::variable,
+          ": {} has {:.6g} samples a second, {} in each record of {:.6g} s; at most {:g} a second are "
+          "supported; average the variable, or correct the times of the records",
+          info.name, rate, info.rate, axis.step, max_samples_a_second);
+    return variable;
   }
 
-  void check_block(const std::string& name, RecordBlock block) const {
+  RejectedCounts read(Variable& variable, RecordBlock block, double* values) {
+    if (variable.refusal) throw *variable.refusal;
     if (block.first > records || block.count > records - block.first)
-      throw Error(Error::Code::usage,
-                  fmt::format("{}: cannot read {} at records {} to {}, there are {}", path(), name,
-                              block.first, block.first + block.count, records));
-  }
-
-  void read_stored(Variable& variable, RecordBlock block, double* out) {
-    check_block(variable.info.name, block);
-    if (block.count == 0) return;
-    const FileInHand in_hand(file->path());
-    file->read(variable.id, block, out);
-  }
-
-  static RejectedCounts clean(const Variable& variable, std::size_t count, double* values) {
+      file->refuse(Error::Code::usage, ": cannot read {} at records {} to {}, there are {}",
+                   variable.info.name, block.first, block.first + block.count, records);
+    if (block.count == 0) return {};
+    read_numbers(variable.id, block, values);
+    const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
     for (const double marker : variable.missing_values)
-      for (std::size_t i = 0; i < count; ++i) values[i] = values[i] == marker ? missing : values[i];
+      for (std::size_t i = 0; i < count; ++i) values[i] = values[i] == marker ? nan : values[i];
     RejectedCounts excluded;
     const auto [minimum, maximum] = variable.valid_range;
     for (std::size_t i = 0; i < count; ++i) {
@@ -298,29 +342,22 @@ struct Flight::Implementation {
       const bool is_enormous = std::abs(values[i]) >= no_value;
       excluded.invalid += is_invalid && !is_enormous ? 1 : 0;
       excluded.enormous += is_enormous ? 1 : 0;
-      values[i] = is_invalid || is_enormous ? missing : variable.unpacking(values[i]);
+      values[i] = is_invalid || is_enormous ? nan : variable.unpacking(values[i]);
+    }
+    for (const StatusFlags& unusable : variable.flags) {
+      const std::size_t samples_of_flag = unusable.is_of_record() ? count / block.count : 1;
+      flags.resize(count / samples_of_flag);
+      read_numbers(unusable.variable(), block, flags.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        if (unusable.unusable(flags[i / samples_of_flag])) values[i] = nan;
+      }
     }
     return excluded;
   }
 
-  RejectedCounts read(Variable& variable, RecordBlock block, double* out) {
-    if (variable.refusal) throw *variable.refusal;
-    read_stored(variable, block, out);
-    const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
-    const RejectedCounts excluded = clean(variable, count, out);
-    for (const StatusFlags& each : variable.flags) leave_out(each, block, count, out);
-    return excluded;
-  }
-
-  void leave_out(const StatusFlags& unusable, RecordBlock block, std::size_t count, double* values) {
-    if (count == 0) return;
-    const std::size_t samples_of_flag = unusable.is_of_record() ? count / block.count : 1;
-    flags.resize(count / samples_of_flag);
+  void read_numbers(int id, RecordBlock block, double* out) const {
     const FileInHand in_hand(file->path());
-    file->read(unusable.variable(), block, flags.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      if (unusable.unusable(flags[i / samples_of_flag])) values[i] = missing;
-    }
+    file->read(id, block, out);
   }
 
   // Records at which seconds of the day restart are known after the scan; until then the scan adds the days
@@ -329,12 +366,12 @@ struct Flight::Implementation {
     read(variable(static_cast<std::size_t>(source.variable)), block, out);
     for (std::size_t i = 0; i < block.count; ++i) {
       if (std::isnan(out[i]))
-        throw Error(Error::Code::time, fmt::format("{}: the time of record {} is missing; remove that record",
-                                                   path(), block.first + i));
+        file->refuse(Error::Code::time, ": the time of record {} is missing; remove that record",
+                     block.first + i);
       out[i] = out[i] * source.scale + source.offset;
       if (!is_of_aviation(out[i]))
-        throw Error(Error::Code::time, fmt::format("{}: the time of record {} is {}; remove that record",
-                                                   path(), block.first + i, utc_text(out[i])));
+        file->refuse(Error::Code::time, ": the time of record {} is {}; remove that record", block.first + i,
+                     utc_text(out[i]));
     }
     for (const std::size_t wrap : axis.midnight_wraps)
       for (std::size_t i = wrap > block.first ? wrap - block.first : 0; i < block.count; ++i) out[i] += day;
@@ -350,7 +387,6 @@ struct Flight::Implementation {
   }
 
   void scan_time() {
-    axis.source = source.words;
     std::size_t backward = 0, repeated = 0, first_bad = 0;
     double bad = 0, bad_before = 0, before = 0;
     std::vector<double> times, steps;
@@ -361,7 +397,11 @@ struct Flight::Implementation {
         axis.first = times.front();
         for (std::size_t i = 1; i < block.count; ++i)
           if (times[i] > times[i - 1]) steps.push_back(times[i] - times[i - 1]);
-        if (!steps.empty()) axis.step = median(steps);
+        if (!steps.empty()) {  // the median; for an even count the lower of the two middle values
+          const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
+          std::nth_element(steps.begin(), middle, steps.end());
+          axis.step = *middle;
+        }
       }
       for (std::size_t i = 0; i < block.count; ++i) {
         const std::size_t record = block.first + i;
@@ -374,24 +414,19 @@ struct Flight::Implementation {
           if (backward + repeated == 0) first_bad = record, bad = now, bad_before = before;
           ++(now < before ? backward : repeated);
         }
-        if (record > 0 && now - before > 1.5 * axis.step) {
-          ++axis.gap_count;
-          if (axis.gaps.size() < max_gaps_listed) axis.gaps.push_back({record, before, now});
-        }
+        if (record > 0 && now - before > 1.5 * axis.step) ++axis.gap_count;
         axis.whole_seconds = axis.whole_seconds && now == std::floor(now);
         before = now;
       }
     }
     axis.last = before;
     if (backward + repeated > 0)
-      throw Error(Error::Code::time,
-                  fmt::format("{}: time {} at record {} ({} after {}), {} backward and {} repeated steps in "
-                              "all; cut the file "
-                              "there with ncks -d {}",
-                              path(), bad < bad_before ? "runs backwards" : "repeats", first_bad,
-                              utc_text(bad), utc_text(bad_before), backward, repeated,
-                              shell_quote(fmt::format("{},0,{}", file->dimension_name(source.dimension),
-                                                      first_bad - 1))));
+      file->refuse(
+          Error::Code::time,
+          ": time {} at record {} ({} after {}), {} backward and {} repeated steps in all; cut the file "
+          "there with {}",
+          bad < bad_before ? "runs backwards" : "repeats", first_bad, utc_text(bad), utc_text(bad_before),
+          backward, repeated, cut_to(fmt::format("0,{}", first_bad - 1)));
   }
 };
 
@@ -427,21 +462,16 @@ std::string Flight::attribute(const std::string& name) const {
   return text;
 }
 
-std::string Flight::first_attribute(std::initializer_list<const char*> names) const {
-  for (const char* const name : names) {
-    if (std::string text = attribute(name); !text.empty()) return text;
-  }
-  return {};
-}
-
 std::string Flight::aircraft() const {
-  std::string stated = first_attribute({"platform", "aircraft", "tail_number", "platform_name"});
-  return stated.empty() ? registration_in(first_attribute({"source", "title"})) : stated;
+  std::string stated = first_attribute(*this, {"platform", "aircraft", "tail_number", "platform_name"});
+  return stated.empty() ? registration_in(first_attribute(*this, {"source", "title"})) : stated;
 }
 
-std::string Flight::project() const { return first_attribute({"project", "ProjectName", "campaign"}); }
+std::string Flight::project() const { return first_attribute(*this, {"project", "ProjectName", "campaign"}); }
 
-std::string Flight::flight_number() const { return first_attribute({"FlightNumber", "flight_number"}); }
+std::string Flight::flight_number() const {
+  return first_attribute(*this, {"FlightNumber", "flight_number"});
+}
 
 const std::vector<std::string>& Flight::variables() const { return implementation_->names; }
 
@@ -453,22 +483,15 @@ const VariableInfo& Flight::variable(const std::string& name) const {
 
 UnitConversion Flight::conversion(const std::string& name, const std::string& requested,
                                   const std::string& role, const std::string& stated) const {
-  if (!has(name) && !role.empty()) {
-    std::vector<VariableInfo> series;
-    for (std::size_t i = 0; i < variables().size(); ++i) {
-      const VariableInfo& info = implementation_->variable(i).info;
-      if (info.is_series) series.push_back(info);
-    }
-    throw missing_variable(path().string(), series, name, requested, role);
-  }
+  if (!has(name) && !role.empty()) implementation_->refuse_missing(name, requested, role);
   const std::string& own = variable(name).units;
   if (stated.empty()) return UnitConversion::between(own, requested, {name, path().string(), role});
   if (!is_convertible(stated, requested))
-    throw Error(
+    file().refuse(
         Error::Code::unit,
-        fmt::format("{}: the unit \"{}\" that the model states for {} ({}) is not known or does not convert "
-                    "to {}; correct unit.{} in the [units] of the model",
-                    path().string(), stated, name, role, requested, role));
+        ": the unit \"{}\" that the model states for {} ({}) is not known or does not convert to {}; "
+        "correct unit.{} in the [units] of the model",
+        stated, name, role, requested, role);
   return UnitConversion::between(stated, requested, {name, path().string(), role});
 }
 
@@ -480,9 +503,8 @@ void Flight::require_values(const std::string& name) const {
     implementation_->read(variable, block, values.data());
     if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); })) return;
   }
-  throw Error(Error::Code::variable,
-              fmt::format("{}: {} has no value, all {} records are missing; choose another variable",
-                          path().string(), name, records()));
+  file().refuse(Error::Code::variable,
+                ": {} has no value, all {} records are missing; choose another variable", name, records());
 }
 
 RejectedCounts Flight::read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
@@ -503,20 +525,18 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
   Variable& variable = implementation_->find_series(name);
   const int own = variable.info.rate;
   if (rate == own) return read(name, block, conversion, out);
-  if (rate < 1)
-    throw Error(Error::Code::usage,
-                fmt::format("{}: {} samples a record are impossible", path().string(), rate));
+  if (rate < 1) file().refuse(Error::Code::usage, ": {} samples a record are impossible", rate);
   if (rate % own != 0 && own % rate != 0)
-    throw Error(Error::Code::samples,
-                fmt::format("{}: {} has {} samples a record, which cannot be converted to {}; choose a "
-                            "variable with {} samples a record",
-                            path().string(), name, own, rate, implementation_->rates_that_fit(rate)));
+    file().refuse(Error::Code::samples,
+                  ": {} has {} samples a record, which cannot be converted to {}; choose a variable with {} "
+                  "samples a record",
+                  name, own, rate, implementation_->rates_that_fit(rate));
   std::vector<double>& values = implementation_->scratch;
   values.resize(block.count * static_cast<std::size_t>(own));
   RejectedCounts excluded = implementation_->read(variable, block, values.data());
   for (double& value : values) {
     if (std::isnan(value) || !std::isnan(conversion(value))) continue;
-    value = missing;
+    value = nan;
     ++excluded.impossible;
   }
   const auto requested = block.count * static_cast<std::size_t>(rate);
@@ -539,9 +559,7 @@ void Flight::read_time_stamps(RecordBlock block, double* out) const {
 }
 
 void Flight::read_sample_times(RecordBlock block, int rate, double* out) const {
-  if (rate < 1)
-    throw Error(Error::Code::usage,
-                fmt::format("{}: {} samples a record are impossible", path().string(), rate));
+  if (rate < 1) file().refuse(Error::Code::usage, ": {} samples a record are impossible", rate);
   std::vector<double>& stamps = implementation_->scratch;
   stamps.resize(block.count);
   read_time_stamps(block, stamps.data());

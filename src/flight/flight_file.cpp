@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 
@@ -33,23 +34,43 @@ constexpr Format known_formats[] = {
     {is_icartt, open_icartt},
 };
 
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
+  throw Error(Error::Code::file, path.string() + what);
+}
+
 void require_readable(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  if (path.empty()) throw Error(Error::Code::file, "the input has no name; name a netCDF file");
+  if (path.empty()) fail(path, "the input has no name; name a netCDF file");
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status))
-    throw Error(Error::Code::file, name + ": no such file; check the path");
-  if (std::filesystem::is_directory(status))
-    throw Error(Error::Code::file, name + " is a directory; name a netCDF file");
-  if (!std::filesystem::is_regular_file(status))
-    throw Error(Error::Code::file, name + " is not a regular file; name a netCDF file");
+  if (!std::filesystem::exists(status)) fail(path, ": no such file; check the path");
+  if (std::filesystem::is_directory(status)) fail(path, " is a directory; name a netCDF file");
+  if (!std::filesystem::is_regular_file(status)) fail(path, " is not a regular file; name a netCDF file");
   if (!std::ifstream(path))
-    throw Error(Error::Code::file,
-                name + " cannot be read: " + std::strerror(errno) + "; check its permissions");
+    fail(path, std::string(" cannot be read: ") + std::strerror(errno) + "; check its permissions");
+}
+
+/// Scale factor or offset of packed values. @throws Error if the attribute exists and is not a number.
+double packing_number(const FlightFile& file, int variable, const char* attribute, double otherwise) {
+  const std::string text = file.text_attribute(variable, attribute);
+  if (text.empty()) return otherwise;
+  const std::vector<double> numbers = file.number_attribute(variable, attribute);
+  const bool is_number = numbers.size() == 1 && std::isfinite(numbers.front());
+  if (is_number && (numbers.front() != 0 || otherwise == 0)) return numbers.front();
+  file.refuse(
+      Error::Code::variable,
+      ": the attribute {} of {} is \"{}\", which is not valid for packed values; correct it with ncatted "
+      "-a {} {}",
+      attribute, file.variable_name(variable), text,
+      shell_quote(fmt::format("{},{},o,d,NUMBER", attribute, file.variable_name(variable))),
+      shell_path(file.path().string()));
 }
 
 }  // namespace
+
+UnitConversion FlightFile::unpacking_of(int variable) const {
+  return {packing_number(*this, variable, "scale_factor", 1),
+          packing_number(*this, variable, "add_offset", 0)};
+}
 
 std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) {
   require_readable(path);
@@ -58,12 +79,11 @@ std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) 
     if (format.is_of(path)) return format.open(path);
   }
   if (path.extension() == ".gz")
-    throw Error(Error::Code::file,
-                fmt::format("{} is compressed; unpack it with gunzip -k {}, and name {}", path.string(),
-                            shell_quote(path.string()), (path.parent_path() / path.stem()).string()));
-  throw Error(Error::Code::file, path.string() +
-                                     " is not a netCDF file or an ICARTT file; give a file that `ncdump -k` "
-                                     "can read, or whose first line ends in 1001");
+    fail(path, fmt::format(" is compressed; unpack it with gunzip -k {}, and name {}",
+                           shell_quote(path.string()), (path.parent_path() / path.stem()).string()));
+  fail(path,
+       " is not a netCDF file or an ICARTT file; give a file that `ncdump -k` can read, or whose first line "
+       "ends in 1001");
 }
 
 }  // namespace pcor::internal

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -8,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
 
@@ -28,6 +31,13 @@ class FlightFile {
   virtual ~FlightFile() = default;
 
   virtual const std::filesystem::path& path() const = 0;
+
+  /// Throws an error: the path of the file, followed by `text` with these values.
+  template <class... Values>
+  [[noreturn]] void refuse(Error::Code code, fmt::format_string<const Values&...> text,
+                           const Values&... values) const {
+    throw Error(code, path().string() + fmt::format(text, values...));
+  }
 
   virtual int variable_count() const = 0;
   virtual std::optional<int> find_variable(const std::string& name) const = 0;
@@ -64,6 +74,10 @@ class FlightFile {
 
   /// Notes on how the file was read, for its user: sentences without a full stop.
   virtual Notes notes() const { return {}; }
+
+  /// Conversion of the stored numbers of a variable to values in its unit, from its attributes scale_factor
+  /// and add_offset: 1 and 0 if they are absent. @throws Error if one of them is not a valid number.
+  UnitConversion unpacking_of(int variable) const;
 
   /// Number of records to read as one block, variable by variable.
   virtual std::size_t records_at_once() const { return records_per_block; }

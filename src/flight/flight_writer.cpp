@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pcor/base/error.hpp>
-#include <pcor/base/suggest.hpp>
 #include <pcor/base/utc.hpp>
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/units/units.hpp>
@@ -58,24 +57,25 @@ struct Written {
   Range range;
 };
 
-/// A time series of an input in another format than netCDF that is taken over.
-struct Series {
-  std::string name;
-  int id = 0;
-};
+NewFlight start_of(const Flight& input) {
+  const auto* const netcdf = dynamic_cast<const NetcdfFile*>(&input.file());
+  const TimeAxis& time = input.time();
+  const bool fits_integers =
+      time.whole_seconds && time.last - midnight_before(time.first) <= std::numeric_limits<int>::max();
+  return {time.first, fits_integers, netcdf ? netcdf->kind() : NetcdfFormat::netcdf4};
+}
 
 }  // namespace
 
 struct FlightWriter::Implementation {
-  std::filesystem::path shown;
   const Flight* input = nullptr;
   FileDescription description;
   double midnight;
   bool whole_seconds;
   AtomicFile replacement;
   std::optional<NetcdfOutput> file;
-  std::optional<NetcdfCopy> copies;  // netCDF input
-  std::vector<Series> series;        // other input
+  std::optional<NetcdfCopy> copies;                 // netCDF input
+  std::vector<std::pair<std::string, int>> series;  // other input: time series that are copied, and their ids
 
   int time_variable = 0;
   std::vector<Written> written;
@@ -84,18 +84,17 @@ struct FlightWriter::Implementation {
   std::size_t time_records = 0;
   double first_time = 0, last_time = 0;
 
-  Implementation(std::filesystem::path output, const Flight* flight, const NewFlight& start,
+  Implementation(const std::filesystem::path& output, const Flight* flight, const NewFlight& start,
                  FileDescription what)
-      : shown(std::move(output)),
-        input(flight),
+      : input(flight),
         description(std::move(what)),
         midnight(midnight_before(start.first_time)),
         whole_seconds(start.whole_seconds),
-        replacement(shown) {
+        replacement(output) {
     std::error_code code;
-    if (input && std::filesystem::equivalent(shown, input->path(), code))
-      throw Error(Error::Code::usage, shown.string() + " is the input itself; choose another output");
-    file.emplace(replacement.path(), shown, start.kind);
+    if (input && std::filesystem::equivalent(output, input->path(), code))
+      throw Error(Error::Code::usage, output.string() + " is the input itself; choose another output");
+    file.emplace(replacement.path(), output, start.kind);
     const auto* const source = input ? dynamic_cast<const NetcdfFile*>(&input->file()) : nullptr;
     if (source) {
       const int time = *source->find_variable(input->time_variable());
@@ -138,8 +137,9 @@ struct FlightWriter::Implementation {
     std::string title =
         input ? fmt::format("{} {} {}", input->project(), input->flight_number(), input->aircraft()) : "";
     title.erase(0, title.find_first_not_of(' '));
-    supply("title", title.empty() ? "Research flight" : title, description.title);
-    supply("summary", text_of("title"), description.summary);
+    put_text(global, "title", description.title);
+    supply("title", title.empty() ? "Research flight" : title);
+    supply("summary", text_of("title"));
     supply("source", "airborne observations");
     supply("platform_type", "aircraft");
     supply("keywords", "aircraft, airspeed, static pressure, dynamic pressure");
@@ -210,42 +210,44 @@ struct FlightWriter::Implementation {
 
   std::string text_of(const std::string& name) const { return file->text_attribute(global, name); }
 
-  // A global attribute: the stated value, otherwise the value of the input, otherwise the given default.
-  void supply(const std::string& name, const std::string& otherwise, const std::string& stated = "") const {
-    if (!stated.empty())
-      put_text(global, name, stated);
-    else if (text_of(name).empty())
-      put_text(global, name, otherwise);
+  // A global attribute: the value of the input, otherwise the given default.
+  void supply(const std::string& name, const std::string& otherwise) const {
+    if (text_of(name).empty()) put_text(global, name, otherwise);
   }
 
   void check_new(const std::string& name) const {
     if (!defining)
-      throw Error(Error::Code::usage,
-                  shown.string() + ": " + name + " is defined after the first value was written");
+      file->refuse(Error::Code::usage, ": {} is defined after the first value was written", name);
     if (name.empty() || name.find('/') != std::string::npos)
-      throw Error(Error::Code::usage,
-                  shown.string() + ": \"" + name + "\" is not a valid variable name; choose another name");
+      file->refuse(Error::Code::usage, ": \"{}\" is not a valid variable name; choose another name", name);
     if (file->has(name))
-      throw Error(Error::Code::usage, shown.string() + ": the file already has a variable " + name +
-                                          "; give the new variable a suffix");
+      file->refuse(Error::Code::usage, ": the file already has a variable {}; give the new variable a suffix",
+                   name);
   }
 
   std::size_t define(const OutputVariable& variable) {
     check_new(variable.name);
     if (variable.rate < 1)
-      throw Error(Error::Code::usage, fmt::format("{}: {} cannot have {} samples a record", shown.string(),
-                                                  variable.name, variable.rate));
+      file->refuse(Error::Code::usage, ": {} cannot have {} samples a record", variable.name, variable.rate);
     Written entry;
     entry.name = variable.name;
     entry.rate = variable.rate;
     entry.flags = !variable.flags.empty();
     entry.id = file->add_variable(variable.name, entry.flags ? NC_INT : NC_FLOAT,
                                   file->dimensions_of_series(static_cast<std::size_t>(variable.rate)));
-    if (!entry.flags) file->variable(entry.id).putAtt("_FillValue", netCDF::ncFloat, fill);
-    if (entry.flags)
-      put_flags(entry.id, variable.flags);
-    else
+    if (entry.flags) {
+      std::vector<int> masks;
+      std::vector<std::string> meanings;
+      for (const Flag& flag : variable.flags) {
+        masks.push_back(flag.mask);
+        meanings.push_back(flag.meaning);
+      }
+      file->variable(entry.id).putAtt("flag_masks", netCDF::ncInt, masks.size(), masks.data());
+      put_text(entry.id, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
+    } else {
+      file->variable(entry.id).putAtt("_FillValue", netCDF::ncFloat, fill);
       put_text(entry.id, "units", standard_unit(variable.units));
+    }
     put_text(entry.id, "long_name", variable.long_name);
     put_text(entry.id, "standard_name", variable.standard_name);
     put_text(entry.id, "Category", variable.category);
@@ -262,43 +264,26 @@ struct FlightWriter::Implementation {
     return written.size() - 1;
   }
 
-  void put_flags(int variable, const std::vector<Flag>& flags) const {
-    std::vector<int> masks;
-    std::vector<std::string> meanings;
-    for (const Flag& flag : flags) {
-      masks.push_back(flag.mask);
-      meanings.push_back(flag.meaning);
-    }
-    file->variable(variable).putAtt("flag_masks", netCDF::ncInt, masks.size(), masks.data());
-    put_text(variable, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
-  }
-
   bool can_copy(const std::string& name) const {
     if (!input || !input->has(name)) return false;
     return copies ? copies->can_copy(name) : input->variable(name).is_series;
   }
 
   void copy(const std::string& name) {
-    if (!input)
-      throw Error(Error::Code::usage,
-                  shown.string() + ": " + name + " cannot be copied, because there is no input");
+    if (!input) file->refuse(Error::Code::usage, ": {} cannot be copied, because there is no input", name);
     input->variable(name);  // or an error that lists the existing variables
     if (name == input->time_variable() && name != "time_offset") return;
     check_new(name);
     if (copies) return copies->define(name);
-    define_series(input->variable(name));
-  }
-
-  void define_series(const VariableInfo& info) {
+    const VariableInfo& info = input->variable(name);
     if (!info.is_series)
-      throw Error(Error::Code::variable, shown.string() + ": " + info.name +
-                                             " is not a time series, so it cannot be copied; omit it");
-    const int variable = file->add_variable(info.name, NC_DOUBLE,
-                                            file->dimensions_of_series(static_cast<std::size_t>(info.rate)));
+      file->refuse(Error::Code::variable, ": {} is not a time series, so it cannot be copied; omit it", name);
+    const int variable =
+        file->add_variable(name, NC_DOUBLE, file->dimensions_of_series(static_cast<std::size_t>(info.rate)));
     file->variable(variable).putAtt("_FillValue", netCDF::ncDouble, fill);
     put_text(variable, "units", standard_unit(info.units));
-    put_text(variable, "long_name", info.long_name.empty() ? info.name : info.long_name);
-    series.push_back({info.name, variable});
+    put_text(variable, "long_name", info.long_name.empty() ? name : info.long_name);
+    series.emplace_back(name, variable);
   }
 
   // The data
@@ -310,13 +295,11 @@ struct FlightWriter::Implementation {
     for (std::size_t i = 0; i < block.count; ++i) {
       const double before = i == 0 ? last_time : times[i - 1];
       if (!std::isfinite(times[i]) || (time_records + i > 0 && times[i] <= before))
-        throw Error(Error::Code::time,
-                    fmt::format("{}: the time of record {} does not follow the previous time", shown.string(),
-                                block.first + i));
+        file->refuse(Error::Code::time, ": the time of record {} does not follow the previous time",
+                     block.first + i);
       since_midnight[i] -= midnight;
       if (whole_seconds && since_midnight[i] != std::floor(since_midnight[i]))
-        throw Error(Error::Code::time, fmt::format("{}: the time of record {} is not a whole second",
-                                                   shown.string(), block.first + i));
+        file->refuse(Error::Code::time, ": the time of record {} is not a whole second", block.first + i);
     }
     file->variable(time_variable).putVar({block.first}, {block.count}, since_midnight.data());
     if (time_records == 0) first_time = times[0];
@@ -333,9 +316,8 @@ struct FlightWriter::Implementation {
     if (variable.flags) {
       for (std::size_t i = 0; i < total; ++i)
         if (!(std::abs(values[i]) <= std::numeric_limits<int>::max()) || values[i] != std::floor(values[i]))
-          throw Error(Error::Code::variable,
-                      fmt::format("{}: {} is not a whole number at record {}", shown.string(), variable.name,
-                                  block.first + i / rate));
+          file->refuse(Error::Code::variable, ": {} is not a whole number at record {}", variable.name,
+                       block.first + i / rate);
       file->variable(variable.id).putVar({block.first, 0}, {block.count, rate}, values);
     } else {
       constexpr double max_float = std::numeric_limits<float>::max();
@@ -352,15 +334,14 @@ struct FlightWriter::Implementation {
     variable.records += block.count;
   }
 
-  void copy_series(const Series& copied) const {
-    const auto rate = static_cast<std::size_t>(input->variable(copied.name).rate);
+  /// Calls `visit` with each block of a time series of the input, and its values.
+  template <class Visit>
+  void each_block(const std::string& name, const Visit& visit) const {
     std::vector<double> values;
     for (const RecordBlock block : input->blocks()) {
-      values.resize(block.count * rate);
-      input->read(copied.name, block, UnitConversion(), values.data());
-      std::replace_if(
-          values.begin(), values.end(), [](double value) { return std::isnan(value); }, fill);
-      file->variable(copied.id).putVar({block.first, 0}, {block.count, rate}, values.data());
+      values.resize(block.count * static_cast<std::size_t>(input->variable(name).rate));
+      input->read(name, block, UnitConversion(), values.data());
+      visit(block, values);
     }
   }
 
@@ -371,14 +352,10 @@ struct FlightWriter::Implementation {
       if (variable.name == name && !variable.range.empty()) return variable.range;
     Range range;
     if (!input || !file->has(name) || !input->has(name) || !input->variable(name).is_series) return range;
-    const auto rate = static_cast<std::size_t>(input->variable(name).rate);
-    std::vector<double> values;
-    for (const RecordBlock block : input->blocks()) {
-      values.resize(block.count * rate);
-      input->read(name, block, UnitConversion(), values.data());
+    each_block(name, [&range](RecordBlock, const std::vector<double>& values) {
       for (const double value : values)
         if (!std::isnan(value)) range.include(value);
-    }
+    });
     return range;
   }
 
@@ -404,14 +381,19 @@ struct FlightWriter::Implementation {
         write_time_stamps(block, times.data());
       }
       if (copies) copies->copy_values(input->records());
-      for (const Series& copied : series) copy_series(copied);
+      for (const auto& [name, variable] : series)
+        each_block(name, [this, id = variable](RecordBlock block, std::vector<double>& values) {
+          std::replace_if(
+              values.begin(), values.end(), [](double value) { return std::isnan(value); }, fill);
+          file->variable(id).putVar({block.first, 0}, {block.count, values.size() / block.count},
+                                    values.data());
+        });
     }
-    if (time_records == 0)
-      throw Error(Error::Code::samples, shown.string() + " would have no records; nothing was written");
+    if (time_records == 0) file->refuse(Error::Code::samples, " would have no records; nothing was written");
     for (const Written& variable : written)
       if (variable.records != time_records)
-        throw Error(Error::Code::usage, fmt::format("{}: {} was written for {} of {} records", shown.string(),
-                                                    variable.name, variable.records, time_records));
+        file->refuse(Error::Code::usage, ": {} was written for {} of {} records", variable.name,
+                     variable.records, time_records);
 
     put_text(global, "time_coverage_start", utc_text(first_time, iso_8601));
     put_text(global, "time_coverage_end", utc_text(last_time, iso_8601));
@@ -427,26 +409,13 @@ struct FlightWriter::Implementation {
   }
 };
 
-namespace {
-
-NewFlight start_of(const Flight& input) {
-  const auto* const netcdf = dynamic_cast<const NetcdfFile*>(&input.file());
-  const TimeAxis& time = input.time();
-  const bool fits_integers =
-      time.whole_seconds && time.last - midnight_before(time.first) <= std::numeric_limits<int>::max();
-  return {time.first, fits_integers, netcdf ? netcdf->kind() : NetcdfFormat::netcdf4};
-}
-
-}  // namespace
-
-FlightWriter::FlightWriter(std::filesystem::path output, const Flight& input,
+FlightWriter::FlightWriter(const std::filesystem::path& output, const Flight& input,
                            const FileDescription& description)
-    : implementation_(
-          std::make_unique<Implementation>(std::move(output), &input, start_of(input), description)) {}
+    : implementation_(std::make_unique<Implementation>(output, &input, start_of(input), description)) {}
 
-FlightWriter::FlightWriter(std::filesystem::path output, const NewFlight& flight,
+FlightWriter::FlightWriter(const std::filesystem::path& output, const NewFlight& flight,
                            const FileDescription& description)
-    : implementation_(std::make_unique<Implementation>(std::move(output), nullptr, flight, description)) {}
+    : implementation_(std::make_unique<Implementation>(output, nullptr, flight, description)) {}
 
 FlightWriter::FlightWriter(FlightWriter&&) noexcept = default;
 FlightWriter& FlightWriter::operator=(FlightWriter&&) noexcept = default;

@@ -11,7 +11,6 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -43,6 +42,13 @@ std::vector<std::string> fields_of(std::string_view line) {
   return fields;
 }
 
+/// The number that a text is; empty for any other text.
+std::optional<double> number_in(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return text.empty() || *end != '\0' ? std::nullopt : std::optional(value);
+}
+
 /// The length of the header and the file format index, of the first line; empty for another kind of line.
 std::optional<std::pair<int, int>> first_line_of(const std::string& line) {
   int length = 0;
@@ -68,20 +74,38 @@ class IcarttFile final : public FlightFile {
 
   const std::filesystem::path& path() const override { return path_; }
   int variable_count() const override { return static_cast<int>(variables_.size()); }
-  std::optional<int> find_variable(const std::string& name) const override;
+  std::optional<int> find_variable(const std::string& name) const override {
+    for (int i = 0; i < variable_count(); ++i) {
+      if (at(i).name == name) return i;
+    }
+    return std::nullopt;
+  }
   std::string variable_name(int variable) const override { return at(variable).name; }
   std::vector<int> dimensions_of(int /*variable*/) const override { return {0}; }
   std::string dimension_name(int /*dimension*/) const override { return "Time"; }
   std::size_t dimension_length(int /*dimension*/) const override { return variables_.front().values.size(); }
-  std::vector<std::string> attribute_names(int variable) const override;
-  std::string text_attribute(int variable, const std::string& name) const override;
-  std::vector<double> number_attribute(int variable, const std::string& name) const override;
+  std::vector<std::string> attribute_names(int variable) const override {
+    return names_of(attributes_of(variable), &Attributes::value_type::first);
+  }
+  std::string text_attribute(int variable, const std::string& name) const override {
+    for (const auto& [key, value] : attributes_of(variable)) {
+      if (key == name) return value;
+    }
+    return {};
+  }
+  std::vector<double> number_attribute(int variable, const std::string& name) const override {
+    const std::optional<double> value = number_in(text_attribute(variable, name));
+    return value ? std::vector<double>{*value} : std::vector<double>();
+  }
   bool is_numeric(int /*variable*/) const override { return true; }
-  double max_number(int variable) const override;
+  double max_number(int /*variable*/) const override { return std::numeric_limits<double>::max(); }
   std::vector<double> missing_values(int /*variable*/) const override { return {}; }
-  std::array<double, 2> valid_range(int variable) const override;
+  std::array<double, 2> valid_range(int /*variable*/) const override { return {-infinity, infinity}; }
   Notes notes() const override { return notes_; }
-  void read(int variable, RecordBlock records, double* out) const override;
+  void read(int variable, RecordBlock records, double* out) const override {
+    const std::vector<double>& values = at(variable).values;
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(records.first), records.count, out);
+  }
 
  private:
   using Attributes = std::vector<std::pair<std::string, std::string>>;
@@ -97,7 +121,9 @@ class IcarttFile final : public FlightFile {
   class Reader;
 
   const Variable& at(int variable) const { return variables_.at(static_cast<std::size_t>(variable)); }
-  const Attributes& attributes_of(int variable) const;
+  const Attributes& attributes_of(int variable) const {
+    return variable == whole_file ? attributes_ : at(variable).attributes;
+  }
 
   std::filesystem::path path_;
   Attributes attributes_;
@@ -152,10 +178,9 @@ class IcarttFile::Reader {
   }
 
   double number(const std::string& text) const {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != '\0') fail(fmt::format("{} is not a number", quote(text)));
-    return value;
+    const std::optional<double> value = number_in(text);
+    if (!value) fail(fmt::format("{} is not a number", quote(text)));
+    return *value;
   }
 
   int count() {
@@ -212,17 +237,13 @@ class IcarttFile::Reader {
       const std::string name = line.substr(0, colon);
       const std::string value = trimmed(line.substr(colon + 1));
       put(name, value);
-      if (name == "LLOD_FLAG" || name == "ULOD_FLAG") {
-        // One number for all, or one for each; "N/A" and similar words mean no limit.
-        std::stringstream fields(value);
-        for (std::string field; std::getline(fields, field, ',');) {
-          char* end = nullptr;
-          const std::string text = trimmed(field);
-          const double flag = std::strtod(text.c_str(), &end);
-          if (text.empty() || *end != '\0') continue;
-          for (Variable& variable : file_.variables_) {
-            if (&variable != &file_.variables_.front()) variable.missing.push_back(flag);
-          }
+      if (name != "LLOD_FLAG" && name != "ULOD_FLAG") continue;
+      // One number for all, or one for each; "N/A" and similar words mean no limit.
+      for (const std::string& field : fields_of(value)) {
+        const std::optional<double> flag = number_in(field);
+        if (!flag) continue;
+        for (Variable& variable : file_.variables_) {
+          if (&variable != &file_.variables_.front()) variable.missing.push_back(*flag);
         }
       }
     }
@@ -276,46 +297,6 @@ class IcarttFile::Reader {
 };
 
 IcarttFile::IcarttFile(std::filesystem::path path) : path_(std::move(path)) { Reader(*this).run(); }
-
-std::optional<int> IcarttFile::find_variable(const std::string& name) const {
-  for (int i = 0; i < variable_count(); ++i) {
-    if (at(i).name == name) return i;
-  }
-  return std::nullopt;
-}
-
-const IcarttFile::Attributes& IcarttFile::attributes_of(int variable) const {
-  return variable == whole_file ? attributes_ : at(variable).attributes;
-}
-
-std::vector<std::string> IcarttFile::attribute_names(int variable) const {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : attributes_of(variable)) names.push_back(name);
-  return names;
-}
-
-std::string IcarttFile::text_attribute(int variable, const std::string& name) const {
-  for (const auto& [key, value] : attributes_of(variable)) {
-    if (key == name) return value;
-  }
-  return {};
-}
-
-std::vector<double> IcarttFile::number_attribute(int variable, const std::string& name) const {
-  const std::string text = text_attribute(variable, name);
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  return text.empty() || *end != '\0' ? std::vector<double>() : std::vector<double>{value};
-}
-
-double IcarttFile::max_number(int /*variable*/) const { return std::numeric_limits<double>::max(); }
-
-std::array<double, 2> IcarttFile::valid_range(int /*variable*/) const { return {-infinity, infinity}; }
-
-void IcarttFile::read(int variable, RecordBlock records, double* out) const {
-  const std::vector<double>& values = at(variable).values;
-  std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(records.first), records.count, out);
-}
 
 }  // namespace
 

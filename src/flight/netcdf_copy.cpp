@@ -1,7 +1,5 @@
 #include "flight/netcdf_copy.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include <pcor/units/units.hpp>
@@ -74,16 +72,14 @@ bool NetcdfCopy::can_copy(const std::string& name) const {
 }
 
 void NetcdfCopy::define(const std::string& name) {
-  const std::string shown = output_.path().string();
   const std::optional<int> from = source_.find_variable(name);
   const int type = from ? source_.type_of(*from) : NC_NAT;
   if (!from || !is_copied(type))
-    throw Error(
+    output_.refuse(
         Error::Code::variable,
-        fmt::format(
-            "{}: {} cannot be copied, because it has strings, a user-defined type or a name that netCDF "
-            "does not allow; do not copy it",
-            shown, name));
+        ": {} cannot be copied, because it has strings, a user-defined type or a name that netCDF does "
+        "not allow; do not copy it",
+        name);
   Copied entry;
   entry.from = *from;
   source_.fit_chunk_cache(entry.from);
@@ -92,8 +88,7 @@ void NetcdfCopy::define(const std::string& name) {
     const bool time = each == time_dimension_;
     const std::size_t length = source_.dimension_length(each);
     if (time && !dimensions.empty())
-      throw Error(Error::Code::variable,
-                  fmt::format("{}: Time is not the first dimension of {}; do not copy it", shown, name));
+      output_.refuse(Error::Code::variable, ": Time is not the first dimension of {}; do not copy it", name);
     dimensions.push_back(time ? output_.time() : output_.dimension_of(source_.dimension_name(each), length));
     entry.over_time = entry.over_time || time;
     if (!time) entry.shape.push_back(length);

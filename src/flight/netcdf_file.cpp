@@ -13,8 +13,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <new>
+#include <numeric>
 #include <string_view>
 
 #include "base/quoting.hpp"
@@ -75,8 +77,7 @@ bool is_text(const Attribute& attribute) { return attribute.type == NC_CHAR || a
 std::vector<double> numbers_of(std::string text) {
   const std::size_t open = text.find_first_of("([");
   if (open != std::string::npos && (open == 0 || text.substr(0, open) == "c")) text.erase(0, open + 1);
-  const std::size_t close = text.find_last_not_of(" )]");
-  text.resize(close == std::string::npos ? 0 : close + 1);
+  text.erase(text.find_last_not_of(" )]") + 1);
   if (const std::size_t to = text.find(" to "); to != std::string::npos) text.replace(to, 4, " ");
   std::vector<double> numbers;
   for (const char* at = text.c_str(); *at != '\0';) {
@@ -105,27 +106,6 @@ bool is_brought(std::size_t record_bytes) {
   return record_bytes > large_record && record_bytes <= max_brought;
 }
 
-std::string without_trailing_blanks(std::string text) {
-  const std::size_t end = text.find_last_not_of(std::string_view("\0 \t\r\n", 5));
-  text.resize(end == std::string::npos ? 0 : end + 1);
-  return text;
-}
-
-Error damaged(const std::filesystem::path& path, const std::string& why) {
-  return {Error::Code::file,
-          path.string() + " is truncated or damaged" + why + "; fetch it again from its source"};
-}
-
-std::string advice_to_reader(int status) {
-  const char* const first =
-      status == NC_EATTMETA
-          ? "remove attributes that are neither text nor a list of numbers, for example a table, or "
-      : status == NC_ENOFILTER ? "install the HDF5 plug-in for its compression filter, or rewrite the file "
-                                 "on a machine that has the plug-in with nccopy -F none, or "
-                               : "";
-  return fmt::format("; {}fetch the file again from its source", first);
-}
-
 void require_memory(const NcException& error) {
   if (error.errorCode() == NC_ENOMEM || error.errorCode() == ENOMEM) throw std::bad_alloc();
 }
@@ -133,9 +113,7 @@ void require_memory(const NcException& error) {
 }  // namespace
 
 std::size_t elements(const std::vector<std::size_t>& shape) {
-  std::size_t product = 1;
-  for (const std::size_t length : shape) product *= length;
-  return product;
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
 }
 
 std::size_t records_in_buffer(std::size_t record_bytes) {
@@ -158,12 +136,15 @@ bool is_netcdf(const std::filesystem::path& path) {
 }
 
 NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(std::move(path)), state_(path_) {
+  const auto refuse_damage = [this](const std::string& why) {
+    refuse(Error::Code::file, " is truncated or damaged{}; fetch it again from its source", why);
+  };
   if (begins_with(path_, classic)) {
     const auto layout = layout_of_classic(path_);
-    if (!layout) throw damaged(path_, ": its header cannot be read");
+    if (!layout) refuse_damage(": its header cannot be read");
     const auto size = std::filesystem::file_size(path_);
     if (size < layout->size)
-      throw damaged(path_, fmt::format(": its header promises {} bytes and it has {}", layout->size, size));
+      refuse_damage(fmt::format(": its header promises {} bytes and it has {}", layout->size, size));
     layout_ = *layout;
   }
   try {
@@ -173,9 +154,8 @@ NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(std::move(path)), sta
   } catch (const NcException& error) {
     require_memory(error);
     const std::string reason = netcdf_reason(error);
-    if (error.errorCode() < 0) throw damaged(path_, " (" + reason + ")");
-    throw Error(Error::Code::file, path_.string() + " cannot be read: " + reason +
-                                       "; check its disk and the limits of the system");
+    if (error.errorCode() < 0) refuse_damage(" (" + reason + ")");
+    refuse(Error::Code::file, " cannot be read: {}; check its disk and the limits of the system", reason);
   }
   kind_ = attempt("cannot determine its format", [&] { return file_.kind(); });
 }
@@ -193,7 +173,13 @@ void NetcdfFile::fail(const NcException& error, std::string_view doing) const {
 
 Error NetcdfFile::error_of(int status, const std::string& message) const {
   require_unchanged();
-  return {Error::Code::file, message + advice_to_reader(status)};
+  const char* const first =
+      status == NC_EATTMETA
+          ? "remove attributes that are neither text nor a list of numbers, for example a table, or "
+      : status == NC_ENOFILTER ? "install the HDF5 plug-in for its compression filter, or rewrite the file "
+                                 "on a machine that has the plug-in with nccopy -F none, or "
+                               : "";
+  return {Error::Code::file, fmt::format("{}; {}fetch the file again from its source", message, first)};
 }
 
 void NetcdfFile::require_unchanged() const { state_.require(path_); }
@@ -212,11 +198,11 @@ void NetcdfFile::fit_chunk_cache(int number) const {
 
 std::string NetcdfFile::allowed(const std::string& name, const char* what) const {
   if (name.size() <= NC_MAX_NAME) return name;
-  throw Error(
-      Error::Code::file,
-      fmt::format("{}: {} is called {}, and netCDF allows {} bytes for a name; give it a shorter one, "
-                  "as h5py can, or fetch the file again from its source",
-                  path_.string(), what, quote(name), NC_MAX_NAME));
+  refuse(Error::Code::file,
+         ": {} is called {}, and netCDF allows {} bytes for a name; give it a shorter one, as h5py can, or "
+         "fetch the "
+         "file again from its source",
+         what, quote(name), NC_MAX_NAME);
 }
 
 int NetcdfFile::variable_count() const {
@@ -269,7 +255,7 @@ std::optional<Attribute> NetcdfFile::find_attribute(int number, const std::strin
 std::string NetcdfFile::text_attribute(int number, const std::string& name) const {
   const auto attribute = find_attribute(number, name);
   if (!attribute || attribute->length == 0 || attribute->type > NC_STRING) return {};
-  if (attribute->type != NC_CHAR && attribute->type != NC_STRING) {
+  if (!is_text(*attribute)) {
     const std::vector<double> numbers = number_attribute(number, name);
     if (attribute->type != NC_FLOAT) return fmt::format("{}", fmt::join(numbers, ", "));
     return fmt::format("{}", fmt::join(std::vector<float>(numbers.begin(), numbers.end()), ", "));
@@ -280,19 +266,17 @@ std::string NetcdfFile::text_attribute(int number, const std::string& name) cons
   attempt("cannot read the attribute " + name, [&] { attribute->getValues(values); });
   for (const char* each : strings) text += (text.empty() ? "" : ", ") + std::string(each ? each : "");
   if (!strings.empty()) variable(number).freeString(strings.size(), strings.data());
-  return without_trailing_blanks(text);
+  text.erase(text.find_last_not_of(std::string_view("\0 \t\r\n", 5)) + 1);  // all if there is only such
+  return text;
 }
 
 std::vector<double> NetcdfFile::number_attribute(int variable, const std::string& name) const {
   const auto attribute = find_attribute(variable, name);
   if (!attribute || attribute->type > NC_STRING) return {};
-  std::vector<double> numbers;
-  if (attribute->type != NC_CHAR && attribute->type != NC_STRING) {
-    numbers.resize(attribute->length);
-    attempt("cannot read the attribute " + name, [&] { attribute->getValues(numbers.data()); });
-    return numbers;
-  }
-  return numbers_of(text_attribute(variable, name));
+  if (is_text(*attribute)) return numbers_of(text_attribute(variable, name));
+  std::vector<double> numbers(attribute->length);
+  attempt("cannot read the attribute " + name, [&] { attribute->getValues(numbers.data()); });
+  return numbers;
 }
 
 bool NetcdfFile::is_numeric(int variable) const { return number_type(type_of(variable)).type != NC_NAT; }
@@ -348,11 +332,12 @@ std::vector<double> NetcdfFile::missing_values(int variable) const {
 void NetcdfFile::refuse_attribute(int variable, const std::string& name, const std::string& why) const {
   const bool is_global = variable == whole_file;
   const std::string of = is_global ? "global" : variable_name(variable);
-  throw Error(Error::Code::variable,
-              fmt::format("{}: the attribute {} of {} {}; correct it, or remove it with ncatted -a {} {} "
-                          "(with h5py if ncatted cannot write the file)",
-                          path_.string(), name, is_global ? "the file" : of, why,
-                          shell_quote(fmt::format("{},{},d,,", name, of)), shell_path(path_.string())));
+  refuse(Error::Code::variable,
+         ": the attribute {} of {} {}; correct it, or remove it with ncatted -a {} {} (with h5py if ncatted "
+         "cannot "
+         "write the file)",
+         name, is_global ? "the file" : of, why, shell_quote(fmt::format("{},{},d,,", name, of)),
+         shell_path(path_.string()));
 }
 
 std::string NetcdfFile::ignored_range(int variable) const {

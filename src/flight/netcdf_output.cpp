@@ -46,9 +46,8 @@ NcDim NetcdfOutput::dimension_of(const std::string& name, std::size_t length) {
     return attempt("cannot have a dimension called " + quote(name),
                    [&] { return file_.addDim(name, length); });
   if (known.getSize() != length)
-    throw Error(Error::Code::variable,
-                fmt::format("{}: the dimension {} has two lengths, {} and {}; omit one of the variables",
-                            path().string(), name, length, known.getSize()));
+    refuse(Error::Code::variable, ": the dimension {} has two lengths, {} and {}; omit one of the variables",
+           name, length, known.getSize());
   return known;
 }
 

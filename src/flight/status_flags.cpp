@@ -28,8 +28,8 @@ bool says_unusable(const std::string& meaning) {
 
 /// Number of values of the integer type with this maximum; at most `largest_span`, which is also that of
 /// floating-point types.
-double span_of(double maximum) {
-  const double bits = std::log2(maximum + 1.0);
+double span_of(double max_number) {
+  const double bits = std::log2(max_number + 1.0);
   return bits <= 32.0 ? std::exp2(8.0 * std::ceil(bits / 8.0)) : largest_span;
 }
 
@@ -39,22 +39,6 @@ std::optional<unsigned long> bits_of(double number, double span) {
   const double positive = number < 0.0 && span < largest_span ? number + span : number;
   if (!(positive >= 0.0 && positive < span) || positive != std::floor(positive)) return std::nullopt;
   return static_cast<unsigned long>(positive);
-}
-
-std::vector<int> candidates(const FlightFile& file, int variable) {
-  std::vector<std::string> names{file.variable_name(variable) + "_FLAG"};
-  const bool is_own_result = !file.text_attribute(FlightFile::whole_file, "pcor_model").empty();
-  if (!is_own_result) {
-    for (std::string& name : split_words(file.text_attribute(variable, "ancillary_variables")))
-      names.push_back(std::move(name));
-  }
-  std::vector<int> flags;
-  for (const std::string& name : names) {
-    const std::optional<int> number = file.find_variable(name);
-    if (number && file.is_numeric(*number) && std::find(flags.begin(), flags.end(), *number) == flags.end())
-      flags.push_back(*number);
-  }
-  return flags;
 }
 
 }  // namespace
@@ -78,13 +62,23 @@ StatusFlags::StatusFlags(const FlightFile& file, int variable, bool is_of_record
 }
 
 std::vector<StatusFlags> StatusFlags::of(const FlightFile& file, int variable) {
+  std::vector<std::string> names{file.variable_name(variable) + "_FLAG"};
+  const bool is_own_result = !file.text_attribute(FlightFile::whole_file, "pcor_model").empty();
+  if (!is_own_result) {
+    for (std::string& name : split_words(file.text_attribute(variable, "ancillary_variables")))
+      names.push_back(std::move(name));
+  }
   const std::vector<int> dimensions = file.dimensions_of(variable);
   std::vector<StatusFlags> all;
-  for (const int number : candidates(file, variable)) {
-    const std::vector<int> own = file.dimensions_of(number);
+  for (const std::string& name : names) {
+    const std::optional<int> number = file.find_variable(name);
+    const bool is_known = std::any_of(
+        all.begin(), all.end(), [&number](const StatusFlags& each) { return each.variable_ == number; });
+    if (!number || is_known || !file.is_numeric(*number)) continue;
+    const std::vector<int> own = file.dimensions_of(*number);
     const bool is_of_record = own.size() == 1 && dimensions.size() == 2 && own.front() == dimensions.front();
     if (own != dimensions && !is_of_record) continue;
-    const StatusFlags flags(file, number, is_of_record);
+    const StatusFlags flags(file, *number, is_of_record);
     if (!flags.conditions_.empty()) all.push_back(flags);
   }
   return all;

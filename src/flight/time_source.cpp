@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "flight/unpacking.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -46,7 +46,7 @@ std::optional<double> first_value(const FlightFile& file, std::optional<int> var
     return std::nullopt;
   double value = 0;
   file.read(*variable, {0, 1}, &value);
-  value = unpacking_of(file, *variable)(value);
+  value = file.unpacking_of(*variable)(value);
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
@@ -61,18 +61,19 @@ std::optional<double> flight_date(const FlightFile& file) {
   return midnight && is_plausible(*midnight) ? midnight : std::nullopt;
 }
 
+bool begins_with_digit(std::string_view text) {
+  return !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0;
+}
+
 // "Seconds since 1970-01-01, 00:00:00,5 UTC" as UDUNITS spells it: lower case before the date, a point in
 // place of a comma of a fraction of seconds, and no other comma.
 std::string usual_spelling(std::string units) {
   const std::size_t digit = std::min(units.find_first_of("0123456789"), units.size());
   std::transform(units.begin(), units.begin() + static_cast<std::ptrdiff_t>(digit), units.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  const auto is_digit_at = [&units](std::size_t i) {
-    return i < units.size() && std::isdigit(static_cast<unsigned char>(units[i])) != 0;
-  };
   for (std::size_t i = 0; i < units.size(); ++i) {
     if (units[i] != ',') continue;
-    const bool is_fraction = is_digit_at(i + 1) && units.find(':') < i;
+    const bool is_fraction = begins_with_digit(std::string_view(units).substr(i + 1)) && units.find(':') < i;
     units[i] = is_fraction ? '.' : ' ';
   }
   return units;
@@ -80,7 +81,8 @@ std::string usual_spelling(std::string units) {
 
 // Parsed units of a time.
 struct Counting {
-  std::string of;  // file and variable, for messages
+  const FlightFile& file;
+  std::string variable;
   std::string how_to_state;
   std::string units;
   std::string calendar;
@@ -90,7 +92,7 @@ Counting counting_of(const FlightFile& file, int variable) {
   const std::string name = file.variable_name(variable), path = file.path().string();
   const std::optional<double> date = flight_date(file);
   const std::string day_of_flight = date ? utc_text(*date, "%Y-%m-%d") : "DAY";
-  return {path + ": " + name,
+  return {file, name,
           "state its unit with ncatted -a " + shell_quote("units," + name + ",o,c,") +
               shell_quote("seconds since " + day_of_flight + " 00:00:00 +0000") + " " + shell_path(path) +
               (date ? "" : ", where DAY is its reference date as year-month-day"),
@@ -105,12 +107,11 @@ std::string unit_before(const std::string& units, std::size_t since) {
 // Removes a number of at most two digits, less than `limit`, from the front of the text. Empty without such a
 // number.
 bool take_number(std::string_view& text, int limit) {
-  std::size_t digits = 0;
-  int number = 0;
-  for (; digits < 2 && digits < text.size() && std::isdigit(static_cast<unsigned char>(text[digits])) != 0;
-       ++digits)
-    number = 10 * number + (text[digits] - '0');
-  text.remove_prefix(digits);
+  int digits = 0, number = 0;
+  for (; digits < 2 && begins_with_digit(text); ++digits) {
+    number = 10 * number + (text.front() - '0');
+    text.remove_prefix(1);
+  }
   return digits > 0 && number < limit;
 }
 
@@ -127,25 +128,21 @@ bool is_time_of_day(std::string_view text) {
   constexpr int day_hours = 25;  // 24:00:00
   constexpr int max_offset = 15;
   if (!text.empty() && text.front() != ' ' && text.front() != 'T') return false;
-  while (!text.empty() && (text.front() == ' ' || text.front() == 'T')) text.remove_prefix(1);
-  const bool has_time = !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0;
+  while (take(text, ' ') || take(text, 'T')) continue;
+  const bool has_time = begins_with_digit(text);
   if (has_time) {
     if (!take_number(text, day_hours)) return false;
     for (int part = 0; part < 2; ++part) {
-      const bool follows =
-          take(text, ':') || (!text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0);
+      const bool follows = take(text, ':') || begins_with_digit(text);
       if (follows && !take_number(text, part == 0 ? 60 : 61)) return false;
     }
     if (take(text, '.')) text.remove_prefix(std::min(text.find_first_not_of("0123456789"), text.size()));
   }
   while (take(text, ' ')) continue;
-  if (!take(text, '+') && !take(text, '-')) {
-    if (text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0) return true;
-  }
+  if (!take(text, '+') && !take(text, '-') && !begins_with_digit(text)) return true;
   if (!take_number(text, has_time ? max_offset : 1)) return false;
   take(text, ':');
-  return text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0 ||
-         take_number(text, has_time ? 60 : 1);
+  return !begins_with_digit(text) || take_number(text, has_time ? 60 : 1);
 }
 
 // "seconds since 2004-02-18 00:00:00 +0000" as a conversion to seconds since 1970; nothing if there is no
@@ -163,15 +160,16 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
   const bool is_gregorian = is("") || is("standard") || is("gregorian") ||
                             (is("proleptic_gregorian") && year >= first_gregorian_year);
   if (!is_gregorian)
-    throw Error(Error::Code::time,
-                fmt::format("{} counts from the year {} in the calendar \"{}\", which differs from the "
-                            "standard calendar; write the time in the standard calendar",
-                            time.of, year, time.calendar));
+    time.file.refuse(Error::Code::time,
+                     ": {} counts from the year {} in the calendar \"{}\", which differs from the standard "
+                     "calendar; write the time in the standard calendar",
+                     time.variable, year, time.calendar);
   const auto refuse_time_of_day = [&time]() {
-    throw Error(Error::Code::time,
-                fmt::format("{} counts in \"{}\", where what follows the date is not a time of day in UTC or "
-                            "with an offset in hours; {}",
-                            time.of, time.units, time.how_to_state));
+    time.file.refuse(
+        Error::Code::time,
+        ": {} counts in \"{}\", where what follows the date is not a time of day in UTC or with an "
+        "offset in hours; {}",
+        time.variable, time.units, time.how_to_state);
   };
   if (!is_time_of_day(time.units.c_str() + since + 6 + letters)) refuse_time_of_day();
   try {
@@ -185,11 +183,6 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
     refuse_time_of_day();
   }
   return std::nullopt;
-}
-
-std::optional<double> base_time(const FlightFile& file) {
-  const std::optional<double> base = first_value(file, file.find_variable("base_time"));
-  return base && is_plausible(*base) ? base : std::nullopt;
 }
 
 // The start in TimeInterval ("14:22:00-15:13:00"), seconds since midnight.
@@ -208,11 +201,6 @@ std::optional<double> offset_of_seconds(double first_raw, double start) {
   if (std::abs(first_raw - (start - midnight)) < 1.5) return midnight;
   if (std::abs(first_raw) < 1.5) return start;
   return std::nullopt;
-}
-
-// The most seconds that the variable can count.
-double max_seconds(const FlightFile& file, int variable, const std::optional<UnitConversion>& epoch) {
-  return unpacking_of(file, variable)(file.max_number(variable)) * (epoch ? epoch->scale() : 1);
 }
 
 std::optional<int> find_time_variable(const FlightFile& file) {
@@ -240,82 +228,62 @@ bool is_of_aviation(double time) {
 }
 
 TimeSource find_time(const FlightFile& file) {
-  const std::string path = file.path().string();
   const auto time = find_time_variable(file);
   const auto offset = file.find_variable("time_offset");
   if (!time && (!offset || file.dimensions_of(*offset).size() != 1))
-    throw Error(
+    file.refuse(
         Error::Code::time,
-        path +
-            " has neither a variable Time nor base_time and time_offset; it is not a flight file that "
-            "pcor reads");
+        " has neither a variable Time nor base_time and time_offset; it is not a flight file that pcor "
+        "reads");
 
-  TimeSource source;
-  source.variable = time ? *time : *offset;
-  source.dimension = file.dimensions_of(source.variable).front();
-  if (file.dimension_length(source.dimension) == 0)
-    throw Error(Error::Code::samples, path + " has no records: its dimension " +
-                                          file.dimension_name(source.dimension) +
-                                          " is empty; choose a file with data");
-  const std::string name = file.variable_name(source.variable);
-  const Counting counting = counting_of(file, source.variable);
+  const int variable = time ? *time : *offset;
+  const int dimension = file.dimensions_of(variable).front();
+  if (file.dimension_length(dimension) == 0)
+    file.refuse(Error::Code::samples, " has no records: its dimension {} is empty; choose a file with data",
+                file.dimension_name(dimension));
+  const std::string name = file.variable_name(variable);
+  const Counting counting = counting_of(file, variable);
   const std::string& units = counting.units;
-  const auto raw = first_value(file, source.variable);
+  const auto raw = first_value(file, variable);
   if (!raw)
-    throw Error(Error::Code::time,
-                path + ": the variable " + name + " is not numeric at record 0; repair the time axis");
+    file.refuse(Error::Code::time, ": the variable {} is not numeric at record 0; repair the time axis",
+                name);
 
-  const auto base = base_time(file);
-  if (!time && base) {
-    source.offset = *base;
-    source.words = "base_time + time_offset";
-    return source;
-  }
+  const double base = first_value(file, file.find_variable("base_time")).value_or(nan);
+  const bool has_base = is_plausible(base);
+  if (!time && has_base) return {variable, dimension, 1, base};
   const auto epoch = epoch_conversion(counting);
   const double first = epoch ? (*epoch)(*raw) : 0;
-  const bool units_hold = epoch && is_plausible(first);
   if (epoch && !is_of_aviation(first))
-    throw Error(Error::Code::time,
-                fmt::format("{} counts in \"{}\" and begins with {}, which is the {}; {}", counting.of, units,
-                            *raw, utc_text(first), counting.how_to_state));
-  if (max_seconds(file, source.variable, epoch) < day)
-    throw Error(
+    file.refuse(Error::Code::time, ": {} counts in \"{}\" and begins with {}, which is the {}; {}", name,
+                units, *raw, utc_text(first), counting.how_to_state);
+  const double max_seconds =
+      file.unpacking_of(variable)(file.max_number(variable)) * (epoch ? epoch->scale() : 1);
+  if (max_seconds < day)
+    file.refuse(
         Error::Code::time,
-        fmt::format("{} is stored in integers up to {}, less than the seconds of a day, so times may have "
-                    "wrapped; store time as 32-bit integers or doubles",
-                    counting.of, file.max_number(source.variable)));
-  if (units_hold) {
+        ": {} is stored in integers up to {}, less than the seconds of a day, so times may have wrapped; "
+        "store time as 32-bit integers or doubles",
+        name, file.max_number(variable));
+  if (epoch && is_plausible(first)) {
     constexpr double week = 7 * day;
     if (epoch->scale() > week)
-      throw Error(Error::Code::time,
-                  fmt::format("{} counts in \"{}\", and months and years are not always as long; {}",
-                              counting.of, units, counting.how_to_state));
-    source.scale = epoch->scale();
-    source.offset = std::round(epoch->offset() * 1000) / 1000;
-    source.words = name + ", " + units;
-    return source;
+      file.refuse(Error::Code::time, ": {} counts in \"{}\", and months and years are not always as long; {}",
+                  name, units, counting.how_to_state);
+    return {variable, dimension, epoch->scale(), std::round(epoch->offset() * 1000) / 1000};
   }
-  if (base)
-    if (const auto start = offset_of_seconds(*raw, *base)) {
-      source.offset = *start;
-      source.words = name + " with base_time, because its units \"" + units + "\" are impossible";
-      return source;
-    }
+  if (const auto start = has_base ? offset_of_seconds(*raw, base) : std::nullopt)
+    return {variable, dimension, 1, *start};
   if (const auto midnight = flight_date(file)) {
     const auto start = interval_start(file);
     const auto from = start ? offset_of_seconds(*raw, *midnight + *start)
                             : std::optional(*raw > 0 && *raw < 2 * day ? *midnight : -1);
-    if (from && is_plausible(*from)) {
-      source.offset = *from;
-      source.words = name + " with FlightDate, because its units \"" + units + "\" are impossible";
-      return source;
-    }
+    if (from && is_plausible(*from)) return {variable, dimension, 1, *from};
   }
-  throw Error(
+  file.refuse(
       Error::Code::time,
-      fmt::format(
-          "{} is not a valid time: its units are \"{}\" and there is no matching base_time or FlightDate; {}",
-          counting.of, units, counting.how_to_state));
+      ": {} is not a valid time: its units are \"{}\" and there is no matching base_time or FlightDate; {}",
+      name, units, counting.how_to_state);
 }
 
 }  // namespace pcor::internal

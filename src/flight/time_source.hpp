@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "flight/flight_file.hpp"
 
 namespace pcor::internal {
@@ -12,7 +10,6 @@ struct TimeSource {
   int dimension = 0;
   double scale = 1;
   double offset = 0;
-  std::string words;
 };
 
 /// Whether a time, seconds since 1970 UTC, is of the years 1900 to 2199. No other flight is known.

@@ -5,10 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
+#include <utility>
 
 #include "campaign/gps_rows.hpp"
-#include "fit/lineage.hpp"
+#include "fit/fitted_model.hpp"
 #include "improve/improve_loop.hpp"
 #include "improve/model_trials.hpp"
 
@@ -32,35 +34,21 @@ std::vector<std::string> common_variables(const FlightSet& flights) {
   return common;
 }
 
-/// Fixes parameters of the last effect that its flights cannot separate from others.
-void hold(ModelDefinition& file, const std::vector<std::string>& parameters) {
-  const std::vector<std::string> names = parameter_names(file.model.effects.back());
-  file.fits.resize(file.model.effects.size());
-  EffectFit& fit = file.fits.back();
-  fit.resize(names.size());
-  for (std::size_t p = 0; p < names.size(); ++p) {
-    if (std::find(parameters.begin(), parameters.end(), names[p]) != parameters.end()) fit[p].fixed = true;
-  }
+DiagnoseOptions diagnose_options_of(const ImproveOptions& options) {
+  DiagnoseOptions diagnose_with;
+  diagnose_with.mask = options.refit.mask;
+  diagnose_with.formulas = options.formulas;
+  diagnose_with.training_share = options.refit.training_share;
+  diagnose_with.trust_reference = options.refit.trust_reference;
+  return diagnose_with;
 }
 
 }  // namespace
 
 std::string_view to_string(StopReason reason) {
-  switch (reason) {
-    case StopReason::nothing_missing:
-      return "nothing missing";
-    case StopReason::reference_system:
-      return "reference system";
-    case StopReason::in_model:
-      return "in model";
-    case StopReason::unexplained:
-      return "unexplained";
-    case StopReason::no_gain:
-      return "no gain";
-    case StopReason::max_steps:
-      return "max steps";
-  }
-  return "";
+  constexpr std::array<std::string_view, 6> names{"nothing missing", "reference system", "in model",
+                                                  "unexplained",     "no gain",          "max steps"};
+  return names.at(static_cast<std::size_t>(reason));
 }
 
 std::string rivals_text(const ImproveStep& step) {
@@ -85,18 +73,16 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   const std::vector<std::string> variables = common_variables(all);
   std::vector<std::string> names;
   for (std::size_t i = 0; i < flights.size(); ++i) names.push_back(flights.name(i));
-  const auto tell = [&options](const std::string& what) {
-    if (options.progress) options.progress(what);
-  };
-  const auto last_of = [&model](const ModelDefinition& file) {
-    return file.model.effects.size() == model.model.effects.size() ? std::string("the given model")
-                                                                   : file.model.effects.back().id;
-  };
   const auto added_to = [&model](const ModelDefinition& file) {
     std::vector<std::string> added;
     for (std::size_t e = model.model.effects.size(); e < file.model.effects.size(); ++e)
       added.push_back(file.model.effects[e].id);
     return added;
+  };
+  const auto tell = [&](const char* what, const ModelDefinition& file) {
+    const std::vector<std::string> added = added_to(file);
+    if (options.progress)
+      options.progress(fmt::format("{} with {}", what, added.empty() ? "the given model" : added.back()));
   };
   const auto refit_options_for = [&](const TrialModel& trial) {
     RefitOptions refit_with = options.refit;
@@ -108,23 +94,18 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   References ordered = references;
   std::stable_partition(ordered.begin(), ordered.end(),
                         [](const auto& reference) { return reference->is_of_one_sample(); });
-  DiagnoseOptions diagnose_with;
-  diagnose_with.mask = options.refit.mask;
-  diagnose_with.formulas = options.formulas;
-  diagnose_with.training_share = options.refit.training_share;
-  diagnose_with.trust_reference = options.refit.trust_reference;
+  DiagnoseOptions diagnose_with = diagnose_options_of(options);
   diagnose_with.progress = options.refit.progress;
 
   ImproveLoop loop;
   loop.is_by_gps = gps_kind(first_of(ordered)).has_value();
   loop.refit = [&](const TrialModel& trial) {
-    tell("fitting with " + last_of(trial.file));
-    const RefitOptions refit_with = refit_options_for(trial);
-    if (!gps_kind(first_of(ordered))) return refit(flights, trial.file, ordered, refit_with);
-    return refit(flights, with_start_of(model, trial.file), ordered, refit_with);
+    tell("fitting", trial.file);
+    return refit(flights, loop.is_by_gps ? with_start_of(model, trial.file) : trial.file, ordered,
+                 refit_options_for(trial));
   };
   loop.diagnose = [&](const TrialModel& trial) {
-    tell("diagnosing with " + last_of(trial.file));
+    tell("diagnosing", trial.file);
     diagnose_with.added = added_to(trial.file);
     Diagnosis diagnosis = diagnose(flights, trial.file, with_alike(ordered, trial, variables), diagnose_with);
     if (!diagnose_with.series_of)  // pictures of all steps show the same flights
@@ -133,7 +114,12 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   loop.add = [&](const TrialModel& trial, const AddedEffect& added) {
     TrialModel extended{add_effects(trial.file, {added.effect}, variables), trial.alike};
-    hold(extended.file, added.held);
+    const std::vector<std::string> names_of_parameters = parameter_names(added.effect);
+    for (std::size_t p = 0; p < names_of_parameters.size(); ++p) {
+      // The flights cannot separate a held parameter from others.
+      if (std::count(added.held.begin(), added.held.end(), names_of_parameters[p]) > 0)
+        extended.file.fits.back()[p].fixed = true;
+    }
     if (added.is_alike) extended.alike.push_back(added.effect.id);
     return extended;
   };
@@ -141,7 +127,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     return try_models(flights, models, ordered, options.refit);
   };
   loop.offer_surface = [&](const TrialModel& trial) {
-    tell("testing a surface with " + last_of(trial.file));
+    tell("testing a surface", trial.file);
     return offer_surface(flights, trial, ordered, refit_options_for(trial));
   };
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
@@ -153,6 +139,48 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   const bool has_added = improvement.model.model.effects.size() > model.model.effects.size();
   descend(improvement.model, model, has_added ? "improved on" : "fitted to", flights.title());
   return improvement;
+}
+
+WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const References& references,
+               const ImproveOptions& options) {
+  WhatIfOptions with;
+  with.diagnose = diagnose_options_of(options);
+  with.diagnose.series_of = improvement.steps.front().diagnosis.flights_with_records();
+  with.holdout = options.refit.holdout;
+  with.is_robust = options.refit.loss != Loss::none;
+  std::vector<WhatIfCandidate> candidates;
+  std::vector<WhatIfCandidate> rivals;
+  for (std::size_t index = 1; index < improvement.steps.size(); ++index) {
+    const ImproveStep& step = improvement.steps[index];
+    WhatIfCandidate candidate{step.added, fmt::format("step {}", index), {}, false, step.added};
+    for (const ModelEffect& effect : improvement.fit.model.model.effects) {
+      if (effect.id == step.added) candidate.effect = effect;
+    }
+    // A surface has no single coefficient to move.
+    if (candidate.effect && candidate.effect->is_surface()) continue;
+    for (const Finding& finding : improvement.steps[index - 1].diagnosis.findings) {
+      if (finding.id() != step.added) continue;
+      candidate.is_alike = finding.is_alike;
+      for (const Alias& alias : finding.aliases)
+        rivals.push_back(
+            {alias.effect, "instead of " + step.added, alias.correction, alias.is_alike, step.added});
+    }
+    candidates.push_back(std::move(candidate));
+  }
+  // Effects that are missing after the last step are not part of it.
+  for (WhatIfCandidate& left : what_if_candidates(improvement.steps.back().diagnosis, options.formulas)) {
+    left.stands_for.clear();
+    rivals.push_back(std::move(left));
+  }
+  for (WhatIfCandidate& rival : rivals) {
+    const bool is_new = std::none_of(candidates.begin(), candidates.end(),
+                                     [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });
+    if (is_new && candidates.size() < max_what_if_effects) candidates.push_back(std::move(rival));
+  }
+  WhatIf tried = what_if(flights, improvement.refitted, references, candidates, with);
+  tried.panel.start = "refitted";
+  if (tried.panel.held_out.samples > 0.0) tried.panel.is_start_fitted = false;
+  return tried;
 }
 
 }  // namespace pcor

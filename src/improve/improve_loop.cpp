@@ -10,10 +10,9 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/effects/static_surface.hpp>
+#include "diagnose/finding_page.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/traced_effect.hpp"
-#include "improve/model_trials.hpp"
-#include "improve/rival_choice.hpp"
 #include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {
@@ -28,46 +27,32 @@ constexpr double min_probability = 0.01;
 // Tolerance relative to the noise: smaller differences of the static pressure do not matter.
 constexpr double negligible = 0.05;
 
-/// Effect that may cause the remaining residual.
-struct Choice {
-  AddedEffect added;
-  double probability = 1.0;
-};
-
 /// Effect that the loop may add, and the required result.
 struct OfferedEffect {
-  std::vector<Choice> choices{};  ///< the effect, and rivals that the flights cannot separate from it
-  std::string title;
-  std::vector<std::string> aliases;
+  std::vector<AddedEffect> choices{};  ///< the effect, and rivals that the flights cannot separate from it
+  ImproveStep step{};
   bool is_named = true;  ///< the effect or one of its rivals counts as the cause
   bool is_sure = false;  ///< significant on blocks of the fitted flights that were excluded from its estimate
   std::string caution;   ///< end of the sentence in the summary
-
-  const ModelEffect& effect() const { return choices.front().added.effect; }
-};
-
-/// OfferedEffects after a diagnosis: all of them, or the first that helps.
-struct OfferedEffects {
-  std::vector<OfferedEffect> effects;
-  bool all = false;
 };
 
 OfferedEffect candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
   OfferedEffect candidate;
-  candidate.choices.push_back({{finding.effect, finding.held, finding.is_alike}, finding.probability});
-  candidate.title = finding.title;
+  candidate.choices.push_back({finding.effect, finding.held, finding.is_alike, finding.probability});
+  candidate.step.title = finding.title;
   candidate.is_sure = finding.gain > sure_gain * finding.gain_error;
+  std::vector<std::string>& aliases = candidate.step.aliases;
   for (const Alias& alias : finding.aliases) {
-    candidate.aliases.push_back(alias.effect);
+    aliases.push_back(alias.effect);
     if (alias.probability >= min_probability)
-      candidate.choices.push_back({{alias.correction, alias.held, alias.is_alike}, alias.probability});
+      candidate.choices.push_back({alias.correction, alias.held, alias.is_alike, alias.probability});
   }
   if (diagnosis.verdict == Verdict::partial) {
     candidate.is_named = false;
     candidate.caution = "; significant structure remains, so this effect may not be the cause";
-  } else if (!candidate.aliases.empty()) {
+  } else if (!aliases.empty()) {
     candidate.caution =
-        fmt::format("; these flights cannot distinguish it from {}{}{}", fmt::join(candidate.aliases, ", "),
+        fmt::format("; these flights cannot distinguish it from {}{}{}", fmt::join(aliases, ", "),
                     finding.advice.sentence.empty() ? "" : ": ", finding.advice.sentence);
   }
   if (!diagnosis.rival.empty())
@@ -79,9 +64,9 @@ OfferedEffect candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
 
 OfferedEffect candidate_of(const EmpiricalPredictor& variable, const std::string& flights) {
   OfferedEffect candidate;
-  candidate.choices = {{{effect_of(variable, flights)}, 1.0}};
-  candidate.title = fmt::format("structure that varies with {}{}", variable.name,
-                                variable.description.empty() ? "" : ", " + variable.description);
+  candidate.choices.push_back({effect_of(variable, flights)});
+  candidate.step.title = fmt::format("structure that varies with {}{}", variable.name,
+                                     variable.description.empty() ? "" : ", " + variable.description);
   candidate.is_named = false;
   candidate.is_sure = true;  // only significant variables are traced
   candidate.caution = "; no effect of the catalogue explains it, so the cause is still to be found";
@@ -110,29 +95,26 @@ std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
     const std::string error = std::isnan(parameter.standard_error)
                                   ? std::string(" (error unknown)")
                                   : fmt::format(" +- {:.2g}", parameter.standard_error);
-    words.push_back(fmt::format("{} = {:.4g}{}{}", parameter.name.substr(prefix.size()), parameter.value,
-                                error,
-                                parameter.unit.empty() || parameter.unit == "1" ? "" : " " + parameter.unit));
+    words.push_back(parameter.name.substr(prefix.size()) + " = " +
+                    report::with_unit(fmt::format("{:.4g}{}", parameter.value, error), parameter.unit));
   }
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-bool names_other_system(const Alias& alias) { return alias.effect.rfind("reference:", 0) == 0; }
-
-/// Whether only effects of the other system can cause the finding.
-bool is_of_reference(const Finding& finding) {
-  return finding.of_reference &&
-         std::none_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
-           return alias.probability >= min_probability && !names_other_system(alias);
+/// Whether an effect of the other system may cause the finding; the model is then left unchanged. With
+/// `other` false: whether an effect of the system of the model may cause it.
+bool may_be_of_reference(const Finding& finding, bool other = true) {
+  return finding.of_reference == other ||
+         std::any_of(finding.aliases.begin(), finding.aliases.end(), [other](const Alias& alias) {
+           return alias.probability >= min_probability && (alias.effect.rfind("reference:", 0) == 0) == other;
          });
 }
 
-/// Whether an effect of the other system may cause the finding; the model is then left unchanged.
-bool may_be_of_reference(const Finding& finding) {
-  return finding.of_reference ||
-         std::any_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
-           return alias.probability >= min_probability && names_other_system(alias);
-         });
+/// Rms of a - b over the samples in which both have a value.
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  SquareSum sum;
+  for (std::size_t i = 0; i < a.size(); ++i) sum.add(a[i] - b[i]);
+  return sum.rms();
 }
 
 /// Forward selection of effects: the steps so far, and the next ones.
@@ -155,8 +137,6 @@ class ForwardSelection {
 
   Improvement run() {
     while (result_.why_stopped.empty()) next_step();
-    result_.model = result_.fit.model;
-    result_.refitted = refitted_;
     choose_among_rivals();
     add_surface();
     compare_with_the_given();
@@ -174,7 +154,7 @@ class ForwardSelection {
   TrialModel model_with(const std::vector<AppliedRival>& choices) const {
     TrialModel model = given_;
     for (std::size_t index = 0; index < alternatives_.size(); ++index) {
-      if (choices[index]) model = loop_.add(model, alternatives_[index][*choices[index]].added);
+      if (choices[index]) model = loop_.add(model, alternatives_[index][*choices[index]]);
     }
     model.file = loop_.refit(model).model;
     return model;
@@ -183,7 +163,8 @@ class ForwardSelection {
   /// If the rivals of a step differ in static pressure, the model gets the one from `choose_rival`, or no
   /// effect; the uncertainty is part of its stated error.
   void choose_among_rivals() {
-    std::vector<AppliedRival> choices(alternatives_.size(), 0);
+    const std::vector<AppliedRival> first_of_each(alternatives_.size(), 0);
+    std::vector<AppliedRival> choices = first_of_each;
     for (std::size_t index = 0; index < alternatives_.size(); ++index) {
       if (alternatives_[index].size() < 2) continue;
       ImproveStep& step = result_.steps[index + 1];
@@ -194,12 +175,10 @@ class ForwardSelection {
                                          rival.probability,
                                          rival.effect == step.delivered ? ", applied" : ""));
     }
-    const bool is_top =
-        std::all_of(choices.begin(), choices.end(), [](const AppliedRival& choice) { return choice == 0U; });
-    delivered_ = top();
-    if (!is_top) {
+    TrialModel delivered = top();
+    if (choices != first_of_each) {
       try {
-        delivered_ = model_with(choices);
+        delivered = model_with(choices);
       } catch (const Error& error) {  // single choices may not be fittable together
         for (ImproveStep& step : result_.steps) step.delivered = step.added;
         result_.fit.notes.push_back(fmt::format(
@@ -208,7 +187,8 @@ class ForwardSelection {
             error.what()));
       }
     }
-    result_.model = delivered_.file;
+    result_.model = std::move(delivered.file);
+    delivered_alike_ = std::move(delivered.alike);
     add_rival_error(result_.model);
   }
 
@@ -260,7 +240,7 @@ class ForwardSelection {
     step.delivered.clear();
     for (std::size_t i = 0; i < tested.size(); ++i)
       step.rivals.push_back(
-          {alternatives_[index][tested[i]].added.effect.id, weights[i], square_sum_of(changes[i]).rms()});
+          {alternatives_[index][tested[i]].effect.id, weights[i], square_sum_of(changes[i]).rms()});
     if (!choice.rival) return std::nullopt;
     step.delivered = step.rivals[*choice.rival].effect;
     return tested[*choice.rival];
@@ -274,7 +254,7 @@ class ForwardSelection {
                                         [](const Finding& finding) { return finding.family == "attack"; });
     const bool is_open = now.verdict == Verdict::partial || now.verdict == Verdict::unexplained || has_attack;
     if (!loop_.offer_surface || !is_open) return;
-    const TrialModel before{result_.model, delivered_.alike};
+    const TrialModel before{result_.model, delivered_alike_};
     std::optional<SurfaceOffer> offer;
     try {
       offer = loop_.offer_surface(before);
@@ -283,7 +263,8 @@ class ForwardSelection {
       result_.why_stopped += fmt::format("; a surface was not tested: {}", error.what());
     }
     if (!offer) return;
-    const std::string& id = offer->effect;
+    const EffectInfo& surface = surface_info.front();
+    const std::string id(surface.id);
     const TrialComparison& out = offer->out_of_fit;
     const std::string figures =
         fmt::format("rms {} with it and {} without it (chi2 changes by {:+.0f} +- {:.0f}) on {}",
@@ -294,7 +275,7 @@ class ForwardSelection {
     }
     ImproveStep step;
     step.added = step.delivered = id;
-    step.title = std::string(surface_named(id)->title);
+    step.title = std::string(surface.title);
     measure(step, offer->fit, before.alike);
     // The parts are others than those of the steps before: their ratio is applied to the step before.
     if (!loop_.has_holdout)
@@ -304,7 +285,6 @@ class ForwardSelection {
                     id, offer->degrees_of_freedom, figures);
     // The uncertainty of the choice among rivals stays part of the stated error.
     add_rival_error(offer->fit.model);
-    delivered_ = {offer->fit.model, before.alike};
     result_.model = offer->fit.model;
     take(std::move(step), std::move(offer->fit), {}, before.alike);
   }
@@ -312,7 +292,7 @@ class ForwardSelection {
   /// Compares the delivered model with the given one.
   void compare_with_the_given() {
     std::vector<TrialFlight> tried =
-        loop_.try_models({given_, {refitted_}, {result_.model, delivered_.alike}, top()});
+        loop_.try_models({given_, {result_.refitted}, {result_.model, delivered_alike_}, top()});
     const TrialComparison train = comparison_of(tried, 0, 2, false);
     const TrialComparison holdout = comparison_of(tried, 0, 2, true);
     if (result_.model.law.rms_hpa) result_.model.law.rms_hpa = train.rms_after;
@@ -348,24 +328,22 @@ class ForwardSelection {
   }
 
   void next_step() {
-    OfferedEffects candidates = candidates_now();
-    if (candidates.effects.empty()) {
-      return stop_without_candidates();
-    }
+    const bool all = names_causes();
+    std::vector<OfferedEffect> candidates = candidates_now();
+    if (candidates.empty()) return stop_without_candidates();
     const std::size_t added = result_.steps.size() - 1;
-    if (added >= loop_.max_steps) {
+    if (added >= loop_.max_steps)
       return stop(StopReason::max_steps, fmt::format("{} effects were added, the maximum", added));
-    }
-    candidates.effects.resize(std::min(candidates.effects.size(), loop_.max_steps - added));
+    candidates.resize(std::min(candidates.size(), loop_.max_steps - added));
     std::vector<std::string> refusals;
-    for (const OfferedEffect& candidate : candidates.effects) {
-      const std::string refusal = refusal_of(candidate);
+    for (OfferedEffect& candidate : candidates) {
+      const std::string refusal = refusal_of(std::move(candidate));
       if (refusal.empty()) {
         refusals.clear();
       } else {
         refusals.push_back(refusal);
       }
-      if (refusal.empty() != candidates.all) break;
+      if (refusal.empty() != all) break;
     }
     if (!refusals.empty()) stop(StopReason::no_gain, fmt::format("{}", fmt::join(refusals, "; ")));
   }
@@ -375,19 +353,23 @@ class ForwardSelection {
     result_.why_stopped = std::move(why);
   }
 
-  OfferedEffects candidates_now() const {
+  /// Whether the diagnosis names each cause: then all candidates are added, otherwise the first that helps.
+  bool names_causes() const {
+    return diagnosis().verdict == Verdict::identified || diagnosis().verdict == Verdict::ambiguous;
+  }
+
+  std::vector<OfferedEffect> candidates_now() const {
     const Diagnosis& now = diagnosis();
-    OfferedEffects candidates;
+    std::vector<OfferedEffect> candidates;
     if (now.verdict == Verdict::silent) return candidates;
-    candidates.all = now.verdict == Verdict::identified || now.verdict == Verdict::ambiguous;
     for (const Finding& finding : now.findings) {
       if (!may_be_of_reference(finding) && !has_effect(result_.fit.model, finding.effect.id))
-        candidates.effects.push_back(candidate_of(finding, now));
+        candidates.push_back(candidate_of(finding, now));
     }
-    if (candidates.all || !loop_.trace_variables) return candidates;
+    if (names_causes() || !loop_.trace_variables) return candidates;
     for (const EmpiricalPredictor& variable : now.unexplained.variables) {
       if (variable.formula.empty() || has_effect(result_.fit.model, id_of_trace(variable.name))) continue;
-      candidates.effects.push_back(candidate_of(variable, loop_.flights));
+      candidates.push_back(candidate_of(variable, loop_.flights));
       break;
     }
     return candidates;
@@ -413,7 +395,7 @@ class ForwardSelection {
         return stop(StopReason::reference_system,
                     fmt::format("{} {} of the reference system, so the model is unchanged (--trust-reference "
                                 "assumes that this system is right){}{}",
-                                finding.id(), is_of_reference(finding) ? "is" : "may be an error",
+                                finding.id(), may_be_of_reference(finding, false) ? "may be an error" : "is",
                                 finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence));
       }
     }
@@ -433,17 +415,14 @@ class ForwardSelection {
   }
 
   /// Adds the candidate and keeps it if it helps; otherwise records the reason.
-  std::string refusal_of(const OfferedEffect& candidate) {
-    const std::string& id = candidate.effect().id;
-    ImproveStep step;
-    step.added = id;
-    step.delivered = id;
-    step.title = candidate.title;
-    step.aliases = candidate.aliases;
+  std::string refusal_of(OfferedEffect candidate) {
+    const std::string id = candidate.choices.front().effect.id;
+    ImproveStep& step = candidate.step;
+    step.added = step.delivered = id;
     TrialModel model;
     RefitResult fit;
     try {
-      model = loop_.add(top(), candidate.choices.front().added);
+      model = loop_.add(top(), candidate.choices.front());
       fit = loop_.refit(model);
     } catch (const Error& error) {
       return fmt::format("{} was tried, but cannot be fitted: {}", id, error.what());
@@ -484,7 +463,7 @@ class ForwardSelection {
         fmt::format("{}: {}; held-out rms {} before, {} after{}{}", id, coefficients_of(fit, id),
                     shown(before), shown(after),
                     better ? "" : ", not significant: kept because of the fitted flights", candidate.caution);
-    take(std::move(step), std::move(fit), candidate.choices, std::move(model.alike));
+    take(std::move(step), std::move(fit), std::move(candidate.choices), std::move(model.alike));
     return "";
   }
 
@@ -504,9 +483,10 @@ class ForwardSelection {
   }
 
   /// Appends a measured step, with a diagnosis of the remaining residual.
-  void take(ImproveStep step, RefitResult fit, std::vector<Choice> choices, std::vector<std::string> alike) {
+  void take(ImproveStep step, RefitResult fit, std::vector<AddedEffect> choices,
+            std::vector<std::string> alike) {
     if (result_.steps.empty())
-      refitted_ = fit.model;
+      result_.refitted = fit.model;
     else
       alternatives_.push_back(std::move(choices));
     alike_ = std::move(alike);
@@ -524,16 +504,39 @@ class ForwardSelection {
   const ImproveLoop& loop_;
   Improvement result_;
   TrialModel given_;
-  ModelDefinition refitted_;
   std::vector<std::string> alike_{};  // `TrialModel::alike` of the model after the last step
-  TrialModel delivered_{};
+  std::vector<std::string> delivered_alike_{};
   double rival_squares_ = 0.0;  // sum of the squared expected errors of the choices among rivals, hPa^2
   ProvenanceList rivals_{};
-  std::vector<std::vector<Choice>>
-      alternatives_{};  // alternatives for each added effect, the effect itself first
+  // alternatives for each added effect, the effect itself first
+  std::vector<std::vector<AddedEffect>> alternatives_{};
 };
 
 }  // namespace
+
+RivalChoice choose_rival(const std::vector<std::vector<double>>& changes, const std::vector<double>& weights,
+                         double tolerance) {
+  const std::vector<double> none(changes.front().size(), 0.0);
+  const auto expected_error = [&](const std::vector<double>& change) {
+    double squares = 0.0;
+    for (std::size_t k = 0; k < changes.size(); ++k)
+      squares += weights[k] * std::pow(distance(change, changes[k]), 2);
+    return std::sqrt(squares);
+  };
+  const auto is_harmless = [&](const std::vector<double>& change) {
+    return std::none_of(changes.begin(), changes.end(), [&](const std::vector<double>& rival) {
+      return distance(change, rival) > distance(none, rival) + tolerance;
+    });
+  };
+  const double error_of_first = expected_error(changes.front());
+  if (error_of_first <= tolerance) return {0, error_of_first};
+  RivalChoice best{std::nullopt, expected_error(none)};
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    const double error = expected_error(changes[k]);
+    if (error < best.error && is_harmless(changes[k])) best = {k, error};
+  }
+  return best;
+}
 
 Improvement ImproveLoop::run(const ModelDefinition& model) const {
   return ForwardSelection(*this, model).run();

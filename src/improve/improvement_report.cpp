@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,8 +14,8 @@
 
 #include "diagnose/diagnosis_panels.hpp"
 #include "diagnose/finding_page.hpp"
-#include "fit/held_out_panel.hpp"
-#include "improve/improvement_pictures.hpp"
+#include "fit/fit_pictures.hpp"
+#include "residuals/flight_statistics.hpp"
 
 namespace pcor {
 
@@ -26,49 +25,110 @@ namespace {
 
 using namespace internal::report;
 
-/// Flights with one of their residuals, in the format of the panels.
-Flights with_residual(const Improvement& improvement, std::vector<double> ImprovedFlight::*residual) {
-  Flights flights;
+/// Effective sample size of the residuals. @param count of the samples, held out or fitted
+double independent_samples(const Improvement& improvement, std::size_t ImprovedFlight::*count) {
+  double independent = 0.0;
   for (const ImprovedFlight& flight : improvement.flights) {
-    flights.emplace_back();
-    flights.back().samples = flight.samples;
-    flights.back().before = flight.*residual;
+    if (flight.*count == 0) continue;
+    independent += static_cast<double>(flight.*count) /
+                   noise_of_flight(*flight.samples, flight.best).autocorrelation_time;
   }
-  return flights;
+  return independent;
+}
+
+/// Coefficient by name, like "static-qp.a2"; NaN if the model does not have it.
+double value_in(const ModelDefinition& model, const std::string& name) {
+  for (const ModelEffect& effect : model.model.effects) {
+    const std::vector<std::string> names = parameter_names(effect);
+    for (std::size_t i = 0; i < std::min(names.size(), effect.parameters.size()); ++i) {
+      if (effect.id + "." + names[i] == name) return effect.parameters[i];
+    }
+  }
+  return nan;
+}
+
+/// Description of the held-out samples: "rf03.nc", "the last part of rf01.nc".
+std::vector<std::string> held_out_names(const Improvement& improvement) {
+  std::vector<std::string> names;
+  for (const ImprovedFlight& flight : improvement.flights) {
+    if (flight.held_out > 0)
+      names.push_back((flight.fitted > 0 ? "the last part of " : "") + flight.samples->name);
+  }
+  return names;
+}
+
+/// Sentence on the samples that are not in the fit; empty with held-out flights or parts of them.
+std::string held_out_text(const Improvement& improvement) {
+  if (improvement.holdout_is_flights) return "";
+  return fmt::format(
+      "Not in the fit: every fifth five minutes in turn, without outliers, with {} to the rest.",
+      refitted_text(improvement.steps.back().diagnosis));
+}
+
+/// Label of a step: "refitted", "+ static-lag".
+std::string step_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
+
+/// Rms residual of every step, fitted and held out, with the noise as a line.
+DotPanel steps_picture(const Improvement& improvement) {
+  DotPanel panel;
+  panel.title = "Rms of each step";
+  panel.caption =
+      "Rms residual after each effect that was added. Bars are standard errors for the effective sample "
+      "size; the dashed line is the noise, a lower limit. All values use the same samples, so a step may be "
+      "significant although bars overlap.";
+  if (const std::string text = held_out_text(improvement); !text.empty()) panel.caption += " " + text;
+  panel.axis = "rms residual";
+  panel.unit = "hPa";
+  panel.series = {"fitted", improvement.holdout_is_flights
+                                ? "held out: " + join_list(held_out_names(improvement))
+                                : "not in the fit, every fifth 5 min in turn"};
+  const double noise = improvement.steps.back().noise_rms;
+  if (std::isfinite(noise)) panel.lines = {{fmt::format("noise, {:.3f} hPa", noise), noise}};
+  const double fitted = independent_samples(improvement, &ImprovedFlight::fitted);
+  const double apart =
+      improvement.holdout_is_flights ? independent_samples(improvement, &ImprovedFlight::held_out) : fitted;
+  const auto dot = [](double rms, double independent) {
+    const double error = rms / std::sqrt(2.0 * independent);
+    return ReportDot{rms, std::isfinite(error) ? error : 0.0};
+  };
+  const auto add = [&](const std::string& label, double in_fit, double held_out) {
+    if (!std::isfinite(in_fit) && !std::isfinite(held_out)) return;
+    const auto text = [](double rms) { return std::isfinite(rms) ? fmt::format("{:.3f}", rms) : "–"; };
+    panel.rows.push_back({label,
+                          {dot(in_fit, fitted), dot(held_out, apart)},
+                          fmt::format("{} and {}", text(in_fit), text(held_out))});
+  };
+  add("given model", improvement.given_rms_train, improvement.given_rms_holdout);
+  for (const ImproveStep& step : improvement.steps) add(step_name(step), step.rms_train, step.rms_holdout);
+  const bool delivers_rivals = std::any_of(
+      improvement.steps.begin(), improvement.steps.end(),
+      [](const ImproveStep& step) { return !step.rivals.empty() && step.delivered != step.added; });
+  if (delivers_rivals) add("written model", improvement.rms_train, improvement.rms_holdout);
+  return panel;
+}
+
+/// Marks each completely held-out flight in its name.
+void name_held_out(Report& report, const Improvement& improvement) {
+  for (const ImprovedFlight& flight : improvement.flights) {
+    if (flight.held_out == 0) continue;
+    const auto is_fitted = [&](const ImprovedFlight& other) {
+      return other.fitted > 0 && other.samples->name == flight.samples->name;
+    };
+    if (std::any_of(improvement.flights.begin(), improvement.flights.end(), is_fitted)) continue;
+    const auto name = std::find(report.flight_names.begin(), report.flight_names.end(), flight.samples->name);
+    if (name != report.flight_names.end()) *name += ", held out";
+  }
 }
 
 /// Flights of the diagnoses, followed by completely held-out flights.
 Flights shown_flights(const Improvement& improvement) {
   Flights flights = improvement.steps.front().diagnosis.flights;
-  const Flights all = with_residual(improvement, &ImprovedFlight::best);
-  for (std::size_t f = flights.size(); f < all.size(); ++f) flights.push_back(all[f]);
+  for (std::size_t f = flights.size(); f < improvement.flights.size(); ++f) {
+    FlightDiagnosis& flight = flights.emplace_back();
+    flight.samples = improvement.flights[f].samples;
+    flight.before = improvement.flights[f].best;
+  }
   return flights;
-}
-
-/// Residuals of the initial, refitted and final model; the names of those that are known.
-std::vector<std::string> add_model_columns(DiagnosisPanels& panels, const Improvement& improvement) {
-  const auto before = [](const FlightDiagnosis& flight) { return flight.before; };
-  std::vector<std::string> columns;
-  const auto add = [&](const char* name, const std::string& title, auto residual) {
-    if (panels.add_column(name, title, "hPa", with_residual(improvement, residual), before))
-      columns.emplace_back(name);
-  };
-  add("model-given", "residual, given model", &ImprovedFlight::given);
-  add("model-refitted", "residual, refitted", &ImprovedFlight::refitted);
-  add("model-best", "residual, best model", &ImprovedFlight::best);
-  return columns;
-}
-
-/// Residuals of the models over time, averaged so that noise does not hide the slow changes.
-void add_models_in_time(DiagnosisPanels& panels, const Improvement& improvement,
-                        std::vector<std::string> columns) {
-  if (columns.empty()) return;
-  constexpr double averaging_time = 60.0;  // s
-  std::string caption = fmt::format("Means over {:g} s.", averaging_time);
-  const std::vector<std::string> names = held_out_names(improvement);
-  if (!names.empty()) caption += fmt::format(" Held out: {}.", join_list(names));
-  panels.add(TimePanel{"Residuals of the models in time", std::move(caption), std::move(columns), "residual",
-                       "", averaging_time});
 }
 
 ReportTable steps_table(const Improvement& improvement) {
@@ -125,29 +185,16 @@ void summarise(Report& report, const Improvement& improvement) {
     report.summary.push_back(std::move(text));
 }
 
-/// Fitted coefficients of an effect.
-std::vector<CoefficientEstimate> fitted_of(const RefitResult& fit, const std::string& effect) {
-  std::vector<CoefficientEstimate> estimates;
-  for (const FittedParameter& p : fit.parameters) {
-    if (p.name.rfind(effect + ".", 0) == 0)
-      estimates.push_back({p.name.substr(effect.size() + 1), p.unit, p.value, p.standard_error});
-  }
-  return estimates;
-}
-
 /// Page of the effect that a step added, and its pictures.
 void add_step(DiagnosisPanels& panels, const Improvement& improvement, std::size_t index) {
-  using F = FlightDiagnosis;
   const ImproveStep& step = improvement.steps[index];
   const Diagnosis& before = improvement.steps[index - 1].diagnosis;
   const std::string heading = fmt::format("Step {}: {}", index, step.added);
-  const std::string evidence = numbered("evidence", index);
-  const std::string added = numbered("added", index);
   std::vector<std::string> inputs;
   for (const ModelEffect& effect : improvement.model.model.effects) {
     if (effect.id == step.added) inputs = inputs_of(effect);
   }
-  inputs.push_back(added);
+  inputs.push_back(numbered("added", index));
   const auto finding = std::find_if(before.findings.begin(), before.findings.end(), [&](const Finding& one) {
     return !one.of_reference && one.effect.id == step.added;
   });
@@ -155,13 +202,16 @@ void add_step(DiagnosisPanels& panels, const Improvement& improvement, std::size
   page.paragraphs.insert(page.paragraphs.begin(), "Added: " + name_with_id(step.title, step.added) + ".");
   if (finding != before.findings.end()) {
     page = finding_page(*finding, before.threshold, heading);
-    const auto number = static_cast<std::size_t>(finding - before.findings.begin());
-    panels.add_column(evidence, "evidence for " + step.added, "1/min", before.flights,
-                      [number](const F& f) { return one_of(f.evidence, number); });
-    panels.add_column(added, "added by " + step.added, "hPa", before.flights,
-                      [number](const F& f) { return one_of(f.added, number); });
+    panels.add_finding_columns(before.flights, static_cast<std::size_t>(finding - before.findings.begin()),
+                               step.added, index);
   }
-  if (const std::vector<CoefficientEstimate> fitted = fitted_of(improvement.fit, step.added); !fitted.empty())
+  const std::string prefix = step.added + ".";
+  std::vector<CoefficientEstimate> fitted;
+  for (const FittedParameter& p : improvement.fit.parameters) {
+    if (p.name.rfind(prefix, 0) == 0)
+      fitted.push_back({p.name.substr(prefix.size()), p.unit, p.value, p.standard_error});
+  }
+  if (!fitted.empty())
     page.paragraphs.push_back(
         fmt::format("{} {}.", step.rivals.empty() ? "In the best model" : "Fitted as the only added effect",
                     estimates_text(fitted)));
@@ -169,7 +219,7 @@ void add_step(DiagnosisPanels& panels, const Improvement& improvement, std::size
   panels.add_binned("Residual without and with " + step.added + ", against its inputs", effect_caption,
                     {numbered("step", index - 1), numbered("step", index)}, inputs);
   panels.add_plane("Evidence for " + step.added + ", over Mach number and pressure",
-                   "Orange supports the effect, blue contradicts it.", evidence);
+                   "Orange supports the effect, blue contradicts it.", numbered("evidence", index));
 }
 
 }  // namespace
@@ -188,19 +238,22 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
                               : fmt::format("{} effects make the model better", added);
   report.subtitle = fmt::format("Improvement of {} against {}", start.model.name, top.reference);
   summarise(report, improvement);
-  add_info(panels, top, start, {});
+  panels.add_info(top, start, {});
 
   std::vector<std::string> residuals;
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    add_traced(panels, steps[i].diagnosis);
-    std::string name = numbered("step", i);
-    if (panels.add_column(name, "residual, " + step_name(steps[i]), "hPa", steps[i].diagnosis.flights,
-                          [](const FlightDiagnosis& f) { return f.before; }))
-      residuals.push_back(std::move(name));
+    panels.add_traced(steps[i].diagnosis);
+    residuals.push_back(numbered("step", i));
+    panels.add_column(residuals.back(), "residual, " + step_name(steps[i]), "hPa", steps[i].diagnosis.flights,
+                      &FlightDiagnosis::before);
   }
-  panels.measure_memory(top.flights, [](const FlightDiagnosis& f) -> const Series& { return f.before; });
+  residuals = present(report, std::move(residuals));
+  panels.measure_memory(top.flights, &FlightDiagnosis::before);
   name_held_out(report, improvement);
-  const std::vector<std::string> models = add_model_columns(panels, improvement);
+  const std::vector<ImprovedFlight>& flights = improvement.flights;
+  panels.add_column("model-given", "residual, given model", "hPa", flights, &ImprovedFlight::given);
+  panels.add_column("model-refitted", "residual, refitted", "hPa", flights, &ImprovedFlight::refitted);
+  panels.add_column("model-best", "residual, best model", "hPa", flights, &ImprovedFlight::best);
   panels.add(steps_picture(improvement));
   if (what_if != nullptr) {
     const ModelEffect& last = improvement.fit.model.model.effects.back();
@@ -208,22 +261,30 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
                        steps.back().noise_rms);
   }
   add_held_out(report, improvement.fit.flights);
-  if (auto coefficients = coefficients_picture(improvement, start)) panels.add(std::move(*coefficients));
+  std::vector<FittedParameter> parameters = improvement.fit.parameters;
+  for (FittedParameter& parameter : parameters) parameter.start = value_in(start, parameter.name);
+  if (auto picture = coefficient_picture(parameters, "given model", "best model"))
+    panels.add(std::move(*picture));
   if (!residuals.empty())
     panels.add_plane("Remaining residual over Mach number and pressure",
                      "Residual after the last step: one colour over a region is a bias there.",
                      residuals.back());
   panels.add_table(steps_table(improvement));
-  add_models_in_time(panels, improvement, models);
-  const std::vector<std::string> ends =
-      residuals.size() < 2 ? residuals : std::vector{residuals.front(), residuals.back()};
-  add_residual_in_time(panels, ends, refitted_text(top));
-  add_residual_by_regime(panels, ends, refitted_text(top));
+  constexpr double averaging_time = 60.0;  // s, so that noise does not hide the slow changes
+  std::string caption = fmt::format("Means over {:g} s.", averaging_time);
+  const std::vector<std::string> held_out = held_out_names(improvement);
+  if (!held_out.empty()) caption += fmt::format(" Held out: {}.", join_list(held_out));
+  add_if_present(report, TimePanel{"Residuals of the models in time",
+                                   std::move(caption),
+                                   {"model-given", "model-refitted", "model-best"},
+                                   "residual",
+                                   "",
+                                   averaging_time});
+  if (residuals.size() > 2) residuals = {residuals.front(), residuals.back()};
+  panels.add_residual_in_time(top, residuals);
+  panels.add_residual_by_regime(top, residuals);
   for (std::size_t i = 1; i < steps.size(); ++i) add_step(panels, improvement, i);
-  add_distribution_panels(panels, ends);
-  panels.add_responses(ends, reads_laser(top));
-  if (!residuals.empty()) add_unexplained(panels, top, residuals.back());
-  add_tables(panels, top);
+  panels.add_last_panels(top, residuals);
   return std::move(report);
 }
 

@@ -14,12 +14,12 @@
 namespace pcor::internal {
 namespace {
 
-/// Index of an effect in a model; the number of effects if there is no effect with that name.
-std::size_t position_of(const ModelDefinition& model, const std::string& effect) {
+/// Effect of a model; null if the model lacks it.
+const ModelEffect* effect_in(const ModelDefinition& model, const std::string& id) {
   const std::vector<ModelEffect>& effects = model.model.effects;
-  const auto found = std::find_if(effects.begin(), effects.end(),
-                                  [&effect](const ModelEffect& each) { return each.id == effect; });
-  return static_cast<std::size_t>(found - effects.begin());
+  const auto found =
+      std::find_if(effects.begin(), effects.end(), [&id](const ModelEffect& each) { return each.id == id; });
+  return found == effects.end() ? nullptr : &*found;
 }
 
 /// Coefficients that disable an effect, in its shape.
@@ -37,13 +37,11 @@ std::vector<double> neutral_of(const ModelEffect& effect) {
 /// Model of another system with the shared effects at the coefficients of this model.
 ModelDefinition with_what_is_alike(ModelDefinition other, const TrialModel& model,
                                    const std::vector<std::string>& variables) {
-  for (const std::string& effect : model.alike) {
-    const ModelEffect& own = model.file.model.effects[position_of(model.file, effect)];
-    const std::size_t position = position_of(other, effect);
-    if (position < other.model.effects.size()) {
-      other.model.effects[position].parameters = own.parameters;
-    } else {
-      other = add_effects(other, {own}, variables);
+  for (const std::string& id : model.alike) {
+    const ModelEffect& own = *effect_in(model.file, id);
+    if (!has_effect(other, id)) other = add_effects(other, {own}, variables);
+    for (ModelEffect& effect : other.model.effects) {
+      if (effect.id == id) effect.parameters = own.parameters;
     }
   }
   return other;
@@ -52,41 +50,19 @@ ModelDefinition with_what_is_alike(ModelDefinition other, const TrialModel& mode
 /// Model without the shared effects: they cancel in comparisons of two systems.
 ModelDefinition without_what_is_alike(ModelDefinition file, const TrialModel& model) {
   std::vector<ModelEffect>& effects = file.model.effects;
-  for (const std::string& alike : model.alike) {
-    const auto position = static_cast<std::ptrdiff_t>(position_of(file, alike));
-    if (position < static_cast<std::ptrdiff_t>(effects.size())) effects.erase(effects.begin() + position);
-  }
+  const auto is_alike = [&model](const ModelEffect& effect) {
+    return std::find(model.alike.begin(), model.alike.end(), effect.id) != model.alike.end();
+  };
+  effects.erase(std::remove_if(effects.begin(), effects.end(), is_alike), effects.end());
   return file;
-}
-
-/// Reference, and all residual coefficients of each trial.
-struct TrialReference {
-  const Reference& reference;
-  std::vector<std::vector<double>> coefficients;
-};
-
-TrialFlight tried_on(const FlightSet& flights, std::size_t number, const ModelDefinition& whole,
-                     const TrialReference& trial, const RefitOptions& options, bool held_out) {
-  TrialFlight flight;
-  flight.samples = flights.samples(number, whole, trial.reference, options.mask);
-  const LinearRows rows(Residuals(flight.samples, whole, trial.reference, options.mask), whole,
-                        trial.reference, {Inputs::none, {}, held_out ? 0.0 : options.training_share});
-  flight.fitted = rows.used();
-  flight.held_out = rows.held_out();
-  for (const std::vector<double>& coefficients : trial.coefficients) {
-    flight.residuals.push_back(rows.residuals().values(coefficients.data()));
-    flight.static_pressures.push_back(
-        rows.residuals().quantity(Quantity::corrected_static_pressure, coefficients.data()));
-  }
-  return flight;
 }
 
 }  // namespace
 
-ModelDefinition union_of(const std::vector<ModelDefinition>& models) {
-  ModelDefinition whole = models.front();
+ModelDefinition union_of(const std::vector<TrialModel>& models) {
+  ModelDefinition whole = models.front().file;
   whole.fits.resize(whole.model.effects.size());
-  for (const ModelDefinition& model : models) {
+  for (const auto& [model, alike] : models) {
     for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
       const ModelEffect& effect = model.model.effects[e];
       if (has_effect(whole, effect.id)) continue;
@@ -102,9 +78,8 @@ ModelDefinition union_of(const std::vector<ModelDefinition>& models) {
 std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDefinition& whole) {
   std::vector<double> coefficients;
   for (const ModelEffect& effect : whole.model.effects) {
-    const std::size_t position = position_of(model, effect.id);
-    const std::vector<double> own =
-        position < model.model.effects.size() ? model.model.effects[position].parameters : neutral_of(effect);
+    const ModelEffect* const found = effect_in(model, effect.id);
+    const std::vector<double> own = found == nullptr ? neutral_of(effect) : found->parameters;
     coefficients.insert(coefficients.end(), own.begin(), own.end());
   }
   return coefficients;
@@ -140,30 +115,41 @@ References with_alike(const References& references, const TrialModel& model,
 
 std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<TrialModel>& models,
                                     const References& references, const RefitOptions& options) {
-  std::vector<ModelDefinition> files;
-  for (const TrialModel& model : models) files.push_back(model.file);
-  const ModelDefinition whole = union_of(files);
+  const ModelDefinition whole = union_of(models);
   std::vector<TrialFlight> tried;
   for (const std::shared_ptr<const Reference>& reference : references) {
-    TrialReference trial{*reference, {}};
+    std::vector<std::vector<double>> trials;  // all residual coefficients of each model
     for (const TrialModel& model : models) {
-      std::vector<double>& all = trial.coefficients.emplace_back();
+      std::vector<double>& all = trials.emplace_back();
       const ModelDefinition* const other = reference->model();
       all = coefficients_in(other == nullptr ? model.file : without_what_is_alike(model.file, model), whole);
       if (other == nullptr) continue;
       const std::vector<double> theirs = coefficients_in(without_what_is_alike(*other, model), *other);
       all.insert(all.end(), theirs.begin(), theirs.end());
     }
-    const auto add = [&](const FlightSet& some, bool held_out) {
-      for (TrialFlight& flight : some.share().of_each_flight<TrialFlight>(
-               [&](std::size_t number) { return tried_on(some, number, whole, trial, options, held_out); })) {
+    const auto add = [&](const FlightSet& some, double training_share) {
+      const auto tried_on = [&](std::size_t number) {
+        TrialFlight flight;
+        flight.samples = some.samples(number, whole, *reference, options.mask);
+        const LinearRows rows(Residuals(flight.samples, whole, *reference, options.mask), whole, *reference,
+                              {Inputs::none, {}, training_share});
+        flight.fitted = rows.used();
+        flight.held_out = rows.held_out();
+        for (const std::vector<double>& coefficients : trials) {
+          flight.residuals.push_back(rows.residuals().values(coefficients.data()));
+          flight.static_pressures.push_back(
+              rows.residuals().quantity(Quantity::corrected_static_pressure, coefficients.data()));
+        }
+        return flight;
+      };
+      for (TrialFlight& flight : some.share().of_each_flight<TrialFlight>(tried_on)) {
         flight.first_reference = reference == references.front();
         flight.window = reference->window();
         tried.push_back(std::move(flight));
       }
     };
-    add(flights, false);
-    add(options.holdout, true);
+    add(flights, options.training_share);
+    add(options.holdout, 0.0);
   }
   return tried;
 }

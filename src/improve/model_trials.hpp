@@ -45,7 +45,7 @@ std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<
                                     const References& references, const RefitOptions& options);
 
 /// Model that has the effects of all models, with the coefficients of the first that has them.
-ModelDefinition union_of(const std::vector<ModelDefinition>& models);
+ModelDefinition union_of(const std::vector<TrialModel>& models);
 
 /// The model `extended` with coefficients and errors of the given model. Other effects get neutral
 /// coefficients, formulas keep theirs. By GPS alone the prior of a fit is about its start, which is then no

@@ -1,13 +1,12 @@
 #include "improve/surface_offer.hpp"
 
-#include <algorithm>
 #include <array>
 #include <vector>
 
 #include <pcor/base/error.hpp>
 #include <pcor/effects/static_surface.hpp>
 #include <pcor/roles/add_effects.hpp>
-#include "fit/fitted_coefficients.hpp"
+#include "fit/fitted_model.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -15,10 +14,8 @@ namespace {
 
 constexpr std::size_t held_out_blocks = 5;
 
-struct Pair {
-  TrialModel without;
-  TrialModel with;
-};
+/// A model without and with a surface.
+using Pair = std::array<TrialModel, 2>;
 
 /// Number `block` of the samples of a flight, from its begin to its end; s since 1970 UTC.
 Exclusion block_of(const TrialFlight& flight, std::size_t block) {
@@ -34,23 +31,21 @@ Exclusion block_of(const TrialFlight& flight, std::size_t block) {
 /// The residuals without and with the surface on five blocks, each with coefficients of the other four.
 TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, const References& references,
                               const RefitOptions& options) {
-  const std::vector<TrialFlight> outline =
-      try_models(flights, {models.without, models.with}, references, options);
+  const std::vector<TrialFlight> outline = try_models(flights, {models[0], models[1]}, references, options);
   std::vector<TrialModel> trials;
   // Priors of the block before, where the search for those of the next block starts.
   std::array<std::vector<SurfaceRoughness>, 2> surfaces;
   for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
-    without_block.alike = models.without.alike;
+    without_block.alike = models[0].alike;
     if (!without_block.mask.intervals) without_block.mask.intervals.emplace();
     for (const TrialFlight& flight : outline) {
       if (flight.first_reference && flight.fitted.size() >= held_out_blocks)
         without_block.mask.intervals->exclude.push_back(block_of(flight, block));
     }
-    const std::array<const TrialModel*, 2> both{&models.without, &models.with};
-    for (std::size_t k = 0; k < both.size(); ++k) {
-      trials.push_back({fitted_coefficients(flights, both[k]->file, references, without_block, surfaces[k]),
-                        both[k]->alike});
+    for (std::size_t k = 0; k < models.size(); ++k) {
+      trials.push_back({fitted_coefficients(flights, models[k].file, references, without_block, surfaces[k]),
+                        models[k].alike});
     }
   }
   std::vector<TrialFlight> tried = try_models(flights, trials, references, options);
@@ -83,27 +78,25 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
     return std::nullopt;
   Pair models{model, model};
   try {
-    const ModelEffect surface = surface_over(
-        flights.size(), [&flights](std::size_t number) -> const Flight& { return flights[number]; },
-        model.file, id);
-    models.with.file = add_effects(model.file, {surface}, flights[0].variables());
+    const auto flight = [&flights](std::size_t number) -> const Flight& { return flights[number]; };
+    models[1].file = add_effects(model.file, {surface_over(flights.size(), flight, model.file, id)},
+                                 flights[0].variables());
   } catch (const Error& error) {
     if (error.code() == Error::Code::file) throw;
     return std::nullopt;
   }
   SurfaceOffer offer;
-  offer.effect = id;
   RefitOptions of_all = options;
   of_all.alike = model.alike;
-  offer.fit = refit(flights, models.with.file, references, of_all);
+  offer.fit = refit(flights, models[1].file, references, of_all);
   for (const SurfaceFit& surface : offer.fit.surfaces) {
     if (surface.effect == id) offer.degrees_of_freedom = surface.degrees_of_freedom;
   }
   if (!options.holdout.empty() || options.training_share < 1.0) {
     offer.held_out = "held-out samples";
-    models.with.file = offer.fit.model;
+    models[1].file = offer.fit.model;
     offer.out_of_fit =
-        comparison_of(try_models(flights, {models.without, models.with}, references, options), 0, 1, true);
+        comparison_of(try_models(flights, {models[0], models[1]}, references, options), 0, 1, true);
   } else {
     offer.held_out = "five consecutive blocks with outliers, each with coefficients of the other four";
     offer.out_of_fit = out_of_blocks(flights, models, references, options);

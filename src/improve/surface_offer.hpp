@@ -7,9 +7,8 @@
 
 namespace pcor::internal {
 
-/// A model with a surface, and its residuals on samples outside its fit.
+/// A model with the first of `surface_info`, and its residuals on samples outside its fit.
 struct SurfaceOffer {
-  std::string effect{};             ///< id of the surface
   double degrees_of_freedom = 0.0;  ///< number of its coefficients that the flights determine
   RefitResult fit{};
   TrialComparison out_of_fit{};  ///< comparison without and with the surface

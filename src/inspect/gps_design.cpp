@@ -1,4 +1,4 @@
-#include <pcor/inspect/gps_design.hpp>
+#include <pcor/inspect/inspect.hpp>
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -43,10 +43,7 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
       const Eigen::Index position = as_index(deviations.size());
       const bool by_attack = effect.id == "static-alpha" || effect.id == "static-attack";
-      if (by_attack)
-        with_attack.push_back(position);
-      else
-        with_speed.push_back(position);
+      (by_attack ? with_attack : with_speed).push_back(position);
       deviations.push_back(gps_prior_in_typical_sizes * std::abs(info.parameters[p].typical));
     }
   }
@@ -56,10 +53,9 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
   std::iota(requested.begin(), requested.end(), 0);
   GpsDesign design;
   Eigen::MatrixXd defects;
-  Eigen::MatrixXd information =
-      Eigen::MatrixXd::Zero(as_index(deviations.size()), as_index(deviations.size()));
-  for (std::size_t k = 0; k < deviations.size(); ++k)
-    information(as_index(k), as_index(k)) = 1.0 / (deviations[k] * deviations[k]);
+  const Eigen::VectorXd variances =
+      Eigen::Map<const Eigen::ArrayXd>(deviations.data(), as_index(deviations.size())).square();
+  Eigen::MatrixXd information = variances.cwiseInverse().asDiagonal();
   for (const GpsKind kind : {GpsKind::wind, GpsKind::height}) {
     try {
       const auto reference = kind == GpsKind::wind ? wind_reference(model) : height_reference(model);
@@ -87,8 +83,7 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
   design.level = std::sqrt(mean * covariance.topLeftCorner(count, count) * mean.transpose());
   // A direction is undetermined if the flight hardly reduces its prior error, or if it varies too little.
   constexpr double learnt = 0.5;
-  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(count, count);
-  for (Eigen::Index k = 0; k < count; ++k) prior(k, k) = std::pow(deviations[static_cast<std::size_t>(k)], 2);
+  const Eigen::MatrixXd prior = variances.head(count).asDiagonal();
   const auto error_of = [&](const std::vector<Eigen::Index>& with) {
     const double error = error_about_mean(defects, covariance, with);
     return error > learnt * error_about_mean(defects, prior, with) ? infinity : error;

@@ -10,10 +10,10 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/base/utc.hpp>
+#include <pcor/effects/catalogue.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/roles/resolve_variables.hpp>
 #include "inspect/plausibility.hpp"
-#include "inspect/role_use.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "roles/computed_from.hpp"
 #include "roles/pressure_height.hpp"
@@ -27,6 +27,64 @@ namespace pcor {
 using namespace internal;
 
 namespace {
+
+/// Consequences of missing series, in addition to the effects that need them.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 14> costs{{
+    {"recovery_temperature",
+     "no airspeed and no delta-p from LAMS, unless the temperature of the air is recorded"},
+    {"dew_point", "the air is assumed dry, unless the vapour pressure is recorded"},
+    {"lams_airspeed", "delta-p cannot be measured; use a second system, heights or winds as the reference"},
+    {"attack", "the angle between laser beam and wind is unknown, and pitch manoeuvres need the pitch"},
+    {"altitude", "no climbs, layers or hydrostatic temperature fit, unless another height is recorded"},
+    {"vertical_speed", "it is computed from the altitude"},
+    {"pitch", "pitch manoeuvres are found by the angle of attack, if that is recorded"},
+    {"roll", "turns, circles and reverse headings are not found"},
+    {"heading",
+     "circles, reverse headings and yaw manoeuvres are found by the ground track, if that is recorded"},
+    {"ground_speed", "winds cannot be compared, unless the ground speed is recorded by components"},
+    {"ground_track", "winds cannot be compared, unless the ground speed is recorded by components"},
+    {"flaps", "samples with flaps out are found by the lift alone"},
+    {"liquid_water", "clouds are not found"},
+    {"latitude", "standard gravity is used, and the slope of isobars is unknown"},
+}};
+
+/// Quantities from which a quantity is computed if it is not recorded.
+std::vector<Quantity> sources_of(Quantity quantity) {
+  for (const Rate& each : rates) {
+    if (each.rate == quantity) return {each.quantity};
+  }
+  switch (quantity) {
+    case Quantity::wetness:
+      return {Quantity::liquid_water};
+    case Quantity::attack_ratio:
+      return {Quantity::attack_differential_pressure, Quantity::radome_dynamic_pressure};
+    case Quantity::sideslip_ratio:
+      return {Quantity::sideslip_differential_pressure, Quantity::radome_dynamic_pressure};
+    default:
+      return {quantity};
+  }
+}
+
+/// Consequence if a series is not recorded; empty if no consequence is known.
+std::string cost_of(std::string_view series) {
+  const auto found =
+      std::find_if(costs.begin(), costs.end(), [&](const auto& cost) { return cost.first == series; });
+  return found == costs.end() ? "" : std::string(found->second);
+}
+
+/// Effects that need a role, also as a source of a derived quantity.
+std::vector<std::string> effects_that_need(Quantity role) {
+  std::vector<std::string> effects;
+  for (const EffectInfo& info : effect_info) {
+    bool needs = false;
+    for (std::size_t i = 0; i < info.need_count(); ++i) {
+      const std::vector<Quantity> sources = sources_of(info.needs[i]);
+      needs = needs || std::find(sources.begin(), sources.end(), role) != sources.end();
+    }
+    if (needs) effects.emplace_back(info.id);
+  }
+  return effects;
+}
 
 /// Whether the words of a file state that a height is geometric.
 bool says_geometric(const VariableInfo& variable) {
@@ -66,7 +124,6 @@ class Look {
     }
     state_rounding();
     result_.laws = model_candidates(flight_, laws, result_.notes);
-    result_.corrected_pressure = processed_static_pressure(flight_, family_);
     find_reference();
     return std::move(result_);
   }
@@ -215,20 +272,22 @@ class Look {
     if (!roles_.empty()) return nullptr;  // the user has chosen the names
     // A Mach number of the recording system is made of the pressures, and no independent one.
     if (series == info_of(Quantity::mach).name) return nullptr;
+    const std::vector<RoleCandidate>& candidates = candidates_for(series);
+    return is_sure(candidates) ? &candidates.front() : nullptr;
+  }
+
+  const std::vector<RoleCandidate>& candidates_for(const std::string& series) const {
+    static const std::vector<RoleCandidate> none;
     const auto found = evidence_.find(series);
-    return found != evidence_.end() && is_sure(found->second) ? &found->second.front() : nullptr;
+    return found == evidence_.end() ? none : found->second;
   }
 
   /// Finds the pressure pair of a file that matches no aircraft family. The names then apply to this flight
   /// only.
   bool take_pressures_by_evidence(ModelDefinition& model) {
     if (!roles_.empty()) return false;
-    const auto best = [this](const std::string& series) {
-      const auto found = evidence_.find(series);
-      return found == evidence_.end() ? std::vector<RoleCandidate>() : found->second;
-    };
-    const std::vector<RoleCandidate> static_pressures = best("static_pressure");
-    const std::vector<RoleCandidate> dynamic_pressures = best("dynamic_pressure");
+    const std::vector<RoleCandidate>& static_pressures = candidates_for("static_pressure");
+    const std::vector<RoleCandidate>& dynamic_pressures = candidates_for("dynamic_pressure");
     if (static_pressures.empty() || dynamic_pressures.empty() ||
         static_pressures.front().variable == dynamic_pressures.front().variable)
       return false;
@@ -265,8 +324,8 @@ class Look {
   std::string dynamic_pressure_by_airspeed() const {
     const std::string pressure = in_unit(evidence_.at("static_pressure").front().variable, "hPa");
     const auto found = [this](const char* series) {
-      const auto candidates = evidence_.find(series);
-      return candidates == evidence_.end() ? std::string() : candidates->second.front().variable;
+      const std::vector<RoleCandidate>& candidates = candidates_for(series);
+      return candidates.empty() ? std::string() : candidates.front().variable;
     };
     const std::string mach = found("mach");
     const std::string airspeed = found("true_airspeed");
@@ -330,8 +389,11 @@ class Look {
       const auto role = static_cast<Quantity>(i);
       const std::string name(info_of(role).name);
       const RoleCandidate* const candidate = sure_candidate(name);
-      const bool is_known = !result_.alike.empty() && !family_.names_of(name).empty() &&
-                            has_any(family_.names_of(name), std::string(info_of(role).unit));
+      const std::vector<std::string> names = family_.names_of(name);
+      const bool is_known =
+          !result_.alike.empty() && std::any_of(names.begin(), names.end(), [&](const std::string& each) {
+            return has_values(flight_, each, std::string(info_of(role).unit), family_.unit_of(each));
+          });
       const bool is_chosen =
           has(role) || is_known ||
           (has_temperature &&
@@ -339,8 +401,11 @@ class Look {
           (has_humidity && (role == Quantity::vapor_pressure || role == Quantity::dew_point)) ||
           (role == Quantity::dew_point && has(Quantity::vapor_pressure)) ||
           (role == Quantity::ambient_temperature && has(Quantity::recovery_temperature));
-      if (candidate == nullptr || is_chosen || plays_a_role(model, candidate->variable)) continue;
-      model.variables[role] = candidate->variable;
+      if (candidate == nullptr || is_chosen) continue;
+      const bool plays_a_role =
+          std::any_of(model.variables.begin(), model.variables.end(),
+                      [&](const auto& each) { return each.second == candidate->variable; });
+      if (!plays_a_role) model.variables[role] = candidate->variable;
     }
     model.model.moist =
         has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point);
@@ -351,17 +416,6 @@ class Look {
     return std::any_of(family_.processed.begin(), family_.processed.end(), [&](const PressurePair& pair) {
       return variable == pair.static_pressure || variable == pair.dynamic_pressure;
     });
-  }
-
-  bool has_any(const std::vector<std::string>& names, const std::string& unit) const {
-    return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-      return has_values(flight_, name, unit, family_.unit_of(name));
-    });
-  }
-
-  static bool plays_a_role(const ModelDefinition& model, const std::string& variable) {
-    return std::any_of(model.variables.begin(), model.variables.end(),
-                       [&](const auto& each) { return each.second == variable; });
   }
 
   /// Lists every variable without a role that is not a candidate for one either.
@@ -406,7 +460,7 @@ class Look {
     constexpr const char* avionics = "PS_A";
     const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
     const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) && has_temperature;
-    const std::string& corrected = result_.corrected_pressure;
+    const std::string corrected = processed_static_pressure(flight_, family_);
     const bool is_independent =
         !corrected.empty() &&
         !is_computed_from(flight_, corrected, model.variables.at(Quantity::static_pressure));

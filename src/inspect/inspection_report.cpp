@@ -1,11 +1,10 @@
-#include <pcor/inspect/inspection_report.hpp>
+#include <pcor/inspect/inspect.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include <pcor/base/utc.hpp>
@@ -19,53 +18,24 @@ using namespace internal;
 
 namespace {
 
-using Series = std::vector<double>;
-
-/// The series of the flights that have samples, one after another.
-class FlightColumns {
- public:
-  FlightColumns(Report& report, const std::vector<Inspection>& flights)
-      : report_(report), flights_(flights) {}
-
-  void add(const char* name, const char* title, const char* unit,
-           const std::function<Series(const Inspection&)>& of) {
-    Series values;
-    for (const Inspection& flight : flights_) {
-      if (!flight.samples) continue;
-      Series part = of(flight);
-      part.resize(flight.samples->time.size(), std::nan(""));
-      values.insert(values.end(), part.begin(), part.end());
-    }
-    add_if_present(report_, ReportColumn{name, title, unit, std::move(values)});
-  }
-
- private:
-  Report& report_;
-  const std::vector<Inspection>& flights_;
-};
-
-std::string percent(double part) { return fmt::format("{:.1f} %", 100.0 * part); }
-
 ReportTable roles_of(const Inspection& flight) {
-  ReportTable table;
-  table.title = "Roles of " + std::filesystem::path(flight.path).filename().string();
-  table.caption = "Variable of each role, by the names of " + flight.family_title + ".";
-  table.headers = {"role", "variable", "unit", "sign", "samples in a record", "present", "remarks"};
+  ReportTable table{"Roles of " + std::filesystem::path(flight.path).filename().string(),
+                    "Variable of each role, by the names of " + flight.family_title + ".",
+                    {"role", "variable", "unit", "sign", "samples in a record", "present", "remarks"}};
   for (const InspectedRole& role : flight.roles) {
     std::string remarks = role.trap;
     if (!role.is_verified)
       remarks += std::string(remarks.empty() ? "" : "; ") + "name not documented publicly";
     table.rows.push_back({role.role, role.variable, role.unit, role.is_turned ? "reversed" : "unchanged",
-                          std::to_string(role.rate), percent(role.present), remarks});
+                          std::to_string(role.rate), fmt::format("{:.1f} %", 100.0 * role.present), remarks});
   }
   return table;
 }
 
 ReportTable missing_of(const Inspection& flight) {
-  ReportTable table;
-  table.title = "Missing from " + std::filesystem::path(flight.path).filename().string();
-  table.caption = "Roles without a variable, and the consequences.";
-  table.headers = {"role", "description", "names searched", "consequence", "effects that need it"};
+  ReportTable table{"Missing from " + std::filesystem::path(flight.path).filename().string(),
+                    "Roles without a variable, and the consequences.",
+                    {"role", "description", "names searched", "consequence", "effects that need it"}};
   for (const MissingRole& role : flight.missing) {
     table.rows.push_back({role.role, role.description, fmt::format("{}", fmt::join(role.looked_for, ", ")),
                           role.cost, fmt::format("{}", fmt::join(role.effects, ", "))});
@@ -103,16 +73,26 @@ Report inspection_report(const std::vector<Inspection>& flights) {
       report.intervals.push_back({std::string(info_of(interval.regime).name), interval.begin, interval.end});
   }
   if (!report.time.empty()) {
-    FlightColumns columns(report, flights);
-    columns.add("altitude", "altitude", "m", [](const Inspection& f) { return f.samples->motion.altitude; });
-    columns.add("airspeed", "true airspeed", "m/s",
-                [](const Inspection& f) { return f.samples->motion.airspeed; });
-    columns.add("ground_speed", "ground speed", "m/s",
-                [](const Inspection& f) { return f.samples->motion.ground_speed; });
-    columns.add("pitch", "pitch", "deg", [](const Inspection& f) { return f.samples->motion.pitch; });
-    columns.add("roll", "roll", "deg", [](const Inspection& f) { return f.samples->motion.roll; });
-    columns.add("latitude", "latitude", "deg", [](const Inspection& f) { return f.samples->latitude; });
-    columns.add("longitude", "longitude", "deg", [](const Inspection& f) { return f.samples->longitude; });
+    // Adds a series of the flights that have samples, one after another.
+    const auto add = [&](const char* name, const char* title, const char* unit, const auto& series) {
+      ReportColumn column{name, title, unit, {}};
+      for (const Inspection& flight : flights) {
+        if (!flight.samples) continue;
+        std::vector<double> part = series(*flight.samples);
+        part.resize(flight.samples->time.size(), std::nan(""));
+        column.values.insert(column.values.end(), part.begin(), part.end());
+      }
+      add_if_present(report, std::move(column));
+    };
+    add("altitude", "altitude", "m", [](const FlightSamples& flight) { return flight.motion.altitude; });
+    add("airspeed", "true airspeed", "m/s",
+        [](const FlightSamples& flight) { return flight.motion.airspeed; });
+    add("ground_speed", "ground speed", "m/s",
+        [](const FlightSamples& flight) { return flight.motion.ground_speed; });
+    add("pitch", "pitch", "deg", [](const FlightSamples& flight) { return flight.motion.pitch; });
+    add("roll", "roll", "deg", [](const FlightSamples& flight) { return flight.motion.roll; });
+    add("latitude", "latitude", "deg", [](const FlightSamples& flight) { return flight.latitude; });
+    add("longitude", "longitude", "deg", [](const FlightSamples& flight) { return flight.longitude; });
     add_strip(report);
     add_if_present(report, TimePanel{"Height", "Altitude in time; regimes are shaded.", {"altitude"}});
     add_if_present(

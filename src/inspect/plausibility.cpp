@@ -57,13 +57,11 @@ class Plausibility {
  private:
   RecordedSeries read(Quantity role) const { return read_role(flight_, model_, role); }
 
-  std::string all_times() const {
-    return fmt::format("{} to {}", utc_text(time_.front(), "%H:%M:%S"), utc_text(time_.back(), "%H:%M:%S"));
-  }
-
   void add(const std::string& variable, std::string kind, double number, std::string unit,
            std::string action) {
-    problems_.push_back({variable, std::move(kind), all_times(), number, std::move(unit), std::move(action)});
+    const std::string times =
+        fmt::format("{} to {}", utc_text(time_.front(), "%H:%M:%S"), utc_text(time_.back(), "%H:%M:%S"));
+    problems_.push_back({variable, std::move(kind), times, number, std::move(unit), std::move(action)});
   }
 
   static double median_of(const std::vector<double>& a, const std::vector<double>& b,

@@ -1,6 +1,5 @@
 #include "model_io/calibration.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -10,14 +9,8 @@
 namespace pcor::internal {
 namespace {
 
-std::string name_of_coefficient(std::size_t number) {
-  return std::string(calibration_id) + ".a" + std::to_string(number);
-}
-
-bool is_of_correction(const std::string& parameter) {
-  const std::string prefix = std::string(calibration_id) + ".";
-  return parameter.compare(0, prefix.size(), prefix) == 0;
-}
+/// Beginning of the names of its coefficients.
+const std::string calibration_prefix = std::string(calibration_id) + ".";
 
 }  // namespace
 
@@ -34,7 +27,8 @@ ModelDefinition without_calibration(ModelDefinition file) {
     effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(i));
     if (i < file.fits.size()) file.fits.erase(file.fits.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  file.covariance = part_of(file.covariance, [](const std::string& name) { return !is_of_correction(name); });
+  file.covariance = part_of(file.covariance,
+                            [](const std::string& name) { return name.rfind(calibration_prefix, 0) != 0; });
   return file;
 }
 
@@ -59,7 +53,7 @@ ModelDefinition with_calibration(ModelDefinition file, const std::vector<double>
   Covariance correction;
   correction.matrix = covariance;
   for (std::size_t i = 0; i < coefficients.size(); ++i)
-    correction.parameters.push_back(name_of_coefficient(i));
+    correction.parameters.push_back(calibration_prefix + "a" + std::to_string(i));
   add_independent(file.covariance, correction);
   return file;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
@@ -28,38 +27,29 @@ class EffectReader final : TomlReader {
   }
 
  private:
-  // The keys of one [[effect]] that were given.
-  struct EffectEntries {
-    std::optional<Entry> id, location, formula, scaling, parameters, unit, source, standard_errors, fixed,
-        bounds, axes, coefficients;
-  };
+  // The entries of one [[effect]] by their keys.
+  using Given = std::map<std::string, Entry>;
+
+  static const Entry* find(const Given& given, const char* key) {
+    const auto found = given.find(key);
+    return found == given.end() ? nullptr : &found->second;
+  }
 
   void read_effect(const toml::table& table) {
-    EffectEntries given;
-    const auto keep = [](std::optional<Entry>& target) {
-      return [&target](const Entry& entry) { target = entry; };
-    };
-    each(table, "[[effect]]",
-         {{"id", keep(given.id)},
-          {"where", keep(given.location)},
-          {"formula", keep(given.formula)},
-          {"scaling", keep(given.scaling)},
-          {"parameters", keep(given.parameters)},
-          {"unit", keep(given.unit)},
-          {"source", keep(given.source)},
-          {"stderr", keep(given.standard_errors)},
-          {"fixed", keep(given.fixed)},
-          {"bounds", keep(given.bounds)},
-          {"axes", keep(given.axes)},
-          {"coefficients", keep(given.coefficients)}});
-    if (!given.id) fail(table, "an effect has no id; give id = \"...\"");
-    const std::string id = text(*given.id);
-    if (id.empty()) fail(*given.id->node, "the id of an effect is empty; give it a name");
-    check_new(id, *given.id);
-
-    ModelEffect effect = is_surface(id, given) ? surface(id, given)
-                         : given.formula       ? formula_effect(id, given)
-                                               : catalogue_effect(id, given);
+    Given given;
+    Actions actions;
+    for (const char* const key : {"id", "where", "formula", "scaling", "parameters", "unit", "source",
+                                  "stderr", "fixed", "bounds", "axes", "coefficients"})
+      actions.emplace_back(key, [&given](const Entry& entry) { given.emplace(entry.key, entry); });
+    each(table, "[[effect]]", actions);
+    const Entry* const id_entry = find(given, "id");
+    if (id_entry == nullptr) fail(table, "an effect has no id; give id = \"...\"");
+    const std::string id = text(*id_entry);
+    if (id.empty()) fail(*id_entry->node, "the id of an effect is empty; give it a name");
+    check_new(id, *id_entry);
+    ModelEffect effect = is_surface(id, given)         ? surface(id, given)
+                         : given.count("formula") != 0 ? formula_effect(id, given)
+                                                       : catalogue_effect(id, given);
     EffectFit fit = effect_fit(effect, given);
     file_.model.effects.push_back(std::move(effect));
     file_.fits.push_back(std::move(fit));
@@ -72,38 +62,39 @@ class EffectReader final : TomlReader {
          fmt::format("effect {} is in the model already, at line {}; remove one", quote(id), first->second));
   }
 
-  static bool is_surface(const std::string& id, const EffectEntries& given) {
-    return given.axes || given.coefficients || surface_named(id) != nullptr;
+  static bool is_surface(const std::string& id, const Given& given) {
+    return given.count("axes") != 0 || given.count("coefficients") != 0 || surface_named(id) != nullptr;
   }
 
-  ModelEffect surface(const std::string& id, const EffectEntries& given) const {
+  ModelEffect surface(const std::string& id, const Given& given) const {
     const std::string requested =
         "axes = { attack_ratio = [lower, upper], mach = [lower, upper] } and coefficients = [[...], ...], "
         "one "
         "row for each spline of the first axis";
-    if (!given.axes || !given.coefficients)
-      fail(*given.id->node,
+    const Entry* const axes_entry = find(given, "axes");
+    const Entry* const coefficients = find(given, "coefficients");
+    if (axes_entry == nullptr || coefficients == nullptr)
+      fail(*given.at("id").node,
            fmt::format("surface {} lacks its knots or coefficients; give {}", quote(id), requested));
     if (effect_named(id) != nullptr)
-      fail(given.axes->position, fmt::format("effect {} has its formula in the catalogue; remove 'axes' and "
+      fail(axes_entry->position, fmt::format("effect {} has its formula in the catalogue; remove 'axes' and "
                                              "'coefficients', or choose another id",
                                              quote(id)));
-    for (const std::optional<Entry>* entry :
-         {&given.location, &given.unit, &given.source, &given.formula, &given.parameters, &given.scaling}) {
-      if (*entry)
-        fail((*entry)->position, fmt::format("a surface has no key '{}'; remove it", (*entry)->key));
+    for (const char* const key : {"where", "unit", "source", "formula", "parameters", "scaling"}) {
+      if (const Entry* const entry = find(given, key))
+        fail(entry->position, fmt::format("a surface has no key '{}'; remove it", key));
     }
     std::vector<std::vector<double>> rows;
-    for (const toml::node& node : array(*given.coefficients, requested)) {
-      rows.push_back(numbers({given.coefficients->key, given.coefficients->position, &node, {}}, requested));
+    for (const toml::node& node : array(*coefficients, requested)) {
+      rows.push_back(numbers({coefficients->key, coefficients->position, &node, {}}, requested));
       if (rows.back().size() != rows.front().size())
         fail(node,
              fmt::format("this row has {} coefficients, the first row {}; give the same number in each row",
                          rows.back().size(), rows.front().size()));
     }
-    const std::vector<Entry> axes = entries_of(table(*given.axes, requested), quote(given.axes->key));
+    const std::vector<Entry> axes = entries_of(table(*axes_entry, requested), quote(axes_entry->key));
     if (axes.size() != 2)
-      fail(*given.axes, fmt::format("a surface has two axes, not {}; give {}", axes.size(), requested));
+      fail(*axes_entry, fmt::format("a surface has two axes, not {}; give {}", axes.size(), requested));
     std::array<SurfaceAxis, 2> made;
     for (std::size_t k = 0; k < made.size(); ++k) {
       const auto [lower, upper] = range(axes[k]);
@@ -113,8 +104,8 @@ class EffectReader final : TomlReader {
         fail(axes[k].position,
              fmt::format("there is no quantity {}; give {}", quote(axes[k].key), requested));
       if (!made[k].is_valid())
-        fail(*given.coefficients, fmt::format("{} has {} splines; give {} to {}", quote(axes[k].key), count,
-                                              SurfaceAxis::min_count, SurfaceAxis::max_count));
+        fail(*coefficients, fmt::format("{} has {} splines; give {} to {}", quote(axes[k].key), count,
+                                        SurfaceAxis::min_count, SurfaceAxis::max_count));
     }
     ModelEffect effect = surface_effect(id, made);
     effect.parameters.clear();
@@ -123,25 +114,25 @@ class EffectReader final : TomlReader {
     return effect;
   }
 
-  ModelEffect catalogue_effect(const std::string& id, const EffectEntries& given) const {
+  ModelEffect catalogue_effect(const std::string& id, const Given& given) const {
     const EffectInfo* const info = effect_named(id);
     if (info == nullptr) {
-      fail(*given.id->node,
+      fail(*given.at("id").node,
            fmt::format(
                "there is no effect {} in the catalogue; {} Or give a formula for a user-defined effect",
                quote(id), full_stop(suggestion_text(id, names_of(effect_info, &EffectInfo::id)))));
     }
-    for (const std::optional<Entry>* entry : {&given.location, &given.unit, &given.source}) {
-      if (!*entry) continue;
-      fail(
-          (*entry)->position,
-          fmt::format("effect {} of the catalogue has no key '{}'; remove it, or give a formula and a new id",
-                      quote(id), (*entry)->key));
+    for (const char* const key : {"where", "unit", "source"}) {
+      if (const Entry* const entry = find(given, key))
+        fail(entry->position,
+             fmt::format(
+                 "effect {} of the catalogue has no key '{}'; remove it, or give a formula and a new id",
+                 quote(id), key));
     }
     ModelEffect effect = neutral_effect(id);
-    if (given.scaling) effect.scaling = scaling(*given.scaling);
-    if (given.parameters) {
-      each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry& entry) {
+    if (const Entry* const entry = find(given, "scaling")) effect.scaling = scaling(*entry);
+    if (const Entry* const parameters = find(given, "parameters")) {
+      each_parameter(*parameters, effect, [&](std::size_t i, const Entry& entry) {
         effect.parameters[i] = possible(entry, info->parameters[i]);
       });
     }
@@ -191,46 +182,47 @@ class EffectReader final : TomlReader {
     return text;
   }
 
-  ModelEffect formula_effect(const std::string& id, const EffectEntries& given) const {
+  ModelEffect formula_effect(const std::string& id, const Given& given) const {
+    const Entry& formula = given.at("formula");
     if (effect_named(id) != nullptr) {
-      fail(given.formula->position,
+      fail(formula.position,
            fmt::format("effect {} has its formula in the catalogue; remove 'formula', or give a new id",
                        quote(id)));
     }
-    if (given.scaling) {
-      fail(given.scaling->position,
+    if (const Entry* const entry = find(given, "scaling")) {
+      fail(entry->position,
            fmt::format("effect {} is defined by a formula; write the scaling into it", quote(id)));
     }
     ModelEffect effect;
     effect.id = id;
-    effect.formula = text(*given.formula, "a formula in quotes");
-    if (given.location) effect.location = place_of_action(*given.location);
-    if (given.unit) effect.unit = unit_of_action(*given.unit, effect.location);
-    if (given.source) effect.source = text(*given.source);
-    if (!given.parameters) {
-      fail(given.formula->position,
-           fmt::format("effect {} has a formula but no parameters; give parameters = {{ "
-                       "name = value }}, each with its first value",
-                       quote(id)));
+    effect.formula = text(formula, "a formula in quotes");
+    if (const Entry* const entry = find(given, "where")) effect.location = place_of_action(*entry);
+    if (const Entry* const entry = find(given, "unit")) effect.unit = unit_of_action(*entry, effect.location);
+    if (const Entry* const entry = find(given, "source")) effect.source = text(*entry);
+    const Entry* const parameters = find(given, "parameters");
+    if (parameters == nullptr) {
+      fail(formula.position, fmt::format("effect {} has a formula but no parameters; give parameters = {{ "
+                                         "name = value }}, each with its first value",
+                                         quote(id)));
     }
-    for (const Entry& entry : parameter_entries(*given.parameters)) {
+    for (const Entry& entry : parameter_entries(*parameters)) {
       effect.parameter_names.push_back(entry.key);
       effect.parameters.push_back(number(entry));
     }
-    check_formula(effect, given);
+    check_formula(effect, formula, *parameters);
     return effect;
   }
 
-  void check_formula(const ModelEffect& effect, const EffectEntries& given) const {
+  void check_formula(const ModelEffect& effect, const Entry& formula_entry, const Entry& parameters) const {
     FormulaError error;
     const auto formula = Formula::parse(effect.formula, effect.parameter_names, &error);
     if (!formula) {
-      const Entry& wrong = error.column == 0 ? *given.parameters : *given.formula;
+      const Entry& wrong = error.column == 0 ? parameters : formula_entry;
       fail(*wrong.node, fmt::format("the formula of effect {} cannot be read: {}; correct it",
                                     quote(effect.id), error.message));
     }
     if (effect.parameters.empty()) {
-      fail(*given.formula->node,
+      fail(*formula_entry.node,
            fmt::format(
                "the formula of effect {} has no coefficient; give it one in parameters, such as k, and "
                "multiply by it",
@@ -239,7 +231,7 @@ class EffectReader final : TomlReader {
     if (formula->unused_parameters().empty()) return;
     const std::string& unused = formula->unused_parameters().front();
     const std::string meant = did_you_mean(unused, formula->variables());
-    fail(*given.parameters->node,
+    fail(*parameters.node,
          fmt::format("the formula of effect {} does not use its parameter {}; {}", quote(effect.id),
                      quote(unused), meant.empty() ? "remove the parameter" : meant));
   }
@@ -290,10 +282,10 @@ class EffectReader final : TomlReader {
     return static_cast<std::size_t>(found - known.begin());
   }
 
-  EffectFit effect_fit(const ModelEffect& effect, const EffectEntries& given) const {
+  EffectFit effect_fit(const ModelEffect& effect, const Given& given) const {
     EffectFit fit(effect.parameters.size());
-    if (given.standard_errors) {
-      each_parameter(*given.standard_errors, effect, [&](std::size_t i, const Entry& entry) {
+    if (const Entry* const errors = find(given, "stderr")) {
+      each_parameter(*errors, effect, [&](std::size_t i, const Entry& entry) {
         const double value = number(entry);
         if (value < 0.0) {
           fail(entry, fmt::format("the standard error of {} is negative; give a number of 0 or above",
@@ -302,45 +294,38 @@ class EffectReader final : TomlReader {
         fit[i].standard_error = value;
       });
     }
-    if (given.bounds) {
-      each_parameter(*given.bounds, effect, [&](std::size_t i, const Entry& entry) {
+    if (const Entry* const all_bounds = find(given, "bounds")) {
+      each_parameter(*all_bounds, effect, [&](std::size_t i, const Entry& entry) {
         const auto [lower, upper] = range(entry);
-        const Bounds bounds{lower, upper};
         const double value = effect.parameters[i];
-        if (value < bounds.lower || value > bounds.upper) {
+        if (value < lower || value > upper) {
           fail(entry, fmt::format("the value {} of {} is outside its bounds; change one of them", value,
                                   quote(entry.key)));
         }
-        check_bounds(bounds, effect, i, entry);
-        fit[i].bounds = bounds;
+        // A refit must stay within the bounds that the reader accepts.
+        const EffectInfo* const info = effect.is_formula() ? nullptr : effect_named(effect.id);
+        if (info != nullptr && (lower < info->parameters[i].lower || upper > info->parameters[i].upper)) {
+          fail(entry,
+               fmt::format("the bounds of {} exceed the bounds of the catalogue; give bounds within [{}, {}]",
+                           quote(entry.key), info->parameters[i].lower, info->parameters[i].upper));
+        }
+        fit[i].bounds = Bounds{lower, upper};
       });
     }
-    if (given.fixed) read_fixed(*given.fixed, effect, fit);
+    if (const Entry* const fixed = find(given, "fixed")) read_fixed(*fixed, effect, fit);
     if (!effect.is_formula()) hold_shapes(effect, given, fit);
     return fit;
   }
 
   // A shape that the file does not mention has its default value, and a refit keeps it fixed.
-  void hold_shapes(const ModelEffect& effect, const EffectEntries& given, EffectFit& fit) const {
+  void hold_shapes(const ModelEffect& effect, const Given& given, EffectFit& fit) const {
     std::vector<bool> is_given(fit.size());
-    if (given.parameters) {
-      each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry&) { is_given[i] = true; });
-    }
+    if (const Entry* const parameters = find(given, "parameters"))
+      each_parameter(*parameters, effect, [&](std::size_t i, const Entry&) { is_given[i] = true; });
     const EffectInfo& info = *effect_named(effect.id);
     for (std::size_t i = 0; i < fit.size(); ++i) {
       if (info.parameters[i].shape && !is_given[i]) fit[i].fixed = true;
     }
-  }
-
-  // A refit must stay within the bounds that the reader accepts.
-  void check_bounds(const Bounds& bounds, const ModelEffect& effect, std::size_t number,
-                    const Entry& entry) const {
-    if (effect.is_formula()) return;
-    const ParameterInfo& info = effect_named(effect.id)->parameters[number];
-    if (bounds.lower >= info.lower && bounds.upper <= info.upper) return;
-    fail(entry,
-         fmt::format("the bounds of {} exceed the bounds of the catalogue; give bounds within [{}, {}]",
-                     quote(entry.key), info.lower, info.upper));
   }
 
   void read_fixed(const Entry& entry, const ModelEffect& effect, EffectFit& fit) const {

@@ -11,7 +11,6 @@
 
 #include "base/text_file.hpp"
 #include "model_io/model_names.hpp"
-#include "model_io/model_writer.hpp"
 #include "model_io/output_table.hpp"
 #include "model_io/sensor_doubt.hpp"
 
@@ -41,42 +40,31 @@ std::string ModelDefinition::output_name(std::string_view standard_name) const {
 }
 
 ModelUncertainty uncertainty_of(const ModelDefinition& file) {
-  std::vector<std::string> names;
-  std::vector<double> variances;
-  for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
-    const std::vector<std::string> own = parameter_names(file.model.effects[e]);
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      const double error = file.fit(e, i).standard_error.value_or(0.0);
-      names.push_back(file.model.effects[e].id + "." + own[i]);
-      variances.push_back(error * error);
-    }
-  }
-  const std::size_t count = names.size();
+  const std::vector<NamedParameter> parameters = named_parameters(file.model);
+  const std::size_t count = parameters.size();
   ModelUncertainty uncertainty;
   uncertainty.covariance.assign(count * count, 0.0);
-  for (std::size_t i = 0; i < count; ++i) uncertainty.covariance[i * count + i] = variances[i];
-  const Covariance& stated = file.covariance;
-  constexpr auto absent = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> indices;
-  for (const std::string& name : stated.parameters) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end() && has_doubt(name)) {
-      indices.push_back(absent);
-      continue;
-    }
-    if (found == names.end()) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double error = file.fit(parameters[i].effect, parameters[i].number).standard_error.value_or(0.0);
+    uncertainty.covariance[i * count + i] = error * error;
+  }
+  std::vector<std::size_t> indices;  // `count` for a sensor without an effect in the model
+  for (const std::string& name : file.covariance.parameters) {
+    const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                    [&name](const NamedParameter& each) { return each.name == name; });
+    if (found == parameters.end() && !has_doubt(name)) {
       throw Error(
           Error::Code::definition,
           fmt::format(
               "model '{}': its covariance names {}, which is not a parameter of the model; refit the model",
               file.model.name, quote(name)));
     }
-    indices.push_back(static_cast<std::size_t>(found - names.begin()));
+    indices.push_back(static_cast<std::size_t>(found - parameters.begin()));
   }
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    for (std::size_t j = 0; j < indices.size() && indices[i] != absent; ++j) {
-      if (indices[j] == absent) continue;
-      uncertainty.covariance[indices[i] * count + indices[j]] = stated.matrix[i][j];
+    for (std::size_t j = 0; j < indices.size(); ++j) {
+      if (indices[i] == count || indices[j] == count) continue;
+      uncertainty.covariance[indices[i] * count + indices[j]] = file.covariance.matrix[i][j];
     }
   }
   for (const auto& [role, size] : file.uncertainty.roles) uncertainty.random[index(role)] = size;
@@ -106,8 +94,10 @@ bool has_effect(const ModelDefinition& file, std::string_view id) {
 
 std::vector<std::string> parameter_names(const ModelEffect& effect) {
   if (effect.is_formula()) return effect.parameter_names;
-  neutral_effect(effect.id);
-  return names_of_parameters(*effect_named(effect.id));
+  const std::size_t count = neutral_effect(effect.id).parameters.size();
+  Names names = names_of(effect_named(effect.id)->parameters, &ParameterInfo::name);
+  names.resize(count);
+  return names;
 }
 
 ModelEffect neutral_effect(std::string_view id) {
@@ -145,16 +135,6 @@ ModelDefinition read_model(const fs::path& path) {
   if (const fs::path roles = file.roles_from; roles.extension() == ".toml" && roles.is_relative())
     file.roles_from = fs::absolute(path.parent_path() / roles).lexically_normal().string();
   return file;
-}
-
-std::string write_model(const ModelDefinition& file) {
-  std::string text = model_text(file);
-  try {
-    parse_model(text, "its text");
-  } catch (const Error& error) {
-    throw Error(error.code(), std::string("the model cannot be written: ") + error.what());
-  }
-  return text;
 }
 
 void save_model(const ModelDefinition& file, const fs::path& path, const std::vector<fs::path>& inputs) {

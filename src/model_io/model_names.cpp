@@ -2,18 +2,19 @@
 
 namespace pcor::internal {
 
-Names names_of_parameters(const EffectInfo& info) {
-  Names names = names_of(info.parameters, &ParameterInfo::name);
-  names.resize(info.parameter_count());
-  return names;
+std::vector<NamedParameter> named_parameters(const Model& model) {
+  std::vector<NamedParameter> all;
+  for (std::size_t e = 0; e < model.effects.size(); ++e) {
+    const Names names = parameter_names(model.effects[e]);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      all.push_back({model.effects[e].id + "." + names[i], e, i});
+  }
+  return all;
 }
 
 const double* parameter_named(const Model& model, std::string_view name) {
-  for (const ModelEffect& effect : model.effects) {
-    const Names names = parameter_names(effect);
-    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      if (effect.id + "." + names[i] == name) return &effect.parameters[i];
-    }
+  for (const NamedParameter& each : named_parameters(model)) {
+    if (each.name == name) return &model.effects[each.effect].parameters[each.number];
   }
   return nullptr;
 }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model_io/model_definition.hpp>
@@ -14,7 +17,15 @@ namespace pcor::internal {
 
 inline constexpr std::string_view model_format = "pcor-model/1";
 
-Names names_of_parameters(const EffectInfo& info);
+/// A parameter of a model.
+struct NamedParameter {
+  std::string name;  ///< like "static-qp.a2"
+  std::size_t effect;
+  std::size_t number;  ///< number among the parameters of the effect
+};
+
+/// All parameters of a model, in the order of the effects.
+std::vector<NamedParameter> named_parameters(const Model& model);
 
 /// Parameter of the model with a name like "static-qp.a2", or nullptr.
 const double* parameter_named(const Model& model, std::string_view name);

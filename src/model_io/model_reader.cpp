@@ -97,49 +97,33 @@ class Reader final : TomlReader {
   }
 
   void read_root(const toml::table& root) {
-    std::map<std::string, Entry> sections;
-    const Action keep = [&](const Entry& entry) { sections.emplace(entry.key, entry); };
-    each(root, "",
-         {{"format", [](const Entry&) {}},
-          {"name", [&](const Entry& entry) { file_.model.name = text(entry); }},
-          {"aircraft", [&](const Entry& entry) { file_.model.aircraft = text(entry); }},
-          {"roles", [&](const Entry& entry) { file_.roles_from = text(entry); }},
-          {"variables", keep},
-          {"units", keep},
-          {"output", keep},
-          {"lams", keep},
-          {"temperature", keep},
-          {"humidity", keep},
-          {"radome", keep},
-          {"policy", keep},
-          {"domain", keep},
-          {"effect", keep},
-          {"law", keep},
-          {"covariance", keep},
-          {"uncertainty", keep},
-          {"provenance", keep}});
-    const auto with = [&](const std::string& key, void (Reader::*reader)(const Entry&)) {
-      const auto found = sections.find(key);
-      if (found != sections.end()) (this->*reader)(found->second);
-    };
-    with("variables", &Reader::read_variables);
-    const auto variables = sections.find("variables");
-    require_pressures(variables == sections.end() ? Position{1, 1} : variables->second.position);
-    with("units", &Reader::read_units);
-    with("output", &Reader::read_output);
-    with("lams", &Reader::read_lams);
-    check_variables();
-    with("temperature", &Reader::read_temperature);
-    with("humidity", &Reader::read_humidity);
-    with("radome", &Reader::read_radome);
-    with("policy", &Reader::read_policy);
-    with("domain", &Reader::read_domain);
-    const auto effects = sections.find("effect");
-    if (effects != sections.end()) read_effects(effects->second, name(), file_);
-    with("law", &Reader::read_law);
-    with("covariance", &Reader::read_covariance);
-    with("uncertainty", &Reader::read_uncertainty);
-    with("provenance", &Reader::read_provenance);
+    const std::pair<const char*, void (Reader::*)(const Entry&)> sections[] = {
+        {"variables", &Reader::read_variables},
+        {"units", &Reader::read_units},
+        {"output", &Reader::read_output},
+        {"lams", &Reader::read_lams},
+        {"temperature", &Reader::read_temperature},
+        {"humidity", &Reader::read_humidity},
+        {"radome", &Reader::read_radome},
+        {"policy", &Reader::read_policy},
+        {"domain", &Reader::read_domain},
+        {"effect", &Reader::read_list_of_effects},
+        {"law", &Reader::read_law},
+        {"covariance", &Reader::read_covariance},
+        {"uncertainty", &Reader::read_uncertainty},
+        {"provenance", &Reader::read_provenance}};
+    std::map<std::string, Entry> given;
+    Actions actions{{"format", [](const Entry&) {}},
+                    {"name", [&](const Entry& entry) { file_.model.name = text(entry); }},
+                    {"aircraft", [&](const Entry& entry) { file_.model.aircraft = text(entry); }},
+                    {"roles", [&](const Entry& entry) { file_.roles_from = text(entry); }}};
+    for (const auto& [key, read] : sections)
+      actions.emplace_back(key, [&given](const Entry& entry) { given.emplace(entry.key, entry); });
+    each(root, "", actions);
+    for (const auto& [key, read] : sections) {
+      if (const auto found = given.find(key); found != given.end()) (this->*read)(found->second);
+      if (read == &Reader::read_lams) check_variables();
+    }
   }
 
   void read_variables(const Entry& section_entry) {
@@ -148,15 +132,12 @@ class Reader final : TomlReader {
       file_.variables[quantity] = variable_name(entry);
       variable_positions_[quantity] = entry.position;
     }
-  }
-
-  // A model without pressure variables uses the variables of the flight's aircraft.
-  void require_pressures(Position position) const {
+    // A model without pressure variables uses the variables of the flight's aircraft.
     if (!names_pressures()) return;
     for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
       if (file_.variables.count(quantity) != 0) continue;
       const std::string_view name = info_of(quantity).name;
-      fail(position,
+      fail(section_entry.position,
            fmt::format("the role '{}' has no variable; add {} = \"...\" to [variables]", name, name));
     }
   }
@@ -224,10 +205,7 @@ class Reader final : TomlReader {
       fail(entry, fmt::format("{}: unknown unit {}; give one that converts to {}", called(entry), quote(unit),
                               requested));
     }
-    try {
-      UnitConversion::between(unit, requested, {});
-    } catch (const Error& error) {
-      if (error.code() != Error::Code::unit) throw;
+    if (!is_convertible(unit, requested)) {
       fail(entry, fmt::format("{}: the unit {} does not convert to {}; give one that does", called(entry),
                               quote(unit), requested));
     }
@@ -353,6 +331,8 @@ class Reader final : TomlReader {
     }
   }
 
+  void read_list_of_effects(const Entry& effects) { read_effects(effects, name(), file_); }
+
   void read_law(const Entry& section_entry) {
     LawInfo& law = file_.law;
     const toml::node* last = nullptr;
@@ -417,20 +397,16 @@ class Reader final : TomlReader {
   // The standard error in an effect must agree with the matrix within rounding.
   void check_standard_errors(const Entry& entry) const {
     const Names& names = file_.covariance.parameters;
-    for (std::size_t e = 0; e < file_.model.effects.size(); ++e) {
-      const Names own = parameter_names(file_.model.effects[e]);
-      for (std::size_t i = 0; i < own.size(); ++i) {
-        const std::string name = file_.model.effects[e].id + "." + own[i];
-        const auto found = std::find(names.begin(), names.end(), name);
-        const std::optional<double> stated = file_.fit(e, i).standard_error;
-        if (found == names.end() || !stated) continue;
-        const auto position = static_cast<std::size_t>(found - names.begin());
-        const double here = std::sqrt(file_.covariance.matrix[position][position]);
-        if (std::abs(here - *stated) <= 0.02 * std::max(here, *stated)) continue;
-        fail(entry, fmt::format("[covariance] does not match the effect: standard error of {} is {:.3g} in "
-                                "the matrix, {:.3g} in the effect; refit the model or remove one",
-                                name, here, *stated));
-      }
+    for (const auto& [name, effect, number] : named_parameters(file_.model)) {
+      const auto found = std::find(names.begin(), names.end(), name);
+      const std::optional<double> stated = file_.fit(effect, number).standard_error;
+      if (found == names.end() || !stated) continue;
+      const auto position = static_cast<std::size_t>(found - names.begin());
+      const double here = std::sqrt(file_.covariance.matrix[position][position]);
+      if (std::abs(here - *stated) <= 0.02 * std::max(here, *stated)) continue;
+      fail(entry, fmt::format("[covariance] does not match the effect: standard error of {} is {:.3g} in "
+                              "the matrix, {:.3g} in the effect; refit the model or remove one",
+                              name, here, *stated));
     }
   }
 
@@ -466,10 +442,7 @@ class Reader final : TomlReader {
   }
 
   void read_covariance_parameters(const Entry& entry) {
-    Names known;
-    for (const ModelEffect& effect : file_.model.effects) {
-      for (const std::string& name : parameter_names(effect)) known.push_back(effect.id + "." + name);
-    }
+    const Names known = names_of(named_parameters(file_.model), &NamedParameter::name);
     Names& names = file_.covariance.parameters;
     for (const auto& [node, name] : texts(entry, "the names of parameters, such as [\"static-qp.a2\"]")) {
       if (!contains(known, name) && !has_doubt(name)) {

@@ -1,4 +1,4 @@
-#include "model_io/model_writer.hpp"
+#include <pcor/model_io/model_definition.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,13 +7,17 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
 
 #include "model_io/model_names.hpp"
 
-namespace pcor::internal {
+namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 // Writes a model file in a layout that is independent of the layout of the file it was read from.
@@ -90,9 +94,12 @@ class Writer {
     return items.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(items, ", "));
   }
 
-  void heading(std::string_view title) { text_ += fmt::format("\n{}\n", title); }
+  // The heading of the lines that follow; without lines it is not written.
+  void heading(std::string_view title) { heading_ = fmt::format("\n{}\n", title); }
 
-  void line(std::string_view name, std::string_view value) { text_ += fmt::format("{} = {}\n", name, value); }
+  void line(std::string_view name, std::string_view value) {
+    text_ += std::exchange(heading_, "") + fmt::format("{} = {}\n", name, value);
+  }
 
   void line_unless_empty(std::string_view name, std::string_view value) {
     if (!value.empty()) line(name, text(value));
@@ -106,13 +113,11 @@ class Writer {
   }
 
   void write_roles(std::string_view title, const std::map<Quantity, std::string>& values) {
-    if (values.empty()) return;
     heading(fmt::format("[{}]", title));
     for (const auto& [quantity, value] : values) line(info_of(quantity).name, text(value));
   }
 
   void write_output(const ModelDefinition& file) {
-    if (file.output.empty()) return;
     heading("[output]");
     for (const auto& [standard_name, name] : file.output) line(key(standard_name), text(name));
   }
@@ -150,7 +155,6 @@ class Writer {
     if (std::all_of(coefficients.begin() + 1, coefficients.end(), is_zero))
       return number(coefficients[0], what);
     std::vector<std::string> numbers;
-    numbers.reserve(coefficients.size());
     for (const double coefficient : coefficients) numbers.push_back(number(coefficient, what));
     return list(numbers);
   }
@@ -158,11 +162,9 @@ class Writer {
   void write_radome(const Model& model) {
     const std::pair<std::string_view, RadomeCalibration> angles[] = {{"attack", model.attack_radome},
                                                                      {"sideslip", model.sideslip_radome}};
-    bool first = true;
+    heading("[radome]");
     for (const auto& [name, radome] : angles) {
       if (is_zero(radome.offset) && is_zero(radome.slope) && is_zero(radome.slope_mach)) continue;
-      if (first) heading("[radome]");
-      first = false;
       std::vector<std::string> numbers{number(radome.offset, name), number(radome.slope, name)};
       if (!is_zero(radome.slope_mach)) numbers.push_back(number(radome.slope_mach, name));
       line(name, list(numbers));
@@ -171,23 +173,17 @@ class Writer {
 
   void write_policy(const Policy& policy) {
     const Policy none;
-    const bool tapers = !is_zero(policy.taper_below) || policy.taper_power != none.taper_power;
-    const bool limits = policy.minimum != none.minimum;
-    const bool starts = policy.min_dynamic_pressure != none.min_dynamic_pressure;
-    if (!tapers && !limits && !starts) return;
     heading("[policy]");
-    if (tapers) {
+    if (!is_zero(policy.taper_below) || policy.taper_power != none.taper_power) {
       line("taper_below", number(policy.taper_below, "taper_below"));
       line("taper_power", number(policy.taper_power, "taper_power"));
     }
-    if (limits) line("minimum", number(policy.minimum, "the minimum"));
-    if (starts) {
+    if (policy.minimum != none.minimum) line("minimum", number(policy.minimum, "the minimum"));
+    if (policy.min_dynamic_pressure != none.min_dynamic_pressure)
       line("least_dynamic_pressure", number(policy.min_dynamic_pressure, "least_dynamic_pressure"));
-    }
   }
 
   void write_domain(const std::vector<DomainRange>& domain) {
-    if (domain.empty()) return;
     heading("[domain]");
     for (const DomainRange& range : domain) {
       line(key(range.quantity), bounds({range.lower, range.upper}, "the domain of " + range.quantity));
@@ -272,10 +268,6 @@ class Writer {
   }
 
   void write_law(const LawInfo& law) {
-    if (law.source.empty() && law.valid_from.empty() && law.valid_to.empty() && !law.in_processing &&
-        !law.rms_hpa && law.note.empty()) {
-      return;
-    }
     heading("[law]");
     line_unless_empty("source", law.source);
     line_unless_empty("valid_from", law.valid_from);
@@ -291,7 +283,6 @@ class Writer {
     if (covariance.parameters.empty() && covariance.matrix.empty()) return;
     heading("[covariance]");
     std::vector<std::string> names;
-    names.reserve(covariance.parameters.size());
     for (const std::string& name : covariance.parameters) names.push_back(text(name));
     line("parameters", list(names));
     std::vector<std::string> values;
@@ -304,7 +295,6 @@ class Writer {
     std::string rows;
     for (const std::vector<double>& row : covariance.matrix) {
       std::vector<std::string> numbers;
-      numbers.reserve(row.size());
       for (const double value : row) numbers.push_back(number(value, "the covariance"));
       rows += fmt::format("  [{}],\n", fmt::join(numbers, ", "));
     }
@@ -312,9 +302,6 @@ class Writer {
   }
 
   void write_uncertainty(const StatedUncertainty& uncertainty) {
-    if (uncertainty.roles.empty() && uncertainty.sensors.empty() && !uncertainty.static_defect &&
-        !uncertainty.static_defect_ratio)
-      return;
     heading("[uncertainty]");
     const auto stated = [this](std::string_view name, double value) {
       line(name, number(value, fmt::format("the uncertainty of {}", name)));
@@ -326,7 +313,6 @@ class Writer {
   }
 
   void write_provenance(const Provenance& provenance) {
-    if (provenance.empty()) return;
     heading("[provenance]");
     for (const auto& [name, value] : provenance) line(key(name), provenance_value(value));
   }
@@ -348,10 +334,19 @@ class Writer {
   }
 
   std::string text_;
+  std::string heading_;
 };
 
 }  // namespace
 
-std::string model_text(const ModelDefinition& file) { return Writer().write(file); }
+std::string write_model(const ModelDefinition& file) {
+  std::string text = Writer().write(file);
+  try {
+    parse_model(text, "its text");
+  } catch (const Error& error) {
+    throw Error(error.code(), std::string("the model cannot be written: ") + error.what());
+  }
+  return text;
+}
 
-}  // namespace pcor::internal
+}  // namespace pcor

@@ -1,7 +1,5 @@
 #include "model_io/sensor_doubt.hpp"
 
-#include <cmath>
-
 #include <pcor/effects/catalogue.hpp>
 
 #include "model_io/calibration.hpp"

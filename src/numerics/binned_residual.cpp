@@ -81,18 +81,9 @@ double BinnedResidual::variance_of_sum(const std::vector<std::size_t>& records, 
   return scale * scale * (within + noise_covariance(sums, bins_, noise, flight)(0, 0));
 }
 
-NoiseModel noise_about_mean(const std::vector<Binning>& bins, std::vector<Eigen::VectorXd> residuals,
-                            std::size_t threads) {
-  double sum = 0.0;
-  Eigen::Index count = 0;
-  std::vector<Eigen::MatrixXd> ones;
-  for (const Eigen::VectorXd& residual : residuals) {
-    sum += residual.sum();
-    count += residual.size();
-    ones.emplace_back(Eigen::MatrixXd::Ones(residual.size(), 1));
-  }
-  for (Eigen::VectorXd& residual : residuals) residual.array() -= sum / static_cast<double>(count);
-  return expected_noise(bins, ones, residuals, threads);
+NoiseModel BinnedResidual::noise_about_mean() const {
+  const double mean = means_.sum() / static_cast<double>(means_.size());
+  return expected_noise({bins_}, {Eigen::MatrixXd::Ones(means_.size(), 1)}, {means_.array() - mean}, 1);
 }
 
 }  // namespace pcor::internal

@@ -20,6 +20,9 @@ class BinnedResidual {
   /// The residual in bins.
   const Eigen::VectorXd& means() const { return means_; }
 
+  /// The noise of the residual about its mean.
+  NoiseModel noise_about_mean() const;
+
   /// Covariance matrix of the sums (column . noise) over the records: the covariance of the bin means by the
   /// noise model, plus the covariance of the records about the means of their bins, in which they are
   /// independent. Records outside the bins, such as isolated ones, are independent, with the mean square of
@@ -41,9 +44,5 @@ class BinnedResidual {
   std::vector<Eigen::Index> bin_of_{};  ///< bin of each record; -1 outside the bins
   Eigen::VectorXd variance_{};          ///< variance of the records about the mean of each bin
 };
-
-/// The noise of residuals of flights about their common mean. @param residuals in bins
-NoiseModel noise_about_mean(const std::vector<Binning>& bins, std::vector<Eigen::VectorXd> residuals,
-                            std::size_t threads);
 
 }  // namespace pcor::internal

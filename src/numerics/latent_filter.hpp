@@ -2,8 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <cstddef>
-#include <vector>
 
 namespace pcor::internal {
 

@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 
 #include "numerics/binned_residual.hpp"
 #include "numerics/decompositions.hpp"
@@ -76,35 +75,31 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& columns, cons
   fit.coefficients.assign(width, {nan, nan});
   fit.residuals.assign(y.size(), nan);
   fit.rms = nan;
-  std::vector<std::size_t> indices;
+  std::vector<Eigen::Index> indices;
   for (std::size_t i = 0; i < y.size(); ++i) {
-    if (takes_part(columns, y, i)) indices.push_back(i);
+    if (takes_part(columns, y, i)) indices.push_back(as_index(i));
   }
   fit.samples = indices.size();
   if (fit.samples < width + 3) return fit;
 
-  const auto rows = static_cast<Eigen::Index>(fit.samples);
-  const auto across = static_cast<Eigen::Index>(width);
-  Eigen::MatrixXd x(rows, across);
-  Eigen::VectorXd right(rows);
-  for (Eigen::Index r = 0; r < rows; ++r) {
-    const std::size_t position = indices[static_cast<std::size_t>(r)];
-    for (Eigen::Index c = 0; c < across; ++c) x(r, c) = columns[static_cast<std::size_t>(c)][position];
-    right(r) = y[position];
-  }
+  using Values = Eigen::Map<const Eigen::VectorXd>;
+  Eigen::MatrixXd x(as_index(fit.samples), as_index(width));
+  for (std::size_t c = 0; c < width; ++c)
+    x.col(as_index(c)) = Values(columns[c].data(), as_index(y.size()))(indices);
+  const Eigen::VectorXd right = Values(y.data(), as_index(y.size()))(indices);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition(x);
-  if (decomposition.rank() < across) return fit;
+  if (decomposition.rank() < x.cols()) return fit;
   const Eigen::VectorXd solution = decomposition.solve(right);
   const Eigen::VectorXd left = right - x * solution;
-  for (Eigen::Index r = 0; r < rows; ++r) fit.residuals[indices[static_cast<std::size_t>(r)]] = left(r);
-  fit.rms = std::sqrt(left.squaredNorm() / static_cast<double>(rows));
+  Eigen::Map<Eigen::VectorXd>(fit.residuals.data(), as_index(y.size()))(indices) = left;
+  fit.rms = std::sqrt(left.squaredNorm() / static_cast<double>(fit.samples));
 
   const Eigen::MatrixXd inverse = inverse_of(x.transpose() * x);
   const Eigen::MatrixXd covariance =
       inverse * covariance_of_sums(columns, fit.residuals, time, step) * inverse;
   for (std::size_t c = 0; c < width; ++c) {
-    const auto position = static_cast<Eigen::Index>(c);
-    fit.coefficients[c] = {solution(position), std::sqrt(std::max(covariance(position, position), 0.0))};
+    const Eigen::Index k = as_index(c);
+    fit.coefficients[c] = {solution(k), std::sqrt(std::max(covariance(k, k), 0.0))};
   }
   return fit;
 }

@@ -128,8 +128,8 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Segm
   return floor;
 }
 
-Autoregression autoregression(const std::vector<double>& values, const std::vector<Segment>& segments,
-                              double limit) {
+std::vector<double> autoregression(const std::vector<double>& values, const std::vector<Segment>& segments) {
+  constexpr double limit = 4.5;  // robust standard deviations
   std::vector<double> kept;
   for (const Segment& segment : segments)
     for (std::size_t i = 0; i < segment.count; ++i) kept.push_back(values[segment.first + i]);
@@ -139,11 +139,10 @@ Autoregression autoregression(const std::vector<double>& values, const std::vect
     if (bound > 0.0) value = std::clamp(value, -bound, bound);
     power += value * value;
   }
-  Autoregression best;
+  std::vector<double> best;
   if (kept.empty()) return best;
   const auto count = static_cast<double>(kept.size());
   power /= count;
-  best.innovation_rms = std::sqrt(power);
   if (!(power > 0.0)) return best;
 
   // Burg: forward and backward prediction errors of each order, over all stretches together.
@@ -184,10 +183,9 @@ Autoregression autoregression(const std::vector<double>& values, const std::vect
     const double criterion = count * std::log(power) + static_cast<double>(order) * std::log(count);
     if (criterion < best_criterion) {
       best_criterion = criterion;
-      best.coefficients = coefficients;
-      best.innovation_rms = std::sqrt(power);
+      best = coefficients;
     }
-    if (order >= best.coefficients.size() + orders_in_vain) break;
+    if (order >= best.size() + orders_in_vain) break;
   }
   return best;
 }

@@ -1,7 +1,6 @@
 #include "numerics/noise_covariance.hpp"
 
 #include <cmath>
-#include <vector>
 
 #include "numerics/triangular_factor.hpp"
 
@@ -29,16 +28,17 @@ Eigen::MatrixXd with_memory(const Eigen::MatrixXd& columns, const std::vector<do
   return result;
 }
 
-}  // namespace
-
-Eigen::MatrixXd covariance_of_sums(const Autoregression& noise, const Eigen::MatrixXd& columns,
-                                   const std::vector<Segment>& segments) {
+/// Sum over all pairs of bins of u(t) C(t-s) v(s), for columns u, v and the autocovariance C of an
+/// autoregression with innovations of variance one.
+Eigen::MatrixXd autoregressive_covariance(const std::vector<double>& coefficients,
+                                          const Eigen::MatrixXd& columns,
+                                          const std::vector<Segment>& segments) {
   // The noise is its innovations put through a recursive filter, so a sum (column . noise) is a sum over the
   // innovations of the column put through the same filter backwards in time. Innovations before the first
   // sample matter as long as the filter remembers.
   constexpr Eigen::Index run_out = 300;
   const Eigen::Index count = columns.cols();
-  const Eigen::Index order = as_index(noise.coefficients.size());
+  const Eigen::Index order = as_index(coefficients.size());
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
   for (const Segment& segment : segments) {
     const Eigen::Index length = as_index(segment.count);
@@ -49,19 +49,20 @@ Eigen::MatrixXd covariance_of_sums(const Autoregression& noise, const Eigen::Mat
       for (Eigen::Index step = 0; step < filtered.rows(); ++step) {
         now[step] = step < length ? last[-step] : 0.0;
         for (Eigen::Index k = 0; k < std::min(order, step); ++k)
-          now[step] += noise.coefficients[static_cast<std::size_t>(k)] * now[step - 1 - k];
+          now[step] += coefficients[static_cast<std::size_t>(k)] * now[step - 1 - k];
       }
     }
     matrix.selfadjointView<Eigen::Lower>().rankUpdate(filtered.transpose());
   }
-  return noise.innovation_rms * noise.innovation_rms *
-         Eigen::MatrixXd(matrix.selfadjointView<Eigen::Lower>());
+  return matrix.selfadjointView<Eigen::Lower>();
 }
+
+}  // namespace
 
 Eigen::MatrixXd noise_covariance(const Eigen::MatrixXd& columns, const Binning& bins, const NoiseModel& noise,
                                  std::size_t flight) {
   const Eigen::MatrixXd fast = noise.level[flight].asDiagonal() * columns;
-  Eigen::MatrixXd covariance = covariance_of_sums({noise.coefficients, 1.0}, fast, bins.segments());
+  Eigen::MatrixXd covariance = autoregressive_covariance(noise.coefficients, fast, bins.segments());
   for (std::size_t k = 0; k < slow_times.size(); ++k) {
     if (noise.slow[k] > 0.0)
       covariance += noise.slow[k] * noise.slow[k] * columns.transpose() *

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -71,6 +70,21 @@ Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residu
   return residual - shapes * symmetric_solution(normal, shapes.transpose() * residual);
 }
 
+std::vector<double> concatenated(const std::vector<Eigen::VectorXd>& flights) {
+  std::vector<double> all;
+  for (const Eigen::VectorXd& flight : flights) all.insert(all.end(), flight.begin(), flight.end());
+  return all;
+}
+
+/// Duration of the longest flight, s.
+double longest_duration(const std::vector<Binning>& bins) {
+  double longest = 0.0;
+  for (const Binning& flight : bins) {
+    if (flight.size() > 0) longest = std::max(longest, flight.time().back() - flight.time().front());
+  }
+  return longest;
+}
+
 /// The innovations of the autoregression of that noise, all at one level.
 Eigen::VectorXd at_one_level(const Eigen::VectorXd& fast, const Binning& bins, const NoiseModel& noise) {
   NoiseModel even;
@@ -104,32 +118,25 @@ bool NoiseModel::drifts() const {
 
 NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals) {
   NoiseModel noise;
-  std::vector<double> all;
+  std::size_t count = 0;
   std::vector<Segment> segments;
   std::vector<Eigen::VectorXd> fast;
   for (std::size_t f = 0; f < bins.size(); ++f) {
     fast.push_back(without_drift(bins[f], residuals[f]));
     for (const Segment& segment : bins[f].segments())
-      segments.push_back({all.size() + segment.first, segment.count});
-    all.insert(all.end(), fast[f].data(), fast[f].data() + fast[f].size());
+      segments.push_back({count + segment.first, segment.count});
+    count += bins[f].size();
     noise.level.emplace_back(Eigen::VectorXd::Ones(fast[f].size()));
   }
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
-    std::vector<double> scaled;
-    scaled.reserve(all.size());
-    for (std::size_t f = 0; f < bins.size(); ++f) {
-      const Eigen::VectorXd ratio = fast[f].cwiseQuotient(noise.level[f]);
-      scaled.insert(scaled.end(), ratio.data(), ratio.data() + ratio.size());
-    }
-    noise.coefficients = autoregression(scaled, segments).coefficients;
+    std::vector<Eigen::VectorXd> scaled;
+    for (std::size_t f = 0; f < bins.size(); ++f) scaled.emplace_back(fast[f].cwiseQuotient(noise.level[f]));
+    noise.coefficients = autoregression(concatenated(scaled), segments);
     std::vector<Eigen::VectorXd> innovations;
-    std::vector<double> whole;
-    for (std::size_t f = 0; f < bins.size(); ++f) {
+    for (std::size_t f = 0; f < bins.size(); ++f)
       innovations.push_back(at_one_level(fast[f], bins[f], noise));
-      whole.insert(whole.end(), innovations[f].data(), innovations[f].data() + innovations[f].size());
-    }
-    noise.common_level = robust_standard_deviation(whole);
+    noise.common_level = robust_standard_deviation(concatenated(innovations));
     for (std::size_t f = 0; f < bins.size(); ++f)
       noise.level[f] = level_of_bins(levels_of(innovations[f], bins[f], noise), bins[f]);
   }
@@ -247,13 +254,7 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
                       const std::vector<Eigen::VectorXd>& residuals, std::size_t threads) {
   FoundNoise found{estimate_noise(bins, residuals)};
   NoiseModel& noise = found.model;
-  std::vector<double> all;
-  double longest = 0.0;  // duration of the longest flight, s
-  for (std::size_t f = 0; f < bins.size(); ++f) {
-    all.insert(all.end(), residuals[f].data(), residuals[f].data() + residuals[f].size());
-    if (bins[f].size() > 0) longest = std::max(longest, bins[f].time().back() - bins[f].time().front());
-  }
-  const double rms = robust_standard_deviation(all);
+  const double rms = robust_standard_deviation(concatenated(residuals));
   if (!(rms > 0.0)) return found;
   RestrictedLikelihood likelihood(bins, columns, residuals, threads);
   std::map<std::vector<double>, RestrictedLikelihood::Value> known;
@@ -264,6 +265,7 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
     return value->second;
   };
   const auto cost = [&](const std::vector<double>& sizes) { return with(sizes).restricted; };
+  const double longest = longest_duration(bins);
   // Drift slower than half a flight is indistinguishable from the mean of the flight.
   const auto parts = static_cast<std::size_t>(
       std::count_if(slow_times.begin(), slow_times.end(), [&](double time) { return time < 0.5 * longest; }));
@@ -321,8 +323,7 @@ std::vector<SlowSizes> possible_sizes() {
 NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                           const std::vector<Eigen::VectorXd>& residuals, std::size_t threads) {
   NoiseModel noise = find_noise(bins, columns, residuals, threads).model;
-  std::vector<double> all;
-  for (const Eigen::VectorXd& residual : residuals) all.insert(all.end(), residual.begin(), residual.end());
+  const std::vector<double> all = concatenated(residuals);
   const double rms = robust_standard_deviation(all);
   if (rms == 0.0) {  // most are the same: what differs is white
     noise.scale = std::sqrt(std::inner_product(all.begin(), all.end(), all.begin(), 0.0) /
@@ -336,10 +337,7 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
   double variance = 0.0;
   double sum = 0.0;
   double maximum = -std::numeric_limits<double>::infinity();
-  double longest = 0.0;  // s
-  for (const Binning& flight : bins) {
-    if (flight.size() > 0) longest = std::max(longest, flight.time().back() - flight.time().front());
-  }
+  const double longest = longest_duration(bins);
   for (const SlowSizes& sizes : possible_sizes()) {
     // A drift slower than the flights is a constant in each of them: the flights do not determine its size.
     bool is_seen = true;

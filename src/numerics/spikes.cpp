@@ -22,7 +22,7 @@ std::vector<double> without_outliers(const std::vector<double>& residual,
   std::vector<double> left(residual.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = residual[i] - predicted[i];
   const std::vector<Segment> segments = contiguous_segments(left, time, step);
-  const std::vector<double> coefficients = autoregression(left, segments, limit).coefficients;
+  const std::vector<double> coefficients = autoregression(left, segments);
   const std::size_t order = coefficients.size();
   const auto expected = [&](const Segment& segment, std::size_t t) {
     double value = 0.0;

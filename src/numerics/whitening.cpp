@@ -33,17 +33,7 @@ std::vector<double> autocovariance(const std::vector<double>& coefficients) {
   return result;
 }
 
-/// A covariance of a few dozen variables, of which the upper triangle is kept, by columns. In loops by hand:
-/// blocks of such a size cost a matrix library more than they compute.
-class Covariance {
- public:
-  explicit Covariance(std::size_t size) : size_(size), values_(size * size, 0.0) {}
-  double* column(std::size_t column) { return &values_[column * size_]; }
-
- private:
-  std::size_t size_;
-  std::vector<double> values_;
-};
+double* column(Eigen::MatrixXd& matrix, std::size_t number) { return matrix.col(as_index(number)).data(); }
 
 double dot(const double* a, const double* b, std::size_t count) {
   using Values = Eigen::Map<const Eigen::VectorXd>;
@@ -72,9 +62,11 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
   deviation_.resize(count);
 
   const std::vector<double> stationary = autocovariance(coefficients_);
-  Covariance now(size);  // covariance of the state
-  Covariance next(size);
-  for (std::size_t j = 0; j < slow; ++j) now.column(order_ + j)[order_ + j] = slow_variance[j];
+  // Covariance of the state, of which the upper triangle is kept. In loops by hand: blocks of such a size
+  // cost a matrix library more than they compute.
+  Eigen::MatrixXd now = Eigen::MatrixXd::Zero(as_index(size), as_index(size));
+  Eigen::MatrixXd next = now;
+  for (std::size_t j = 0; j < slow; ++j) column(now, order_ + j)[order_ + j] = slow_variance[j];
   std::vector<double> seen(size);   // covariance of state and observation
   std::vector<double> ahead(size);  // covariance of the next value of the autoregression with the state
   std::vector<double> decay(slow, 1.0);
@@ -102,8 +94,8 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
       continue;
     }
     for (std::size_t j = 0; j < slow; ++j) {
-      const double* const from = now.column(order_ + j) + order_;
-      double* const to = next.column(order_ + j) + order_;
+      const double* const from = column(now, order_ + j) + order_;
+      double* const to = column(next, order_ + j) + order_;
       for (std::size_t i = 0; i <= j; ++i) to[i] = decay[i] * decay[j] * from[i];
       to[j] += (1.0 - decay[j] * decay[j]) * slow_variance[j];
     }
@@ -111,31 +103,32 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
       ++segment;
       for (std::size_t j = 0; j < order_; ++j)
         std::reverse_copy(stationary.begin(), stationary.begin() + static_cast<std::ptrdiff_t>(j + 1),
-                          next.column(j));
-      for (std::size_t j = order_; j < size; ++j) std::fill_n(next.column(j), order_, 0.0);
+                          column(next, j));
+      for (std::size_t j = order_; j < size; ++j) std::fill_n(column(next, j), order_, 0.0);
     } else {
       std::fill(ahead.begin(), ahead.end(), 0.0);
       for (std::size_t k = 0; k < order_; ++k) {
-        const double* const from = now.column(k);
+        const double* const from = column(now, k);
         for (std::size_t i = 0; i < k; ++i) ahead[i] += coefficients_[k] * from[i];
         ahead[k] += dot(from, coefficients_.data(), k + 1);
       }
-      for (std::size_t j = order_; j < size; ++j) ahead[j] = dot(now.column(j), coefficients_.data(), order_);
-      next.column(0)[0] = 1.0 + dot(ahead.data(), coefficients_.data(), order_);
+      for (std::size_t j = order_; j < size; ++j)
+        ahead[j] = dot(column(now, j), coefficients_.data(), order_);
+      column(next, 0)[0] = 1.0 + dot(ahead.data(), coefficients_.data(), order_);
       for (std::size_t j = 1; j < order_; ++j) {
-        next.column(j)[0] = ahead[j - 1];
-        std::copy_n(now.column(j - 1), j, next.column(j) + 1);
+        column(next, j)[0] = ahead[j - 1];
+        std::copy_n(column(now, j - 1), j, column(next, j) + 1);
       }
       for (std::size_t j = order_; j < size; ++j) {
-        const double* const from = now.column(j);
-        double* const to = next.column(j);
+        const double* const from = column(now, j);
+        double* const to = column(next, j);
         to[0] = ahead[j] * decay[j - order_];
         for (std::size_t i = 1; i < order_; ++i) to[i] = from[i - 1] * decay[j - order_];
       }
     }
-    for (std::size_t i = 0; i < size; ++i) seen[i] = level_[t] * next.column(i)[0];
+    for (std::size_t i = 0; i < size; ++i) seen[i] = level_[t] * column(next, i)[0];
     for (std::size_t j = order_; j < size; ++j) {
-      const double* const from = next.column(j);
+      const double* const from = column(next, j);
       for (std::size_t i = 0; i <= j; ++i) seen[i] += from[i];
       for (std::size_t i = order_; i < j; ++i) seen[j] += from[i];
     }
@@ -144,8 +137,8 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
     double* const gain = gain_.col(t).data();
     for (std::size_t i = 0; i < size; ++i) gain[i] = seen[i] / variance;
     for (std::size_t j = 0; j < size; ++j) {
-      const double* const from = next.column(j);
-      double* const to = now.column(j);
+      const double* const from = column(next, j);
+      double* const to = column(now, j);
       for (std::size_t i = 0; i <= j; ++i) to[i] = from[i] - gain[i] * seen[j];
     }
     deviation_[t] = std::sqrt(variance);

@@ -60,13 +60,6 @@ const Message* first_error(const std::vector<Message>& all) {
   return first;
 }
 
-bool agree(const std::vector<Message>& all) {
-  const Message& first = all.front();
-  return std::all_of(all.begin(), all.end(), [&first](const Message& each) {
-    return each.kind == first.kind && each.state == first.state;
-  });
-}
-
 }  // namespace
 
 std::vector<Message> Communicator::talk(const Message& own) {
@@ -81,7 +74,10 @@ std::vector<Message> Communicator::talk(const Message& own) {
     if (has_parted_) parted_with_ = agreed;
     throw agreed;
   }
-  if (!agree(all)) {
+  const bool agree = std::all_of(all.begin(), all.end(), [&all](const Message& each) {
+    return each.kind == all.front().kind && each.state == all.front().state;
+  });
+  if (!agree) {
     has_parted_ = true;
     parted_with_ = Error(
         Error::Code::system,

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <numeric>
 
+#include "numerics/missing.hpp"
 #include "parallel/packed.hpp"
 
 namespace pcor::internal {
@@ -46,25 +49,20 @@ std::vector<Counts> counts_of_all(Communicator& comm, const std::vector<Counts>&
   return all;
 }
 
-std::vector<double> values_of_one(std::vector<double> values, const std::vector<std::uint64_t>& orders) {
-  std::vector<double> found;
-  auto begin = values.begin();
-  for (const std::uint64_t order : orders) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(order);
-    std::nth_element(begin, at, values.end());
-    found.push_back(*at);
-    begin = at;
-  }
-  return found;
-}
-
 }  // namespace
 
 std::vector<double> values_at(Communicator& comm, std::vector<double> values, const WantedPlaces& requested) {
   for (double& value : values) value += 0.0;  // there is one zero
   if (comm.size() == 1) {
-    const std::vector<std::uint64_t> orders = requested(values.size());
-    return values_of_one(std::move(values), orders);
+    std::vector<double> found;
+    auto begin = values.begin();
+    for (const std::uint64_t order : requested(values.size())) {
+      const auto at = values.begin() + static_cast<std::ptrdiff_t>(order);
+      std::nth_element(begin, at, values.end());
+      found.push_back(*at);
+      begin = at;
+    }
+    return found;
   }
   std::vector<OrderStatistic> statistics(1);
   for (const double value : values) statistics[0].left.push_back(number_of(value));
@@ -77,9 +75,8 @@ std::vector<double> values_at(Communicator& comm, std::vector<double> values, co
     }
     std::vector<Counts> all = counts_of_all(comm, own);
     if (shift + bits_at_a_time == 64) {
-      std::uint64_t count = 0;
-      for (const std::uint64_t each : all[0]) count += each;
-      const std::vector<std::uint64_t> below = requested(count);
+      const std::vector<std::uint64_t> below =
+          requested(std::accumulate(all[0].begin(), all[0].end(), std::uint64_t{0}));
       statistics.resize(below.size(), statistics[0]);
       all.resize(below.size(), all[0]);
       for (std::size_t k = 0; k < statistics.size(); ++k) statistics[k].below = below[k];
@@ -97,6 +94,16 @@ std::vector<double> values_at(Communicator& comm, std::vector<double> values, co
   std::vector<double> found;
   for (const OrderStatistic& statistic : statistics) found.push_back(value_of(statistic.found));
   return found;
+}
+
+double median_of_absolute_values(Communicator& comm, std::vector<double> values) {
+  values.erase(std::remove_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }),
+               values.end());
+  for (double& value : values) value = std::abs(value);
+  const std::vector<double> middle = values_at(comm, std::move(values), [](std::uint64_t count) {
+    return count > 0 ? std::vector<std::uint64_t>{count / 2} : std::vector<std::uint64_t>();
+  });
+  return middle.empty() ? nan : middle.front();
 }
 
 }  // namespace pcor::internal

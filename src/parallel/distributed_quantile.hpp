@@ -17,4 +17,8 @@ using WantedPlaces = std::function<std::vector<std::uint64_t>(std::uint64_t coun
 /// @param values without NaN
 std::vector<double> values_at(Communicator& comm, std::vector<double> values, const WantedPlaces& requested);
 
+/// Median of the absolute values of all ranks together, equal to `median` of one list.
+/// @param values NaN values are excluded @return NaN if all ranks have no values
+double median_of_absolute_values(Communicator& comm, std::vector<double> values);
+
 }  // namespace pcor::internal

@@ -1,12 +1,10 @@
 #include "parallel/flight_partition.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 namespace pcor::internal {
 
-FlightPartition::FlightPartition(std::size_t flights)
-    : comm_(&serial_communicator()), owner_(flights, 0), local_count_(flights) {}
+FlightPartition::FlightPartition(std::size_t flights) : comm_(&serial_communicator()), owner_(flights, 0) {}
 
 FlightPartition::FlightPartition(Communicator& comm, const std::vector<std::uint64_t>& sizes)
     : comm_(&comm), owner_(sizes.size(), 0) {
@@ -20,23 +18,18 @@ FlightPartition::FlightPartition(Communicator& comm, const std::vector<std::uint
     owner_[flight] = static_cast<std::size_t>(minimum - load.begin());
     *minimum += std::max<std::uint64_t>(sizes[flight], 1);
   }
-  local_count_ = static_cast<std::size_t>(std::count(owner_.begin(), owner_.end(), comm.rank()));
 }
 
 FlightPartition FlightPartition::of_entries(const std::vector<std::size_t>& flight_of_each) const {
-  FlightPartition share(flight_of_each.size());
-  share.comm_ = comm_;
-  for (std::size_t entry = 0; entry < share.flights(); ++entry)
-    share.owner_[entry] = owner_[flight_of_each[entry]];
-  share.local_count_ =
-      static_cast<std::size_t>(std::count(share.owner_.begin(), share.owner_.end(), comm_->rank()));
+  FlightPartition share = *this;
+  share.owner_.clear();
+  for (const std::size_t flight : flight_of_each) share.owner_.push_back(owner_[flight]);
   return share;
 }
 
 FlightPartition FlightPartition::with(const FlightPartition& more) const {
   FlightPartition share = *this;
   share.owner_.insert(share.owner_.end(), more.owner_.begin(), more.owner_.end());
-  share.local_count_ += more.local_count_;
   return share;
 }
 

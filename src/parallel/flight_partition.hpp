@@ -43,7 +43,9 @@ class FlightPartition {
 
   std::size_t flights() const { return owner_.size(); }
   bool is_local(std::size_t flight) const { return owner_[flight] == comm_->rank(); }
-  std::size_t local_count() const { return local_count_; }
+  std::size_t local_count() const {
+    return static_cast<std::size_t>(std::count(owner_.begin(), owner_.end(), comm_->rank()));
+  }
   Communicator& comm() const { return *comm_; }
 
   /// The share of a list whose entries are each of one of these flights, as is a flight against one of
@@ -75,7 +77,11 @@ class FlightPartition {
     std::vector<Part> parts(flights());
     attempt([&] { visit(parts); });
     if (comm_->size() > 1) {
-      gather(local_parts_of(parts), state,
+      std::vector<Part> own;
+      for (std::size_t flight = 0; flight < parts.size(); ++flight) {
+        if (is_local(flight)) own.push_back(std::move(parts[flight]));
+      }
+      gather(std::move(own), state,
              [&parts](std::size_t flight, Part part) { parts[flight] = std::move(part); });
     }
     return parts;
@@ -176,15 +182,6 @@ class FlightPartition {
     }
   }
 
-  template <class Part>
-  std::vector<Part> local_parts_of(std::vector<Part>& parts) const {
-    std::vector<Part> own;
-    for (std::size_t flight = 0; flight < parts.size(); ++flight) {
-      if (is_local(flight)) own.push_back(std::move(parts[flight]));
-    }
-    return own;
-  }
-
   /// @param own parts in the order of their flights
   /// @param take gets those of all flights in their order, one after another, so that not all need be held
   template <class Part, class Take>
@@ -201,7 +198,6 @@ class FlightPartition {
 
   Communicator* comm_;
   std::vector<std::size_t> owner_;
-  std::size_t local_count_ = 0;
 };
 
 /// Partition of the flights of these files, by their sizes on the first rank. An unreadable file is reported

@@ -2,35 +2,109 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
-
-#include "parallel/forked_process.hpp"
 
 namespace pcor {
 
+namespace internal {
+
+/// A process and the descriptor by which this one talks to it.
+struct PeerProcess {
+  pid_t process = -1;
+  int connection = -1;
+};
+
+}  // namespace internal
+
 using namespace internal;
 
+namespace {
+
+bool send_all(int connection, const char* bytes, std::size_t count) {
+  while (count > 0) {
+    const ssize_t sent = ::send(connection, bytes, count, MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) {
+      if (errno == EPIPE || errno == ECONNRESET) errno = 0;
+      return false;
+    }
+    bytes += sent;
+    count -= static_cast<std::size_t>(sent);
+  }
+  return true;
+}
+
+bool receive_all(int connection, char* bytes, std::size_t count) {
+  while (count > 0) {
+    const ssize_t received = ::recv(connection, bytes, count, 0);
+    if (received < 0 && errno == EINTR) continue;
+    if (received <= 0) {
+      if (received == 0 || errno == ECONNRESET) errno = 0;
+      return false;
+    }
+    bytes += received;
+    count -= static_cast<std::size_t>(received);
+  }
+  return true;
+}
+
+// Send and receive complete texts. On failure they return false; errno is 0 if the other process has ended.
+
+bool send_text(int connection, const std::string& text) {
+  const std::uint64_t count = text.size();
+  return send_all(connection, reinterpret_cast<const char*>(&count), sizeof count) &&
+         send_all(connection, text.data(), text.size());
+}
+
+bool receive_text(int connection, std::string& text) {
+  std::uint64_t count = 0;
+  if (!receive_all(connection, reinterpret_cast<char*>(&count), sizeof count)) return false;
+  text.resize(count);
+  return receive_all(connection, text.data(), text.size());
+}
+
+/// Exit status of the process, as from waitpid; nullopt if the system no longer has it.
+std::optional<int> end_of(pid_t process) {
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0)
+    if (errno != EINTR) return std::nullopt;
+  return status;
+}
+
+}  // namespace
+
 ForkCommunicator::ForkCommunicator(std::size_t size) : size_(size) {
+  const pid_t first = ::getpid();
   for (std::size_t rank = 1; rank < size; ++rank) {
-    const std::optional<ForkedProcess> copied = fork_process(SIGTERM);
-    if (!copied) {
+    int ends[2] = {-1, -1};
+    const bool is_connected = ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0;
+    const pid_t process = is_connected ? ::fork() : -1;
+    if (process < 0) {
       const std::string why = std::strerror(errno);
+      for (const int end : ends) ::close(end);
       let_go(true);
       throw Error(Error::Code::system,
                   fmt::format("cannot start {} processes ({}); use a smaller --processes", size, why));
     }
-    if (!copied->is_copy) {
-      others_.push_back(copied->other);
+    if (process > 0) {
+      ::close(ends[1]);
+      others_.push_back({process, ends[0]});
       continue;
     }
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // if the first process ends before this one
+    if (::getppid() != first) ::_exit(1);
+    ::close(ends[0]);
     for (const PeerProcess& earlier : others_) ::close(earlier.connection);
     rank_ = rank;
-    others_ = {copied->other};
+    others_ = {{first, ends[1]}};
     return;
   }
 }

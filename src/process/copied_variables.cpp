@@ -9,8 +9,6 @@
 namespace pcor::internal {
 namespace {
 
-using Names = std::vector<std::string>;
-
 /// First of several names that is a time series of the flight; empty if there is no such series.
 std::string first_series(const Flight& flight, const Names& names) {
   const auto found = std::find_if(names.begin(), names.end(), [&flight](const std::string& name) {

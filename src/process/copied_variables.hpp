@@ -1,10 +1,8 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/model_io/model_definition.hpp>
+#include "base/quoting.hpp"
 
 namespace pcor::internal {
 
@@ -13,6 +11,6 @@ namespace pcor::internal {
 void name_coordinates(const Flight& flight, const ModelDefinition& model, FileDescription& description);
 
 /// Available inputs of a temperature fit other than those of the model: height, position and motion.
-std::vector<std::string> flown_variables(const Flight& flight, const ModelDefinition& model);
+Names flown_variables(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

@@ -16,8 +16,6 @@ struct Output {
   double offset = 0.0;     ///< added to go from the library's unit to the file's
   std::size_t number = 0;  ///< index in the writer
   std::vector<double> values{};
-
-  double value_in(const Loop& loop) const { return loop.state()[quantity] + offset; }
 };
 
 /// Assigns delayed outputs of the loop to their samples.
@@ -43,7 +41,7 @@ class DelayLine {
   /// Takes the results of the last run of the loop. False if they belong to no sample.
   bool leave(const Loop& loop) {
     if (++runs_ <= delay_ || left_ == entered_) return false;
-    for (Output& output : outputs_) output.values.push_back(output.value_in(loop));
+    for (Output& output : outputs_) output.values.push_back(loop.state()[output.quantity] + output.offset);
     ++left_;
     ++finished_;
     return true;

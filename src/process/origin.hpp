@@ -10,17 +10,6 @@
 
 namespace pcor::internal {
 
-/// Global attributes of an output with the SHA-256 of its inputs.
-inline constexpr const char* model_hash_attribute = "pcor_model_sha256";
-inline constexpr const char* options_hash_attribute = "pcor_options_sha256";
-inline constexpr const char* input_hash_attribute = "pcor_input_sha256";
-
-/// The version of the program and what of the options decides what is in an output, as a text.
-std::string options_text(const ProcessOptions& options);
-
-/// Coefficients of a model with stated standard errors: "static-qp.a2 = 0.0308 +- 0.0012; ...".
-std::string coefficients_text(const ModelDefinition& model);
-
 /// Whether an effect of the catalogue changes nothing: its coefficients are neutral.
 bool is_neutral(const ModelEffect& effect);
 
@@ -33,5 +22,11 @@ bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& opt
 std::vector<std::pair<std::string, std::string>> origin_attributes(const std::filesystem::path& input,
                                                                    const ModelDefinition& model,
                                                                    const ProcessOptions& options);
+
+/// Whether `output` has the SHA-256 of the bytes of the flight `input`, of the model and of the options with
+/// this version of the program. False if a file cannot be read. The flight is read only if the others are
+/// equal.
+bool is_up_to_date(const std::filesystem::path& output, const std::filesystem::path& input,
+                   const ModelDefinition& model, const ProcessOptions& options);
 
 }  // namespace pcor::internal

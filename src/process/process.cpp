@@ -1,37 +1,44 @@
-#include "process/processing.hpp"
+#include <pcor/process/process.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <pcor/base/error.hpp>
-#include <pcor/base/utc.hpp>
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/flight/flight_writer.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/realtime/height_step.hpp>
+#include <pcor/realtime/loop.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include "flight/flight_file.hpp"
 #include "model_io/archived_model.hpp"
+#include "model_io/output_table.hpp"
 #include "model_io/sensor_doubt.hpp"
+#include "numerics/missing.hpp"
 #include "process/copied_variables.hpp"
+#include "process/delay_line.hpp"
 #include "process/origin.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/samples.hpp"
 #include "residuals/time_spans.hpp"
 #include "roles/fast_series.hpp"
+#include "roles/find_frozen.hpp"
+#include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
 namespace {
-
-/// Index of a bit in `quality_info`.
-constexpr std::size_t flagged_place(Quality bit) {
-  std::size_t position = 0;
-  while (quality_info[position].bit != bit) ++position;
-  return position;
-}
 
 /// Dynamic pressure, hPa, at the flying speed of an aircraft at sea level in the standard atmosphere. The
 /// lift depends on the dynamic pressure, at any height.
@@ -41,559 +48,599 @@ double flying_dynamic_pressure(const std::string& aircraft) {
                                         dry_air<double>());
 }
 
-}  // namespace
+/// A variable of the file that the loop reads.
+struct Input : ModelInput {
+  std::vector<double> values{};  // values of one block
+  RejectedCounts excluded{};     // total of all inputs
+  std::vector<bool> frozen{};    // records in which the sensor is frozen; empty: none
+};
 
-/// The roles that the flight can serve. LAMS may be off: its variable may be absent.
-void Processing::choose_roles() {
-  for (const auto& [role, variable] : file_.variables) {
-    if (role == Quantity::lams_airspeed && !flight_.has(variable)) {
-      if (options_.correct_with == CorrectWith::lams) {
-        fail(Error::Code::variable, fmt::format("{} (lams_airspeed) is not in this file, so the flight "
-                                                "cannot be corrected with LAMS; omit --correct-with lams",
-                                                variable));
-      }
-      note("{} is not in this file: the flight is processed without LAMS", variable);
-      continue;
+/// One flight on its way through the loop.
+class Processing {
+ public:
+  Processing(const std::filesystem::path& input, const ModelDefinition& file, const ProcessOptions& options)
+      : flight_(input, options.timestamp_alignment), given_(file), file_(file), options_(options) {}
+
+  ProcessSummary run(const std::filesystem::path& output) {
+    summary_.aircraft = flight_.aircraft();
+    summary_.flying_dynamic_pressure = flying_dynamic_pressure(file_.model.aircraft);
+    summary_.project = flight_.project();
+    summary_.flight = flight_.flight_number();
+    summary_.records = flight_.records();
+    summary_.gaps = flight_.time().gap_count;
+    summary_.first_time = flight_.time().first;
+    summary_.last_time = flight_.time().last;
+    summary_.min_defect = infinity;
+    summary_.max_defect = -infinity;
+
+    choose_roles();
+    for (Note& each : flight_.file().notes()) summary_.notes.push_back(std::move(each));
+    for (Note& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
+    note_archive();
+    for (ModelInput& input : model_inputs(flight_, file_, *chain_, roles_, summary_.notes))
+      inputs_.push_back({std::move(input)});
+    for (const Input& input : inputs_) names_.emplace(input.quantity, input.variable);
+    find_frozen_sensors();
+    find_flaps();
+    choose_rate();
+    note_uncertainty();
+    const FileDescription description = describe();
+    FlightWriter writer(output, flight_, description);
+    copy_variables(writer, description);
+    define_outputs(writer);
+    define_flags(writer);
+
+    for (const RecordBlock block : flight_.blocks()) {
+      process_block(block);
+      if (block.first + block.count == flight_.records()) flush();
+      for (const auto line : {&results_, &filtered_})
+        (*line)->write(writer, static_cast<std::size_t>(summary_.rate));
+      if (options_.progress) options_.progress(block.first + block.count, flight_.records());
     }
-    roles_.push_back(role);
-  }
-  choose_chain();
-}
+    writer.finish();
 
-/// Model with the calibration uncertainty of its thermometer, if uncertainties are computed and the model
-/// does not state it: otherwise that of the temperature would be far too small.
-ModelDefinition Processing::doubted() const {
-  const UncertaintyPart part = options_.uncertainty;
-  if (part == UncertaintyPart::none || part == UncertaintyPart::random ||
-      file_.variable_of(Quantity::recovery_temperature).empty())
-    return file_;
-  const ModelUncertainty stated = uncertainty_of(file_);
-  const bool is_stated =
-      stated.has_systematic() || (part != UncertaintyPart::systematic && stated.has_random());
-  return is_stated ? with_doubts(file_, doubts_of(file_, thermometer_calibration)) : file_;
-}
-
-void Processing::choose_chain() {
-  BindingError why;
-  std::optional<Chain> chain = Chain::build(doubted().model, roles_, &why);
-  if (!chain) fail_model(why.message());
-  chain_ = std::make_shared<const Chain>(std::move(*chain));
-}
-
-void Processing::choose_inputs() {
-  for (ModelInput& input : model_inputs(flight_, file_, *chain_, roles_, summary_.notes)) {
-    inputs_.push_back({std::move(input)});
-  }
-}
-
-/// Detects sensors that are constant in flight for much longer than their noise permits.
-void Processing::find_frozen_sensors() {
-  constexpr std::size_t min_records = 300;  // a sensor with a single value is also excluded
-  const auto read = [this](const Input& input) {
-    return read_values(flight_, input.variable, input.conversion).values;
-  };
-  std::vector<bool> flying;
-  for (const Input& input : inputs_) {
-    if (input.quantity != Quantity::dynamic_pressure) continue;
-    for (const double q : read(input)) flying.push_back(q >= summary_.flying_dynamic_pressure);
-  }
-  const auto flown = static_cast<std::size_t>(std::count(flying.begin(), flying.end(), true));
-  std::vector<double> time;
-  for (Input& input : inputs_) {
-    const std::vector<double> values = read(input);
-    const std::vector<Segment> frozen =
-        find_frozen(values, flying, always_varies(input.quantity) && flown >= min_records);
-    if (frozen.empty()) continue;
-    if (time.empty()) time = record_times(flight_);
-    summary_.notes.push_back(warning_note(frozen_text(input.variable, input.quantity, values, time, frozen)));
-    input.frozen.resize(values.size());
-    frozen_.resize(values.size());
-    for (const Segment& span : frozen) {
-      for (std::size_t i = span.first; i < span.first + span.count; ++i) input.frozen[i] = frozen_[i] = true;
-    }
-  }
-  if (!frozen_.empty()) {
-    note(options_.keep_frozen ? "readings of frozen sensors are corrected, too; PCORFLAG marks them"
-                              : "readings of frozen sensors are treated as missing; --keep-frozen uses them");
-  }
-}
-
-/// Marks records with extended flaps unless an effect describes them: laws are usually fitted with flaps in.
-void Processing::find_flaps() {
-  if (changes_no_pressure(file_, options_)) return;
-  std::optional<std::vector<bool>> extended;
-  std::string variable;
-  try {
-    variable = read_role(flight_, file_, Quantity::flaps).variable;
-    const std::vector<ModelEffect>& effects = file_.model.effects;
-    if (std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
-          return !is_neutral(effect) && reads_flaps(effect, variable);
-        }))
-      return;
-    extended = flaps_extended(flight_, file_);
-  } catch (const Error& error) {  // a variable that no result needs is damaged
-    note("flaps are unknown: {}", error.what());
-    return;
-  }
-  if (!extended) {
-    note(
-        "flaps are not recorded and the lift does not determine them: records with extended flaps have no "
-        "quality bit");
-  } else if (std::find(extended->begin(), extended->end(), true) != extended->end()) {
-    flaps_ = std::move(*extended);
-    const std::string times = add_outside("flaps extended", flaps_);
-    summary_.notes.push_back(warning_note(fmt::format(
-        "do not use results of {}: flaps extended in {} of {} records{}, without an effect of the model; "
-        "PCORFLAG has the bit outside_domain, and no uncertainty is given",
-        times, std::count(flaps_.begin(), flaps_.end(), true), flaps_.size(),
-        variable.empty() ? " (by the lift)" : "")));
-  }
-}
-
-/// Adds the spans of the marked records to the summary, and returns their times as text.
-std::string Processing::add_outside(const std::string& reason, const std::vector<bool>& records,
-                                    std::size_t max_gap) {
-  const std::vector<double> time = record_times(flight_);
-  const std::vector<Segment> segments = marked_segments(records, max_gap);
-  for (const Segment& segment : segments) {
-    const double last = time[segment.first + segment.count - 1];
-    summary_.outside.push_back({reason, time[segment.first], last + flight_.time().step});
-  }
-  return times_of(segments, time);
-}
-
-/// Notes the samples in flight outside the domain of the law, known after the run.
-void Processing::note_domain() {
-  const auto count = std::count(outside_.begin(), outside_.end(), true);
-  if (count == 0) return;
-  // Values that cross a limit many times in a minute give one span.
-  const auto records_per_minute = static_cast<std::size_t>(60.0 / flight_.time().step);
-  note("delta-p is extrapolated in {} of {} records, outside the domain of the law: {}", count,
-       outside_.size(), add_outside("outside the domain", outside_, records_per_minute));
-}
-
-void Processing::choose_rate() {
-  for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
-    summary_.rate = std::max(summary_.rate, flight_.variable(file_.variable_of(pressure)).rate);
-  }
-  std::string why;
-  const double rate = summary_.rate / flight_.time().step;
-  uncertainty_ = uncertainty();
-  const ShortestPeriods periods = choose_periods();
-  loop_ = Loop::build(chain_, rate, &why, options_.correct_with, uncertainty_, periods);
-  if (!loop_) fail_model(why);
-  loop_->do_not_watch_sensors();  // this host knows their whole series
-  results_.emplace(loop_->delay());
-  filtered_.emplace(loop_->delay() + (chain_->has_lams() ? LowPass::delay(rate) : 0));
-  sample_step_ = 1.0 / rate;
-  if (!options_.hydrostatic) return;
-  loop_->add(std::make_unique<HeightStep>());
-  if (!loop_->order(&why)) fail_model(why);
-}
-
-/// Rates of change are limited to the frequencies at which the recorded values are signal.
-ShortestPeriods Processing::choose_periods() {
-  ShortestPeriods periods;
-  std::vector<double> time;
-  for (const auto& [quantity, rate] : rates) {
-    if (!chain_->derives(rate)) continue;
-    if (time.empty()) time = record_times(flight_);
-    const auto input = std::find_if(inputs_.begin(), inputs_.end(),
-                                    [of = quantity](const Input& each) { return each.quantity == of; });
-    const FastSeries series = read_fast(flight_, *input, flight_.variable(input->variable).rate);
-    const SignalBand band = signal_band_of(series, time, flight_.time().step);
-    periods.emplace_back(rate, std::max(RateFilter::usual_period, band.min_period));
-    leave_out_noise(rate, band);
-  }
-  return periods;
-}
-
-/// Effects that add more noise to a result than they remove error are not applied.
-void Processing::leave_out_noise(Quantity rate, const SignalBand& band) {
-  const double signal = band.rate_variance - band.rate_noise;
-  if (!(band.rate_noise > signal)) return;
-  for (ModelEffect& effect : file_.model.effects) {
-    if (effect.is_formula()) continue;
-    const EffectInfo& info = *effect_named(effect.id);
-    const bool reads = std::find(info.needs.begin(), info.needs.end(), rate) != info.needs.end();
-    double& time = effect.parameters[0];
-    if (!reads || time == info.parameters[0].neutral) continue;
-    const std::string_view unit = info_of(info.location).unit;
-    note(
-        "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and remove an error of "
-        "{:.2g} {}",
-        effect.id, time, std::abs(time) * std::sqrt(band.rate_noise), unit,
-        std::abs(time) * std::sqrt(std::max(0.0, signal)), unit);
-    time = info.parameters[0].neutral;
-  }
-  choose_chain();
-}
-
-/// Stated uncertainty of the model, according to the options; missing parts are noted. @throws Error if a
-/// requested part is not stated.
-ModelUncertainty Processing::uncertainty() {
-  const UncertaintyPart part = options_.uncertainty;
-  if (part == UncertaintyPart::none) return {};
-  ModelUncertainty stated = uncertainty_of(doubted());
-  if (part == UncertaintyPart::systematic) stated = stated.systematic_part();
-  if (part == UncertaintyPart::random) stated = stated.random_part();
-  if (stated.has_systematic() || stated.has_random()) return stated;
-  if (part == UncertaintyPart::total_if_stated) return {};
-  const char* const what = part == UncertaintyPart::systematic
-                               ? "no standard error or covariance of a parameter"
-                           : part == UncertaintyPart::random ? "no uncertainty of a sample in [uncertainty]"
-                                                             : "no uncertainty";
-  fail_model(
-      fmt::format("it states {}; run 'pcor refit' for the covariance, set the "
-                  "uncertainties of the sensors in [uncertainty], or omit --uncertainty",
-                  what));
-}
-
-/// True if an uncertainty is stated of a coefficient at one of the locations, or of one of the roles.
-bool Processing::states(std::initializer_list<EffectLocation> locations,
-                        std::initializer_list<Quantity> roles) const {
-  const std::size_t count = chain_->parameters().size();
-  for (std::size_t effect = 0; !uncertainty_.covariance.empty() && effect < chain_->effect_count();
-       ++effect) {
-    if (std::find(locations.begin(), locations.end(), chain_->location_of(effect)) == locations.end())
-      continue;
-    const std::size_t next =
-        effect + 1 < chain_->effect_count() ? chain_->first_parameter_of(effect + 1) : count;
-    for (std::size_t i = chain_->first_parameter_of(effect); i < next; ++i) {
-      if (uncertainty_.covariance[i * count + i] > 0.0) return true;
-    }
-  }
-  return std::any_of(roles.begin(), roles.end(),
-                     [this](Quantity role) { return uncertainty_.random[index(role)] > 0.0; });
-}
-
-void Processing::note_uncertainty() {
-  if (!uncertainty_.has_systematic() && !uncertainty_.has_random()) return;
-  if (options_.correct_with == CorrectWith::lams) {
-    note("no uncertainty is given for LAMS-corrected samples: the model covariance does not apply to them");
-  }
-  using Q = Quantity;
-  if (uncertainty_.static_defect == 0.0 && uncertainty_.static_defect_ratio == 0.0 &&
-      !states({EffectLocation::static_defect}, {})) {
-    note("the uncertainties exclude that of delta-p, which the model does not state");
-  }
-  if (!states({EffectLocation::static_transducer, EffectLocation::static_line}, {Q::static_pressure}) ||
-      !states({EffectLocation::dynamic_transducer, EffectLocation::static_line, EffectLocation::total_line,
-               EffectLocation::pitot},
-              {Q::dynamic_pressure})) {
-    note(
-        "the uncertainties exclude the pressure transducers, because the model does not state both; set "
-        "static_pressure and dynamic_pressure in its table [uncertainty]");
-  }
-  for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
-    if (chain_->effect_count() == file_.model.effects.size()) break;  // none was added
-    const std::vector<std::string>& known = file_.covariance.parameters;
-    if (!doubt.is_usual || std::find(known.begin(), known.end(), doubt.name()) != known.end()) continue;
-    note(
-        "the uncertainties assume {} = 0 +- {:g}, the usual size, because the model states no value; set "
-        "\"{}\" in its table [uncertainty]",
-        doubt.name(), doubt.size, doubt.name());
-  }
-  if (chain_->has_temperature() &&
-      !states({EffectLocation::temperature, EffectLocation::recovery, EffectLocation::ambient_temperature},
-              {Q::recovery_temperature, Q::ambient_temperature})) {
-    note("the uncertainties of temperature and airspeed exclude the thermometer");
-  }
-}
-
-/// Notes that the archive corrected the pressures, or that the model changes no pressure.
-void Processing::note_archive() {
-  const std::string& static_pressure = file_.variables.at(Quantity::static_pressure);
-  const std::string& dynamic_pressure = file_.variables.at(Quantity::dynamic_pressure);
-  const std::vector<PressurePair>& processed = family_of(file_, flight_).processed;
-  const bool is_corrected = std::any_of(processed.begin(), processed.end(), [&](const PressurePair& pair) {
-    return pair.static_pressure == static_pressure && pair.dynamic_pressure == dynamic_pressure;
-  });
-  if (changes_no_pressure(file_, options_)) {
-    note(
-        "the model changes no pressure: all its coefficients are zero, so the pressures of the output are "
-        "the {} "
-        "{} and {}; pcor refit finds coefficients if the flight determines them",
-        is_corrected ? "archived" : "recorded", static_pressure, dynamic_pressure);
-  } else if (is_corrected) {
-    note("{} and {} were corrected by the archive; the model corrects the remaining error", static_pressure,
-         dynamic_pressure);
-  }
-}
-
-FileDescription Processing::describe() const {
-  FileDescription description;
-  description.history = options_.history;
-  name_coordinates(flight_, file_, description);
-  description.attributes = origin_attributes(flight_.path(), given_, options_);
-  description.attributes.emplace_back(
-      "pcor_time_stamp", flight_.timestamp_alignment() == TimestampAlignment::begin ? "begin of the record"
-                                                                                    : "middle of the record");
-  if (!summary_.notes.empty()) description.attributes.emplace_back("pcor_notes", notes_as_text());
-  return description;
-}
-
-void Processing::copy_variables(FlightWriter& writer, const FileDescription& description) {
-  Names names{description.latitude, description.longitude, description.altitude};
-  for (const Input& input : inputs_) names.push_back(input.variable);
-  if (options_.hydrostatic) {
-    for (const std::string& name : flown_variables(flight_, file_)) names.push_back(name);
-  }
-  if (options_.copy_all) names = flight_.variables();
-  for (const std::string& name : names) {
-    if (name.empty() || writer.has(name)) continue;
-    if (!options_.copy_all || writer.can_copy(name)) {
-      writer.copy(name);
-    } else if (name != flight_.time_variable()) {
-      note("{} has a type that cannot be copied and is omitted", name);
-    }
-  }
-}
-
-/// Inputs of a result by their names in the file: other results, and recorded variables.
-Processing::Names Processing::dependencies_of(const OutputRow& row) const {
-  Names names;
-  for (const Quantity quantity : row.from({*chain_, options_.correct_with})) {
-    const auto output = output_names_.find(quantity);
-    const auto input = std::find_if(inputs_.begin(), inputs_.end(),
-                                    [quantity](const Input& each) { return each.quantity == quantity; });
-    if (output == output_names_.end() && input == inputs_.end()) continue;
-    const std::string& name = output == output_names_.end() ? input->variable : output->second;
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  }
-  return names;
-}
-
-void Processing::define_outputs(FlightWriter& writer) {
-  for (const OutputRow& row : output_table()) {
-    if (!is_written(row)) continue;
-    const bool is_uncertainty = row.uncertainty_of != Quantity::count;
-    const bool is_temperature = !is_uncertainty && info_of(row.quantity).unit == "K";
-    OutputVariable variable;
-    variable.name = to_string(row.name);
-    variable.rate = summary_.rate;
-    variable.units = is_temperature ? "degC" : std::string(info_of(row.quantity).unit);
-    variable.long_name = row.long_name;
-    variable.standard_name = row.standard_name;
-    variable.category = row.category;
-    variable.dependencies = dependencies_of(row);
-    for (const OutputRow& other : output_table()) {
-      if (other.uncertainty_of == row.quantity && is_written(other))
-        variable.ancillary_variables.push_back(to_string(other.name));
-    }
-    variable.ancillary_variables.push_back(to_string(std::string(quality_output)));
-    if (is_uncertainty) {
-      variable.dependencies = {output_names_.at(row.uncertainty_of)};
-      variable.attributes = {{"coverage_factor", "1"},
-                             {"coverage_content_type", "qualityInformation"},
-                             {"comment", uncertainty_comment()}};
-    }
-    if (row.quantity == Quantity::height_step) {
-      variable.attributes = {{"temperature_calibration", temperature_calibration()},
-                             {"model", archived_model(file_, options_.correct_with)}};
-    }
-    Output output{row.quantity, is_temperature ? -constants::ice_point : 0.0, define(writer, variable)};
-    output_names_[row.quantity] = variable.name;
-    if (row.is_filtered) {
-      filtered_->add(std::move(output));
+    summary_.samples = summary_.records * static_cast<std::size_t>(summary_.rate);
+    if (summary_.in_flight > 0) {
+      summary_.mean_defect /= static_cast<double>(summary_.in_flight);
     } else {
-      results_->add(std::move(output));
+      summary_.mean_defect = summary_.min_defect = summary_.max_defect = missing<double>();
     }
+    for (const Input& input : inputs_) note_excluded(input, input.excluded, summary_.notes);
+    note_domain();
+    if (summary_.corrected == 0) note("no sample could be corrected: see the quality bits");
+    return summary_;
   }
-}
 
-/// An uncertainty is written only with its result.
-bool Processing::is_written(const OutputRow& row) const {
-  if (!loop_->writes(row.quantity)) return false;
-  return row.uncertainty_of == Quantity::count || loop_->writes(row.uncertainty_of);
-}
-
-std::string Processing::uncertainty_comment() const {
-  const bool systematic = uncertainty_.has_systematic();
-  const bool random = uncertainty_.has_random();
-  return fmt::format("one standard deviation: {}",
-                     systematic && random ? "the systematic part, which is the same error in neighbouring "
-                                            "samples, and the random part, which is not"
-                     : systematic ? "the systematic part alone, the same error in neighbouring samples"
-                                  : "the random part alone, of a single sample");
-}
-
-void Processing::define_flags(FlightWriter& writer) {
-  OutputVariable flags;
-  flags.name = to_string(std::string(quality_output));
-  flags.rate = summary_.rate;
-  flags.long_name = "Quality bits of the pressure correction";
-  flags.standard_name = "status_flag";
-  flags.category = "Housekeeping";
-  for (const QualityInfo& info : quality_info) {
-    flags.flags.push_back({static_cast<int>(info.bit), std::string(info.name)});
+ private:
+  [[noreturn]] void fail_model(const std::string& what) const {
+    throw Error(Error::Code::model, fmt::format("model '{}': {}", file_.model.name, what));
   }
-  flags.dependencies = summary_.outputs;
-  filtered_->set_flags(define(writer, flags));
-}
 
-std::size_t Processing::define(FlightWriter& writer, const OutputVariable& variable) {
-  if (writer.has(variable.name)) {
-    fail(Error::Code::usage, fmt::format("it has a variable {} already; give --suffix to name the derived "
-                                         "variables apart from the input's, "
-                                         "e.g. --suffix _NEW",
-                                         variable.name));
+  template <class... Values>
+  void note(fmt::format_string<const Values&...> format, const Values&... values) {
+    summary_.notes.push_back(fmt::format(format, values...));
   }
-  summary_.outputs.push_back(variable.name);
-  return writer.define(variable);
-}
 
-/// Coefficients a0, a1 and a2 of the calibration included in ATX, zero without calibration.
-std::string Processing::temperature_calibration() {
-  std::vector<double> coefficients(3, 0.0);
-  for (const ModelEffect& effect : file_.model.effects) {
-    if (effect.id == effects::TempCalibration::info().id) {
-      coefficients = effect.parameters;
-    } else if (effect.is_formula() && effect.location == EffectLocation::ambient_temperature) {
-      note("the attribute temperature_calibration of HYDSTEP omits the effect {}, because it is a formula",
-           effect.id);
+  std::string to_string(const std::string& standard) const {
+    return file_.output_name(standard) + options_.suffix;
+  }
+
+  /// The roles that the flight can serve. LAMS may be off: its variable may be absent.
+  void choose_roles() {
+    for (const auto& [role, variable] : file_.variables) {
+      if (role == Quantity::lams_airspeed && !flight_.has(variable)) {
+        if (options_.correct_with == CorrectWith::lams) {
+          flight_.file().refuse(
+              Error::Code::variable,
+              ": {} (lams_airspeed) is not in this file, so the flight cannot be corrected with "
+              "LAMS; omit --correct-with lams",
+              variable);
+        }
+        note("{} is not in this file: the flight is processed without LAMS", variable);
+        continue;
+      }
+      roles_.push_back(role);
     }
+    choose_chain();
   }
-  return fmt::format("{}", fmt::join(coefficients, " "));
-}
 
-void Processing::note_sample() {
-  const State<double>& state = loop_->state();
-  const double defect = state[Quantity::corrected_static_pressure] - state[Quantity::port_static_pressure];
-  if (!is_missing(defect) && !is_missing(state[Quantity::corrected_dynamic_pressure])) {
-    ++summary_.corrected;
-    if (state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
-      ++summary_.in_flight;
-      summary_.mean_defect += defect;  // the sum, until the end
-      summary_.min_defect = std::min(summary_.min_defect, defect);
-      summary_.max_defect = std::max(summary_.max_defect, defect);
-    }
+  /// Model with the calibration uncertainty of its thermometer, if uncertainties are computed and the model
+  /// does not state it: otherwise that of the temperature would be far too small.
+  ModelDefinition doubted() const {
+    const UncertaintyPart part = options_.uncertainty;
+    if (part == UncertaintyPart::none || part == UncertaintyPart::random ||
+        file_.variable_of(Quantity::recovery_temperature).empty())
+      return file_;
+    const ModelUncertainty stated = uncertainty_of(file_);
+    const bool is_stated =
+        stated.has_systematic() || (part != UncertaintyPart::systematic && stated.has_random());
+    return is_stated ? with_doubts(file_, doubts_of(file_, thermometer_calibration)) : file_;
   }
-  QualityFlags quality = loop_->quality();
-  const std::size_t record = noted_++ / static_cast<std::size_t>(summary_.rate);
-  if (chain_->is_outside_domain(state) &&
-      state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
-    outside_.resize(flight_.records());
-    outside_[record] = true;
-  }
-  quality.set(!frozen_.empty() && frozen_[record], Quality::sensor_frozen);
-  quality.set(!flaps_.empty() && flaps_[record], Quality::outside_domain);
-  double bits = 0.0;
-  if (quality.bits() != 0) {
-    for (std::size_t i = 0; i < quality_info.size(); ++i) {
-      const Quality bit = quality_info[i].bit;
-      // Bit of an earlier sample.
-      if (!quality.has(bit) || bit == Quality::filter_window_incomplete) continue;
-      ++summary_.flagged[i];
-      bits += static_cast<double>(bit);
-    }
-  }
-  filtered_->enter_flags(bits);
-}
 
-/// The stated uncertainty does not apply to records with extended flaps.
-void Processing::remove_uncertainty_with_flaps() {
-  const std::size_t record = noted_ / static_cast<std::size_t>(summary_.rate);
-  if (record >= flaps_.size() || !flaps_[record]) return;
-  for (const UncertainResult& each : uncertain_results) loop_->state()[each.uncertainty] = missing<double>();
-}
+  void choose_chain() { chain_ = std::make_shared<const Chain>(chain_of(doubted().model, roles_)); }
 
-/// Takes the results of the last run, which may belong to an earlier sample.
-void Processing::take_results() {
-  remove_uncertainty_with_flaps();
-  if (results_->leave(*loop_)) note_sample();
-  if (!filtered_->leave(*loop_) || !loop_->quality().has(Quality::filter_window_incomplete)) return;
-  filtered_->add_flag(static_cast<double>(Quality::filter_window_incomplete));
-  ++summary_.flagged[flagged_place(Quality::filter_window_incomplete)];
-}
-
-/// Before a gap and at the end: runs the loop with missing values until its last sample has left it.
-void Processing::flush() {
-  const double last = loop_->last_time();
-  for (std::size_t i = 1; filtered_->inside() > 0; ++i) {
-    for (const Input& input : inputs_) loop_->state()[input.quantity] = missing<double>();
-    loop_->run(last + static_cast<double>(i) * sample_step_);
-    take_results();
-  }
-  loop_->reset();
-  results_->reset();
-  filtered_->reset();
-}
-
-void Processing::process_block(RecordBlock block, std::vector<double>& times) {
-  const std::size_t samples = block.count * static_cast<std::size_t>(summary_.rate);
-  for (Input& input : inputs_) {
-    input.values.resize(samples);
-    input.excluded +=
-        flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
-  }
-  times.resize(samples);
-  flight_.read_sample_times(block, summary_.rate, times.data());
-  for (std::size_t i = 0; i < samples; ++i) {
-    const double time = times[i] - summary_.first_time;
-    if (filtered_->inside() > 0 && loop_->starts_anew(time)) flush();
-    State<double>& state = loop_->state();
-    const std::size_t record = block.first + i / static_cast<std::size_t>(summary_.rate);
+  /// Detects sensors that are constant in flight for much longer than their noise permits.
+  void find_frozen_sensors() {
+    constexpr std::size_t min_records = 300;  // a sensor with a single value is also excluded
+    const auto read = [this](const Input& input) {
+      return read_values(flight_, input.variable, input.conversion).values;
+    };
+    std::vector<bool> flying;
     for (const Input& input : inputs_) {
-      const bool is_left_out = !options_.keep_frozen && !input.frozen.empty() && input.frozen[record];
-      state[input.quantity] = is_left_out ? missing<double>() : input.values[i];
+      if (input.quantity != Quantity::dynamic_pressure) continue;
+      for (const double q : read(input)) flying.push_back(q >= summary_.flying_dynamic_pressure);
     }
-    results_->enter();
-    filtered_->enter();
-    loop_->run(time);
-    take_results();
+    const auto flown = static_cast<std::size_t>(std::count(flying.begin(), flying.end(), true));
+    std::vector<double> time;
+    for (Input& input : inputs_) {
+      const std::vector<double> values = read(input);
+      const std::vector<Segment> frozen =
+          find_frozen(values, flying, always_varies(input.quantity) && flown >= min_records);
+      if (frozen.empty()) continue;
+      if (time.empty()) time = record_times(flight_);
+      summary_.notes.push_back(
+          warning_note(frozen_text(input.variable, input.quantity, values, time, frozen)));
+      input.frozen.resize(values.size());
+      frozen_.resize(values.size());
+      for (const Segment& span : frozen) {
+        for (std::size_t i = span.first; i < span.first + span.count; ++i)
+          input.frozen[i] = frozen_[i] = true;
+      }
+    }
+    if (!frozen_.empty()) {
+      note(options_.keep_frozen
+               ? "readings of frozen sensors are corrected, too; PCORFLAG marks them"
+               : "readings of frozen sensors are treated as missing; --keep-frozen uses them");
+    }
   }
-}
 
-ProcessSummary Processing::run(const std::filesystem::path& output) {
-  summary_.aircraft = flight_.aircraft();
-  summary_.flying_dynamic_pressure = flying_dynamic_pressure(file_.model.aircraft);
-  summary_.project = flight_.project();
-  summary_.flight = flight_.flight_number();
-  summary_.records = flight_.records();
-  summary_.gaps = flight_.time().gap_count;
-  summary_.first_time = flight_.time().first;
-  summary_.last_time = flight_.time().last;
-  summary_.min_defect = std::numeric_limits<double>::infinity();
-  summary_.max_defect = -std::numeric_limits<double>::infinity();
-
-  choose_roles();
-  for (Note& each : flight_.file().notes()) summary_.notes.push_back(std::move(each));
-  for (Note& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
-  note_archive();
-  choose_inputs();
-  find_frozen_sensors();
-  find_flaps();
-  choose_rate();
-  note_uncertainty();
-  const FileDescription description = describe();
-  FlightWriter writer(output, flight_, description);
-  copy_variables(writer, description);
-  define_outputs(writer);
-  define_flags(writer);
-
-  std::vector<double> times;
-  for (const RecordBlock block : flight_.blocks()) {
-    process_block(block, times);
-    if (block.first + block.count == flight_.records()) flush();
-    for (const auto line : {&results_, &filtered_})
-      (*line)->write(writer, static_cast<std::size_t>(summary_.rate));
-    if (options_.progress) options_.progress(block.first + block.count, flight_.records());
+  /// Marks records with extended flaps unless an effect describes them: laws are usually fitted with flaps
+  /// in.
+  void find_flaps() {
+    if (changes_no_pressure(file_, options_)) return;
+    std::optional<std::vector<bool>> extended;
+    std::string variable;
+    try {
+      variable = read_role(flight_, file_, Quantity::flaps).variable;
+      const std::vector<ModelEffect>& effects = file_.model.effects;
+      if (std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
+            return !is_neutral(effect) && reads_flaps(effect, variable);
+          }))
+        return;
+      extended = flaps_extended(flight_, file_);
+    } catch (const Error& error) {  // a variable that no result needs is damaged
+      note("flaps are unknown: {}", error.what());
+      return;
+    }
+    if (!extended) {
+      note(
+          "flaps are not recorded and the lift does not determine them: records with extended flaps have no "
+          "quality bit");
+    } else if (std::find(extended->begin(), extended->end(), true) != extended->end()) {
+      flaps_ = std::move(*extended);
+      const std::string times = add_outside("flaps extended", flaps_);
+      summary_.notes.push_back(warning_note(fmt::format(
+          "do not use results of {}: flaps extended in {} of {} records{}, without an effect of the model; "
+          "PCORFLAG has the bit outside_domain, and no uncertainty is given",
+          times, std::count(flaps_.begin(), flaps_.end(), true), flaps_.size(),
+          variable.empty() ? " (by the lift)" : "")));
+    }
   }
-  writer.finish();
 
-  summary_.samples = summary_.records * static_cast<std::size_t>(summary_.rate);
-  if (summary_.in_flight > 0) {
-    summary_.mean_defect /= static_cast<double>(summary_.in_flight);
-  } else {
-    summary_.mean_defect = summary_.min_defect = summary_.max_defect = missing<double>();
+  /// Adds the spans of the marked records to the summary, and returns their times as text.
+  std::string add_outside(const std::string& reason, const std::vector<bool>& records,
+                          std::size_t max_gap = 0) {
+    const std::vector<double> time = record_times(flight_);
+    const std::vector<Segment> segments = marked_segments(records, max_gap);
+    for (const Segment& segment : segments) {
+      const double last = time[segment.first + segment.count - 1];
+      summary_.outside.push_back({reason, time[segment.first], last + flight_.time().step});
+    }
+    return times_of(segments, time);
   }
-  for (const Input& input : inputs_) note_excluded(input, input.excluded, summary_.notes);
-  note_domain();
-  if (summary_.corrected == 0) note("no sample could be corrected: see the quality bits");
-  return summary_;
-}
 
+  /// Notes the samples in flight outside the domain of the law, known after the run.
+  void note_domain() {
+    const auto count = std::count(outside_.begin(), outside_.end(), true);
+    if (count == 0) return;
+    // Values that cross a limit many times in a minute give one span.
+    const auto records_per_minute = static_cast<std::size_t>(60.0 / flight_.time().step);
+    note("delta-p is extrapolated in {} of {} records, outside the domain of the law: {}", count,
+         outside_.size(), add_outside("outside the domain", outside_, records_per_minute));
+  }
+
+  void choose_rate() {
+    for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+      summary_.rate = std::max(summary_.rate, flight_.variable(file_.variable_of(pressure)).rate);
+    }
+    std::string why;
+    const double rate = summary_.rate / flight_.time().step;
+    uncertainty_ = uncertainty();
+    const ShortestPeriods periods = choose_periods();
+    loop_ = Loop::build(chain_, rate, &why, options_.correct_with, uncertainty_, periods);
+    if (!loop_) fail_model(why);
+    loop_->do_not_watch_sensors();  // this host knows their whole series
+    results_.emplace(loop_->delay());
+    filtered_.emplace(loop_->delay() + (chain_->has_lams() ? LowPass::delay(rate) : 0));
+    sample_step_ = 1.0 / rate;
+    if (!options_.hydrostatic) return;
+    loop_->add(std::make_unique<HeightStep>());
+    if (!loop_->order(&why)) fail_model(why);
+  }
+
+  /// Rates of change are limited to the frequencies at which the recorded values are signal.
+  ShortestPeriods choose_periods() {
+    ShortestPeriods periods;
+    std::vector<double> time;
+    for (const auto& [quantity, rate] : rates) {
+      if (!chain_->derives(rate)) continue;
+      if (time.empty()) time = record_times(flight_);
+      const auto input = std::find_if(inputs_.begin(), inputs_.end(),
+                                      [of = quantity](const Input& each) { return each.quantity == of; });
+      const FastSeries series = read_fast(flight_, *input, flight_.variable(input->variable).rate);
+      const SignalBand band = signal_band_of(series, time, flight_.time().step);
+      periods.emplace_back(rate, std::max(RateFilter::usual_period, band.min_period));
+      leave_out_noise(rate, band);
+    }
+    return periods;
+  }
+
+  /// Effects that add more noise to a result than they remove error are not applied.
+  void leave_out_noise(Quantity rate, const SignalBand& band) {
+    const double signal = band.rate_variance - band.rate_noise;
+    if (!(band.rate_noise > signal)) return;
+    for (ModelEffect& effect : file_.model.effects) {
+      if (effect.is_formula()) continue;
+      const EffectInfo& info = *effect_named(effect.id);
+      const bool reads = std::find(info.needs.begin(), info.needs.end(), rate) != info.needs.end();
+      double& time = effect.parameters[0];
+      if (!reads || time == info.parameters[0].neutral) continue;
+      const std::string_view unit = info_of(info.location).unit;
+      note(
+          "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and remove an error "
+          "of "
+          "{:.2g} {}",
+          effect.id, time, std::abs(time) * std::sqrt(band.rate_noise), unit,
+          std::abs(time) * std::sqrt(std::max(0.0, signal)), unit);
+      time = info.parameters[0].neutral;
+    }
+    choose_chain();
+  }
+
+  /// Stated uncertainty of the model, according to the options; missing parts are noted. @throws Error if a
+  /// requested part is not stated.
+  ModelUncertainty uncertainty() {
+    const UncertaintyPart part = options_.uncertainty;
+    if (part == UncertaintyPart::none) return {};
+    ModelUncertainty stated = uncertainty_of(doubted());
+    if (part == UncertaintyPart::systematic) stated = stated.systematic_part();
+    if (part == UncertaintyPart::random) stated = stated.random_part();
+    if (stated.has_systematic() || stated.has_random()) return stated;
+    if (part == UncertaintyPart::total_if_stated) return {};
+    const char* const what = part == UncertaintyPart::systematic
+                                 ? "no standard error or covariance of a parameter"
+                             : part == UncertaintyPart::random ? "no uncertainty of a sample in [uncertainty]"
+                                                               : "no uncertainty";
+    fail_model(
+        fmt::format("it states {}; run 'pcor refit' for the covariance, set the "
+                    "uncertainties of the sensors in [uncertainty], or omit --uncertainty",
+                    what));
+  }
+
+  /// True if an uncertainty is stated of a coefficient at one of the locations, or of one of the roles.
+  bool states(std::initializer_list<EffectLocation> locations, std::initializer_list<Quantity> roles) const {
+    const std::size_t count = chain_->parameters().size();
+    for (std::size_t effect = 0; !uncertainty_.covariance.empty() && effect < chain_->effect_count();
+         ++effect) {
+      if (std::find(locations.begin(), locations.end(), chain_->location_of(effect)) == locations.end())
+        continue;
+      const std::size_t first = chain_->first_parameter_of(effect);
+      for (std::size_t i = first; i < first + chain_->parameter_count_of(effect); ++i) {
+        if (uncertainty_.covariance[i * count + i] > 0.0) return true;
+      }
+    }
+    return std::any_of(roles.begin(), roles.end(),
+                       [this](Quantity role) { return uncertainty_.random[index(role)] > 0.0; });
+  }
+
+  void note_uncertainty() {
+    if (!uncertainty_.has_systematic() && !uncertainty_.has_random()) return;
+    if (options_.correct_with == CorrectWith::lams) {
+      note("no uncertainty is given for LAMS-corrected samples: the model covariance does not apply to them");
+    }
+    using Q = Quantity;
+    if (uncertainty_.static_defect == 0.0 && uncertainty_.static_defect_ratio == 0.0 &&
+        !states({EffectLocation::static_defect}, {})) {
+      note("the uncertainties exclude that of delta-p, which the model does not state");
+    }
+    if (!states({EffectLocation::static_transducer, EffectLocation::static_line}, {Q::static_pressure}) ||
+        !states({EffectLocation::dynamic_transducer, EffectLocation::static_line, EffectLocation::total_line,
+                 EffectLocation::pitot},
+                {Q::dynamic_pressure})) {
+      note(
+          "the uncertainties exclude the pressure transducers, because the model does not state both; set "
+          "static_pressure and dynamic_pressure in its table [uncertainty]");
+    }
+    for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
+      if (chain_->effect_count() == file_.model.effects.size()) break;  // none was added
+      const std::vector<std::string>& known = file_.covariance.parameters;
+      if (!doubt.is_usual || std::find(known.begin(), known.end(), doubt.name()) != known.end()) continue;
+      note(
+          "the uncertainties assume {} = 0 +- {:g}, the usual size, because the model states no value; set "
+          "\"{}\" in its table [uncertainty]",
+          doubt.name(), doubt.size, doubt.name());
+    }
+    if (chain_->has_temperature() &&
+        !states({EffectLocation::temperature, EffectLocation::recovery, EffectLocation::ambient_temperature},
+                {Q::recovery_temperature, Q::ambient_temperature})) {
+      note("the uncertainties of temperature and airspeed exclude the thermometer");
+    }
+  }
+
+  /// Notes that the archive corrected the pressures, or that the model changes no pressure.
+  void note_archive() {
+    const std::string& static_pressure = file_.variables.at(Quantity::static_pressure);
+    const std::string& dynamic_pressure = file_.variables.at(Quantity::dynamic_pressure);
+    const std::vector<PressurePair>& processed = family_of(file_, flight_).processed;
+    const bool is_corrected = std::any_of(processed.begin(), processed.end(), [&](const PressurePair& pair) {
+      return pair.static_pressure == static_pressure && pair.dynamic_pressure == dynamic_pressure;
+    });
+    if (changes_no_pressure(file_, options_)) {
+      note(
+          "the model changes no pressure: all its coefficients are zero, so the pressures of the output are "
+          "the {} {} and {}; pcor refit finds coefficients if the flight determines them",
+          is_corrected ? "archived" : "recorded", static_pressure, dynamic_pressure);
+    } else if (is_corrected) {
+      note("{} and {} were corrected by the archive; the model corrects the remaining error", static_pressure,
+           dynamic_pressure);
+    }
+  }
+
+  FileDescription describe() const {
+    FileDescription description;
+    description.history = options_.history;
+    name_coordinates(flight_, file_, description);
+    description.attributes = origin_attributes(flight_.path(), given_, options_);
+    description.attributes.emplace_back("pcor_time_stamp",
+                                        flight_.timestamp_alignment() == TimestampAlignment::begin
+                                            ? "begin of the record"
+                                            : "middle of the record");
+    Names notes;
+    for (const Note& note : summary_.notes) notes.push_back(format_note(note));
+    if (!notes.empty())
+      description.attributes.emplace_back("pcor_notes", fmt::format("{}", fmt::join(notes, "; ")));
+    return description;
+  }
+
+  void copy_variables(FlightWriter& writer, const FileDescription& description) {
+    Names names{description.latitude, description.longitude, description.altitude};
+    for (const Input& input : inputs_) names.push_back(input.variable);
+    if (options_.hydrostatic) {
+      for (const std::string& name : flown_variables(flight_, file_)) names.push_back(name);
+    }
+    if (options_.copy_all) names = flight_.variables();
+    for (const std::string& name : names) {
+      if (name.empty() || writer.has(name)) continue;
+      if (!options_.copy_all || writer.can_copy(name)) {
+        writer.copy(name);
+      } else if (name != flight_.time_variable()) {
+        note("{} has a type that cannot be copied and is omitted", name);
+      }
+    }
+  }
+
+  /// Inputs of a result by their names in the file: other results, and recorded variables.
+  Names dependencies_of(const OutputRow& row) const {
+    Names names;
+    for (const Quantity quantity : row.from({*chain_, options_.correct_with})) {
+      const auto name = names_.find(quantity);
+      if (name != names_.end() && std::find(names.begin(), names.end(), name->second) == names.end())
+        names.push_back(name->second);
+    }
+    return names;
+  }
+
+  void define_outputs(FlightWriter& writer) {
+    for (const OutputRow& row : output_table()) {
+      if (!is_written(row)) continue;
+      const bool is_uncertainty = row.uncertainty_of != Quantity::count;
+      const bool is_temperature = !is_uncertainty && info_of(row.quantity).unit == "K";
+      OutputVariable variable;
+      variable.name = to_string(row.name);
+      variable.rate = summary_.rate;
+      variable.units = is_temperature ? "degC" : std::string(info_of(row.quantity).unit);
+      variable.long_name = row.long_name;
+      variable.standard_name = row.standard_name;
+      variable.category = row.category;
+      variable.dependencies = dependencies_of(row);
+      for (const OutputRow& other : output_table()) {
+        if (other.uncertainty_of == row.quantity && is_written(other))
+          variable.ancillary_variables.push_back(to_string(other.name));
+      }
+      variable.ancillary_variables.push_back(to_string(std::string(quality_output)));
+      if (is_uncertainty) {
+        variable.dependencies = {names_.at(row.uncertainty_of)};
+        variable.attributes = {{"coverage_factor", "1"},
+                               {"coverage_content_type", "qualityInformation"},
+                               {"comment", uncertainty_comment()}};
+      }
+      if (row.quantity == Quantity::height_step) {
+        variable.attributes = {{"temperature_calibration", temperature_calibration()},
+                               {"model", archived_model(file_, options_.correct_with)}};
+      }
+      Output output{row.quantity, is_temperature ? -constants::ice_point : 0.0, define(writer, variable)};
+      names_[row.quantity] = variable.name;
+      if (row.is_filtered) {
+        filtered_->add(std::move(output));
+      } else {
+        results_->add(std::move(output));
+      }
+    }
+  }
+
+  /// An uncertainty is written only with its result.
+  bool is_written(const OutputRow& row) const {
+    if (!loop_->writes(row.quantity)) return false;
+    return row.uncertainty_of == Quantity::count || loop_->writes(row.uncertainty_of);
+  }
+
+  std::string uncertainty_comment() const {
+    const bool systematic = uncertainty_.has_systematic();
+    const bool random = uncertainty_.has_random();
+    return fmt::format("one standard deviation: {}",
+                       systematic && random ? "the systematic part, which is the same error in neighbouring "
+                                              "samples, and the random part, which is not"
+                       : systematic ? "the systematic part alone, the same error in neighbouring samples"
+                                    : "the random part alone, of a single sample");
+  }
+
+  void define_flags(FlightWriter& writer) {
+    OutputVariable flags;
+    flags.name = to_string(std::string(quality_output));
+    flags.rate = summary_.rate;
+    flags.long_name = "Quality bits of the pressure correction";
+    flags.standard_name = "status_flag";
+    flags.category = "Housekeeping";
+    for (const QualityInfo& info : quality_info) {
+      flags.flags.push_back({static_cast<int>(info.bit), std::string(info.name)});
+    }
+    flags.dependencies = summary_.outputs;
+    filtered_->set_flags(define(writer, flags));
+  }
+
+  std::size_t define(FlightWriter& writer, const OutputVariable& variable) {
+    if (writer.has(variable.name)) {
+      flight_.file().refuse(
+          Error::Code::usage,
+          ": it has a variable {} already; give --suffix to name the derived variables apart "
+          "from the input's, e.g. --suffix _NEW",
+          variable.name);
+    }
+    summary_.outputs.push_back(variable.name);
+    return writer.define(variable);
+  }
+
+  /// Coefficients a0, a1 and a2 of the calibration included in ATX, zero without calibration.
+  std::string temperature_calibration() {
+    std::vector<double> coefficients(3, 0.0);
+    for (const ModelEffect& effect : file_.model.effects) {
+      if (effect.id == effects::TempCalibration::info().id) {
+        coefficients = effect.parameters;
+      } else if (effect.is_formula() && effect.location == EffectLocation::ambient_temperature) {
+        note("the attribute temperature_calibration of HYDSTEP omits the effect {}, because it is a formula",
+             effect.id);
+      }
+    }
+    return fmt::format("{}", fmt::join(coefficients, " "));
+  }
+
+  void note_sample() {
+    const State<double>& state = loop_->state();
+    const double defect = state[Quantity::corrected_static_pressure] - state[Quantity::port_static_pressure];
+    if (!is_missing(defect) && !is_missing(state[Quantity::corrected_dynamic_pressure])) {
+      ++summary_.corrected;
+      if (state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
+        ++summary_.in_flight;
+        summary_.mean_defect += defect;  // the sum, until the end
+        summary_.min_defect = std::min(summary_.min_defect, defect);
+        summary_.max_defect = std::max(summary_.max_defect, defect);
+      }
+    }
+    QualityFlags quality = loop_->quality();
+    const std::size_t record = noted_++ / static_cast<std::size_t>(summary_.rate);
+    if (chain_->is_outside_domain(state) &&
+        state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
+      outside_.resize(flight_.records());
+      outside_[record] = true;
+    }
+    quality.set(!frozen_.empty() && frozen_[record], Quality::sensor_frozen);
+    quality.set(!flaps_.empty() && flaps_[record], Quality::outside_domain);
+    double bits = 0.0;
+    if (quality.bits() != 0) {
+      for (std::size_t i = 0; i < quality_info.size(); ++i) {
+        const Quality bit = quality_info[i].bit;
+        // Bit of an earlier sample.
+        if (!quality.has(bit) || bit == Quality::filter_window_incomplete) continue;
+        ++summary_.flagged[i];
+        bits += static_cast<double>(bit);
+      }
+    }
+    filtered_->enter_flags(bits);
+  }
+
+  /// Takes the results of the last run, which may belong to an earlier sample.
+  void take_results() {
+    const std::size_t record = noted_ / static_cast<std::size_t>(summary_.rate);
+    if (record < flaps_.size() && flaps_[record]) {  // the stated uncertainty does not apply
+      for (const UncertainResult& each : uncertain_results)
+        loop_->state()[each.uncertainty] = missing<double>();
+    }
+    if (results_->leave(*loop_)) note_sample();
+    if (!filtered_->leave(*loop_) || !loop_->quality().has(Quality::filter_window_incomplete)) return;
+    filtered_->add_flag(static_cast<double>(Quality::filter_window_incomplete));
+    for (std::size_t i = 0; i < quality_info.size(); ++i)
+      summary_.flagged[i] += quality_info[i].bit == Quality::filter_window_incomplete ? 1 : 0;
+  }
+
+  /// Before a gap and at the end: runs the loop with missing values until its last sample has left it.
+  void flush() {
+    const double last = loop_->last_time();
+    for (std::size_t i = 1; filtered_->inside() > 0; ++i) {
+      for (const Input& input : inputs_) loop_->state()[input.quantity] = missing<double>();
+      loop_->run(last + static_cast<double>(i) * sample_step_);
+      take_results();
+    }
+    loop_->reset();
+    results_->reset();
+    filtered_->reset();
+  }
+
+  void process_block(RecordBlock block) {
+    const std::size_t samples = block.count * static_cast<std::size_t>(summary_.rate);
+    for (Input& input : inputs_) {
+      input.values.resize(samples);
+      input.excluded +=
+          flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
+    }
+    std::vector<double> times(samples);
+    flight_.read_sample_times(block, summary_.rate, times.data());
+    for (std::size_t i = 0; i < samples; ++i) {
+      const double time = times[i] - summary_.first_time;
+      if (filtered_->inside() > 0 && loop_->starts_anew(time)) flush();
+      State<double>& state = loop_->state();
+      const std::size_t record = block.first + i / static_cast<std::size_t>(summary_.rate);
+      for (const Input& input : inputs_) {
+        const bool is_left_out = !options_.keep_frozen && !input.frozen.empty() && input.frozen[record];
+        state[input.quantity] = is_left_out ? missing<double>() : input.values[i];
+      }
+      results_->enter();
+      filtered_->enter();
+      loop_->run(time);
+      take_results();
+    }
+  }
+
+  Flight flight_;
+  const ModelDefinition& given_;
+  ModelDefinition file_;  // model adapted to this flight
+  const ProcessOptions& options_;
+  std::vector<Quantity> roles_;
+  std::shared_ptr<const Chain> chain_;
+  std::optional<Loop> loop_;
+  ModelUncertainty uncertainty_;  // uncertainty of the model and its inputs
+  std::vector<Input> inputs_;
+  std::optional<DelayLine> results_;
+  std::optional<DelayLine> filtered_;      // later still; and the quality bits, one of which is the filter's
+  double sample_step_ = 1.0;               // s
+  std::vector<bool> frozen_;               // records in which any sensor is frozen; empty: none
+  std::vector<bool> flaps_;                // records outside the law by extended flaps; empty: none
+  std::vector<bool> outside_;              // records in flight outside the domain of the law; empty: none
+  std::size_t noted_ = 0;                  // samples of which results are available
+  std::map<Quantity, std::string> names_;  // in the output: of the inputs and the results
+  ProcessSummary summary_;
+};
+
+}  // namespace
 }  // namespace pcor::internal
 
 namespace pcor {

@@ -6,36 +6,15 @@
 #include <system_error>
 
 #include <pcor/base/error.hpp>
-#include <pcor/process/up_to_date.hpp>
+#include "process/origin.hpp"
 
 namespace pcor {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-void process_one(const ProcessTask& task, const ProcessFlightsOptions& options, ProcessedFlight& flight) {
-  if (options.if_stale && is_up_to_date(task.output, task.input, flight.model, options.process)) {
-    flight.state = FlightState::up_to_date;
-    return;
-  }
-  ProcessOptions process = options.process;
-  process.history = task.history;
-  flight.summary = process_flight(task.input, flight.model, task.output, process);
-}
-
-}  // namespace
-
 std::string_view to_string(FlightState state) {
-  switch (state) {
-    case FlightState::up_to_date:
-      return "up to date";
-    case FlightState::unreadable:
-      return "unreadable";
-    case FlightState::processed:
-      break;
-  }
-  return "processed";
+  if (state == FlightState::processed) return "processed";
+  return state == FlightState::up_to_date ? "up to date" : "unreadable";
 }
 
 std::vector<ProcessTask> tasks_in_folder(const std::vector<fs::path>& flights, const fs::path& folder) {
@@ -72,7 +51,14 @@ std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tas
     flight.output = tasks[i].output;
     try {
       flight.model = model_of(flight.input);
-      process_one(tasks[i], options, flight);
+      if (options.if_stale &&
+          internal::is_up_to_date(flight.output, flight.input, flight.model, options.process)) {
+        flight.state = FlightState::up_to_date;
+      } else {
+        ProcessOptions process = options.process;
+        process.history = tasks[i].history;
+        flight.summary = process_flight(flight.input, flight.model, flight.output, process);
+      }
     } catch (const Error& error) {
       if (!options.skip_unreadable || error.code() == Error::Code::output) throw;
       flight.state = FlightState::unreadable;

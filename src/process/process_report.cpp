@@ -8,7 +8,6 @@
 #include <cmath>
 #include <optional>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include <pcor/base/atomic_file.hpp>
@@ -28,22 +27,7 @@ namespace {
 
 using Series = std::vector<double>;
 
-/// A result as the page shows it.
-struct Shown {
-  const char* standard_name;
-  const char* title;
-  const char* unit;
-};
-
-constexpr std::array<Shown, 7> shown{{{"PCOR", "delta-p", "hPa"},
-                                      {"PCOR_uncertainty", "standard uncertainty of delta-p", "hPa"},
-                                      {"PSXC", "corrected static pressure", "hPa"},
-                                      {"QCXC", "corrected dynamic pressure", "hPa"},
-                                      {"MACHX", "Mach number", "1"},
-                                      {"ATX", "ambient temperature", "degC"},
-                                      {"TASX", "true airspeed", "m/s"}}};
-
-// Indices in `shown`.
+// Indices in the columns of `Outputs`.
 constexpr std::size_t delta_column = 0;
 constexpr std::size_t static_column = 2;
 constexpr std::size_t dynamic_column = 3;
@@ -88,15 +72,13 @@ struct Spread {
 /// Differences from the original processing in flight, by the state of the flaps.
 struct FlapsDifferences {
   std::set<std::string> variables{};
-  Spread flaps_in{};
-  Spread flaps_out{};
-  Spread unknown{};
+  std::array<std::pair<const char*, Spread>, 3> by_flaps{{{"in", {}}, {"out", {}}, {"unknown", {}}}};
 
   /// @param difference in flight, NaN elsewhere
   void add(const Series& difference, const std::optional<std::vector<bool>>& extended) {
     for (std::size_t i = 0; i < difference.size(); ++i) {
-      if (std::isnan(difference[i])) continue;
-      (!extended ? unknown : (*extended)[i] ? flaps_out : flaps_in).add(difference[i]);
+      if (!std::isnan(difference[i]))
+        by_flaps[!extended ? 2 : (*extended)[i] ? 1 : 0].second.add(difference[i]);
     }
   }
 };
@@ -104,12 +86,7 @@ struct FlapsDifferences {
 /// The series of the outputs, one flight after another.
 class Outputs {
  public:
-  Outputs(Report& report, const std::string& suffix) : report_(report), suffix_(suffix) {
-    for (const Shown& each : shown)
-      columns_.push_back(
-          {each.standard_name, each.title, std::string_view(each.unit) == "1" ? "" : each.unit, {}});
-    columns_.push_back({own_difference, "static pressure minus that of the original processing", "hPa", {}});
-  }
+  Outputs(Report& report, const std::string& suffix) : report_(report), suffix_(suffix) {}
 
   const FlapsDifferences& differences() const { return differences_; }
 
@@ -119,10 +96,11 @@ class Outputs {
     report_.flight_starts.push_back(report_.time.size());
     report_.flight_names.push_back(processed.output.filename().string());
     report_.time.insert(report_.time.end(), time.begin(), time.end());
-    for (std::size_t i = 0; i < shown.size(); ++i) {
-      const std::string name = processed.model.output_name(shown[i].standard_name) + suffix_;
+    for (std::size_t i = 0; i + 1 < columns_.size(); ++i) {
+      const std::string name = processed.model.output_name(columns_[i].name) + suffix_;
+      const std::string unit = columns_[i].unit.empty() ? "1" : columns_[i].unit;
       Series values;
-      if (output.has(name)) values = read_values(output, name, output.conversion(name, shown[i].unit)).values;
+      if (output.has(name)) values = read_values(output, name, output.conversion(name, unit)).values;
       append(columns_[i], values);
     }
     add_difference(processed);
@@ -159,19 +137,25 @@ class Outputs {
 
   Report& report_;
   const std::string& suffix_;
-  std::vector<ReportColumn> columns_;
+  std::vector<ReportColumn> columns_{
+      {"PCOR", "delta-p", "hPa", {}},
+      {"PCOR_uncertainty", "standard uncertainty of delta-p", "hPa", {}},
+      {"PSXC", "corrected static pressure", "hPa", {}},
+      {"QCXC", "corrected dynamic pressure", "hPa", {}},
+      {"MACHX", "Mach number", "", {}},
+      {"ATX", "ambient temperature", "degC", {}},
+      {"TASX", "true airspeed", "m/s", {}},
+      {own_difference, "static pressure minus that of the original processing", "hPa", {}}};
   FlapsDifferences differences_{};
 };
 
 ReportTable differences_table(const FlapsDifferences& differences) {
-  ReportTable table;
-  table.title = "Difference from the original processing, in flight";
-  table.caption = fmt::format("Corrected static pressure minus {} of the input. Scatter: standard deviation.",
-                              fmt::join(differences.variables, ", "));
-  table.headers = {"flaps", "samples", "mean (hPa)", "scatter (hPa)"};
-  for (const auto& [flaps, spread] :
-       {std::pair("in", differences.flaps_in), std::pair("out", differences.flaps_out),
-        std::pair("unknown", differences.unknown)}) {
+  ReportTable table{
+      "Difference from the original processing, in flight",
+      fmt::format("Corrected static pressure minus {} of the input. Scatter: standard deviation.",
+                  fmt::join(differences.variables, ", ")),
+      {"flaps", "samples", "mean (hPa)", "scatter (hPa)"}};
+  for (const auto& [flaps, spread] : differences.by_flaps) {
     if (spread.count > 0.0)
       table.rows.push_back({flaps, fmt::format("{:.0f}", spread.count), fmt::format("{:+.3f}", spread.mean()),
                             fmt::format("{:.3f}", spread.scatter())});
@@ -206,43 +190,33 @@ void add_pictures(Report& report, const FlapsDifferences& differences) {
                                    {"ATX"}});
 }
 
-std::string hpa(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : std::string(); }
-
 ReportTable flights_table(const std::vector<ProcessedFlight>& flights) {
-  ReportTable table;
-  table.title = "Flights";
-  table.caption = "Delta-p of samples in flight.";
-  table.headers = {"flight",
-                   "model",
-                   "state",
-                   "samples",
-                   "corrected",
-                   "mean delta-p (hPa)",
-                   "minimum delta-p (hPa)",
-                   "maximum delta-p (hPa)"};
+  ReportTable table{"Flights",
+                    "Delta-p of samples in flight.",
+                    {"flight", "model", "state", "samples", "corrected", "mean delta-p (hPa)",
+                     "minimum delta-p (hPa)", "maximum delta-p (hPa)"}};
   for (const ProcessedFlight& flight : flights) {
     std::vector<std::string> row{flight.input.filename().string(), flight.model.model.name,
                                  std::string(to_string(flight.state))};
+    if (!flight.reason.empty()) row.back() += ": " + flight.reason;
     if (flight.state == FlightState::processed) {
       const ProcessSummary& summary = flight.summary;
       for (const std::size_t count : {summary.samples, summary.corrected})
         row.push_back(std::to_string(count));
       for (const double value : {summary.mean_defect, summary.min_defect, summary.max_defect})
-        row.push_back(hpa(value));
-    } else {
-      if (!flight.reason.empty()) row.back() += ": " + flight.reason;
-      row.resize(table.headers.size());
+        row.push_back(std::isfinite(value) ? fmt::format("{:.2f}", value) : "");
     }
+    row.resize(table.headers.size());
     table.rows.push_back(std::move(row));
   }
   return table;
 }
 
 ReportTable flags_table(const std::vector<ProcessedFlight>& flights) {
-  ReportTable table;
-  table.title = "Quality bits";
-  table.caption = "Samples of the flights processed that have each bit of PCORFLAG, flown or on the ground.";
-  table.headers = {"quality bit", "meaning", "samples"};
+  ReportTable table{
+      "Quality bits",
+      "Samples of the flights processed that have each bit of PCORFLAG, flown or on the ground.",
+      {"quality bit", "meaning", "samples"}};
   for (std::size_t i = 0; i < quality_info.size(); ++i) {
     std::size_t count = 0;
     for (const ProcessedFlight& flight : flights) count += flight.summary.flagged[i];

@@ -17,7 +17,6 @@ constexpr double max_kept_gap = 300.0;        // s
 constexpr std::size_t max_interpolation = 5;  // cells
 constexpr double max_vertical_speed = 40.0;   // m/s; a faster change is a jump of the height, not a climb
 constexpr double rounding = 1e-6;             // s, rounding error of a time since 1970 in double precision
-constexpr double radians = 3.14159265358979323846 / 180.0;
 
 // Cell of each sample.
 struct Division {
@@ -86,17 +85,6 @@ std::vector<double> means(const std::vector<double>& samples, const Division& di
   return sum;
 }
 
-// Angles that continue beyond a full turn instead of wrapping.
-std::vector<double> unwrapped(std::vector<double> angles) {
-  double last = nan;
-  for (double& angle : angles) {
-    if (!std::isfinite(angle)) continue;
-    if (!std::isnan(last)) angle = last + std::remainder(angle - last, 360.0);
-    last = angle;
-  }
-  return angles;
-}
-
 // The change per second from each known value to the next one, over any gap between them.
 std::vector<double> rate_of_change(const std::vector<double>& values, const std::vector<double>& begin) {
   std::vector<double> rate(values.size(), nan);
@@ -115,6 +103,7 @@ std::vector<double> rate_of_change(const std::vector<double>& values, const std:
 
 std::vector<double> coordinated_roll(const Cells& cells) {
   constexpr std::size_t smoothing = 3;
+  constexpr double radians = constants::radians_per_degree;
   std::vector<double> roll = running_mean(rate_of_change(cells.heading, cells.begin), smoothing);
   for (std::size_t i = 0; i < roll.size(); ++i) {
     roll[i] = std::atan(roll[i] * radians * cells.airspeed[i] / constants::standard_gravity) / radians;

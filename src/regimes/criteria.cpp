@@ -1,20 +1,9 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include <pcor/regimes/regimes.hpp>
 
 namespace pcor {
 namespace {
-
-struct KnownAircraft {
-  std::string_view registration;
-  RegimeCriteria (*criteria)();
-};
-
-/// Aircraft with specific criteria.
-constexpr std::array<KnownAircraft, 2> known_aircraft{
-    {{"N130AR", RegimeCriteria::c130}, {"N677F", RegimeCriteria::gv}}};
 
 /// Common part of the criteria of pitch and yaw manoeuvres, for the oscillating angle.
 std::string oscillation(const char* angle, double shortest, double longest, double variance, double time,
@@ -41,10 +30,9 @@ RegimeCriteria RegimeCriteria::gv() {
 }
 
 std::optional<RegimeCriteria> RegimeCriteria::of(std::string_view aircraft) {
-  const auto found = std::find_if(
-      known_aircraft.begin(), known_aircraft.end(),
-      [&](const KnownAircraft& each) { return aircraft.find(each.registration) != std::string_view::npos; });
-  return found == known_aircraft.end() ? std::nullopt : std::optional(found->criteria());
+  if (aircraft.find("N130AR") != std::string_view::npos) return c130();
+  if (aircraft.find("N677F") != std::string_view::npos) return gv();
+  return std::nullopt;
 }
 
 std::string criterion_of(Regime regime, const RegimeCriteria& c) {
@@ -82,8 +70,7 @@ std::string criterion_of(Regime regime, const RegimeCriteria& c) {
     case Regime::reverse_heading:
       return fmt::format(
           "two straight legs (roll below {} deg) of {} to {} min within {} m of height, with headings 180 "
-          "deg "
-          "apart (to {} deg), at most {} min after one another",
+          "deg apart (to {} deg), at most {} min after one another",
           c.leg_roll, c.leg_shortest / 60.0, c.leg_longest / 60.0, c.leg_height_range, c.leg_heading,
           c.turn_longest / 60.0);
     case Regime::circle:

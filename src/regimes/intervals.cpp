@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include <pcor/base/utc.hpp>
 
@@ -11,64 +12,45 @@ namespace {
 
 constexpr double day = 86400.0;  // s
 
-bool is_time_of_day(double time) { return time < day; }
-
-// Distance of a time from a flight, s; zero within the flight.
-double distance(double time, double first_time, double last_time) {
-  return std::max({first_time - time, time - last_time, 0.0});
-}
-
 // Moment with that time of day in the flight or nearest to it.
 double nearest_moment(double time_of_day, double first_time, double last_time) {
+  const auto distance = [&](double time) { return std::max({first_time - time, time - last_time, 0.0}); };
   double moment = midnight_before(first_time) - day + time_of_day;
   for (double next = moment + day; next - day <= last_time; next += day) {
-    if (distance(next, first_time, last_time) < distance(moment, first_time, last_time)) moment = next;
+    if (distance(next) < distance(moment)) moment = next;
   }
   return moment;
 }
 
+// Places times of the day on the day of the flight.
 template <class Span>
 void shift_day(Span& span, double first_time, double last_time) {
-  if (is_time_of_day(span.begin)) span.begin = nearest_moment(span.begin, first_time, last_time);
-  if (is_time_of_day(span.end)) {
+  if (span.begin < day) span.begin = nearest_moment(span.begin, first_time, last_time);
+  if (span.end < day) {
     span.end += midnight_before(span.begin);
     if (span.end <= span.begin) span.end += day;
   }
 }
 
-bool overlap(const Interval& interval, double begin, double end) {
-  return interval.begin < end && begin < interval.end;
-}
-
-// Removes [begin, end) from an interval; remainders that are long enough are added to `kept`.
-void keep_outside(const Interval& interval, double begin, double end, std::vector<Interval>& kept) {
-  if (!overlap(interval, begin, end)) {
-    kept.push_back(interval);
-    return;
-  }
-  if (is_manoeuvre(interval.regime)) return;
-  if (interval.begin < begin) {
-    kept.push_back(interval);
-    kept.back().end = begin;
-  }
-  if (end < interval.end) {
-    kept.push_back(interval);
-    kept.back().begin = end;
-  }
-}
-
-// Removes the intervals that `concerns` from [begin, end), together with the other leg of a pair.
+// Removes the intervals that `concerns` from [begin, end), together with the other leg of a pair; parts of
+// manoeuvres are not kept.
 template <class Concerns>
 void remove(std::vector<Interval>& intervals, double begin, double end, Concerns concerns) {
   std::vector<int> pairs;
   std::vector<Interval> kept;
   for (const Interval& interval : intervals) {
-    if (!concerns(interval)) {
+    if (!concerns(interval) || interval.end <= begin || end <= interval.begin) {
       kept.push_back(interval);
       continue;
     }
-    if (interval.pair != 0 && overlap(interval, begin, end)) pairs.push_back(interval.pair);
-    keep_outside(interval, begin, end, kept);
+    if (interval.pair != 0) pairs.push_back(interval.pair);
+    if (is_manoeuvre(interval.regime)) continue;
+    for (const auto& [from, to] : {std::pair(interval.begin, begin), std::pair(end, interval.end)}) {
+      if (!(from < to)) continue;
+      kept.push_back(interval);
+      kept.back().begin = from;
+      kept.back().end = to;
+    }
   }
   const auto lost_its_partner = [&](const Interval& interval) {
     return std::find(pairs.begin(), pairs.end(), interval.pair) != pairs.end();

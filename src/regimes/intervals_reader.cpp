@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "base/quoting.hpp"
 #include "base/text_file.hpp"
@@ -17,40 +18,40 @@ using namespace internal;
 namespace {
 
 constexpr std::string_view intervals_format = "pcor-intervals/1";
-constexpr double day_length = 86400.0;           // s
-constexpr double max_of_day = day_length / 2.0;  // s between two times of day; a longer interval is a mistake
-constexpr const char* requested_time =
-    "a date and time such as 2011-11-17T20:10:00Z, or a time of the day such as \"20:10:00\"";
-
-// Formats "20:10" and "20:10:00.5".
-std::optional<toml::time> time_of_day(const std::string& text) {
-  return moment_in<toml::time>(text.size() == 5 ? text + ":00" : text);
-}
-
-Names names_of_regimes() { return names_of(regime_info, &RegimeInfo::name); }
+constexpr double day_length = 86400.0;  // s
 
 // Reads a parsed file; entries without a meaning are refused with their position.
 class Reader final : TomlReader {
  public:
   explicit Reader(std::string_view name) : TomlReader(name) {}
 
-  UserIntervals read(std::string_view text) {
+  UserIntervals read(std::string_view text) const {
     const toml::table root = parse(text);
     check_format(root);
     refuse_unknown(root, "", {"format", "flight", "add", "veto", "exclude"});
-    if (const toml::node* flight = root.get("flight")) user_.flight = text_of(*flight, "'flight'");
-    each(root, "add", {"regime", "begin", "end", "note", "pair"}, &Reader::add);
-    each(root, "veto", {"regime", "begin", "end"}, &Reader::veto);
-    each(root, "exclude", {"begin", "end", "reason"}, &Reader::exclude);
-    return std::move(user_);
+    UserIntervals user;
+    if (const toml::node* flight = root.get("flight")) user.flight = text_of(*flight, "'flight'");
+    each(root, "add", {"regime", "begin", "end", "note", "pair"},
+         [&](const toml::table& table, double begin, double end) {
+           Interval interval{regime_of(required(table, "regime", "[[add]]")), begin, end};
+           if (const toml::node* note = table.get("note"))
+             interval.note = text_of(*note, "'note' in [[add]]");
+           if (const toml::node* pair = table.get("pair")) interval.pair = pair_of(*pair, interval.regime);
+           user.add.push_back(interval);
+         });
+    each(root, "veto", {"regime", "begin", "end"}, [&](const toml::table& table, double begin, double end) {
+      Veto& veto = user.veto.emplace_back(Veto{{}, begin, end});
+      if (const toml::node* regime = table.get("regime")) veto.regime = regime_of(*regime);
+    });
+    each(root, "exclude", {"begin", "end", "reason"},
+         [&](const toml::table& table, double begin, double end) {
+           const toml::node& reason = required(table, "reason", "[[exclude]]");
+           user.exclude.push_back({begin, end, text_of(reason, "'reason' in [[exclude]]")});
+         });
+    return user;
   }
 
  private:
-  struct Span {
-    double begin;
-    double end;
-  };
-
   void check_format(const toml::table& root) const {
     const Entry format = format_of(root, "holds intervals", intervals_format);
     if (format.node->value<std::string_view>() == intervals_format) return;
@@ -64,8 +65,10 @@ class Reader final : TomlReader {
     }
   }
 
+  // Calls `read_one` with each table of a list, and with its begin and end.
+  template <class ReadOne>
   void each(const toml::table& root, const std::string& key, const Names& known,
-            void (Reader::*read_one)(const toml::table&, const std::string&)) {
+            const ReadOne& read_one) const {
     const toml::node* node = root.get(key);
     if (node == nullptr) return;
     const std::string title = "[[" + key + "]]";
@@ -73,29 +76,9 @@ class Reader final : TomlReader {
     for (const toml::node& element : as<toml::array>(*node, otherwise)) {
       const auto& table = as<toml::table>(element, otherwise);
       refuse_unknown(table, title, known);
-      (this->*read_one)(table, title);
+      const auto [begin, end] = span_of(table, title);
+      read_one(table, begin, end);
     }
-  }
-
-  void add(const toml::table& table, const std::string& title) {
-    const Span span = span_of(table, title);
-    Interval interval{regime_of(required(table, "regime", title)), span.begin, span.end, 0, "", true};
-    if (const toml::node* note = table.get("note")) interval.note = text_of(*note, "'note' in " + title);
-    if (const toml::node* pair = table.get("pair")) interval.pair = pair_of(*pair, interval.regime);
-    user_.add.push_back(interval);
-  }
-
-  void veto(const toml::table& table, const std::string& title) {
-    const Span span = span_of(table, title);
-    Veto veto{{}, span.begin, span.end};
-    if (const toml::node* regime = table.get("regime")) veto.regime = regime_of(*regime);
-    user_.veto.push_back(veto);
-  }
-
-  void exclude(const toml::table& table, const std::string& title) {
-    const Span span = span_of(table, title);
-    const std::string reason = text_of(required(table, "reason", title), "'reason' in " + title);
-    user_.exclude.push_back({span.begin, span.end, reason});
   }
 
   const toml::node& required(const toml::table& table, std::string_view key, const std::string& title) const {
@@ -112,8 +95,8 @@ class Reader final : TomlReader {
     const std::string name = text_of(node, "'regime'");
     const Regime regime = regime_named(name);
     if (regime == Regime::count) {
-      fail(node,
-           fmt::format("there is no regime {}; {}", quote(name), suggestion_text(name, names_of_regimes())));
+      fail(node, fmt::format("there is no regime {}; {}", quote(name),
+                             suggestion_text(name, names_of(regime_info, &RegimeInfo::name))));
     }
     return regime;
   }
@@ -130,26 +113,27 @@ class Reader final : TomlReader {
     return static_cast<int>(number->get());
   }
 
-  Span span_of(const toml::table& table, const std::string& title) const {
+  // Begin and end of a table.
+  std::pair<double, double> span_of(const toml::table& table, const std::string& title) const {
     const toml::node& begin_node = required(table, "begin", title);
     const toml::node& end_node = required(table, "end", title);
-    const Span span{time_of(begin_node), time_of(end_node)};
-    const bool of_day = span.begin < day_length;
-    if (of_day != (span.end < day_length)) {
+    const double begin = time_of(begin_node), end = time_of(end_node);
+    const bool of_day = begin < day_length;
+    if (of_day != (end < day_length)) {
       fail(end_node,
            "one of 'begin' and 'end' is a time of the day and the other has a date; give both in the same "
            "form");
     }
-    if (of_day && span.end != span.begin) {
-      const double duration = span.end - span.begin + (span.end < span.begin ? day_length : 0.0);
-      if (duration > max_of_day) {
+    if (of_day && end != begin) {
+      const double duration = end - begin + (end < begin ? day_length : 0.0);
+      if (duration > day_length / 2.0) {
         fail(end_node,
              "'end' is before 'begin', or more than 12 h after it; correct it, or give both with dates");
       }
-    } else if (!(span.begin < span.end)) {
+    } else if (!(begin < end)) {
       fail(end_node, "'end' is not after 'begin'; correct one of them");
     }
-    return span;
+    return {begin, end};
   }
 
   // Seconds since 1970 UTC, or since midnight, which are less than a day.
@@ -161,13 +145,17 @@ class Reader final : TomlReader {
       if (seconds < day_length) fail(node, "the time is before 1970-01-02; correct the date");
       return seconds;
     }
-    const std::optional<toml::time> time =
-        node.is_string() ? time_of_day(node.as_string()->get()) : node.value<toml::time>();
-    if (!time) fail(node, fmt::format("the value is not a time; give {}", requested_time));
+    std::optional<toml::time> time = node.value<toml::time>();
+    if (node.is_string()) {
+      const std::string& text = node.as_string()->get();
+      time = moment_in<toml::time>(text.size() == 5 ? text + ":00" : text);  // "20:10" and "20:10:00.5"
+    }
+    if (!time)
+      fail(node,
+           "the value is not a time; give a date and time such as 2011-11-17T20:10:00Z, or a time of the day "
+           "such as \"20:10:00\"");
     return seconds_of(*time);
   }
-
-  UserIntervals user_;
 };
 
 }  // namespace

@@ -15,12 +15,6 @@ struct Band {
   double periodicity;
 };
 
-struct Oscillation {
-  Run run;
-  double period = 0.0;     // s
-  double amplitude = 0.0;  // deg
-};
-
 std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b, std::size_t lag = 0) {
   std::vector<double> result(a.size(), nan);
   for (std::size_t i = 0; i + lag < a.size(); ++i) result[i] = a[i] * b[i + lag];
@@ -102,94 +96,75 @@ Run whole_swings(const std::vector<double>& values, Run run, double amplitude, s
   return whole;
 }
 
-std::vector<Oscillation> find_oscillations(const std::vector<double>& values, const std::vector<bool>& usable,
-                                           const Band& band) {
-  std::vector<Oscillation> found;
-  const std::vector<double> variance = running_mean(product(values, values), band.max_period);
-  const std::vector<double> periodicity = local_periodicity(values, band);
-  const std::vector<Run> strong = runs_where(values.size(), [&](std::size_t i) {
-    return usable[i] && !std::isnan(values[i]) && variance[i] > band.variance &&
-           periodicity[i] >= band.periodicity;
-  });
-  for (const Run& run : bridged(strong, band.min_period)) {
-    const double amplitude = std::sqrt(2.0 * mean(product(values, values), run));
-    const Run whole = whole_swings(values, run, amplitude, band.max_period);
-    if (whole.length() < cells_in(band.time)) continue;
-    const double period = period_of(values, whole, band);
-    if (period > 0.0) found.push_back({whole, period, amplitude});
-  }
-  return found;
-}
-
-std::string described(const Oscillation& oscillation) {
-  const double cycles = static_cast<double>(oscillation.run.length()) / oscillation.period;
-  return fmt::format("{:.0f} cycles of {:.3g} s, +-{:.1f} deg", cycles, oscillation.period,
-                     oscillation.amplitude);
-}
-
 // Cells in flight without net climb.
-std::vector<bool> about_level(const Cells& cells, const std::vector<bool>& flying,
-                              const RegimeCriteria& criteria) {
-  const std::vector<double> climb = smoothed_twice(cells.vertical_speed, cells_in(criteria.climb_smoothing));
-  std::vector<bool> level(flying);
+std::vector<bool> about_level(const Search& search) {
+  const std::vector<double> climb =
+      smoothed_twice(search.cells.vertical_speed, cells_in(search.criteria.climb_smoothing));
+  std::vector<bool> level(search.flying);
   for (std::size_t i = 0; i < level.size(); ++i) {
-    if (std::abs(climb[i]) > criteria.manoeuvre_climb) level[i] = false;
+    if (std::abs(climb[i]) > search.criteria.manoeuvre_climb) level[i] = false;
   }
   return level;
 }
 
-bool wings_level(const Cells& cells, Run run, const RegimeCriteria& criteria) {
-  double sum = 0.0, known = 0.0;
-  for (std::size_t i = run.first; i < run.end; ++i) {
-    if (std::isnan(cells.roll[i])) continue;
-    sum += std::abs(cells.roll[i]);
-    known += 1.0;
+// Adds the oscillations of an angle with level wings, during which `moves` holds for the aircraft.
+template <class Moves>
+void add_oscillations(Search& search, Regime regime, const std::vector<double>& angle,
+                      const std::vector<bool>& usable, const Band& band, const Moves& moves) {
+  std::vector<double> tilt = search.cells.roll;
+  for (double& roll : tilt) roll = std::abs(roll);
+  const std::vector<double> squares = product(angle, angle);
+  const std::vector<double> variance = running_mean(squares, band.max_period);
+  const std::vector<double> periodicity = local_periodicity(angle, band);
+  const std::vector<Run> strong = runs_where(angle.size(), [&](std::size_t i) {
+    return usable[i] && !std::isnan(angle[i]) && variance[i] > band.variance &&
+           periodicity[i] >= band.periodicity;
+  });
+  for (const Run& run : bridged(strong, band.min_period)) {
+    const double amplitude = std::sqrt(2.0 * mean(squares, run));
+    const Run whole = whole_swings(angle, run, amplitude, band.max_period);
+    if (whole.length() < cells_in(band.time)) continue;
+    const double period = period_of(angle, whole, band);
+    if (!(period > 0.0) || !moves(whole) || mean(tilt, whole) > search.criteria.manoeuvre_roll) continue;
+    search.add(regime, whole,
+               fmt::format("{:.0f} cycles of {:.3g} s, +-{:.1f} deg",
+                           static_cast<double>(whole.length()) / period, period, amplitude));
   }
-  return sum <= known * criteria.manoeuvre_roll;
-}
-
-double correlation(const std::vector<double>& a, const std::vector<double>& b, Run run) {
-  return mean(product(a, b), run) / std::sqrt(mean(product(a, a), run) * mean(product(b, b), run));
 }
 
 }  // namespace
 
-std::vector<Found> find_pitch_manoeuvres(const Cells& cells, const std::vector<bool>& flying,
-                                         const RegimeCriteria& criteria) {
-  std::vector<Found> found;
-  if (!has_value(cells.pitch)) return found;
+void find_pitch_manoeuvres(Search& search) {
+  const RegimeCriteria& criteria = search.criteria;
+  if (!has_value(search.cells.pitch)) return;
   const Band band{criteria.pitch_variance, criteria.pitch_time, cells_in(criteria.pitch_shortest_period),
                   cells_in(criteria.pitch_longest_period), criteria.periodicity};
-  const std::vector<double> pitch = in_band(cells.pitch, band);
-  const std::vector<double> vertical_speed = in_band(cells.vertical_speed, band);
-  for (const Oscillation& oscillation :
-       find_oscillations(pitch, about_level(cells, flying, criteria), band)) {
-    const double rms = std::sqrt(mean(product(vertical_speed, vertical_speed), oscillation.run));
-    if (rms < criteria.pitch_vertical_speed || !wings_level(cells, oscillation.run, criteria)) continue;
-    found.push_back({Regime::pitch_manoeuvre, oscillation.run, 0, described(oscillation)});
-  }
-  return found;
+  const std::vector<double> vertical_speed = in_band(search.cells.vertical_speed, band);
+  const std::vector<double> squares = product(vertical_speed, vertical_speed);
+  add_oscillations(search, Regime::pitch_manoeuvre, in_band(search.cells.pitch, band), about_level(search),
+                   band,
+                   [&](Run run) { return !(std::sqrt(mean(squares, run)) < criteria.pitch_vertical_speed); });
 }
 
-std::vector<Found> find_yaw_manoeuvres(const Cells& cells, const std::vector<bool>& flying,
-                                       const RegimeCriteria& criteria) {
-  std::vector<Found> found;
-  if (!has_value(cells.sideslip)) return found;
+void find_yaw_manoeuvres(Search& search) {
+  const RegimeCriteria& criteria = search.criteria;
+  if (!has_value(search.cells.sideslip)) return;
   const Band band{criteria.yaw_variance, criteria.yaw_time, cells_in(criteria.yaw_shortest_period),
                   cells_in(criteria.yaw_longest_period), criteria.periodicity};
-  const std::vector<double> sideslip = in_band(cells.sideslip, band);
-  const std::vector<double> heading = in_band(cells.heading, band);
-  const std::vector<double> heading_variance = running_mean(product(heading, heading), band.max_period);
-  std::vector<bool> usable = about_level(cells, flying, criteria);
+  const std::vector<double> sideslip = in_band(search.cells.sideslip, band);
+  const std::vector<double> heading = in_band(search.cells.heading, band);
+  const std::vector<double> heading_squares = product(heading, heading);
+  const std::vector<double> sideslip_squares = product(sideslip, sideslip);
+  const std::vector<double> products = product(sideslip, heading);
+  const std::vector<double> heading_variance = running_mean(heading_squares, band.max_period);
+  std::vector<bool> usable = about_level(search);
   for (std::size_t i = 0; i < usable.size(); ++i) {
     if (heading_variance[i] < criteria.yaw_variance / 2.0) usable[i] = false;
   }
-  for (const Oscillation& oscillation : find_oscillations(sideslip, usable, band)) {
-    const double swing = std::abs(correlation(sideslip, heading, oscillation.run));
-    if (swing < criteria.yaw_heading_correlation || !wings_level(cells, oscillation.run, criteria)) continue;
-    found.push_back({Regime::yaw_manoeuvre, oscillation.run, 0, described(oscillation)});
-  }
-  return found;
+  add_oscillations(search, Regime::yaw_manoeuvre, sideslip, usable, band, [&](Run run) {
+    const double variances = mean(sideslip_squares, run) * mean(heading_squares, run);
+    return !(std::abs(mean(products, run) / std::sqrt(variances)) < criteria.yaw_heading_correlation);
+  });
 }
 
 }  // namespace pcor::internal

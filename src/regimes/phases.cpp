@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 
 #include "regimes/search.hpp"
 
@@ -68,15 +66,11 @@ Regime phase_at(double climb, const RegimeCriteria& criteria) {
 std::vector<PhaseRun> runs_of_phase(const std::vector<double>& climb, Run flight,
                                     const RegimeCriteria& criteria) {
   std::vector<PhaseRun> runs;
+  Regime phase = Regime::level;
   for (std::size_t i = flight.first; i < flight.end; ++i) {
-    const bool is_known = !std::isnan(climb[i]);
-    if (runs.empty()) {
-      runs.push_back({phase_at(is_known ? climb[i] : 0.0, criteria), {i, i + 1}});
-    } else if (const Regime phase = phase_at(climb[i], criteria); is_known && phase != runs.back().phase) {
-      runs.push_back({phase, {i, i + 1}});
-    } else {
-      runs.back().run.end = i + 1;
-    }
+    if (!std::isnan(climb[i])) phase = phase_at(climb[i], criteria);
+    if (runs.empty() || runs.back().phase != phase) runs.push_back({phase, {i, i}});
+    ++runs.back().run.end;
   }
   return runs;
 }
@@ -89,7 +83,7 @@ void join_short(std::vector<PhaseRun>& runs, const std::vector<double>& climb, s
     if (shorter->run.length() >= shortest) return;
     const auto unlike = [&](const PhaseRun& other) {
       const double difference = std::abs(mean(climb, other.run) - mean(climb, shorter->run));
-      return std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference;
+      return std::isnan(difference) ? infinity : difference;
     };
     const bool joins_next = shorter == runs.begin() ||
                             (shorter + 1 != runs.end() && unlike(*(shorter + 1)) < unlike(*(shorter - 1)));
@@ -98,11 +92,8 @@ void join_short(std::vector<PhaseRun>& runs, const std::vector<double>& climb, s
     } else {
       (shorter - 1)->run.end = shorter->run.end;
     }
-    auto next = runs.erase(shorter);
-    if (!joins_next && next != runs.end() && next->phase == (next - 1)->phase) {
-      (next - 1)->run.end = next->run.end;
-      runs.erase(next);
-    } else if (joins_next && next != runs.begin() && next->phase == (next - 1)->phase) {
+    const auto next = runs.erase(shorter);
+    if (next != runs.begin() && next != runs.end() && next->phase == (next - 1)->phase) {
       (next - 1)->run.end = next->run.end;
       runs.erase(next);
     }
@@ -140,9 +131,7 @@ std::vector<Regime> phases_of(const Cells& cells, const RegimeCriteria& criteria
       put({roll, rest.first}, Regime::take_off);
     }
     std::vector<double> vertical_speed(cells.count(), nan);
-    std::copy(cells.vertical_speed.begin() + static_cast<std::ptrdiff_t>(flight.first),
-              cells.vertical_speed.begin() + static_cast<std::ptrdiff_t>(flight.end),
-              vertical_speed.begin() + static_cast<std::ptrdiff_t>(flight.first));
+    for (std::size_t i = flight.first; i < flight.end; ++i) vertical_speed[i] = cells.vertical_speed[i];
     put(rest, Regime::count);
     if (!has_value(cells.vertical_speed)) continue;
     const std::vector<double> climb = smoothed_twice(vertical_speed, cells_in(criteria.climb_smoothing));
@@ -152,12 +141,6 @@ std::vector<Regime> phases_of(const Cells& cells, const RegimeCriteria& criteria
     for (const PhaseRun& run : runs) put(run.run, run.phase);
   }
   return phases;
-}
-
-std::vector<bool> in_flight(const std::vector<Regime>& phases) {
-  std::vector<bool> flying;
-  for (const Regime phase : phases) flying.push_back(phase == Regime::count || is_airborne(phase));
-  return flying;
 }
 
 }  // namespace pcor::internal

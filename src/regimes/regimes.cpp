@@ -11,24 +11,19 @@ using namespace internal;
 
 namespace {
 
-std::vector<Found> runs_of(const std::vector<Regime>& phases) {
-  std::vector<Found> found;
-  for (std::size_t i = 0; i < phases.size(); ++i) {
-    if (phases[i] == Regime::count) continue;
-    if (!found.empty() && found.back().regime == phases[i] && found.back().run.end == i) {
-      found.back().run.end = i + 1;
-    } else {
-      found.push_back({phases[i], {i, i + 1}});
-    }
-  }
-  return found;
-}
-
-void append(std::vector<Found>& all, const std::vector<Found>& more) {
-  all.insert(all.end(), more.begin(), more.end());
+void find_clouds(Search& search) {
+  const std::vector<Run> wet = runs_where(search.cells.count(), [&](std::size_t i) {
+    return search.flying[i] && search.cells.liquid_water[i] >= search.criteria.cloud_liquid_water;
+  });
+  for (const Run& run : bridged(wet, cells_in(search.criteria.bridged))) search.add(Regime::cloud, run);
 }
 
 }  // namespace
+
+void Search::add(Regime regime, Run run, const std::string& note, int pair) {
+  found.push_back({regime, cells.begin[run.first], cells.begin[run.end], pair, note});
+  for (std::size_t i = run.first; i < run.end; ++i) unassigned[i] = false;
+}
 
 Regime regime_named(std::string_view name) {
   const auto found = std::find_if(regime_info.begin(), regime_info.end(),
@@ -39,29 +34,24 @@ Regime regime_named(std::string_view name) {
 std::vector<Interval> find_regimes(const FlightMotion& motion, const RegimeCriteria& criteria) {
   const Cells cells = cells_of(motion);
   const std::vector<Regime> phases = phases_of(cells, criteria);
-  const std::vector<bool> flying = in_flight(phases);
-  std::vector<Found> found = find_pitch_manoeuvres(cells, flying, criteria);
-  append(found, find_yaw_manoeuvres(cells, flying, criteria));
-  append(found, find_speed_runs(cells, flying, criteria));
-  std::vector<bool> steady = flying;
-  for (const Found& manoeuvre : found) {
-    for (std::size_t i = manoeuvre.run.first; i < manoeuvre.run.end; ++i) steady[i] = false;
+  std::vector<bool> flying;
+  for (const Regime phase : phases) flying.push_back(phase != Regime::ground && phase != Regime::take_off);
+  Search search{cells, criteria, flying, flying};
+  find_pitch_manoeuvres(search);
+  find_yaw_manoeuvres(search);
+  find_speed_runs(search);
+  find_reverse_headings(search);
+  find_circles(search);
+  find_turns(search);
+  find_clouds(search);
+  for (std::size_t first = 0, end = 0; first < phases.size(); first = end) {
+    while (end < phases.size() && phases[end] == phases[first]) ++end;
+    if (phases[first] != Regime::count) search.add(phases[first], {first, end});
   }
-  append(found, find_reverse_headings(cells, steady, criteria));
-  append(found, find_circles(cells, flying, criteria));
-  append(found, find_turns(cells, flying, criteria));
-  append(found, find_clouds(cells, flying, criteria));
-  append(found, runs_of(phases));
-
-  std::vector<Interval> intervals;
-  for (const Found& each : found) {
-    intervals.push_back(
-        {each.regime, cells.begin[each.run.first], cells.begin[each.run.end], each.pair, each.note, false});
-  }
-  std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) {
+  std::sort(search.found.begin(), search.found.end(), [](const Interval& a, const Interval& b) {
     return std::tie(a.begin, a.regime, a.end) < std::tie(b.begin, b.regime, b.end);
   });
-  return intervals;
+  return std::move(search.found);
 }
 
 std::vector<RegimeSet> regimes_of_samples(const std::vector<double>& time,

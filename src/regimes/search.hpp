@@ -12,42 +12,28 @@
 
 namespace pcor::internal {
 
-/// Regime of consecutive cells.
-struct Found {
-  Regime regime = Regime::count;
-  Run run;
-  int pair = 0;
-  std::string note{};
+/// Search for the regimes of a flight.
+struct Search {
+  Cells cells;
+  RegimeCriteria criteria;
+  std::vector<bool> flying;       ///< cells that are searched for manoeuvres: airborne, or with unknown phase
+  std::vector<bool> unassigned;   ///< flying cells outside the regimes that were found before
+  std::vector<Interval> found{};  ///< regimes in the order of their detection
+
+  void add(Regime regime, Run run, const std::string& note = "", int pair = 0);
 };
 
 /// Phase of each cell; `Regime::count` if unknown.
 std::vector<Regime> phases_of(const Cells& cells, const RegimeCriteria& criteria);
 
-/// Whether the phase is airborne.
-constexpr bool is_airborne(Regime phase) {
-  return phase == Regime::climb || phase == Regime::descent || phase == Regime::level;
-}
+void find_turns(Search& search);
+void find_circles(Search& search);
+void find_pitch_manoeuvres(Search& search);
+void find_yaw_manoeuvres(Search& search);
+void find_speed_runs(Search& search);
 
-/// Cells that are searched for manoeuvres: airborne, or with unknown phase.
-std::vector<bool> in_flight(const std::vector<Regime>& phases);
-
-std::vector<Found> find_turns(const Cells& cells, const std::vector<bool>& flying,
-                              const RegimeCriteria& criteria);
-std::vector<Found> find_circles(const Cells& cells, const std::vector<bool>& flying,
-                                const RegimeCriteria& criteria);
-std::vector<Found> find_pitch_manoeuvres(const Cells& cells, const std::vector<bool>& flying,
-                                         const RegimeCriteria& criteria);
-std::vector<Found> find_yaw_manoeuvres(const Cells& cells, const std::vector<bool>& flying,
-                                       const RegimeCriteria& criteria);
-std::vector<Found> find_speed_runs(const Cells& cells, const std::vector<bool>& flying,
-                                   const RegimeCriteria& criteria);
-
-/// `usable` marks the cells that a leg may contain: in flight, and outside other manoeuvres.
-std::vector<Found> find_reverse_headings(const Cells& cells, const std::vector<bool>& usable,
-                                         const RegimeCriteria& criteria);
-
-std::vector<Found> find_clouds(const Cells& cells, const std::vector<bool>& flying,
-                               const RegimeCriteria& criteria);
+/// The legs contain only cells outside the regimes that were found before.
+void find_reverse_headings(Search& search);
 
 /// Duration as a number of cells.
 inline std::size_t cells_in(double seconds) { return static_cast<std::size_t>(std::lround(seconds)); }

@@ -41,6 +41,16 @@ std::vector<double> smoothed_twice(const std::vector<double>& values, std::size_
   return running_mean(running_mean(values, window), window);
 }
 
+std::vector<double> unwrapped(std::vector<double> angles) {
+  double last = nan;
+  for (double& angle : angles) {
+    if (!std::isfinite(angle)) continue;
+    if (!std::isnan(last)) angle = last + std::remainder(angle - last, 360.0);
+    last = angle;
+  }
+  return angles;
+}
+
 double mean(const std::vector<double>& values, Run run) {
   Sum sum;
   for (std::size_t i = run.first; i < run.end; ++i) sum.add(values[i]);
@@ -77,14 +87,15 @@ std::size_t best_step(const std::vector<double>& values, Run run, std::size_t sh
   return best;
 }
 
-std::vector<Run> bridged(const std::vector<Run>& runs, std::size_t gap) {
+std::vector<Run> bridged(const std::vector<Run>& runs, std::size_t gap,
+                         const std::function<bool(Run)>& may_join) {
   std::vector<Run> longer;
   for (const Run& run : runs) {
-    if (!longer.empty() && run.first <= longer.back().end + gap) {
+    const bool near = !longer.empty() && run.first <= longer.back().end + gap;
+    if (near && may_join({longer.back().first, run.end}))
       longer.back().end = run.end;
-    } else {
+    else
       longer.push_back(run);
-    }
   }
   return longer;
 }

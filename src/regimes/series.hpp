@@ -1,16 +1,16 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
 
-/// Arithmetic on series with one value each second; missing values are NaN.
+/// Arithmetic on series with equal steps, such as one value each second; missing values are NaN.
 
-/// Cells from `first` up to but not including `end`.
+/// Cells, or samples, from `first` up to but not including `end`.
 struct Run {
   std::size_t first = 0;
   std::size_t end = 0;
@@ -24,6 +24,9 @@ std::vector<double> running_mean(const std::vector<double>& values, std::size_t 
 /// Running mean of the running mean: a triangular window, which suppresses oscillations shorter than
 /// `window`.
 std::vector<double> smoothed_twice(const std::vector<double>& values, std::size_t window);
+
+/// Angles that continue beyond a full turn instead of wrapping, deg.
+std::vector<double> unwrapped(std::vector<double> angles);
 
 /// Mean of the known values of a run; NaN if all are missing.
 double mean(const std::vector<double>& values, Run run);
@@ -57,8 +60,10 @@ std::vector<Run> runs_where(std::size_t count, Predicate predicate) {
   return runs;
 }
 
-/// Merges runs that are at most `gap` cells apart.
-std::vector<Run> bridged(const std::vector<Run>& runs, std::size_t gap);
+/// Merges runs that are at most `gap` cells apart, if `may_join` holds for the merged run.
+std::vector<Run> bridged(
+    const std::vector<Run>& runs, std::size_t gap,
+    const std::function<bool(Run)>& may_join = [](Run) { return true; });
 
 /// Runs of at least `length` cells.
 std::vector<Run> not_shorter(std::vector<Run> runs, std::size_t length);

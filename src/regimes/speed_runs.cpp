@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numerics/missing.hpp"
 #include "regimes/search.hpp"
 
 namespace pcor::internal {
@@ -11,42 +10,6 @@ namespace {
 
 constexpr std::size_t smoothing = 10;  // s
 constexpr std::size_t min_side = 10;   // s of known acceleration on each side of an end
-
-// Segments in which the airspeed changes enough, and the height little, over `time` seconds around a cell.
-std::vector<Run> branches(double time, const std::vector<double>& airspeed,
-                          const std::vector<double>& altitude, const std::vector<bool>& flying,
-                          const RegimeCriteria& criteria) {
-  const std::size_t half = cells_in(time / 2.0);
-  const double change = criteria.acceleration * 2.0 * static_cast<double>(half);
-  return runs_where(airspeed.size(), [&](std::size_t i) {
-    if (i < half || i + half >= airspeed.size()) return false;
-    if (!flying[i - half] || !flying[i] || !flying[i + half]) return false;
-    const double climbed = std::abs(altitude[i + half] - altitude[i - half]);
-    return std::abs(airspeed[i + half] - airspeed[i - half]) >= change &&
-           !(climbed > criteria.speed_run_height);
-  });
-}
-
-// Merges consecutive branches at one height to one speed run.
-std::vector<Run> joined(const std::vector<Run>& runs, const std::vector<double>& altitude,
-                        const RegimeCriteria& criteria) {
-  std::vector<Run> longer;
-  for (const Run& run : runs) {
-    const bool near = !longer.empty() && run.first <= longer.back().end + cells_in(criteria.speed_run_pause);
-    const Run both{near ? longer.back().first : run.first, run.end};
-    if (near && !(extent(altitude, both).range() > 2.0 * criteria.speed_run_height)) {
-      longer.back() = both;
-    } else {
-      longer.push_back(run);
-    }
-  }
-  return longer;
-}
-
-bool overlaps_any(Run run, const std::vector<Run>& others) {
-  return std::any_of(others.begin(), others.end(),
-                     [&](const Run& other) { return run.first < other.end && other.first < run.end; });
-}
 
 // Run whose ends are the start and the end of the acceleration.
 Run sharpened(Run run, const std::vector<double>& acceleration, const RegimeCriteria& criteria) {
@@ -60,30 +23,44 @@ Run sharpened(Run run, const std::vector<double>& acceleration, const RegimeCrit
 
 }  // namespace
 
-std::vector<Found> find_speed_runs(const Cells& cells, const std::vector<bool>& flying,
-                                   const RegimeCriteria& criteria) {
-  std::vector<Found> found;
+void find_speed_runs(Search& search) {
+  const Cells& cells = search.cells;
+  const RegimeCriteria& criteria = search.criteria;
+  const std::vector<bool>& flying = search.flying;
   const std::vector<double> airspeed = running_mean(cells.airspeed, smoothing);
   const std::vector<double> altitude = running_mean(cells.altitude, smoothing);
   std::vector<double> acceleration(cells.count(), nan);
   for (std::size_t i = 0; i + 1 < cells.count(); ++i) {
     if (flying[i] && flying[i + 1]) acceleration[i] = airspeed[i + 1] - airspeed[i];
   }
-  const std::vector<Run> sustained =
-      branches(criteria.acceleration_time, airspeed, altitude, flying, criteria);
+  const auto at_one_height = [&](Run run) {
+    return !(extent(altitude, run).range() > 2.0 * criteria.speed_run_height);
+  };
+  // Segments in which the airspeed changes enough, and the height little, over `time` seconds around a cell.
+  const auto branches = [&](double time) {
+    const std::size_t half = cells_in(time / 2.0);
+    const double change = criteria.acceleration * 2.0 * static_cast<double>(half);
+    return runs_where(cells.count(), [&](std::size_t i) {
+      if (i < half || i + half >= cells.count()) return false;
+      if (!flying[i - half] || !flying[i] || !flying[i + half]) return false;
+      const double climbed = std::abs(altitude[i + half] - altitude[i - half]);
+      return std::abs(airspeed[i + half] - airspeed[i - half]) >= change &&
+             !(climbed > criteria.speed_run_height);
+    });
+  };
+  const std::vector<Run> sustained = branches(criteria.acceleration_time);
   const std::vector<Run> all =
-      not_shorter(branches(criteria.branch_time, airspeed, altitude, flying, criteria),
-                  cells_in(criteria.branch_time / 2.0));
-  for (const Run& run : joined(all, altitude, criteria)) {
-    if (!overlaps_any(run, sustained)) continue;
+      not_shorter(branches(criteria.branch_time), cells_in(criteria.branch_time / 2.0));
+  for (const Run& run : bridged(all, cells_in(criteria.speed_run_pause), at_one_height)) {
+    const bool is_sustained = std::any_of(sustained.begin(), sustained.end(), [&](const Run& other) {
+      return run.first < other.end && other.first < run.end;
+    });
+    if (!is_sustained) continue;
     const Run whole = sharpened(run, acceleration, criteria);
     const Extent speeds = extent(airspeed, whole);
-    if (!(speeds.range() >= criteria.speed_range)) continue;
-    if (extent(altitude, whole).range() > 2.0 * criteria.speed_run_height) continue;
-    found.push_back(
-        {Regime::speed_run, whole, 0, fmt::format("{:.0f} to {:.0f} m/s", speeds.minimum, speeds.maximum)});
+    if (!(speeds.range() >= criteria.speed_range) || !at_one_height(whole)) continue;
+    search.add(Regime::speed_run, whole, fmt::format("{:.0f} to {:.0f} m/s", speeds.minimum, speeds.maximum));
   }
-  return found;
 }
 
 }  // namespace pcor::internal

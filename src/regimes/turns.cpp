@@ -13,25 +13,10 @@ constexpr std::size_t straight_smoothing = 10;  // s
 
 struct Turn {
   Run run;
-  bool right = false;
+  const char* side;
+  double change;  // of the heading from the first known value to the last, deg, positive to that side
 };
 
-// Runs of a roll beyond `minimum` deg to one side.
-std::vector<Turn> turns_beyond(double minimum, const Cells& cells, const std::vector<bool>& flying,
-                               const RegimeCriteria& criteria) {
-  const std::vector<double> roll = running_mean(cells.roll, roll_smoothing);
-  std::vector<Turn> turns;
-  for (const bool right : {false, true}) {
-    const std::vector<Run> banked = runs_where(
-        cells.count(), [&](std::size_t i) { return flying[i] && (right ? roll[i] : -roll[i]) > minimum; });
-    const std::vector<Run> bridged_runs = bridged(banked, cells_in(criteria.bridged));
-    for (const Run& run : not_shorter(bridged_runs, cells_in(criteria.turn_time)))
-      turns.push_back({run, right});
-  }
-  return turns;
-}
-
-// Heading change from the first known value of a run to the last, deg, positive to the right.
 double heading_change(const Cells& cells, Run run) {
   std::size_t first = run.first, last = run.end - 1;
   while (first < last && std::isnan(cells.heading[first])) ++first;
@@ -39,109 +24,87 @@ double heading_change(const Cells& cells, Run run) {
   return cells.heading[last] - cells.heading[first];
 }
 
+// Turns with a roll beyond `minimum` deg to one side.
+std::vector<Turn> turns_beyond(double minimum, const Search& search) {
+  const std::vector<double> roll = running_mean(search.cells.roll, roll_smoothing);
+  std::vector<Turn> turns;
+  for (const double sign : {-1.0, 1.0}) {
+    const std::vector<Run> banked =
+        runs_where(roll.size(), [&](std::size_t i) { return search.flying[i] && sign * roll[i] > minimum; });
+    const std::vector<Run> bridged_runs = bridged(banked, cells_in(search.criteria.bridged));
+    for (const Run& run : not_shorter(bridged_runs, cells_in(search.criteria.turn_time)))
+      turns.push_back({run, sign > 0.0 ? "right" : "left", sign * heading_change(search.cells, run)});
+  }
+  return turns;
+}
+
 double standard_deviation(const std::vector<double>& values, Run run) {
   const double middle = mean(values, run);
-  double squares = 0.0, known = 0.0;
-  for (std::size_t i = run.first; i < run.end; ++i) {
-    if (std::isnan(values[i])) continue;
-    squares += (values[i] - middle) * (values[i] - middle);
-    known += 1.0;
-  }
-  return std::sqrt(squares / known);
-}
-
-// A straight part of the flight next to a reversal.
-struct Leg {
-  Run run;
-  double heading = 0.0;  // deg, not wrapped
-  double altitude = 0.0;
-};
-
-// Leg estimated from the `shortest` cells of a straight run next to the reversal.
-Leg leg_beside(const Cells& cells, Run run, bool before, std::size_t shortest) {
-  const Run beside = before ? Run{run.end - shortest, run.end} : Run{run.first, run.first + shortest};
-  return {beside, mean(cells.heading, beside), mean(cells.altitude, beside)};
-}
-
-// Extends a leg away from the reversal while the aircraft keeps heading and height.
-template <class Keeps>
-void lengthen(Leg& leg, Run straight, bool before, std::size_t longest, Keeps keeps) {
-  if (before) {
-    while (leg.run.first > straight.first && leg.run.length() < longest && keeps(leg.run.first - 1)) {
-      --leg.run.first;
-    }
-  } else {
-    while (leg.run.end < straight.end && leg.run.length() < longest && keeps(leg.run.end)) ++leg.run.end;
-  }
+  std::vector<double> squares(values.data() + run.first, values.data() + run.end);
+  for (double& each : squares) each = (each - middle) * (each - middle);
+  return std::sqrt(mean_of(squares));
 }
 
 }  // namespace
 
-std::vector<Found> find_turns(const Cells& cells, const std::vector<bool>& flying,
-                              const RegimeCriteria& criteria) {
-  std::vector<Found> found;
-  for (const Turn& turn : turns_beyond(criteria.turn_roll, cells, flying, criteria)) {
-    const double change = std::abs(heading_change(cells, turn.run));
-    std::string note = turn.right ? "right" : "left";
-    if (!std::isnan(change)) note += fmt::format(", {:.0f} deg", change);
-    found.push_back({Regime::turn, turn.run, 0, note});
+void find_turns(Search& search) {
+  for (const auto& [run, side, change] : turns_beyond(search.criteria.turn_roll, search)) {
+    std::string note = side;
+    if (!std::isnan(change)) note += fmt::format(", {:.0f} deg", std::abs(change));
+    search.add(Regime::turn, run, note);
   }
-  return found;
 }
 
-std::vector<Found> find_circles(const Cells& cells, const std::vector<bool>& flying,
-                                const RegimeCriteria& criteria) {
-  std::vector<Found> found;
-  for (const Turn& turn : turns_beyond(criteria.circle_roll, cells, flying, criteria)) {
-    const double change = heading_change(cells, turn.run) * (turn.right ? 1.0 : -1.0);
-    if (!(change >= criteria.circle_heading)) continue;
-    if (standard_deviation(cells.roll, turn.run) > criteria.circle_steadiness) continue;
-    found.push_back({Regime::circle, turn.run, 0,
-                     fmt::format("{}, {:.0f} deg, roll {:.0f} deg", turn.right ? "right" : "left", change,
-                                 std::abs(mean(cells.roll, turn.run)))});
+void find_circles(Search& search) {
+  const std::vector<double>& roll = search.cells.roll;
+  for (const auto& [run, side, change] : turns_beyond(search.criteria.circle_roll, search)) {
+    if (!(change >= search.criteria.circle_heading)) continue;
+    if (standard_deviation(roll, run) > search.criteria.circle_steadiness) continue;
+    search.add(Regime::circle, run,
+               fmt::format("{}, {:.0f} deg, roll {:.0f} deg", side, change, std::abs(mean(roll, run))));
   }
-  return found;
 }
 
-std::vector<Found> find_reverse_headings(const Cells& cells, const std::vector<bool>& usable,
-                                         const RegimeCriteria& criteria) {
-  std::vector<Found> found;
+void find_reverse_headings(Search& search) {
+  const Cells& cells = search.cells;
+  const RegimeCriteria& criteria = search.criteria;
   const std::vector<double> roll = running_mean(cells.roll, straight_smoothing);
   const std::vector<double> altitude = running_mean(cells.altitude, straight_smoothing);
   const std::size_t shortest = cells_in(criteria.leg_shortest), longest = cells_in(criteria.leg_longest);
   const std::vector<Run> steady = runs_where(cells.count(), [&](std::size_t i) {
-    return usable[i] && std::abs(roll[i]) < criteria.leg_roll && !std::isnan(cells.heading[i]) &&
+    return search.unassigned[i] && std::abs(roll[i]) < criteria.leg_roll && !std::isnan(cells.heading[i]) &&
            !std::isnan(altitude[i]);
   });
   const std::vector<Run> straight = not_shorter(bridged(steady, cells_in(criteria.bridged)), shortest);
+  int pairs = 0;
   for (std::size_t i = 1; i < straight.size(); ++i) {
     const Run first = straight[i - 1], second = straight[i];
     if (second.first - first.end > cells_in(criteria.turn_longest)) continue;
-    Leg out = leg_beside(cells, first, true, shortest);
-    Leg back = leg_beside(cells, second, false, shortest);
-    const double change = std::abs(std::remainder(back.heading - out.heading, 360.0));
+    // The legs are estimated from the shortest ones, next to the reversal.
+    Run out{first.end - shortest, first.end};
+    Run back{second.first, second.first + shortest};
+    const double heading_out = mean(cells.heading, out), heading_back = mean(cells.heading, back);
+    const double change = std::abs(std::remainder(heading_back - heading_out, 360.0));
     if (!(180.0 - change <= criteria.leg_heading)) continue;
-    const double middle = (out.altitude + back.altitude) / 2.0;
-    const auto keeps_height = [&](std::size_t k) {
-      return std::abs(altitude[k] - middle) <= criteria.leg_height_range / 2.0;
+    const double middle = (mean(cells.altitude, out) + mean(cells.altitude, back)) / 2.0;
+    const auto keeps_height = [&](double height) {
+      return std::abs(height - middle) <= criteria.leg_height_range / 2.0;
     };
     const auto all_keep = [&](Run run) {
-      return runs_where(run.length(), [&](std::size_t k) { return !keeps_height(run.first + k); }).empty();
+      return std::all_of(altitude.data() + run.first, altitude.data() + run.end, keeps_height);
     };
-    if (!all_keep(out.run) || !all_keep(back.run)) continue;
-    const auto keeps = [&](double heading) {
-      return [&, heading](std::size_t k) {
-        return keeps_height(k) && std::abs(cells.heading[k] - heading) <= criteria.leg_heading;
-      };
+    if (!all_keep(out) || !all_keep(back)) continue;
+    // Extends the legs away from the reversal while the aircraft keeps heading and height.
+    const auto keeps = [&](std::size_t k, double heading) {
+      return keeps_height(altitude[k]) && std::abs(cells.heading[k] - heading) <= criteria.leg_heading;
     };
-    lengthen(out, first, true, longest, keeps(out.heading));
-    lengthen(back, second, false, longest, keeps(back.heading));
-    const int pair = static_cast<int>(found.size()) / 2 + 1;
-    const std::string note = fmt::format("headings {:.0f} deg apart", change);
-    found.push_back({Regime::reverse_heading, out.run, pair, note});
-    found.push_back({Regime::reverse_heading, back.run, pair, note});
+    while (out.first > first.first && out.length() < longest && keeps(out.first - 1, heading_out))
+      --out.first;
+    while (back.end < second.end && back.length() < longest && keeps(back.end, heading_back)) ++back.end;
+    ++pairs;
+    for (const Run& leg : {out, back})
+      search.add(Regime::reverse_heading, leg, fmt::format("headings {:.0f} deg apart", change), pairs);
   }
-  return found;
 }
 
 }  // namespace pcor::internal

@@ -157,14 +157,14 @@ function numberTicks(from, to, length, distance) {
   return all.map((value) => ({value, label: number(value, step)}));
 }
 
-// Grid and numbers of the vertical axis; its label is turned along it.
-function verticalAxis(pen, box, y, {from, to}, label, theme) {
-  for (const tick of numberTicks(from, to, box.height, 30)) {
+// Grid and numbers of the vertical axis; its label is turned along it, and may be longer by `beyond`.
+function verticalAxis(pen, box, y, {from, to}, label, theme, distance = 30, beyond = 24) {
+  for (const tick of numberTicks(from, to, box.height, distance)) {
     const at = Math.round(y(tick.value)) + 0.5;
     pen.lines([[box.x, at, box.x + box.width, at]], theme.grid);
     pen.text(box.x - 7, at + 4, tick.label, small(theme, 'end'));
   }
-  pen.text(13, box.y + box.height / 2, shortened(label, box.height + 24, fontSize), {...small(theme, 'middle'), turn: -90});
+  pen.text(13, box.y + box.height / 2, shortened(label, box.height + beyond, fontSize), {...small(theme, 'middle'), turn: -90});
 }
 
 function horizontalTicks(pen, box, placed, label, theme) {
@@ -177,8 +177,8 @@ function horizontalTicks(pen, box, placed, label, theme) {
   pen.text(box.x + box.width / 2, base + 36, label, small(theme, 'middle'));
 }
 
-function horizontalAxis(pen, box, x, {from, to}, label, theme) {
-  const placed = numberTicks(from, to, box.width, 76).map((tick) => ({at: x(tick.value), label: tick.label}));
+function horizontalAxis(pen, box, x, {from, to}, label, theme, distance = 76) {
+  const placed = numberTicks(from, to, box.width, distance).map((tick) => ({at: x(tick.value), label: tick.label}));
   horizontalTicks(pen, box, placed, label, theme);
 }
 
@@ -205,20 +205,48 @@ function shortened(words, width, size) {
 }
 
 // Marks and names in lines above the plot; returns their height. If buttons name the curves, the legend is
-// empty.
+// empty. `mark` draws a mark; without it the mark is a line, or an area if `wide`.
 function legend(pen, entries, left, right, theme) {
   if (theme.named) return 10;
   let x = left, y = 13;
-  for (const {label, colour, dash} of entries) {
+  for (const {label, colour, dash, mark, wide, thickness = 2.5} of entries) {
     const width = 24 + textWidth(label, fontSize);
     if (x > left && x + width > right) { x = left; y += 17; }
-    if (pen) {
-      pen.lines([[x, y - 4, x + 16, y - 4]], colour, 2.5, dash);
-      pen.text(x + 21, y, label, {...small(theme), fill: theme.ink});
-    }
+    if (mark) mark(pen, x + 8, y - 4, colour, theme.paper);
+    else if (wide) pen.rect(x, y - 10, 16, 12, colour, 0.3);
+    else pen.lines([[x, y - 4, x + 16, y - 4]], colour, thickness, dash);
+    pen.text(x + 21, y, label, {...small(theme), fill: theme.ink});
     x += width + 16;
   }
   return y + 9;
+}
+
+// Axis of the time of day; returns the time range as text.
+function timeAxis(pen, box, x, samples, theme) {
+  const [begin, end] = samples.view.map((position) => samples.at(position).time);
+  const placed = timeTicks(samples, samples.view, box.width / 64).map(({place, label}) => ({at: x(place), label}));
+  horizontalTicks(pen, box, placed, `UTC, ${day(begin)}${day(end) === day(begin) ? '' : ` to ${day(end)}`}`, theme);
+  return `from ${clock(begin)} to ${clock(end)} UTC`;
+}
+
+// Names of several flights above a plot over time, where they fit.
+function nameFlights(pen, box, x, samples, above, theme) {
+  if (samples.flights.length < 2) return;
+  for (const {name, offset, duration} of samples.flights) {
+    const left = Math.max(x(offset), box.x), right = Math.min(x(offset + duration), box.x + box.width);
+    if (textWidth(name, fontSize) < right - left) pen.text(left + 2, box.y - above, name, small(theme));
+  }
+}
+
+// Strokes along an interval with the dashes of its regime.
+function dashes(pen, left, right, y, height, {colour, dash}, opacity) {
+  const [mark, gap] = dash ?? [right - left, 0];
+  for (let at = left; at < right; at += mark + gap) pen.rect(at, y, Math.min(mark, right - at), height, colour, opacity);
+}
+
+// Horizontal error bar with its caps.
+function errorBar(pen, low, high, y, colour, width) {
+  pen.lines([[low, y, high, y], ...[low, high].map((end) => [end, y - 4, end, y + 4])], colour, width);
 }
 
 // Prints the number of samples outside of the plot at its lower right.

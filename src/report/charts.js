@@ -13,8 +13,7 @@ const listText = (labels) => labels.length > 1 ? `${labels.slice(0, -1).join(', 
 // Axis label of several columns: the given words or the titles, and the unit if they share it.
 function sharedLabel(columns, words) {
   const units = new Set(columns.map(({unit}) => unit));
-  const unit = units.size === 1 && columns[0].unit ? ` (${columns[0].unit})` : '';
-  return `${words || columns.map(({title}) => title).join(', ')}${unit}`;
+  return withUnit(words || columns.map(({title}) => title).join(', '), units.size === 1 ? columns[0].unit : '');
 }
 
 function statisticsTable(samples, columns) {
@@ -46,6 +45,11 @@ const valuesOf = (samples, columns) => steady(columns).flatMap((column) =>
 
 const cover = (pen, width, height, theme) => pen.rect(0, 0, width, height, theme.paper);
 
+function drawPicture(pen, width, height, item, samples, theme) {
+  cover(pen, width, height, theme);
+  return pictures[item.kind](pen, width, height, item, samples, theme);
+}
+
 function shadeIntervals(pen, box, x, samples, theme) {
   const names = [...samples.regimes.keys()];
   const taken = [];  // left and right of the names drawn
@@ -53,11 +57,9 @@ function shadeIntervals(pen, box, x, samples, theme) {
     const left = Math.floor(Math.max(x(begin), box.x)), right = Math.ceil(Math.min(x(end), box.x + box.width));
     if (right <= left) continue;
     const chosen = !samples.names.size || samples.names.has(name);
-    const {colour, dash} = regimeMark(name, names, theme);
-    pen.rect(left, box.y, right - left, box.height, colour, chosen ? 0.08 : 0.02);
-    const [mark, gap] = dash ?? [right - left, 0];
-    for (let at = left; at < right; at += mark + gap)
-      pen.rect(at, box.y, Math.min(mark, right - at), 4, colour, chosen ? 0.8 : 0.2);
+    const mark = regimeMark(name, names, theme);
+    pen.rect(left, box.y, right - left, box.height, mark.colour, chosen ? 0.08 : 0.02);
+    dashes(pen, left, right, box.y, 4, mark, chosen ? 0.8 : 0.2);
     const covered = samples.intervals.some((other) =>
       other.end - other.begin < end - begin && other.begin <= (begin + end) / 2 && other.end >= (begin + end) / 2);
     const middle = (left + right) / 2, half = textWidth(name, smallSize) / 2;
@@ -132,7 +134,6 @@ function drawTime(pen, width, height, item, samples, theme) {
   const error = samples.columns.get(item.uncertainty);
   const entries = columns.map(({title, colour}) => ({label: title, colour}));
   const key = item.columns.length > 1;
-  cover(pen, width, height, theme);
   const named = samples.flights.length > 1 ? 15 : 0;
   const top = (key ? legend(pen, entries, margin, width - 14, theme) : 10) + named;
   const box = plotBox(width, height, {top});
@@ -147,17 +148,10 @@ function drawTime(pen, width, height, item, samples, theme) {
   const y = scale(range.from, range.to, box.y + box.height, box.y);
 
   verticalAxis(pen, box, y, range, sharedLabel(columns, item.axis), theme);
-  const placed = timeTicks(samples, samples.view, box.width / 64).map(({place, label}) => ({at: x(place), label}));
-  const begin = samples.at(from).time, end = samples.at(to).time;
-  horizontalTicks(pen, box, placed, `UTC, ${day(begin)}${day(end) === day(begin) ? '' : ` to ${day(end)}`}`, theme);
+  const rangeWords = timeAxis(pen, box, x, samples, theme);
   shadeIntervals(pen, box, x, samples, theme);
   frame(pen, box, theme, range.from < 0 ? y(0) : NaN);
-  if (named)
-    for (const flight of samples.flights) {
-      const left = Math.max(x(flight.offset), box.x);
-      const right = Math.min(x(flight.offset + flight.duration), box.x + box.width);
-      if (textWidth(flight.name, fontSize) < right - left) pen.text(left + 2, box.y - 5, flight.name, small(theme));
-    }
+  nameFlights(pen, box, x, samples, 5, theme);
   pen.clip(box, () => {
     if (error) {
       const band = bandPaths(samples, columns[0], error, x, y);
@@ -171,7 +165,7 @@ function drawTime(pen, width, height, item, samples, theme) {
     plot: box,
     place: (i) => ({x: x(samples.position[i]), y: y(columns[0].values[i])}),
     up: (pixel) => range.from + (box.y + box.height - pixel) / box.height * (range.to - range.from),
-    alternative: `Lines over time, from ${clock(begin)} to ${clock(end)} UTC: ${listText(columns.map(({label}) => label))}` +
+    alternative: `Lines over time, ${rangeWords}: ${listText(columns.map(({label}) => label))}` +
       `${error ? `, in a band of the ${error.label}` : ''}`,
     table: statisticsTable(samples, error ? [...recorded, error] : recorded),
   };
@@ -213,7 +207,6 @@ function drawBinned(pen, width, height, item, samples, theme) {
   const found = columns.map((column) => samples.indices([abscissa, column]));
   const whole = columns.map((column) => samples.indices([abscissa, column], samples.every));
   const entries = columns.map(({title, colour}) => ({label: title, colour}));
-  cover(pen, width, height, theme);
   const box = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, theme)});
   const across = limits(whole.flatMap((indices) => indices.map((i) => abscissa.values[i])));
   const bins = columns.map(({values}, c) =>
@@ -274,31 +267,38 @@ function colourBar(pen, box, colours, {from, to}, label, theme) {
   pen.text(x + width + 56, box.y + box.height / 2, label, {...small(theme, 'middle'), turn: -90});
 }
 
+// Colours of a column over its range among the samples `whole`: centred on zero if diverging. `paint` draws
+// dots of some size at places of samples, the strongest colours of either sign last, on top.
+function shading({diverging}, {values}, whole, theme) {
+  const sorted = Float64Array.from(whole, (i) => diverging ? Math.abs(values[i]) : values[i]).sort();
+  const greatest = sorted[Math.floor(0.99 * (sorted.length - 1))] || 1;
+  const range = diverging ? {from: -greatest, to: greatest} : limits(sorted);
+  const colours = diverging ? theme.diverging : theme.sequential;
+  const level = scale(range.from, range.to, 0, levels - 1);
+  const paint = (pen, found, place, size) => {
+    const dots = Array.from({length: levels}, () => []);
+    for (const i of found) dots[Math.min(Math.max(Math.round(level(values[i])), 0), levels - 1)].push(...place(i));
+    const order = [...dots.keys()];
+    if (diverging) order.sort((a, b) => Math.abs(a - levels / 2 + 0.5) - Math.abs(b - levels / 2 + 0.5));
+    for (const l of order) pen.dots(dots[l], size, mixed(colours, l / (levels - 1)));
+  };
+  return {range, colours, paint};
+}
+
 function drawPlane(pen, width, height, item, samples, theme) {
   const [across, up, shade] = columnsOf(samples, [item.x, item.y, item.colour]);
   const found = samples.indices([across, up, shade]);
   const whole = samples.indices([across, up, shade], samples.every);
-  cover(pen, width, height, theme);
   const box = plotBox(width, height, {right: 84});
   const xs = limits(whole.map((i) => across.values[i])), ys = limits(whole.map((i) => up.values[i]));
-  const sorted = Float64Array.from(whole, (i) => item.diverging ? Math.abs(shade.values[i]) : shade.values[i]).sort();
-  const greatest = sorted[Math.floor(0.99 * (sorted.length - 1))] || 1;
-  const range = item.diverging ? {from: -greatest, to: greatest} : limits(sorted);
-  const colours = item.diverging ? theme.diverging : theme.sequential;
+  const {range, colours, paint} = shading(item, shade, whole, theme);
   const x = scale(xs.from, xs.to, box.x, box.x + box.width);
   const [bottom, top] = item.reverseY ? [box.y, box.y + box.height] : [box.y + box.height, box.y];
   const y = scale(ys.from, ys.to, bottom, top);
   verticalAxis(pen, box, y, ys, up.label, theme);
   horizontalAxis(pen, box, x, xs, across.label, theme);
   frame(pen, box, theme, NaN);
-  const dots = Array.from({length: levels}, () => []);
-  const level = scale(range.from, range.to, 0, levels - 1);
-  for (const i of found)
-    dots[Math.min(Math.max(Math.round(level(shade.values[i])), 0), levels - 1)].push(x(across.values[i]), y(up.values[i]));
-  // The strongest colours of either sign last, on top.
-  const order = [...dots.keys()];
-  if (item.diverging) order.sort((a, b) => Math.abs(a - levels / 2 + 0.5) - Math.abs(b - levels / 2 + 0.5));
-  pen.clip(box, () => { for (const l of order) pen.dots(dots[l], 3, mixed(colours, l / (levels - 1))); });
+  pen.clip(box, () => paint(pen, found, (i) => [x(across.values[i]), y(up.values[i])], 3));
   colourBar(pen, box, colours, range, shade.label, theme);
   tellBeyond(pen, box, xs.beyond + ys.beyond, theme);
   return {
@@ -316,7 +316,6 @@ function drawPair(pen, width, height, item, samples, theme) {
   const lines = item.lines.length ? item.lines : [{slope: 1, offset: 0, label: 'y = x'}];
   const entries = lines.map(({label}, i) =>
     ({label, colour: theme.series[(i + 1) % theme.series.length], dash: i ? [6, 4] : []}));
-  cover(pen, width, height, theme);
   const both = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, {...theme, named: false})});
   const upper = {...both, height: Math.round(0.6 * both.height)};
   const lower = {...both, y: upper.y + upper.height + 16, height: both.height - upper.height - 16};
@@ -327,7 +326,6 @@ function drawPair(pen, width, height, item, samples, theme) {
   const x = scale(xs.from, xs.to, both.x, both.x + both.width);
   const y = scale(ys.from, ys.to, upper.y + upper.height, upper.y);
   const d = scale(ds.from, ds.to, lower.y + lower.height, lower.y);
-  const sameUnit = up.unit ? ` (${up.unit})` : '';
   verticalAxis(pen, upper, y, ys, up.label, theme);
   for (const tick of numberTicks(xs.from, xs.to, upper.width, 76)) {
     const at = Math.round(x(tick.value)) + 0.5;
@@ -341,7 +339,7 @@ function drawPair(pen, width, height, item, samples, theme) {
       pen.lines([path], entries[i].colour, 1.75, entries[i].dash);
     });
   });
-  verticalAxis(pen, lower, d, ds, `Difference${sameUnit}`, theme);
+  verticalAxis(pen, lower, d, ds, withUnit('Difference', up.unit), theme);
   horizontalAxis(pen, lower, x, xs, across.label, theme);
   frame(pen, lower, theme, d(0));
   pen.clip(lower, () => pen.dots(places(found, across.values, differences, x, d), 2, theme.series[0], 0.35));
@@ -366,14 +364,13 @@ function drawPair(pen, width, height, item, samples, theme) {
 function drawBars(pen, width, height, item, samples, theme) {
   const bars = item.bars.map(({label, value, error}) => ({label, value: value ?? NaN, error: error ?? 0}));
   const finite = bars.filter(({value}) => Number.isFinite(value));
-  cover(pen, width, height, theme);
   const longest = Math.max(...bars.map(({label}) => textWidth(label, fontSize)));
   const left = Math.min(longest + 22, 0.42 * width);
   const box = plotBox(width, height, {left, right: 62, top: 8});
   const range = limits(finite.flatMap(({value, error}) => [value - error, value + error]), [0]);
   if (finite.every(({value, error}) => value - error >= 0)) range.from = 0;
   const x = scale(range.from, range.to, box.x, box.x + box.width);
-  horizontalAxis(pen, box, x, range, `${item.axis}${item.unit ? ` (${item.unit})` : ''}`.trim(), theme);
+  horizontalAxis(pen, box, x, range, withUnit(item.axis, item.unit).trim(), theme);
   const room = box.height / bars.length, thick = Math.min(0.5 * room, 18);
   bars.forEach(({label, value, error}, i) => {
     const middle = box.y + (i + 0.5) * room;
@@ -381,34 +378,27 @@ function drawBars(pen, width, height, item, samples, theme) {
     if (!Number.isFinite(value)) return;
     const [begin, end] = [x(0), x(value)].sort((a, b) => a - b);
     pen.rect(begin, middle - thick / 2, Math.max(end - begin, 1), thick, theme.series[0]);
-    if (error > 0) {
-      const [low, high] = [x(value - error), x(value + error)];
-      const caps = [low, high].map((end) => [end, middle - 4, end, middle + 4]);
-      pen.lines([[low, middle, high, middle], ...caps], theme.ink, 1.25);
-    }
+    if (error > 0) errorBar(pen, x(value - error), x(value + error), middle, theme.ink, 1.25);
     pen.text(Math.max(x(value + error), x(0)) + 7, middle + 4, brief(value), small(theme));
   });
   pen.lines([[Math.round(x(0)) + 0.5, box.y, Math.round(x(0)) + 0.5, box.y + box.height]], theme.frame);
-  const unit = item.unit ? ` (${item.unit})` : '';
   return {
     points: finite.length,
     plot: box,
-    alternative: `Bars of ${item.axis || 'values'}${unit}: ${plural(bars.length, 'bar')}`,
+    alternative: `Bars of ${withUnit(item.axis || 'values', item.unit)}: ${plural(bars.length, 'bar')}`,
     table: {
-      headers: ['', `${item.axis || 'Value'}${unit}`, 'Error'],
+      headers: ['', withUnit(item.axis || 'Value', item.unit), 'Error'],
       rows: bars.map(({label, value, error}) => [label, brief(value), error ? brief(error) : '–']),
     },
   };
 }
 
 function drawCurves(pen, width, height, item, samples, theme) {
-  const named = (words, unit) => unit ? `${words} (${unit})` : words;
   const curves = item.curves.map(({label, x, y, error}, c) => ({
     label, colour: theme.series[c % theme.series.length],
     points: x.map((value, i) => ({x: value, y: y[i] ?? NaN, error: error[i] ?? 0})).filter((point) => Number.isFinite(point.y)),
   }));
   const shown = curves.flatMap(({points}) => points);
-  cover(pen, width, height, theme);
   const box = plotBox(width, height, {top: legend(pen, curves, margin, width - 14, {...theme, named: false})});
   const across = {from: Math.min(...shown.map((point) => point.x)), to: Math.max(...shown.map((point) => point.x))};
   const up = limits(shown.flatMap(({y, error}) => [y - error, y + error]));
@@ -416,9 +406,9 @@ function drawCurves(pen, width, height, item, samples, theme) {
   const place = scale(along(across.from), along(across.to), box.x, box.x + box.width);
   const x = (value) => place(along(value));
   const y = scale(up.from, up.to, box.y + box.height, box.y);
-  verticalAxis(pen, box, y, up, named(item.axis, item.unit), theme);
+  verticalAxis(pen, box, y, up, withUnit(item.axis, item.unit), theme);
   const axis = item.logX ? logarithmicAxis : horizontalAxis;
-  axis(pen, box, place, across, named(item.xAxis, item.xUnit), theme);
+  axis(pen, box, place, across, withUnit(item.xAxis, item.xUnit), theme);
   frame(pen, box, theme, y(0));
   pen.clip(box, () => curves.forEach(({points, colour}) => {
     pen.lines(points.filter(({error}) => error > 0).map((point) =>
@@ -432,7 +422,7 @@ function drawCurves(pen, width, height, item, samples, theme) {
     plot: box,
     alternative: `${item.axis} against ${item.xAxis}: ${listText(curves.map(({label}) => label))}`,
     table: {
-      headers: ['Curve', named(item.xAxis, item.xUnit), named(item.axis, item.unit)],
+      headers: ['Curve', withUnit(item.xAxis, item.xUnit), withUnit(item.axis, item.unit)],
       rows: curves.flatMap(({label, points}) =>
         points.map((point) => [label, brief(point.x), point.error ? withError(point.y, point.error) : brief(point.y)])),
     },

@@ -33,8 +33,20 @@ function decodeColumn({name, title, unit, least, step, values}) {
   const quantised = unpacked(values);
   const numbers = new Float64Array(quantised.length);
   for (let i = 0; i < numbers.length; ++i) numbers[i] = quantised[i] === missing ? NaN : least + quantised[i] * step;
-  return {name, title, values: numbers, label: unit ? `${title} (${unit})` : title, unit};
+  return {name, title, values: numbers, label: withUnit(title, unit), unit};
 }
+
+// First of some whole numbers at which a condition that stays true is true; `last` if only there.
+function firstWhere(first, last, holds) {
+  while (first < last) {
+    const middle = (first + last) >> 1;
+    if (holds(middle)) last = middle;
+    else first = middle + 1;
+  }
+  return first;
+}
+
+const withUnit = (words, unit) => unit ? `${words} (${unit})` : words;
 
 function median(numbers) {
   return numbers.slice().sort()[numbers.length >> 1];
@@ -124,19 +136,14 @@ class Samples {
 
   // Sample nearest to a position on the time axis.
   nearest(position) {
-    let low = 0, high = this.count - 1;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.position[middle] < position) low = middle + 1;
-      else high = middle;
-    }
+    const low = firstWhere(0, this.count - 1, (i) => this.position[i] >= position);
     return low > 0 && position - this.position[low - 1] < this.position[low] - position ? low - 1 : low;
   }
 
-  // Selects the samples from t0 to t1, in seconds since 1970, and all between them on the time axis.
-  select(t0, t1) {
-    const inside = this.position.filter((p, i) => this.time[i] >= t0 && this.time[i] <= t1);
-    if (inside.length) this.choose([inside[0], inside[inside.length - 1]], this.names);
+  // Names of intervals with masks of their selected samples, and of all selected samples.
+  get selectedByRegime() {
+    const masks = [...this.regimes].map(([name, inside]) => [name, this.selected.map((one, i) => one & inside[i])]);
+    return [...masks, ['All', this.selected]];
   }
 
   get isFiltered() { return this.range !== null || this.names.size > 0; }
@@ -155,11 +162,7 @@ class Samples {
 }
 
 // Number of ones in a mask.
-function countOf(mask) {
-  let count = 0;
-  for (let i = 0; i < mask.length; ++i) count += mask[i];
-  return count;
-}
+const countOf = (mask) => mask.reduce((count, one) => count + one, 0);
 
 function statistics(values, indices) {
   let least = Infinity, greatest = -Infinity, sum = 0, squares = 0;

@@ -45,12 +45,12 @@ function endsOfRows(rows, always) {
 // Rows {label, dots: [{value, error}, ...], text, tone, mark}: an axis below that covers `reach`, or
 // otherwise the dots with their bars, a band of small values, and lines. Arrows mark dots beyond the axis.
 function drawRows(pen, width, height, {rows, series, lines = [], band = null, axis, reach}, theme) {
-  cover(pen, width, height, theme);
   const colours = series.map((label, s) => theme.series[s % theme.series.length]);
-  const keys = series.length > 1
-    ? series.map((label, s) => ({label, colour: colours[s], mark: marks[s % marks.length]})) : [];
-  const top = keysAbove(pen, [...keys, ...lines.map(({label}) => ({label, colour: theme.ink, dash: [5, 3]})),
-    ...(band ? [{label: band.label, colour: theme.frame, wide: true}] : [])], width - 14, theme);
+  const keys = [
+    ...(series.length > 1 ? series.map((label, s) => ({label, colour: colours[s], mark: marks[s % marks.length]})) : []),
+    ...lines.map(({label}) => ({label, colour: theme.ink, dash: [5, 3], thickness: 1.5})),
+    ...(band ? [{label: band.label, colour: theme.frame, wide: true}] : [])];
+  const top = keys.length ? legend(pen, keys, 8, width - 14, theme) : 8;
   const swatch = rows.some(({mark}) => mark) ? 22 : 0;
   const words = Math.max(0, ...rows.map(({text}) => textWidth(text ?? '', fontSize)));
   const below = words > 0.3 * width;  // text that does not fit at the right is placed below the names
@@ -65,8 +65,7 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
   if (range.from > 0 && range.from < 0.5 * range.to) range.from = 0;
   const x = scale(range.from, range.to, box.x, box.x + box.width);
   if (band) pen.rect(x(band.from), box.y, x(band.to) - x(band.from), box.height, theme.frame, 0.22);
-  const placed = numberTicks(range.from, range.to, box.width, 52).map((tick) => ({at: x(tick.value), label: tick.label}));
-  horizontalTicks(pen, box, placed, axis, theme);
+  horizontalAxis(pen, box, x, range, axis, theme, 52);
   const room = box.height / rows.length;
   pen.clip(box, () => {
     for (const {value} of lines) pen.lines([[x(value), box.y, x(value), box.y + box.height]], theme.ink, 1.25, [5, 3]);
@@ -92,10 +91,7 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
         return;
       }
       pen.clip({...box, x: box.x - 6, width: box.width + 12}, () => {
-        if (error > 0) {
-          const [low, high] = [x(value - error), x(value + error)];
-          pen.lines([[low, y, high, y], ...[low, high].map((end) => [end, y - 4, end, y + 4])], colour, 1.5);
-        }
+        if (error > 0) errorBar(pen, x(value - error), x(value + error), y, colour, 1.5);
         (tones[tone]?.mark ?? marks[s % marks.length])(pen, x(value), y, colour, theme.paper);
       });
     });
@@ -104,25 +100,10 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
   return {box, points: finite.length};
 }
 
-// Marks and names above rows; returns their height.
-function keysAbove(pen, keys, right, theme) {
-  let x = 8, y = 13;
-  for (const {label, colour, mark, dash, wide} of keys) {
-    const width = 24 + textWidth(label, fontSize);
-    if (x > 8 && x + width > right) { x = 8; y += 17; }
-    if (mark) mark(pen, x + 8, y - 4, colour, theme.paper);
-    else if (wide) pen.rect(x, y - 10, 16, 12, colour, 0.3);
-    else pen.lines([[x, y - 4, x + 16, y - 4]], colour, 1.5, dash);
-    pen.text(x + 21, y, label, {...small(theme), fill: theme.ink});
-    x += width + 16;
-  }
-  return keys.length ? y + 9 : 8;
-}
-
 function drawDots(pen, width, height, item, samples, theme) {
   const rows = item.rows.map(({label, dots, text, tone}) =>
     ({label, text, tone, dots: dots.map(({value, error}) => ({value: value ?? NaN, error: error ?? 0}))}));
-  const axis = item.unit ? `${item.axis} (${item.unit})` : item.axis;
+  const axis = withUnit(item.axis, item.unit);
   const {box, points} = drawRows(pen, width, height, {...item, rows, axis}, theme);
   const toneWords = {good: 'consistent', bad: 'inconsistent', open: 'cannot tell'};
   const judged = rows.some(({tone}) => tone), told = rows.some(({text}) => text);

@@ -140,12 +140,6 @@ std::string dumped(const std::string& program, const std::string& html, const st
   return text;
 }
 
-// Lines "NAME BASE64".
-std::string exported(const std::string& program, const std::string& html, FigureUse use) {
-  constexpr std::array<const char*, 3> words{"page", "column", "slide"};
-  return dumped(program, html, std::string("#export+for=") + words.at(static_cast<std::size_t>(use)));
-}
-
 std::string decoded(const std::string& base64) {
   std::string bytes(base64.size() / 4 * 3, '\0');
   const int length =
@@ -163,6 +157,7 @@ bool is_picture(const std::string& name) {
 
 using Files = std::vector<std::pair<std::string, std::string>>;
 
+// Files from lines "NAME BASE64".
 Files files_of(const std::string& text) {
   Files files;
   std::istringstream lines(text);
@@ -207,7 +202,9 @@ void require_figures(const fs::path& folder) {
 
 std::vector<std::string> write_figures(const Report& report, const fs::path& folder, FigureUse use) {
   const std::string program = browser();
-  const Files files = files_of(exported(program, report_html(report), use));
+  constexpr std::array<const char*, 3> uses{"page", "column", "slide"};
+  const std::string wish = std::string("#export+for=") + uses.at(static_cast<std::size_t>(use));
+  const Files files = files_of(dumped(program, report_html(report), wish));
   if (files.empty())
     throw Error(Error::Code::system, fmt::format("figures: {} shows no pictures of this report", program));
   std::vector<std::string> names;

@@ -81,13 +81,11 @@ class Panel {
     if (!(this.item.choices?.length > 1)) return '';
     const options = this.item.choices.map((name) =>
       make('option', {value: name}, this.report.samples.columns.get(name).title));
-    const select = make('select', {}, ...options);
-    select.addEventListener('change', () => {
-      this.item.choice = select.value;
+    this.select = make('select', {onchange: () => {
+      this.item.choice = this.select.value;
       this.changed();
-    });
-    this.select = select;
-    return make('label', {class: 'choice'}, 'Horizontal axis', select);
+    }}, ...options);
+    return make('label', {class: 'choice'}, 'Horizontal axis', this.select);
   }
 
   // Buttons that switch curves off and on, if there are several; one curve always remains.
@@ -130,7 +128,7 @@ class Panel {
     const context = this.canvas.getContext('2d');
     context.scale(sharpness, sharpness);
     const named = this.switches.length > 0 && !this.report.printing;
-    this.drawn = pictures[this.item.kind](new CanvasPen(context), width, this.height, this.item, samples, {...theme, named});
+    this.drawn = drawPicture(new CanvasPen(context), width, this.height, this.item, samples, {...theme, named});
     const {alternative, points, table} = this.drawn;
     this.switches.forEach((button, i) => {
       button.setAttribute('aria-pressed', String(!this.item.hidden.has(this.item.columns[i])));
@@ -204,31 +202,31 @@ class Panel {
     return {width: drawn, height, shown};
   }
 
-  // Picture on white, below its title.
-  drawForPaper(pen, width, height, title) {
+  // Picture on white, below its title, by a pen that `makePen` makes from its width, height and displayed width.
+  drawForPaper(makePen) {
+    const {width, height, shown} = this.exportSize, title = titleLines(this.item.title, width - 16);
+    const pen = makePen(width, height + title.height, shown);
     cover(pen, width, height + title.height, palettes.light);
     title.lines.forEach((words, i) =>
       pen.text(8, 17 + 17 * i, words, {fill: palettes.light.ink, size: titleSize, weight: 600}));
     pen.below(title.height, () =>
-      pictures[this.item.kind](pen, width, height, this.item, this.report.samples, palettes.light));
+      drawPicture(pen, width, height, this.item, this.report.samples, palettes.light));
+    return pen;
   }
 
   svg() {
-    const {width, height, shown} = this.exportSize, title = titleLines(this.item.title, width - 16);
-    const pen = new SvgPen(width, height + title.height, this.item.title, shown, `${this.description} ${this.report.origin}`.trim());
-    this.drawForPaper(pen, width, height, title);
-    return pen.svg;
+    return this.drawForPaper((width, height, shown) =>
+      new SvgPen(width, height, this.item.title, shown, `${this.description} ${this.report.origin}`.trim())).svg;
   }
 
   png() {
-    const {width, height, shown} = this.exportSize, title = titleLines(this.item.title, width - 16);
-    const dotsPerPixel = 3 * Math.max(1, shown / width / 1.5);
-    const canvas = make('canvas', {width: Math.round(width * dotsPerPixel),
-      height: Math.round((height + title.height) * dotsPerPixel)});
-    const context = canvas.getContext('2d');
-    context.scale(dotsPerPixel, dotsPerPixel);
-    this.drawForPaper(new CanvasPen(context), width, height, title);
-    return canvas.toDataURL('image/png');
+    return this.drawForPaper((width, height, shown) => {
+      const dotsPerPixel = 3 * Math.max(1, shown / width / 1.5);
+      const canvas = make('canvas', {width: Math.round(width * dotsPerPixel), height: Math.round(height * dotsPerPixel)});
+      const context = canvas.getContext('2d');
+      context.scale(dotsPerPixel, dotsPerPixel);
+      return new CanvasPen(context);
+    }).context.canvas.toDataURL('image/png');
   }
 
   get caption() { return this.section.querySelector('.caption')?.textContent ?? ''; }
@@ -248,17 +246,15 @@ class Panel {
 }
 
 // Pointing at a sample in one picture shows it in all.
-class Pointing {
-  constructor(panel, report) {
-    const {picture, canvas} = panel;
-    const tell = (event) => {
-      const {left, top} = canvas.getBoundingClientRect();
-      report.point(panel.nearest(event.clientX - left, event.clientY - top));
-    };
-    picture.addEventListener('pointermove', tell);
-    picture.addEventListener('pointerdown', tell);
-    picture.addEventListener('pointerleave', () => report.point(undefined));
-  }
+function followPointer(panel, report) {
+  const {picture, canvas} = panel;
+  const tell = (event) => {
+    const {left, top} = canvas.getBoundingClientRect();
+    report.point(panel.nearest(event.clientX - left, event.clientY - top));
+  };
+  picture.addEventListener('pointermove', tell);
+  picture.addEventListener('pointerdown', tell);
+  picture.addEventListener('pointerleave', () => report.point(undefined));
 }
 
 // In a time panel the reader selects a range by dragging along it, and enlarges the vertical axis by dragging
@@ -404,13 +400,12 @@ class Regimes {
   draw() {
     const {samples} = this.report;
     const columns = columnsOf(samples, this.item.columns);
-    const masks = [...samples.regimes].map(([name, inside]) => [name, samples.selected.map((one, i) => one & inside[i])]);
     const first = make('tr', {}, make('th', {rowspan: 2, scope: 'col'}, 'Regime'),
       make('th', {rowspan: 2, scope: 'col', class: 'number'}, 'Samples'),
       ...columns.map(({label}) => make('th', {colspan: 2, scope: 'colgroup', class: 'group'}, label)));
     const second = make('tr', {}, ...columns.flatMap(() =>
       ['Bias', 'Rms'].map((words) => make('th', {scope: 'col', class: 'number'}, words))));
-    const rows = [...masks, ['All', samples.selected]].map(([name, mask]) => {
+    const rows = samples.selectedByRegime.map(([name, mask]) => {
       const all = columns.map((column) => statistics(column.values, samples.indices([column], mask)));
       const step = this.step(all);
       const cells = [countText(countOf(mask)), ...all.flatMap(({mean, rms}) => [number(mean, step), number(rms, step)])];

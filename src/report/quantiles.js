@@ -6,12 +6,7 @@ const normalQuantile = (() => {
   for (let x = -most + step / 2; x < most; x += step)
     parts.push(parts.at(-1) + step * Math.exp(-x * x / 2) / Math.sqrt(2 * Math.PI));
   return (part) => {
-    let low = 0, high = parts.length - 1;
-    while (high - low > 1) {
-      const middle = (low + high) >> 1;
-      if (parts[middle] < part) low = middle;
-      else high = middle;
-    }
+    const high = firstWhere(1, parts.length - 1, (i) => parts[i] >= part), low = high - 1;
     return -most + step * (low + (part - parts[low]) / (parts[high] - parts[low]));
   };
 })();
@@ -25,12 +20,7 @@ function quantilesOf(sorted) {
   return Array.from({length: count}, (_, n) => {
     if (!ends) return {x: normalQuantile((n + 0.5) / count), y: sorted[n]};
     const wanted = -ends + 2 * ends * n / (count - 1);
-    let low = 0, high = sorted.length - 1;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (normalQuantile((middle + 0.5) / sorted.length) < wanted) low = middle + 1;
-      else high = middle;
-    }
+    const low = firstWhere(0, sorted.length - 1, (i) => normalQuantile((i + 0.5) / sorted.length) >= wanted);
     return {x: normalQuantile((low + 0.5) / sorted.length), y: sorted[low]};
   });
 }
@@ -46,7 +36,6 @@ function drawQuantiles(pen, width, height, item, samples, theme) {
     const spread = (at(0.75) - at(0.25)) / (2 * normalQuantile(0.75));
     return {...column, sorted, middle: at(0.5), spread, quantiles: quantilesOf(sorted)};
   });
-  cover(pen, width, height, theme);
   const box = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, theme)});
   const most = normalQuantile(1 - 0.5 / Math.max(samples.count, 2));
   const across = {from: -most - 0.2, to: most + 0.2};

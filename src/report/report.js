@@ -27,7 +27,7 @@ class ReportPage {
     });
     for (const panel of this.panels) {
       if (overTime(panel.item)) new TimeSelector(panel, this);
-      else if (['binned', 'plane', 'pair', 'track'].includes(panel.item.kind)) new Pointing(panel, this);
+      else if (['binned', 'plane', 'pair', 'track'].includes(panel.item.kind)) followPointer(panel, this);
     }
     this.bar = new SelectionBar(this);
     if (this.samples.count) document.querySelector('main').before(this.bar.element);
@@ -105,13 +105,6 @@ class ReportPage {
     this.samples.choose(range, names);
     this.draw();
     if (lasting) this.remember();
-  }
-
-  // Selects the samples from t0 to t1, both in seconds since 1970 UTC.
-  select(t0, t1) {
-    this.samples.select(t0, t1);
-    this.draw();
-    this.remember();
   }
 
   // Stores the state in the address: it can be sent to a colleague, and the back button of the browser works.

@@ -1,3 +1,4 @@
+#include <openssl/evp.h>
 #include <pcor/base/error.hpp>
 #include <pcor/base/message.hpp>
 
@@ -5,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+#include <initializer_list>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -18,31 +19,30 @@
 #include "report/report_data.hpp"
 #include "report/thinned.hpp"
 
+namespace pcor {
+
+// Items and their parts whose JSON has the names of members.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportLine, slope, offset, label)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportBar, label, value, error)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportCurve, label, x, y, error)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportDot, value, error)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportInterval, name, begin, end)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PairPanel, x, y, lines)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegimeTable, columns)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BarPanel, bars, axis, unit)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StripPanel, columns)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegimePanel, columns, axis)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QuantilePanel, columns, axis)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfSeparation, effect, rival, text)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfCommands, add, model, with, refit, stem)
+
+}  // namespace pcor
+
 namespace pcor::internal::report {
 
 namespace {
 
 using nlohmann::json;
-
-// The numbers, least significant byte first, in base64.
-template <typename Unsigned>
-std::string base64(const std::vector<Unsigned>& numbers) {
-  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<std::uint32_t> bytes;
-  bytes.reserve(numbers.size() * sizeof(Unsigned) + 2);
-  for (const Unsigned number : numbers)
-    for (std::size_t i = 0; i < sizeof(Unsigned); ++i) bytes.push_back((number >> (8 * i)) & 0xffU);
-  const std::size_t padding = (3 - bytes.size() % 3) % 3;
-  bytes.resize(bytes.size() + padding, 0);
-  std::string text;
-  text.reserve(bytes.size() / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::uint32_t three = bytes[i] << 16 | bytes[i + 1] << 8 | bytes[i + 2];
-    for (const int shift : {18, 12, 6, 0}) text += digits[three >> shift & 63U];
-  }
-  std::fill(text.end() - static_cast<std::ptrdiff_t>(padding), text.end(), '=');
-  return text;
-}
 
 // Compact encoding of numbers near their predecessors: differences with the sign as the last bit, in bytes of
 // seven bits whose last one has no eighth bit; a difference of zero is followed by a repeat count; all in
@@ -65,7 +65,7 @@ std::string packed(const std::vector<std::uint32_t>& numbers) {
     while (is_same && i < numbers.size() && numbers[i] == number) ++i;
     if (is_same) put(i - next);
   }
-  return base64(bytes);
+  return base64(bytes.data(), bytes.size());
 }
 
 constexpr double all_steps = 65534.0;   // steps between the minimum and the maximum of a column
@@ -92,51 +92,26 @@ json quantised(const ReportColumn& column, double steps = all_steps) {
           {"step", step},        {"values", packed(numbers)}};
 }
 
-// Columns used only along the axes of pictures, where the resolution is a pixel.
-class AlongAxes {
- public:
-  explicit AlongAxes(const Report& report) {
-    for (const ReportItem& item : report.items) std::visit(*this, item);
+// Names of the columns used only along the axes of pictures, where the resolution is a pixel.
+std::set<std::string> names_along_axes(const json& items) {
+  std::set<std::string> along;
+  std::set<std::string> up;
+  for (const json& item : items) {
+    const auto insert = [&item](std::initializer_list<const char*> keys, std::set<std::string>& names) {
+      for (const char* const key : keys) {
+        const json found = item.value(key, json::array());
+        for (const json& name : found.is_array() ? found : json::array({found})) {
+          if (name.is_string()) names.insert(name);
+        }
+      }
+    };
+    insert({"choices", "latitude", "longitude", "x", "y"}, along);
+    insert({"columns", "uncertainty", "colour", "residual"}, up);
+    if (item["kind"] == "pair") insert({"x", "y"}, up);
   }
-
-  bool has(const std::string& name) const { return along_.count(name) > 0 && up_.count(name) == 0; }
-
-  void operator()(const TimePanel& panel) {
-    up_.insert(panel.columns.begin(), panel.columns.end());
-    up_.insert(panel.uncertainty);
-  }
-  void operator()(const BinnedPanel& panel) {
-    along_.insert(panel.x_choices.begin(), panel.x_choices.end());
-    up_.insert(panel.y.begin(), panel.y.end());
-  }
-  void operator()(const PlanePanel& panel) {
-    along_.insert({panel.x, panel.y});
-    up_.insert(panel.colour);
-  }
-  void operator()(const PairPanel& panel) { up_.insert({panel.x, panel.y}); }
-  void operator()(const RegimeTable& table) { up_.insert(table.columns.begin(), table.columns.end()); }
-  void operator()(const WhatIfPanel& panel) {
-    along_.insert(panel.x_choices.begin(), panel.x_choices.end());
-    up_.insert(panel.residual);
-  }
-  void operator()(const TrackPanel& panel) {
-    along_.insert({panel.latitude, panel.longitude});
-    up_.insert(panel.colour);
-  }
-  void operator()(const StripPanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
-  void operator()(const RegimePanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
-  void operator()(const QuantilePanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
-  // Panels without columns.
-  void operator()(const BarPanel&) {}
-  void operator()(const CurvePanel&) {}
-  void operator()(const DotPanel&) {}
-  void operator()(const ReportTable&) {}
-  void operator()(const ReportText&) {}
-
- private:
-  std::set<std::string> along_{};
-  std::set<std::string> up_{};
-};
+  for (const std::string& name : up) along.erase(name);
+  return along;
+}
 
 // Flights with the time of their samples: `start` in seconds since 1970, and the milliseconds between
 // successive samples, beginning with the difference between the first one and the start.
@@ -165,22 +140,14 @@ json flights(const Report& report) {
   return all;
 }
 
-// Rounded to the resolution of a barb.
-double rounded(double speed) { return std::round(10.0 * speed) / 10.0; }
-
 const char* to_string(ReportTone tone) {
   constexpr const char* names[] = {"", "good", "bad", "open"};
   return names[static_cast<std::size_t>(tone)];
 }
 
-std::string base64_of(const std::vector<double>& numbers) {
-  std::vector<std::uint64_t> bits(numbers.size());
-  if (!numbers.empty()) std::memcpy(bits.data(), numbers.data(), numbers.size() * sizeof(double));
-  return base64(bits);
-}
-
 json sums_json(const WhatIfSums& sums) {
-  return {{"products", base64_of(sums.products)}, {"samples", sums.samples}};
+  return {{"products", base64(sums.products.data(), sums.products.size() * sizeof(double))},
+          {"samples", sums.samples}};
 }
 
 json sums_json(const std::vector<WhatIfSums>& all) {
@@ -209,82 +176,63 @@ json what_if_columns(const WhatIfPanel& panel, const Report& report) {
   return {{"points", packed({points.begin(), points.end()})}, {"columns", std::move(columns)}};
 }
 
+// Content of an item, without its title.
 struct ItemJson {
   const Report& report;
 
+  template <class Panel>
+  json operator()(const Panel& panel) const {
+    return panel;
+  }
   json operator()(const TimePanel& panel) const {
-    return {{"title", panel.title},
-            {"columns", panel.columns},
+    return {{"columns", panel.columns},
             {"axis", panel.axis},
             {"uncertainty", panel.uncertainty},
             {"averagingTime", panel.averaging_time}};
   }
   json operator()(const BinnedPanel& panel) const {
-    return {{"title", panel.title},
-            {"columns", panel.y},
+    return {{"columns", panel.y},
             {"choices", panel.x_choices},
             {"bins", panel.bins},
             {"samplesPerIndependent", panel.autocorrelation_time},
             {"axis", panel.axis}};
   }
   json operator()(const PlanePanel& panel) const {
-    return {{"title", panel.title},
-            {"x", panel.x},
+    return {{"x", panel.x},
             {"y", panel.y},
             {"colour", panel.colour},
             {"reverseY", panel.reverse_y},
             {"diverging", panel.diverging}};
   }
-  json operator()(const PairPanel& panel) const {
-    json lines = json::array();
-    for (const ReportLine& line : panel.lines)
-      lines.push_back({{"slope", line.slope}, {"offset", line.offset}, {"label", line.label}});
-    return {{"title", panel.title}, {"x", panel.x}, {"y", panel.y}, {"lines", lines}};
-  }
-  json operator()(const RegimeTable& table) const {
-    return {{"title", table.title}, {"columns", table.columns}};
-  }
-  json operator()(const BarPanel& panel) const {
-    json bars = json::array();
-    for (const ReportBar& bar : panel.bars)
-      bars.push_back({{"label", bar.label}, {"value", bar.value}, {"error", bar.error}});
-    return {{"title", panel.title}, {"bars", bars}, {"axis", panel.axis}, {"unit", panel.unit}};
-  }
   json operator()(const CurvePanel& panel) const {
-    json curves = json::array();
-    for (const ReportCurve& curve : panel.curves)
-      curves.push_back({{"label", curve.label}, {"x", curve.x}, {"y", curve.y}, {"error", curve.error}});
-    return {{"title", panel.title},  {"curves", curves},   {"xAxis", panel.x_axis}, {"axis", panel.axis},
-            {"xUnit", panel.x_unit}, {"unit", panel.unit}, {"logX", panel.log_x}};
+    return {{"curves", panel.curves}, {"xAxis", panel.x_axis}, {"axis", panel.axis},
+            {"xUnit", panel.x_unit},  {"unit", panel.unit},    {"logX", panel.log_x}};
   }
   json operator()(const TrackPanel& panel) const {
+    const auto rounded = [](double speed) {
+      return std::round(10.0 * speed) / 10.0;
+    };  // resolution of a barb
     json wind = json::array();
     for (const ReportBarb& barb : panel.wind)
       wind.push_back({{"time", barb.time}, {"east", rounded(barb.east)}, {"north", rounded(barb.north)}});
-    return {{"title", panel.title},   {"latitude", panel.latitude},   {"longitude", panel.longitude},
-            {"colour", panel.colour}, {"diverging", panel.diverging}, {"wind", wind}};
-  }
-  json operator()(const StripPanel& panel) const {
-    return {{"title", panel.title}, {"columns", panel.columns}};
-  }
-  json operator()(const RegimePanel& panel) const {
-    return {{"title", panel.title}, {"columns", panel.columns}, {"axis", panel.axis}};
-  }
-  json operator()(const QuantilePanel& panel) const {
-    return {{"title", panel.title}, {"columns", panel.columns}, {"axis", panel.axis}};
+    return {{"latitude", panel.latitude},
+            {"longitude", panel.longitude},
+            {"colour", panel.colour},
+            {"diverging", panel.diverging},
+            {"wind", wind}};
   }
   json operator()(const DotPanel& panel) const {
     json rows = json::array();
-    for (const ReportDotRow& row : panel.rows) {
-      json dots = json::array();
-      for (const ReportDot& dot : row.dots) dots.push_back({{"value", dot.value}, {"error", dot.error}});
+    for (const ReportDotRow& row : panel.rows)
       rows.push_back(
-          {{"label", row.label}, {"dots", dots}, {"text", row.text}, {"tone", to_string(row.tone)}});
-    }
+          {{"label", row.label}, {"dots", row.dots}, {"text", row.text}, {"tone", to_string(row.tone)}});
     json lines = json::array();
     for (const auto& [label, value] : panel.lines) lines.push_back({{"label", label}, {"value", value}});
-    json all{{"title", panel.title}, {"series", panel.series}, {"rows", rows},
-             {"lines", lines},       {"axis", panel.axis},     {"unit", panel.unit}};
+    json all{{"series", panel.series},
+             {"rows", rows},
+             {"lines", lines},
+             {"axis", panel.axis},
+             {"unit", panel.unit}};
     if (!panel.band.empty()) all["band"] = {{"label", panel.band}, {"from", -1.0}, {"to", 1.0}};
     return all;
   }
@@ -316,11 +264,7 @@ struct ItemJson {
       weights.push_back({{"effects", each.effects},
                          {"parts", sums_json(each.parts)},
                          {"scores", sums_json(WhatIfSums{each.score_covariance, 0.0})}});
-    json separations = json::array();
-    for (const WhatIfSeparation& each : panel.separations)
-      separations.push_back({{"effect", each.effect}, {"rival", each.rival}, {"text", each.text}});
-    json item{{"title", panel.title},
-              {"residual", panel.residual},
+    json item{{"residual", panel.residual},
               {"start", panel.start},
               {"isStartFitted", panel.is_start_fitted},
               {"coefficients", std::move(coefficients)},
@@ -334,13 +278,8 @@ struct ItemJson {
               {"heldOut", sums_json(panel.held_out)},
               {"noise", panel.noise},
               {"noiseLabel", panel.noise_label},
-              {"separations", std::move(separations)},
-              {"commands",
-               {{"add", panel.commands.add},
-                {"model", panel.commands.model},
-                {"with", panel.commands.with},
-                {"refit", panel.commands.refit},
-                {"stem", panel.commands.stem}}}};
+              {"separations", panel.separations},
+              {"commands", panel.commands}};
     item.update(what_if_columns(panel, report));
     return item;
   }
@@ -367,31 +306,35 @@ const char* kind_of(const ReportItem& item) {
   return kinds[item.index()];
 }
 
+std::string base64(const void* bytes, std::size_t count) {
+  std::string text((count + 2) / 3 * 4 + 1, '\0');  // with the final zero of EVP_EncodeBlock
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), static_cast<const unsigned char*>(bytes),
+                  static_cast<int>(count));
+  text.pop_back();
+  return text;
+}
+
 std::string data_json(const Report& report) {
-  json data{{"flights", flights(report)},
-            {"columns", json::array()},
-            {"intervals", json::array()},
-            {"items", json::array()}};
-  const AlongAxes along(report);
-  for (const ReportColumn& column : report.columns)
-    data["columns"].push_back(quantised(column, along.has(column.name) ? steps_along : all_steps));
-  for (const ReportInterval& interval : report.intervals)
-    data["intervals"].push_back({{"name", interval.name}, {"begin", interval.begin}, {"end", interval.end}});
+  json items = json::array();
   for (const ReportItem& item : report.items) {
     json one = std::visit(ItemJson{report}, item);
+    if (!one.empty()) one["title"] = std::visit([](const auto& panel) { return panel.title; }, item);
     one["kind"] = kind_of(item);
-    data["items"].push_back(std::move(one));
+    items.push_back(std::move(one));
   }
+  const std::set<std::string> along = names_along_axes(items);
+  json columns = json::array();
+  for (const ReportColumn& column : report.columns)
+    columns.push_back(quantised(column, along.count(column.name) > 0 ? steps_along : all_steps));
+  json data{{"flights", flights(report)},
+            {"columns", std::move(columns)},
+            {"intervals", report.intervals},
+            {"items", std::move(items)}};
   show_texts(data);
-  const std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char letter : text)
-    if (letter == '<')
-      safe += "\\u003c";
-    else
-      safe += letter;
-  return safe;
+  std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
+    text.replace(at, 1, "\\u003c");
+  return text;
 }
 
 }  // namespace pcor::internal::report

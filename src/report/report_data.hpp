@@ -2,6 +2,7 @@
 
 #include <pcor/report/report.hpp>
 
+#include <cstddef>
 #include <string>
 
 namespace pcor::internal::report {
@@ -11,6 +12,8 @@ void check(const Report& report);
 
 // Input of the browser: samples, intervals and panels, as JSON without the character '<'.
 std::string data_json(const Report& report);
+
+std::string base64(const void* bytes, std::size_t count);
 
 // Kind of an item in the browser: "time", "binned", ...
 const char* kind_of(const ReportItem& item);

@@ -14,8 +14,15 @@
 #include <variant>
 #include <vector>
 
-#include "report/assets.hpp"
 #include "report/report_data.hpp"
+
+namespace pcor::internal::report {
+
+// Style and scripts of a report, from the files in this folder; the build embeds them (embed.cmake).
+extern const std::string_view style;
+extern const std::string_view script;
+
+}  // namespace pcor::internal::report
 
 namespace pcor {
 
@@ -24,26 +31,16 @@ using namespace internal;
 namespace {
 
 std::string escaped(std::string_view text) {
+  constexpr std::string_view special = "&<>\"'";
+  constexpr std::array entities{"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
   std::string safe;
-  for (const char letter : shown_text(text)) switch (letter) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\'':
-        safe += "&#39;";
-        break;
-      default:
-        safe += letter;
-    }
+  for (const char letter : shown_text(text)) {
+    const std::size_t found = special.find(letter);
+    if (found == std::string_view::npos)
+      safe += letter;
+    else
+      safe += entities[found];
+  }
   return safe;
 }
 
@@ -55,13 +52,9 @@ std::string typeset(std::string_view text) {
   return shown;
 }
 
-// Empty for an empty text.
-std::string element(std::string_view tag, std::string_view text) {
-  return text.empty() ? "" : fmt::format("<{0}>{1}</{0}>\n", tag, typeset(text));
-}
-
-std::string element(std::string_view tag, std::string_view kind, std::string_view text) {
-  return text.empty() ? "" : fmt::format(R"(<{0} class="{1}">{2}</{0}>)", tag, kind, typeset(text)) + "\n";
+// Empty for an empty text. @param attributes such as R"( class="caption")"
+std::string element(std::string_view tag, std::string_view text, std::string_view attributes = "") {
+  return text.empty() ? "" : fmt::format("<{0}{2}>{1}</{0}>\n", tag, typeset(text), attributes);
 }
 
 // Whether a cell is a number, optionally with its error or unit: "-1.2e-3", "0.3 ± 0.1", "12 %".
@@ -114,12 +107,14 @@ std::string table(const ReportTable& table) {
 
 // Content of an item without the browser's script: its caption, its table, its text.
 struct ItemBody {
+  static constexpr std::string_view of_caption = R"( class="caption")";
+
   template <typename Panel>
   std::string operator()(const Panel& panel) const {
-    return element("p", "caption", panel.caption);
+    return element("p", panel.caption, of_caption);
   }
   std::string operator()(const ReportTable& item) const {
-    return table(item) + element("p", "caption", item.caption);
+    return table(item) + element("p", item.caption, of_caption);
   }
   std::string operator()(const ReportText& item) const {
     std::string html;
@@ -173,8 +168,8 @@ std::string summary(const std::vector<std::string>& sentences) {
 }
 
 std::string head(const Report& report) {
-  std::string html =
-      "<header>\n" + element("h1", report.title) + element("p", "subtitle", report.subtitle) + "</header>\n";
+  std::string html = "<header>\n" + element("h1", report.title) +
+                     element("p", report.subtitle, R"( class="subtitle")") + "</header>\n";
   if (!report.summary.empty())
     html += R"(<section class="summary" aria-label="Summary">)" + summary(report.summary) + "</section>\n";
   // A command follows its purpose: "To apply it: pcor process ...".
@@ -199,13 +194,10 @@ std::string foot(const Report& report) {
 
 // Hash of the script for the content security policy, which prevents other scripts: its SHA-256 in base 64.
 std::string hash_of(std::string_view script) {
-  constexpr std::size_t bytes = 32;
-  std::array<unsigned char, bytes> digest{};
+  std::array<unsigned char, 32> digest{};
   if (EVP_Digest(script.data(), script.size(), digest.data(), nullptr, EVP_sha256(), nullptr) != 1)
     throw Error(Error::Code::system, "report: libcrypto has no SHA-256; install a complete OpenSSL");
-  std::array<unsigned char, 4 * (bytes / 3 + 1) + 1> text{};
-  const int length = EVP_EncodeBlock(text.data(), digest.data(), bytes);
-  return "sha256-" + std::string(text.begin(), text.begin() + length);
+  return "sha256-" + report::base64(digest.data(), digest.size());
 }
 
 }  // namespace

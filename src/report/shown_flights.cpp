@@ -24,12 +24,6 @@ std::vector<std::size_t> spread(std::vector<std::size_t> flights, std::size_t ma
   return some;
 }
 
-std::vector<std::size_t> numbers_to(std::size_t count) {
-  std::vector<std::size_t> all(count);
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return all;
-}
-
 /// Keeps the records and intervals of some flights of a report.
 void show_only(Report& report, const std::vector<std::size_t>& flights) {
   std::vector<std::size_t> samples;
@@ -63,7 +57,8 @@ void show_only(Report& report, const std::vector<std::size_t>& flights) {
 }  // namespace
 
 std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flights, std::size_t maximum) {
-  std::vector<std::size_t> all = numbers_to(flights.size());
+  std::vector<std::size_t> all(flights.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   if (flights.size() <= maximum) return all;
   all.erase(
       std::remove_if(all.begin(), all.end(), [&](std::size_t f) { return std::isnan(flights[f].failure); }),
@@ -79,21 +74,16 @@ std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flight
   return chosen;
 }
 
-std::vector<std::size_t> flights_over_time(const std::vector<double>& begins, std::size_t maximum) {
-  std::vector<std::size_t> chosen =
-      spread(numbers_to(begins.size()), maximum, [&](std::size_t f) { return begins[f]; });
-  std::sort(chosen.begin(), chosen.end());
-  return chosen;
-}
-
 void show_flights_over_time(Report& report, std::size_t maximum) {
-  std::vector<double> begins;
-  for (const std::size_t first : report.flight_starts)
-    begins.push_back(first < report.time.size() ? report.time[first]
-                                                : std::numeric_limits<double>::infinity());
-  const std::vector<std::size_t> shown = flights_over_time(begins, maximum);
-  if (shown.size() == begins.size()) return;
-  report.summary.push_back(shown_text(shown.size(), begins.size(), "flights spread over the campaign"));
+  std::vector<std::size_t> all(report.flight_starts.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<std::size_t> shown = spread(all, maximum, [&report](std::size_t flight) {
+    const std::size_t first = report.flight_starts[flight];
+    return first < report.time.size() ? report.time[first] : std::numeric_limits<double>::infinity();
+  });
+  if (shown.size() == all.size()) return;
+  std::sort(shown.begin(), shown.end());
+  report.summary.push_back(shown_text(shown.size(), all.size(), "flights spread over the campaign"));
   show_only(report, shown);
 }
 

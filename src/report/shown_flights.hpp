@@ -27,12 +27,8 @@ struct FlightToShow {
 std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flights,
                                          std::size_t maximum = max_flights_shown);
 
-/// Flights as by `flights_to_show` without known residuals: for many flights, those spread over time.
-/// @param begins of the flights, s since 1970 UTC
-std::vector<std::size_t> flights_over_time(const std::vector<double>& begins,
-                                           std::size_t maximum = max_flights_shown);
-
-/// Keeps the records and intervals of `flights_over_time`, and adds a note to the summary.
+/// Keeps the records and intervals of some flights spread over time, up to `maximum`, and adds a note to the
+/// summary if these are not all.
 void show_flights_over_time(Report& report, std::size_t maximum = max_flights_shown);
 
 /// Note on pictures that do not show all flights, a sentence; empty if they show all.

@@ -72,7 +72,6 @@ function drawTrack(pen, width, height, item, samples, theme) {
   const [lat, lon, shade] = columnsOf(samples, [item.latitude, item.longitude, item.colour]);
   const places = samples.indices([lat, lon], samples.every);
   const found = samples.indices([lat, lon, shade]);
-  cover(pen, width, height, theme);
   const box = plotBox(width, height, trackMargins);
   const {middle: [middleLat, middleLon], project, at, east, north} = placesOf(item, samples);
   const centre = [(east[0] + east[1]) / 2, (north[0] + north[1]) / 2];
@@ -114,29 +113,20 @@ function drawTrack(pen, width, height, item, samples, theme) {
   grid(false);
   frame(pen, box, theme, NaN);
 
-  const sorted = Float64Array.from(samples.indices([lat, lon, shade], samples.every), (i) =>
-    item.diverging ? Math.abs(shade.values[i]) : shade.values[i]).sort();
-  const greatest = sorted[Math.floor(0.99 * (sorted.length - 1))] || 1;
-  const range = item.diverging ? {from: -greatest, to: greatest} : limits(sorted);
-  const colours = item.diverging ? theme.diverging : theme.sequential;
-  const level = scale(range.from, range.to, 0, levels - 1);
-  const dots = Array.from({length: levels}, () => []);
-  for (const i of found)
-    dots[Math.min(Math.max(Math.round(level(shade.values[i])), 0), levels - 1)].push(x(at.get(i)), y(at.get(i)));
-  const order = [...dots.keys()];
-  if (item.diverging) order.sort((a, b) => Math.abs(a - levels / 2 + 0.5) - Math.abs(b - levels / 2 + 0.5));
+  const placeOf = (i) => [x(at.get(i)), y(at.get(i))];
+  const {range, colours, paint} = shading(item, shade, samples.indices([lat, lon, shade], samples.every), theme);
   const longest = box.width * perPixel / 4, power = 10 ** Math.floor(Math.log10(longest));
   const bar = power * [5, 2, 1].find((factor) => factor * power <= longest);  // km
   pen.clip(box, () => {
-    pen.dots(places.flatMap((i) => [x(at.get(i)), y(at.get(i))]), 1.5, theme.frame, 0.6);
-    for (const l of order) pen.dots(dots[l], 3.5, mixed(colours, l / (levels - 1)));
+    pen.dots(places.flatMap(placeOf), 1.5, theme.frame, 0.6);
+    paint(pen, found, placeOf, 3.5);
     if (item.barbs) drawBarbs();
-    const along = places.filter((_, n) => n % Math.ceil(places.length / 1000) === 0).map((i) => [x(at.get(i)), y(at.get(i))]);
+    const along = places.filter((_, n) => n % Math.ceil(places.length / 1000) === 0).map(placeOf);
     const taken = [[box.x, box.x + 60 + bar / perPixel, box.y + 20]];  // left, right and line of each name
     for (const flight of samples.flights) {
       const first = places.find((i) => i >= flight.first && i < flight.end);
       if (first === undefined) continue;
-      const [px, py] = [x(at.get(first)), y(at.get(first))];
+      const [px, py] = placeOf(first);
       pen.lines([[px - 5, py - 5, px + 5, py - 5, px + 5, py + 5, px - 5, py + 5, px - 5, py - 5]], theme.ink, 1.5);
       const name = samples.flights.length > 1 ? flight.name : 'start';
       const words = `${name} ${clock(samples.time[first], false)}`.trim();
@@ -159,7 +149,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
     for (const {time, east: u, north: v} of item.wind) {
       const i = places.reduce((best, each) =>
         Math.abs(samples.time[each] - time) < Math.abs(samples.time[best] - time) ? each : best, places[0]);
-      const [px, py] = [x(at.get(i)), y(at.get(i))];
+      const [px, py] = placeOf(i);
       if (Math.abs(samples.time[i] - time) > 60 || drawn.some(([ox, oy]) => Math.hypot(px - ox, py - oy) < 34)) continue;
       drawn.push([px, py]);
       const ahead = project(lat.values[i] + 0.01, lon.values[i]);  // direction of north in the picture

@@ -168,6 +168,8 @@ class WhatIf {
     return {c, element, range, number, band, told, fitted, from, to, step, unit};
   }
 
+  effectOf(c) { return this.item.effects.find(({first, count}) => c >= first && c < first + count); }
+
   // Position of a value on a track: the thumb is 1rem wide, and its middle is the value.
   place(value, from, to) {
     const part = Math.min(Math.max((value - from) / (to - from), 0), 1);
@@ -278,7 +280,8 @@ class WhatIf {
   update() {
     this.fitNow();
     this.fillResidual(this.again, this.nothing);
-    this.fillLive();
+    if (this.isChanged) this.fillResidual(this.live, this.now);
+    else this.live.values.fill(NaN);
     this.steps.bars = this.stepBars();
     this.showFigures();
     this.ownSwitch.checked = this.own;
@@ -287,15 +290,6 @@ class WhatIf {
     this.showCoefficients();
     this.showCommand();
     this.comparePair();
-  }
-
-  fillLive() {
-    const {values} = this.live;
-    if (!this.isChanged) {
-      values.fill(NaN);
-      return;
-    }
-    this.fillResidual(this.live, this.now);
   }
 
   // Fills a column with the residual of a fit.
@@ -361,10 +355,9 @@ class WhatIf {
       const {start} = item.coefficients[c];
       return fitted.errors[c] > 0 ? withError(start + fitted.values[c], fitted.errors[c]) : brief(start + fitted.values[c]);
     };
-    const owner = (c) => item.effects.find(({first, count}) => c >= first && c < first + count);
     const rows = item.coefficients.map(({name, unit, given}, c) => ({c, name, unit, given}))
-      .filter(({c}) => c < item.own || this.on.has(item.effects.indexOf(owner(c))))
-      .map(({c, name, unit, given}) => [`${c < item.own ? '' : `${owner(c).id}.`}${name}`, brief(given),
+      .filter(({c}) => c < item.own || this.on.has(item.effects.indexOf(this.effectOf(c))))
+      .map(({c, name, unit, given}) => [`${c < item.own ? '' : `${this.effectOf(c).id}.`}${name}`, brief(given),
                                         c < item.own ? shown(nothing, c) : '–', this.isChanged ? shown(now, c) : '–', unit]);
     fillTable(this.coefficients, {headers: ['Coefficient', 'given', 'fitted again', 'what if', 'unit'], rows});
   }
@@ -432,8 +425,7 @@ class WhatIf {
     const {samples} = this;
     const [a, b] = this.sides;
     const difference = a.values.map((value, i) => value - b.values[i]);
-    const masks = [...samples.regimes].map(([name, inside]) => [name, samples.selected.map((one, i) => one & inside[i])]);
-    const rows = [...masks, ['All', samples.selected]].map(([name, mask]) => {
+    const rows = samples.selectedByRegime.map(([name, mask]) => {
       const inside = samples.indices([a, b], mask);
       const rms = (values) => statistics(values, inside).rms;
       return [name, countText(inside.length), ...[a.values, b.values, difference].map((values) => number(rms(values), 0.001)),
@@ -446,10 +438,7 @@ class WhatIf {
   get state() {
     const {item} = this;
     const state = {};
-    const name = (c) => {
-      const {id} = item.effects.find(({first, count}) => c >= first && c < first + count);
-      return `${id}.${item.coefficients[c].name}`;
-    };
+    const name = (c) => `${this.effectOf(c).id}.${item.coefficients[c].name}`;
     if (this.on.size) state.on = [...this.on].map((e) => item.effects[e].id);
     if (this.byHand.size) state.by = Object.fromEntries([...this.byHand].map(([c, value]) => [name(c), Number(value.toPrecision(8))]));
     if (!this.own) state.own = false;

@@ -1,4 +1,4 @@
-#include "residuals/bursts.hpp"
+#include "residuals/masks.hpp"
 
 #include <pcor/numerics/noise.hpp>
 
@@ -17,27 +17,21 @@ constexpr double jump_limit = 5.0;  // robust standard deviations: exceeded by 6
 constexpr double margin = 3.0;      // s
 constexpr double near_jump = 3.0;   // robust standard deviations, for samples near a jump beyond the limit
 
-/// Deviation of each sample from the mean of its neighbours; NaN at the ends and next to gaps.
-std::vector<double> departures_of(const std::vector<double>& values, const std::vector<double>& time,
-                                  double step) {
-  std::vector<double> departures(values.size(), nan);
-  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
-    if (time[i + 1] - time[i - 1] <= 2.5 * step)
-      departures[i] = std::abs(values[i] - 0.5 * (values[i - 1] + values[i + 1]));
-  }
-  return departures;
-}
-
-/// Jump of each sample, in robust standard deviations; NaN if unknown.
+/// Jump of each sample from the mean of its neighbours, in robust standard deviations; NaN if unknown, at the
+/// ends and next to gaps.
 std::vector<double> jumps_of(const std::vector<double>& values, const std::vector<double>& time,
                              double step) {
-  std::vector<double> jumps = departures_of(values, time, step);
+  std::vector<double> jumps(values.size(), nan);
+  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+    if (time[i + 1] - time[i - 1] <= 2.5 * step)
+      jumps[i] = std::abs(values[i] - 0.5 * (values[i - 1] + values[i + 1]));
+  }
   const std::size_t block = local_noise_samples(step);
   for (std::size_t first = 0; first < jumps.size(); first += block) {
-    const auto begin = jumps.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = jumps.begin() + static_cast<std::ptrdiff_t>(std::min(first + block, jumps.size()));
+    double* const begin = jumps.data() + first;
+    double* const end = jumps.data() + std::min(first + block, jumps.size());
     const double deviation = std::max(min_noise, robust_standard_deviation({begin, end}));
-    for (auto jump = begin; jump != end; ++jump) *jump /= deviation;
+    for (double* jump = begin; jump != end; ++jump) *jump /= deviation;
   }
   return jumps;
 }
@@ -66,9 +60,8 @@ std::vector<std::size_t> find_bursts(const std::vector<double>& residual,
     const std::size_t begin = jumps[first];
     const std::size_t end = jumps[last] + 1;
     if (time[end - 1] - time[begin] > longest + 2.0 * step) continue;
-    double maximum = 0.0;
-    for (std::size_t i = begin; i < end; ++i) maximum = std::max(maximum, both[i]);
-    if (maximum < jump_limit) continue;
+    const auto is_beyond = [&](std::size_t i) { return both[i] >= jump_limit; };
+    if (std::none_of(&jumps[first], &jumps[last] + 1, is_beyond)) continue;
     const std::size_t from = bursts.empty() ? 0 : bursts.back() + 1;
     const std::size_t to = std::min(end + beyond, residual.size());
     for (std::size_t i = std::max(from, begin - std::min(begin, beyond)); i < to; ++i) bursts.push_back(i);

@@ -1,10 +1,8 @@
-#include "residuals/flaps_by_lift.hpp"
+#include "residuals/samples.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/air_data.hpp>
@@ -35,21 +33,17 @@ constexpr double sea_level_density = 1.225;  // kg/m3, standard atmosphere
 constexpr std::size_t min_fast = 15;         // pieces
 constexpr int max_rounds = 10;
 
-struct FlapSpeed {
-  std::string_view registration;
-  double airspeed;  ///< m/s, indicated
-};
-
-/// Maximum speeds with the flaps of an approach, from the flight manuals: C-130 180 kt with 50 %, GV 220 kt
-/// with 20 deg. For other aircraft the limit of the C-130, which is slower.
-constexpr std::array<FlapSpeed, 2> flap_speeds{{{"N130AR", 92.6}, {"N677F", 113.2}}};
-
+/// Maximum speed with the flaps of an approach, m/s, indicated, from the flight manuals: C-130 180 kt with 50
+/// %, GV 220 kt with 20 deg. For other aircraft the limit of the C-130, which is slower.
 double flap_speed_of(const std::string& aircraft) {
-  for (const FlapSpeed& each : flap_speeds) {
-    if (aircraft.find(each.registration) != std::string::npos) return each.airspeed;
-  }
-  return flap_speeds.front().airspeed;
+  return aircraft.find("N677F") == std::string::npos ? 92.6 : 113.2;
 }
+
+/// Relative deficit of the angle compared with the lift, and its standard error.
+struct Deficit {
+  double value = 0.0;
+  double error = 0.0;
+};
 
 /// Means of 20 s.
 struct Piece {
@@ -59,7 +53,10 @@ struct Piece {
   double lift = 0.0;  ///< n/q, 1/hPa
   double mach = 0.0;
   double angle = 0.0;     ///< recorded angle of attack
-  double airspeed = 0.0;  ///< indicated airspeed, m/s
+  double airspeed = 0.0;  ///< indicated airspeed from the mean dynamic pressure, m/s
+  double weight = 0.0;    ///< in the fit of the clean wing
+  Deficit deficit{};
+  double out = 0.0;  ///< probability of flaps out
 };
 
 double load_factor_at(const FlightSamples& samples, std::size_t i) {
@@ -83,7 +80,6 @@ std::vector<Piece> pieces_of(const FlightSamples& samples, const std::vector<dou
   for (std::size_t first = 0, end = 0; first < samples.time.size(); first = end) {
     Piece piece{first};
     double count = 0.0;
-    double dynamic = 0.0;
     while (end < samples.time.size() && samples.time[end] - samples.time[first] < piece_time) {
       const std::size_t i = end++;
       if (!(samples.motion.airspeed[i] >= min_airspeed) || !(q[i] > 0.0)) continue;
@@ -94,29 +90,24 @@ std::vector<Piece> pieces_of(const FlightSamples& samples, const std::vector<dou
       piece.lift += lift;
       piece.mach += mach;
       piece.angle += angle[i];
-      dynamic += q[i];
+      piece.airspeed += q[i];
       count += 1.0;
     }
     piece.end = end;
     if (2.0 * count * samples.step < piece_time) continue;
-    for (double* const sum : {&piece.time, &piece.lift, &piece.mach, &piece.angle, &dynamic}) *sum /= count;
-    piece.airspeed = std::sqrt(2.0 * 100.0 * dynamic / sea_level_density);
+    for (double* const sum : {&piece.time, &piece.lift, &piece.mach, &piece.angle, &piece.airspeed})
+      *sum /= count;
+    piece.airspeed = std::sqrt(2.0 * 100.0 * piece.airspeed / sea_level_density);
     pieces.push_back(piece);
   }
   return pieces;
 }
 
-/// Relative deficit of the angle compared with the lift, and its standard error.
-struct Deficit {
-  double value;
-  double error;
-};
-
 /// angle = c0 + (c1 + c2 t + c3 M^2) n/q, with t in hours; c3/c1 has a prior, since one height does not
 /// determine it.
 class LiftLaw {
  public:
-  LiftLaw(const std::vector<Piece>& pieces, const std::vector<double>& weights)
+  explicit LiftLaw(const std::vector<Piece>& pieces)
       : middle_(0.5 * (pieces.front().time + pieces.back().time)) {
     std::vector<double> lifts;
     for (const Piece& piece : pieces) lifts.push_back(piece.lift);
@@ -125,12 +116,12 @@ class LiftLaw {
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
     double lift = 0.0;
     double sum = 0.0;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const Eigen::Vector4d row = row_of(pieces[i]);
-      information += weights[i] * row * row.transpose();
-      right += weights[i] * pieces[i].angle * row;
-      lift += weights[i] * pieces[i].lift;
-      sum += weights[i];
+    for (const Piece& piece : pieces) {
+      const Eigen::Vector4d row = row_of(piece);
+      information += piece.weight * row * row.transpose();
+      right += piece.weight * piece.angle * row;
+      lift += piece.weight * piece.lift;
+      sum += piece.weight;
     }
     mean_lift_ = lift / sum;
     // First the usual compression alone, which gives slope and scatter; then its prior, in units of these.
@@ -140,8 +131,8 @@ class LiftLaw {
       const Eigen::Matrix4d inverse = pseudo_inverse(information + precision, 1e-9 * information.trace());
       coefficients_ = inverse * right;
       std::vector<double> clean;
-      for (std::size_t i = 0; i < pieces.size(); ++i) {
-        if (weights[i] > 0.5) clean.push_back(departure(pieces[i]));
+      for (const Piece& piece : pieces) {
+        if (piece.weight > 0.5) clean.push_back(departure(piece));
       }
       deviation_ = robust_standard_deviation(clean);
       const double variance = deviation_ * deviation_ * pieces_per_independent(clean);
@@ -202,21 +193,20 @@ double normal_density(double x, double deviation) {
 double normal_probability(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
 /// Log likelihood ratio of flaps out against flaps in, for a piece.
-double evidence_of(const Deficit& deficit, double airspeed, double flap_speed) {
-  const auto [value, error] = deficit;
+double evidence_of(const Piece& piece, double flap_speed) {
+  const auto [value, error] = piece.deficit;
   const double in = (1.0 - anywhere_share) * normal_density(value, error) +
                     anywhere_share * normal_density(value, anywhere_deficit);
   const double out = (normal_probability((value - min_deficit) / error) -
                       normal_probability((value - max_deficit) / error)) /
                      (max_deficit - min_deficit);
   const double lift = std::clamp(std::log(out) - std::log(in), -most_evidence, most_evidence);
-  const double over = std::max(airspeed / flap_speed - 1.0, 0.0) / over_speed;
+  const double over = std::max(piece.airspeed / flap_speed - 1.0, 0.0) / over_speed;
   return (std::isnan(lift) ? 0.0 : lift) - 0.5 * over * over;
 }
 
-/// Probability of the state out at each piece: forward and backward over all of them.
-std::vector<double> probabilities_of_out(const std::vector<Piece>& pieces,
-                                         const std::vector<double>& evidence) {
+/// Finds the probability of the state out at each piece: forward and backward over all of them.
+void find_probabilities(std::vector<Piece>& pieces, double flap_speed) {
   using States = Eigen::Vector2d;  // states: in, out
   const auto transition = [&pieces](std::size_t to) {
     const double time = pieces[to].time - pieces[to - 1].time;
@@ -226,7 +216,9 @@ std::vector<double> probabilities_of_out(const std::vector<Piece>& pieces,
     matrix << 1.0 - leaves_in, leaves_in, leaves_out, 1.0 - leaves_out;
     return matrix;
   };
-  const auto likelihood = [&evidence](std::size_t i) { return States(1.0, std::exp(evidence[i])); };
+  const auto likelihood = [&](std::size_t i) {
+    return States(1.0, std::exp(evidence_of(pieces[i], flap_speed)));
+  };
   std::vector<States> forward(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const States before =
@@ -234,51 +226,47 @@ std::vector<double> probabilities_of_out(const std::vector<Piece>& pieces,
     forward[i] = before.cwiseProduct(likelihood(i));
     forward[i] /= forward[i].sum();
   }
-  std::vector<double> probabilities(pieces.size());
   States backward(1.0, 1.0);
   for (std::size_t i = pieces.size(); i-- > 0;) {
     const States both = forward[i].cwiseProduct(backward);
-    probabilities[i] = both[1] / both.sum();
+    pieces[i].out = both[1] / both.sum();
     if (i == 0) break;
     backward = transition(i) * likelihood(i).cwiseProduct(backward);
     backward /= backward.sum();
   }
-  return probabilities;
 }
 
 }  // namespace
 
 std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, const std::vector<double>& angle,
                                               double min_airspeed) {
-  const std::vector<Piece> pieces = pieces_of(samples, angle, min_airspeed);
+  std::vector<Piece> pieces = pieces_of(samples, angle, min_airspeed);
   const double flap_speed = flap_speed_of(samples.aircraft);
-  std::vector<double> weights;
-  for (const Piece& piece : pieces) weights.push_back(piece.airspeed > flap_speed ? 1.0 : 0.0);
-  if (std::count(weights.begin(), weights.end(), 1.0) < static_cast<std::ptrdiff_t>(min_fast)) return {};
-  std::vector<double> out(pieces.size());
-  std::vector<Deficit> deficits(pieces.size());
+  std::size_t fast = 0;
+  for (Piece& piece : pieces) {
+    if (!(piece.airspeed > flap_speed)) continue;
+    piece.weight = 1.0;
+    ++fast;
+  }
+  if (fast < min_fast) return {};
   for (int round = 0; round < max_rounds; ++round) {
-    const LiftLaw law(pieces, weights);
+    const LiftLaw law(pieces);
     if (!law.rises()) return {};
-    std::vector<double> evidence(pieces.size());
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      deficits[i] = law.deficit(pieces[i]);
-      evidence[i] = evidence_of(deficits[i], pieces[i].airspeed, flap_speed);
-    }
-    out = probabilities_of_out(pieces, evidence);
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const double off = law.departure(pieces[i]) / (robust_limit * law.deviation());
-      weights[i] = (1.0 - out[i]) / (1.0 + off * off);
+    for (Piece& piece : pieces) piece.deficit = law.deficit(piece);
+    find_probabilities(pieces, flap_speed);
+    for (Piece& piece : pieces) {
+      const double off = law.departure(piece) / (robust_limit * law.deviation());
+      piece.weight = (1.0 - piece.out) / (1.0 + off * off);
     }
   }
   FlapsByLift flaps;
   flaps.out.resize(samples.time.size());
   std::vector<double> where_out;
   std::vector<double> where_in;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const bool is_out = out[i] > likely;
-    (is_out ? where_out : where_in).push_back(deficits[i].value);
-    for (std::size_t k = pieces[i].first; k < pieces[i].end; ++k) flaps.out[k] = is_out;
+  for (const Piece& piece : pieces) {
+    const bool is_out = piece.out > likely;
+    (is_out ? where_out : where_in).push_back(piece.deficit.value);
+    for (std::size_t k = piece.first; k < piece.end; ++k) flaps.out[k] = is_out;
   }
   flaps.deficit = where_out.empty() ? 0.0 : median(std::move(where_out));
   flaps.deviation = robust_standard_deviation(std::move(where_in));

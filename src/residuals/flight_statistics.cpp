@@ -94,7 +94,7 @@ ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<doub
     if (!std::isnan(residual[i])) used.push_back(i);
   }
   const BinnedResidual binned(residual, samples.time, samples.step);
-  const NoiseModel found = noise_about_mean({binned.bins()}, {binned.means()}, 1);
+  const NoiseModel found = binned.noise_about_mean();
   sums.sum_variance = binned.variance_of_sum(used, found, 0);
   return sums;
 }

@@ -6,6 +6,7 @@
 #include <pcor/physics/constants.hpp>
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
+#include "regimes/series.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -35,13 +36,8 @@ GroundVelocity read_as_recorded(const Flight& flight, const ModelDefinition& mod
 /// across the date line.
 std::vector<Jump> take_jumps_out(std::vector<double>& coordinate, const std::vector<double>& time,
                                  double metres) {
-  std::vector<double> path(coordinate.size(), nan);
-  double before = nan;
-  for (std::size_t i = 0; i < coordinate.size(); ++i) {
-    if (!std::isfinite(coordinate[i])) continue;
-    before = std::isnan(before) ? coordinate[i] : before + std::remainder(coordinate[i] - before, 360.0);
-    path[i] = metres * before;
-  }
+  std::vector<double> path = unwrapped(coordinate);
+  for (double& each : path) each *= metres;
   std::vector<Jump> jumps = find_jumps(path, time, min_position_rate);
   mask(jumps, coordinate);
   return jumps;
@@ -52,7 +48,6 @@ std::vector<Jump> contradictions(const std::vector<double>& east, const std::vec
                                  const Positions& positions, const std::vector<double>& time) {
   constexpr double min_departure = 15.0;  // m/s: positions of 10 m give 5
   constexpr double deviations = 8.0;
-  constexpr std::size_t min_samples = 3;
   const std::vector<double>& latitude = positions.latitude.values;
   const std::vector<double>& longitude = positions.longitude.values;
   if (latitude.size() != time.size() || longitude.size() != time.size()) return {};
@@ -69,13 +64,9 @@ std::vector<Jump> contradictions(const std::vector<double>& east, const std::vec
   const double limit = std::max(min_departure, deviations * usual);
   if (!(usual < min_departure)) return {};
   std::vector<Jump> found;
-  for (std::size_t i = 0; i < departure.size();) {
-    Jump jump{i, 0, 0.0};
-    for (; i < departure.size() && departure[i] > limit; ++i, ++jump.count)
-      jump.size = std::max(jump.size, departure[i]);
-    if (jump.count >= min_samples) found.push_back(jump);
-    if (jump.count == 0) ++i;
-  }
+  for (const Run& run :
+       not_shorter(runs_where(departure.size(), [&](std::size_t i) { return departure[i] > limit; }), 3))
+    found.push_back({run.first, run.length(), extent(departure, run).maximum});
   return found;
 }
 
@@ -86,9 +77,8 @@ Positions read_positions(const Flight& flight, const ModelDefinition& model,
   Positions positions{read_role(flight, model, Quantity::latitude), read_longitude(flight, model)};
   const double middle = median(positions.latitude.values);
   positions.latitude_jumps = take_jumps_out(positions.latitude.values, time, metres_per_degree);
-  if (std::isfinite(middle))
-    positions.longitude_jumps =
-        take_jumps_out(positions.longitude.values, time, metres_per_degree * std::cos(middle * degree));
+  positions.longitude_jumps =
+      take_jumps_out(positions.longitude.values, time, metres_per_degree * std::cos(middle * degree));
   return positions;
 }
 

@@ -1,4 +1,4 @@
-#include "residuals/laser_lock.hpp"
+#include "residuals/masks.hpp"
 
 #include <pcor/numerics/noise.hpp>
 
@@ -12,9 +12,10 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double min_deviation = 0.1;  // m/s
-constexpr double by_angles = 0.03;     // relative airspeed: a static defect of 6 % of q
-constexpr double max_off = 0.15;       // relative airspeed: a static defect of three tenths of q
+constexpr double lock_departure = 6.0;  // robust standard deviations
+constexpr double min_deviation = 0.1;   // m/s
+constexpr double by_angles = 0.03;      // relative airspeed: a static defect of 6 % of q
+constexpr double max_off = 0.15;        // relative airspeed: a static defect of three tenths of q
 constexpr double scale_of_cauchy = 2.385;
 constexpr int rounds = 20;
 constexpr double min_eigenvalue = 1e-9;
@@ -37,24 +38,11 @@ std::vector<double> departures(const Eigen::MatrixXd& columns, const Eigen::Vect
   return {departure.begin(), departure.end()};
 }
 
-/// Unlocked samples, and samples with mostly unlocked neighbours.
-std::vector<std::size_t> with_those_between(const std::vector<std::size_t>& samples,
-                                            const std::vector<bool>& is_unlocked) {
-  std::vector<std::size_t> unlocked;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const auto first = is_unlocked.begin() + static_cast<std::ptrdiff_t>(k - std::min(k, beside));
-    const auto last =
-        is_unlocked.begin() + static_cast<std::ptrdiff_t>(std::min(k + beside + 1, samples.size()));
-    if (is_unlocked[k] || 2 * std::count(first, last, true) > last - first) unlocked.push_back(samples[k]);
-  }
-  return unlocked;
-}
-
 }  // namespace
 
 std::vector<std::size_t> find_unlocked(const std::vector<double>& beam, const std::vector<double>& airspeed,
                                        const std::vector<double>& ratio,
-                                       const std::vector<std::size_t>& samples, double max_departure) {
+                                       const std::vector<std::size_t>& samples) {
   if (samples.size() < fewest) return {};
   std::vector<double> factors;
   std::vector<double> ratios;
@@ -81,9 +69,16 @@ std::vector<std::size_t> find_unlocked(const std::vector<double>& beam, const st
   const double deviation = std::max(robust_standard_deviation(departure), min_deviation);
   for (std::size_t k = 0; k < near.size(); ++k) {
     is_unlocked[near[k]] =
-        std::abs(departure[k]) > max_departure * deviation + by_angles * airspeed[samples[near[k]]];
+        std::abs(departure[k]) > lock_departure * deviation + by_angles * airspeed[samples[near[k]]];
   }
-  return with_those_between(samples, is_unlocked);
+  std::vector<std::size_t> unlocked;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto first = is_unlocked.begin() + static_cast<std::ptrdiff_t>(k - std::min(k, beside));
+    const auto last =
+        is_unlocked.begin() + static_cast<std::ptrdiff_t>(std::min(k + beside + 1, samples.size()));
+    if (is_unlocked[k] || 2 * std::count(first, last, true) > last - first) unlocked.push_back(samples[k]);
+  }
+  return unlocked;
 }
 
 }  // namespace pcor::internal

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
 #include "numerics/missing.hpp"
-#include "residuals/bursts.hpp"
+#include "residuals/flight_statistics.hpp"
 #include "residuals/reference_on_samples.hpp"
 
 namespace pcor {
@@ -45,27 +46,20 @@ std::string mask_text(const std::array<std::size_t, mask_count>& counts) {
 namespace internal {
 namespace {
 
-constexpr double fully_out = 100.0;  // percent
-
-double airspeed_at(const FlightSamples& samples, std::size_t sample) {
-  const std::vector<double>& airspeed = samples.motion.airspeed;
-  return airspeed.empty() ? nan : airspeed[sample];
-}
-
-/// Ignores flaps.
-Mask mask_as_flown(const FlightSamples& samples, std::size_t sample, const RegimeSet& regimes,
-                   const MaskOptions& options) {
-  const auto in = [&regimes](Regime regime) { return regimes[static_cast<std::size_t>(regime)]; };
-  if (in(Regime::ground)) return Mask::ground;
-  if (airspeed_at(samples, sample) < options.min_airspeed) return Mask::low_speed;
-  return std::any_of(options.exclude.begin(), options.exclude.end(), in) ? Mask::regime : Mask::none;
-}
-
 std::vector<Mask> masks_without_flaps(const FlightSamples& samples, const MaskOptions& options) {
   const std::vector<double>& time = samples.time;
+  const std::vector<double>& airspeed = samples.motion.airspeed;
   const std::vector<RegimeSet> regimes = regimes_of_samples(time, samples.intervals);
   std::vector<Mask> masks(time.size());
-  for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = mask_as_flown(samples, i, regimes[i], options);
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    const auto in = [&](Regime regime) { return regimes[i][static_cast<std::size_t>(regime)]; };
+    if (in(Regime::ground))
+      masks[i] = Mask::ground;
+    else if (!airspeed.empty() && airspeed[i] < options.min_airspeed)
+      masks[i] = Mask::low_speed;
+    else if (std::any_of(options.exclude.begin(), options.exclude.end(), in))
+      masks[i] = Mask::regime;
+  }
   if (!options.intervals || time.empty() || !options.intervals->is_for(samples.name)) return masks;
   for (const Exclusion& exclusion : placed(*options.intervals, time.front(), time.back()).exclude) {
     for (std::size_t i = 0; i < masks.size(); ++i) {
@@ -76,11 +70,8 @@ std::vector<Mask> masks_without_flaps(const FlightSamples& samples, const MaskOp
 }
 
 void mark_flaps(const FlightSamples& samples, double maximum, std::vector<Mask>& masks) {
-  for (std::size_t i = 0; i < masks.size(); ++i) {
-    const bool out = samples.flaps.empty()
-                         ? !samples.flaps_by_lift.empty() && samples.flaps_by_lift[i] && maximum < fully_out
-                         : samples.flaps[i] > maximum;
-    if (masks[i] == Mask::none && out) masks[i] = Mask::flaps;
+  for (std::size_t i = 0; i < samples.flaps.size(); ++i) {
+    if (masks[i] == Mask::none && samples.flaps[i] > maximum) masks[i] = Mask::flaps;
   }
 }
 
@@ -93,40 +84,6 @@ bool is_read(Quantity quantity, const std::vector<Batch::Input>& read) {
   });
 }
 
-/// Marks the samples at which an input is frozen.
-void mark_frozen(const ModelSamples& samples, const std::vector<Batch::Input>& read,
-                 std::vector<Mask>& masks) {
-  for (const FrozenSpan& span : samples.frozen) {
-    if (!is_read(span.quantity, read)) continue;
-    for (std::size_t i = span.first; i < span.first + span.count; ++i) {
-      if (masks[i] == Mask::none) masks[i] = Mask::frozen;
-    }
-  }
-}
-
-/// Static and dynamic pressures among the inputs. The radome pressures are excluded: they jump with the flow
-/// angles, and effects of the angles with them.
-void add_pressures(const ModelSamples& samples, const std::vector<Batch::Input>& read,
-                   std::vector<const std::vector<double>*>& pressures) {
-  for (const Quantity quantity :
-       {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::corrected_static_pressure}) {
-    const std::vector<double>* const pressure = samples.find(quantity);
-    if (pressure != nullptr && is_read(quantity, read)) pressures.push_back(pressure);
-  }
-}
-
-void mark_bursts(const MaskedResidual& residual, std::vector<Mask>& masks) {
-  std::vector<const std::vector<double>*> pressures;
-  add_pressures(residual.samples.model, residual.model.columns(), pressures);
-  add_pressures(residual.samples.reference, residual.reference.columns(), pressures);
-  std::vector<double> used(masks.size(), nan);
-  for (std::size_t i = 0; i < masks.size(); ++i) {
-    if (masks[i] == Mask::none) used[i] = residual.values[i];
-  }
-  for (const std::size_t sample : find_bursts(used, pressures, residual.samples.time, residual.samples.step))
-    if (masks[sample] == Mask::none) masks[sample] = Mask::burst;
-}
-
 }  // namespace
 
 std::vector<Mask> masks_as_flown(const FlightSamples& samples, const MaskOptions& options) {
@@ -135,24 +92,43 @@ std::vector<Mask> masks_as_flown(const FlightSamples& samples, const MaskOptions
   return masks;
 }
 
-std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& options) {
-  const FlightSamples& samples = residual.samples;
+std::vector<Mask> find_masks(const FlightSamples& samples, const ModelOnSamples& model,
+                             const ReferenceOnSamples& reference, const std::vector<double>& residual,
+                             const MaskOptions& options) {
   const std::vector<double>& p = *samples.model.find(Quantity::static_pressure);
   const std::vector<double>& q = *samples.model.find(Quantity::dynamic_pressure);
   std::vector<Mask> masks = masks_without_flaps(samples, options);
+  const auto mark = [&masks](std::size_t sample, Mask mask) {
+    if (masks[sample] == Mask::none) masks[sample] = mask;
+  };
   for (std::size_t i = 0; i < masks.size(); ++i) {
     if (masks[i] != Mask::excluded && (std::isnan(p[i]) || std::isnan(q[i]))) masks[i] = Mask::missing;
   }
-  mark_frozen(samples.model, residual.model.columns(), masks);
-  mark_frozen(samples.reference, residual.reference.columns(), masks);
-  for (std::size_t i = 0; i < masks.size(); ++i) {
-    if (masks[i] == Mask::none && std::isnan(residual.values[i]))
-      masks[i] = residual.reference.why_missing(i);
+  std::vector<const std::vector<double>*> pressures;
+  for (const auto& [recorded, read] :
+       {std::pair(&samples.model, model.columns()), std::pair(&samples.reference, reference.columns())}) {
+    for (const FrozenSpan& span : recorded->frozen) {
+      if (!is_read(span.quantity, read)) continue;
+      for (std::size_t i = span.first; i < span.first + span.count; ++i) mark(i, Mask::frozen);
+    }
+    // The radome pressures are excluded: they jump with the flow angles, and effects of the angles with them.
+    for (const Quantity quantity :
+         {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::corrected_static_pressure}) {
+      const std::vector<double>* const pressure = recorded->find(quantity);
+      if (pressure != nullptr && is_read(quantity, read)) pressures.push_back(pressure);
+    }
   }
-  residual.reference.mark_implausible(masks, samples.motion.airspeed, options);
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    if (masks[i] == Mask::none && std::isnan(residual[i])) masks[i] = reference.why_missing(i);
+  }
+  reference.mark_implausible(masks, samples.motion.airspeed);
   // In a gust the dynamic pressure and the residual by wind jump together, although every sensor works.
-  if (residual.reference.neighbours() == nullptr) mark_bursts(residual, masks);
-  const std::vector<ModelEffect>& effects = residual.model.model().effects;
+  if (reference.reach() == 0) {
+    const std::vector<double> used = masked(residual, masks, Mask::none);
+    for (const std::size_t sample : find_bursts(used, pressures, samples.time, samples.step))
+      mark(sample, Mask::burst);
+  }
+  const std::vector<ModelEffect>& effects = model.model().effects;
   const bool describes_flaps = std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
     return reads_flaps(effect, samples.flaps_variable);
   });

@@ -75,34 +75,17 @@ std::vector<bool> ModelOnSamples::linear() const {
   return linear;
 }
 
-void ModelOnSamples::corrected_static_pressure(const std::vector<Batch::Input>& inputs, std::size_t count,
-                                               const double* parameters, double* out) const {
-  std::vector<double> defect(count);
-  batch_.run(inputs, {{Quantity::port_static_pressure, out}, {Quantity::static_defect, defect.data()}}, count,
-             parameters);
-  for (std::size_t i = 0; i < count; ++i) out[i] += defect[i];
+void ModelOnSamples::port_pressure_plus(Quantity added, const std::vector<Batch::Input>& inputs,
+                                        std::size_t count, const double* parameters, double* out) const {
+  std::vector<double> other(count);
+  batch_.run(inputs, {{Quantity::port_static_pressure, out}, {added, other.data()}}, count, parameters);
+  for (std::size_t i = 0; i < count; ++i) out[i] += other[i];
 }
 
-void ModelOnSamples::total_pressure(const std::vector<Batch::Input>& inputs, std::size_t count,
-                                    const double* parameters, double* out) const {
-  std::vector<double> dynamic(count);
-  batch_.run(inputs,
-             {{Quantity::port_static_pressure, out}, {Quantity::port_dynamic_pressure, dynamic.data()}},
-             count, parameters);
-  for (std::size_t i = 0; i < count; ++i) out[i] += dynamic[i];
-}
-
-void ModelOnSamples::differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
-                                          const double* parameters,
-                                          const std::vector<LinearColumn>& requested) const {
-  if (requested.empty()) return;
-  std::vector<Batch::Derivative> derivatives;
-  for (const auto& [parameter, column] : requested) {
-    std::size_t effect = chain().effect_count() - 1;
-    while (chain().first_parameter_of(effect) > parameter) --effect;
-    derivatives.push_back({effect, parameter - chain().first_parameter_of(effect), column});
-  }
-  batch_.differentiate(inputs, derivatives, count, parameters);
+Batch::Derivative ModelOnSamples::derivative_by(std::size_t parameter, double* values) const {
+  std::size_t effect = chain().effect_count() - 1;
+  while (chain().first_parameter_of(effect) > parameter) --effect;
+  return {effect, parameter - chain().first_parameter_of(effect), values};
 }
 
 bool ModelOnSamples::is_missing_needed(std::size_t sample) const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -13,12 +12,6 @@ namespace pcor::internal {
 /// Columns at some indices, gathered one after another into `store`.
 std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns, const std::size_t* samples,
                                    std::size_t count, std::vector<double>& store);
-
-/// Linear parameter, and destination of its derivatives.
-struct LinearColumn {
-  std::size_t parameter;
-  double* derivatives;
-};
 
 /// Model on the samples of a flight, as inputs of its chain.
 class ModelOnSamples {
@@ -81,19 +74,13 @@ class ModelOnSamples {
     return state[Quantity::port_static_pressure] + state[Quantity::port_dynamic_pressure];
   }
 
-  /// Total pressure of a block at the ports, hPa.
-  void total_pressure(const std::vector<Batch::Input>& inputs, std::size_t count, const double* parameters,
-                      double* out) const;
+  /// Static pressure of a block at the ports plus another quantity, hPa: with `static_defect` the corrected
+  /// static pressure, with `port_dynamic_pressure` the total pressure.
+  void port_pressure_plus(Quantity added, const std::vector<Batch::Input>& inputs, std::size_t count,
+                          const double* parameters, double* out) const;
 
-  /// Corrected static pressure of a block, hPa.
-  void corrected_static_pressure(const std::vector<Batch::Input>& inputs, std::size_t count,
-                                 const double* parameters, double* out) const;
-
-  /// Derivatives of delta-p of a block, hPa per unit. @param requested parameters for which `linear()` is
-  /// true
-  /// @throws Error as `Batch::differentiate`
-  void differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
-                            const double* parameters, const std::vector<LinearColumn>& requested) const;
+  /// Destination of the derivatives of delta-p with respect to a parameter for which `linear()` is true.
+  Batch::Derivative derivative_by(std::size_t parameter, double* values) const;
 
   /// True if the columns that depend on coefficients were computed at these parameters.
   bool stands_at(const double* parameters) const;

@@ -5,26 +5,13 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/wetness.hpp>
-
-#include "residuals/model_on_samples.hpp"
 #include "roles/fast_series.hpp"
 
 namespace pcor::internal {
+
 Memory memory_of(const ModelEffect& effect) {
   const EffectInfo* const info = effect_named(effect.id);
   return info != nullptr ? info->memory : Memory{};
-}
-
-std::vector<double> wetness_of(const std::vector<double>& liquid_water, const std::vector<double>& time,
-                               double step, double drying) {
-  Wetness wetness(1.0 / step, std::max(0.0, drying));
-  std::vector<double> values(liquid_water.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double since_last = i > 0 ? time[i] - time[i - 1] : step;
-    if (since_last > 1.5 * step) wetness.reset();  // a gap, the same as in the sample loop
-    values[i] = wetness(liquid_water[i], since_last > 1.5 * step ? step : since_last);
-  }
-  return values;
 }
 
 std::vector<double> airspeed_along_beam(const ModelDefinition& model, const ModelSamples& samples,
@@ -40,7 +27,15 @@ std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,
                                const std::vector<double>& time, double step, double seconds) {
   if (quantity == Quantity::wetness) {
     const std::vector<double>* const water = samples.find(Quantity::liquid_water);
-    return water == nullptr ? std::vector<double>() : wetness_of(*water, time, step, seconds);
+    if (water == nullptr) return {};
+    Wetness wetness(1.0 / step, std::max(0.0, seconds));
+    std::vector<double> values(water->size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double since_last = i > 0 ? time[i] - time[i - 1] : step;
+      if (since_last > 1.5 * step) wetness.reset();  // a gap, the same as in the sample loop
+      values[i] = wetness((*water)[i], since_last > 1.5 * step ? step : since_last);
+    }
+    return values;
   }
   const FastSeries& speed = samples.along_beam;
   if (speed.values.empty()) return {};
@@ -56,15 +51,14 @@ void find_moving_columns(const Model& model, const double* parameters, const std
     const std::size_t position = first + memory.parameter;
     first += effect.parameters.size();
     if (memory.of == Quantity::count) continue;
-    const auto column = std::find_if(samples.columns.begin(), samples.columns.end(),
-                                     [&](const auto& each) { return each.first == memory.of; });
-    if (column == samples.columns.end()) continue;
+    std::vector<double>* const column = samples.find(memory.of);
+    if (column == nullptr) continue;
     auto moving =
         std::find_if(samples.moving.begin(), samples.moving.end(),
                      [&](const ParameterDependentColumn& each) { return each.quantity == memory.of; });
     if (moving == samples.moving.end())
-      moving = samples.moving.insert(moving, {memory.of, effect.id, memory.parameter, 0.0,
-                                              std::vector<double>(column->second.size(), 0.0)});
+      moving = samples.moving.insert(
+          moving, {memory.of, effect.id, memory.parameter, 0.0, std::vector<double>(column->size(), 0.0)});
     const double at = parameters[position];
     const auto over = [&](double seconds) { return remembered(memory.of, samples, time, step, seconds); };
     std::vector<double> values = over(at);
@@ -85,16 +79,18 @@ void find_moving_columns(const Model& model, const double* parameters, const std
       moving->slope[i] = std::isfinite(slope) ? slope : 0.0;  // next to a gap
     }
     // In place: readers of the column keep its address.
-    std::copy(values.begin(), values.end(), column->second.begin());
+    std::copy(values.begin(), values.end(), column->begin());
   }
 }
 
-ColumnsAt::ColumnsAt(const ModelOnSamples& model, const FlightSamples& samples, const double* parameters)
-    : inputs_(model.columns()) {
-  if (model.stands_at(parameters)) return;
-  moved_ = samples.model;
-  find_moving_columns(model.model(), parameters, samples.time, samples.step, moved_);
-  for (Batch::Input& input : inputs_) input.values = moved_.find(input.quantity)->data();
+std::vector<Batch::Input> columns_at(const double* parameters, const ModelOnSamples& model,
+                                     const FlightSamples& samples, ModelSamples& store) {
+  std::vector<Batch::Input> inputs = model.columns();
+  if (model.stands_at(parameters)) return inputs;
+  store = samples.model;
+  find_moving_columns(model.model(), parameters, samples.time, samples.step, store);
+  for (Batch::Input& input : inputs) input.values = store.find(input.quantity)->data();
+  return inputs;
 }
 
 }  // namespace pcor::internal

@@ -11,20 +11,15 @@ namespace pcor::internal {
 /// History input of an effect; empty for a formula.
 Memory memory_of(const ModelEffect& effect);
 
-/// Wetness of the thermometer in each record (`Wetness`); it restarts after a gap in time. @param
-/// liquid_water g/m3 @param time of the records, s @param step sampling interval, s @param drying s, values
-/// below zero are treated as zero
-std::vector<double> wetness_of(const std::vector<double>& liquid_water, const std::vector<double>& time,
-                               double step, double drying);
-
 /// True airspeed from corrected pressures and temperature, m/s, projected on the beam of the laser if there
 /// is one, with the given coefficients or, if none are given, the coefficients of the model.
 std::vector<double> airspeed_along_beam(const ModelDefinition& model, const ModelSamples& samples,
                                         const double* parameters = nullptr);
 
 /// History input of a model (`EffectInfo::memory`): the mean rate of the airspeed along the beam, m/s2, or
-/// the wetness of the thermometer after liquid water. Empty if the samples lack its inputs. @param time of
-/// the records, s @param step sampling interval, s
+/// the wetness of the thermometer after liquid water (`Wetness`), which restarts after a gap in time. Empty
+/// if the samples lack its inputs. @param time of the records, s @param step sampling interval, s
+/// @param seconds of the mean, or of drying, where values below zero are treated as zero
 std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,
                                const std::vector<double>& time, double step, double seconds);
 
@@ -35,20 +30,8 @@ void find_moving_columns(const Model& model, const double* parameters, const std
                          double step, ModelSamples& samples);
 
 /// Columns of a model at some coefficients: columns of the samples, except columns that depend on
-/// coefficients and were computed at other values.
-class ColumnsAt {
- public:
-  /// The model and the samples must outlive it.
-  ColumnsAt(const ModelOnSamples& model, const FlightSamples& samples, const double* parameters);
-
-  ColumnsAt(const ColumnsAt&) = delete;
-  ColumnsAt& operator=(const ColumnsAt&) = delete;
-
-  const std::vector<Batch::Input>& inputs() const { return inputs_; }
-
- private:
-  ModelSamples moved_;
-  std::vector<Batch::Input> inputs_;
-};
+/// coefficients and were computed at other values, which are computed into `store`.
+std::vector<Batch::Input> columns_at(const double* parameters, const ModelOnSamples& model,
+                                     const FlightSamples& samples, ModelSamples& store);
 
 }  // namespace pcor::internal

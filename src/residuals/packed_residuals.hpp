@@ -6,7 +6,7 @@
 #include <pcor/residuals/samples.hpp>
 #include <pcor/residuals/statistics.hpp>
 #include "parallel/packed.hpp"
-#include "residuals/residual_sums.hpp"
+#include "residuals/flight_statistics.hpp"
 
 /// Serialization of flight data for other ranks.
 namespace cereal {
@@ -19,7 +19,7 @@ void serialize(Archive& archive, pcor::Statistics& statistics) {
 
 template <class Archive>
 void serialize(Archive& archive, pcor::Interval& interval) {
-  archive(interval.regime, interval.begin, interval.end, interval.pair, interval.note, interval.by_user);
+  archive(interval.regime, interval.begin, interval.end, interval.pair, interval.note);
 }
 
 template <class Archive>
@@ -53,8 +53,8 @@ void serialize(Archive& archive, pcor::ModelSamples& samples) {
 template <class Archive>
 void serialize(Archive& archive, pcor::FlightSamples& samples) {
   archive(samples.name, samples.aircraft, samples.step, samples.time, samples.latitude, samples.longitude,
-          samples.motion, samples.flaps, samples.flaps_variable, samples.flaps_by_lift, samples.intervals,
-          samples.model, samples.reference, samples.notes);
+          samples.motion, samples.flaps, samples.flaps_variable, samples.intervals, samples.model,
+          samples.reference, samples.notes);
 }
 
 template <class Archive>

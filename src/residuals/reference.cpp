@@ -35,15 +35,6 @@ Pointer read_lams(const std::string&, const ModelDefinition& model) {
   return lams_reference();
 }
 
-/// Uncorrected pair of pressures.
-ModelDefinition bare_pair(const std::string& static_pressure, const std::string& dynamic_pressure) {
-  ModelDefinition pair;
-  pair.model.name = static_pressure + "+" + dynamic_pressure;
-  pair.variables = {{Quantity::static_pressure, static_pressure},
-                    {Quantity::dynamic_pressure, dynamic_pressure}};
-  return pair;
-}
-
 /// Second system; its pressures must be named.
 ModelDefinition read_system(const std::string& path) {
   ModelDefinition system = read_model(path);
@@ -55,12 +46,16 @@ ModelDefinition read_system(const std::string& path) {
   return system;
 }
 
-/// Model file, or two variables joined by +.
+/// Model file, or two variables joined by +, which are not corrected.
 Pointer read_total_pressure(const std::string& system, const ModelDefinition&) {
   const std::size_t plus = system.find('+');
-  const bool is_pair = plus != std::string::npos && !std::filesystem::exists(system);
-  return total_pressure_reference(is_pair ? bare_pair(system.substr(0, plus), system.substr(plus + 1))
-                                          : read_system(system));
+  if (plus == std::string::npos || std::filesystem::exists(system))
+    return total_pressure_reference(read_system(system));
+  ModelDefinition pair;
+  pair.model.name = system;
+  pair.variables = {{Quantity::static_pressure, system.substr(0, plus)},
+                    {Quantity::dynamic_pressure, system.substr(plus + 1)}};
+  return total_pressure_reference(std::move(pair));
 }
 
 /// Text form of a reference: "form" or, with an argument, "form:argument".
@@ -100,13 +95,10 @@ const Reference& first_of(const References& references) {
   return *references.front();
 }
 
-void ReferenceOnSamples::mark_implausible(std::vector<Mask>&, const std::vector<double>&,
-                                          const MaskOptions&) const {}
-
 Pointer lams_reference() { return std::make_shared<LamsReference>(); }
 
 Pointer static_system_reference(ModelDefinition system) {
-  return std::make_shared<SecondSystem>(std::move(system), ComparedPressure::static_pressure);
+  return std::make_shared<SecondSystem>(std::move(system), false);
 }
 
 Pointer pressure_reference(std::string variable, std::string of_model) {
@@ -114,7 +106,7 @@ Pointer pressure_reference(std::string variable, std::string of_model) {
 }
 
 Pointer total_pressure_reference(ModelDefinition system) {
-  return std::make_shared<SecondSystem>(std::move(system), ComparedPressure::total_pressure);
+  return std::make_shared<SecondSystem>(std::move(system), true);
 }
 
 Pointer height_reference(const ModelDefinition& model) { return std::make_shared<HeightReference>(model); }

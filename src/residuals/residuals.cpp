@@ -10,7 +10,7 @@
 #include "residuals/model_on_samples.hpp"
 #include "residuals/moving_columns.hpp"
 #include "residuals/predicted_pressures.hpp"
-#include "residuals/reference_on_samples.hpp"
+#include "residuals/references/lams.hpp"
 
 namespace pcor {
 
@@ -50,9 +50,9 @@ struct Residuals::Implementation {
   std::vector<bool> linear;
   std::vector<Mask> mask;
 
-  /// Derivative of the residual with respect to the reference's sensor, if it has one; computed on first use.
+  /// Derivative of the residual with respect to the speed along the beam; computed on first use.
   const std::vector<double>& sensitivity() const {
-    std::call_once(found_, [this] { sensitivity_ = reference->sensor()->sensitivity(); });
+    std::call_once(found_, [this] { sensitivity_ = reference->laser()->sensitivity(); });
     return sensitivity_;
   }
 
@@ -64,13 +64,12 @@ struct Residuals::Implementation {
         reference_columns(reference->columns()),
         parameters(model.parameters()),
         linear(model.linear()) {
-    if (!compared_with.is_static_pressure()) linear.assign(linear.size(), false);
     if (const ModelOnSamples* const other = reference->model()) {
       parameters.insert(parameters.end(), other->parameters().begin(), other->parameters().end());
-      std::vector<bool> more = other->linear();
-      if (!compared_with.is_static_pressure()) more.assign(more.size(), false);
+      const std::vector<bool> more = other->linear();
       linear.insert(linear.end(), more.begin(), more.end());
     }
+    if (!compared_with.is_static_pressure()) linear.assign(linear.size(), false);
   }
 
  private:
@@ -105,7 +104,7 @@ const std::vector<Mask>& Residuals::mask() const { return implementation_->mask;
 
 std::vector<Mask> Residuals::masks_at(const double* parameters, const MaskOptions& options) const {
   const Implementation& impl = *implementation_;
-  return find_masks({samples(), impl.model, *impl.reference, values(parameters)}, options);
+  return find_masks(samples(), impl.model, *impl.reference, values(parameters), options);
 }
 
 void Residuals::set_mask(std::vector<Mask> mask) { implementation_->mask = std::move(mask); }
@@ -121,9 +120,9 @@ std::vector<double> Residuals::values(const double* parameters) const {
   std::vector<double> result(size());
   std::vector<std::size_t> all(size());
   std::iota(all.begin(), all.end(), 0);
-  const ColumnsAt columns(impl.model, *impl.samples, parameters);
-  impl.reference->residuals({columns.inputs(), impl.reference_columns, all.data(), size()}, parameters,
-                            result.data());
+  ModelSamples store;
+  const std::vector<Batch::Input> inputs = columns_at(parameters, impl.model, *impl.samples, store);
+  impl.reference->residuals({inputs, impl.reference_columns, all.data(), size()}, parameters, result.data());
   return result;
 }
 
@@ -140,25 +139,25 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
 
   const std::size_t of_model = impl.model.parameters().size();
   std::vector<std::size_t> curved;  // indices in `requested`
-  std::vector<LinearColumn> by_model;
-  std::vector<LinearColumn> by_reference;
+  std::vector<Batch::Derivative> by_model;
+  std::vector<Batch::Derivative> by_reference;
   for (std::size_t k = 0; k < requested.size(); ++k) {
     double* const column = derivatives + k * count;
     if (!impl.linear[requested[k]]) {
       curved.push_back(k);
     } else if (requested[k] < of_model) {
-      by_model.push_back({requested[k], column});
+      by_model.push_back(impl.model.derivative_by(requested[k], column));
     } else {
-      by_reference.push_back({requested[k] - of_model, column});
+      by_reference.push_back(impl.reference->model()->derivative_by(requested[k] - of_model, column));
     }
   }
-  impl.model.differentiate_linear(inputs, count, parameters, by_model);
-  for (const LinearColumn& each : by_model) {
-    for (std::size_t i = 0; i < count; ++i) each.derivatives[i] = -each.derivatives[i];
+  if (!by_model.empty()) impl.model.batch().differentiate(inputs, by_model, count, parameters);
+  for (const Batch::Derivative& each : by_model) {
+    for (std::size_t i = 0; i < count; ++i) each.values[i] = -each.values[i];
   }
   if (!by_reference.empty()) {
-    impl.reference->model()->differentiate_linear(reference_inputs, count, parameters + of_model,
-                                                  by_reference);
+    impl.reference->model()->batch().differentiate(reference_inputs, by_reference, count,
+                                                   parameters + of_model);
   }
   differentiate(count, {parameters, parameters + impl.parameters.size()}, requested, curved, derivatives,
                 [&](const Jet* dual, Jet* out) { impl.reference->residuals(samples, count, dual, out); });
@@ -168,60 +167,57 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
                                    const std::vector<std::size_t>& requested, double* residual,
                                    double* derivatives) const {
   const Implementation& impl = *implementation_;
-  const NoisySensor* const sensor = impl.reference->sensor();
-  if (sensor == nullptr) return evaluate(samples, count, parameters, requested, residual, derivatives);
-  const std::vector<double>& recorded = *impl.samples->model.find(sensor->quantity());
+  const LamsOnSamples* const laser = impl.reference->laser();
+  if (laser == nullptr) return evaluate(samples, count, parameters, requested, residual, derivatives);
+  const std::vector<double>& recorded = *impl.samples->model.find(Quantity::lams_airspeed);
   const std::vector<double>& sensitivity = impl.sensitivity();
-  sensor->predict(samples, count, parameters, residual);
-  for (std::size_t i = 0; i < count; ++i)
-    residual[i] = sensitivity[samples[i]] * (recorded[samples[i]] - residual[i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double predicted = laser->predicted_at(samples[i], parameters);
+    residual[i] = sensitivity[samples[i]] * (recorded[samples[i]] - predicted);
+  }
   // In some coefficients delta-p is linear, and the reading depends on them through delta-p alone.
   const std::vector<bool> linear = impl.model.linear();
   std::vector<std::size_t> curved;  // indices in `requested`
-  std::vector<LinearColumn> by_defect;
+  std::vector<Batch::Derivative> by_defect;
   for (std::size_t k = 0; k < requested.size(); ++k) {
     if (requested[k] < linear.size() && linear[requested[k]])
-      by_defect.push_back({requested[k], derivatives + k * count});
+      by_defect.push_back(impl.model.derivative_by(requested[k], derivatives + k * count));
     else
       curved.push_back(k);
   }
   if (!by_defect.empty()) {
     std::vector<double> store;
-    impl.model.differentiate_linear(impl.model.gathered(samples, count, parameters, store), count, parameters,
-                                    by_defect);
-    std::vector<double> slope(count);
-    sensor->differentiate_by_defect(samples, count, parameters, slope.data());
-    for (const LinearColumn& each : by_defect) {
-      for (std::size_t i = 0; i < count; ++i) each.derivatives[i] *= slope[i];
+    impl.model.batch().differentiate(impl.model.gathered(samples, count, parameters, store), by_defect, count,
+                                     parameters);
+    const std::vector<Jet> constant(parameters, parameters + linear.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      const double slope = laser->predicted_at(samples[i], constant.data(), Jet(0.0, 0)).v[0];
+      for (const Batch::Derivative& each : by_defect) each.values[i] *= slope;
     }
   }
   differentiate(count, {parameters, parameters + impl.parameters.size()}, requested, curved, derivatives,
-                [&](const Jet* dual, Jet* out) { sensor->predict(samples, count, dual, out); });
+                [&](const Jet* dual, Jet* out) {
+                  for (std::size_t i = 0; i < count; ++i) out[i] = laser->predicted_at(samples[i], dual);
+                });
   for (std::size_t k = 0; k < requested.size(); ++k) {
     for (std::size_t i = 0; i < count; ++i) derivatives[k * count + i] *= -sensitivity[samples[i]];
   }
 }
 
-std::size_t Residuals::reach() const {
-  const Neighbours* const neighbours = implementation_->reference->neighbours();
-  return neighbours == nullptr ? 0 : neighbours->reach();
-}
+std::size_t Residuals::reach() const { return implementation_->reference->reach(); }
 
 void Residuals::differentiate_along(const std::size_t* samples, std::size_t count, const double* parameters,
                                     const std::vector<Direction>& directions, double* derivatives) const {
-  implementation_->reference->neighbours()->differentiate(samples, count, parameters, directions,
-                                                          derivatives);
+  implementation_->reference->differentiate_along(samples, count, parameters, directions, derivatives);
 }
 
 std::optional<std::pair<Quantity, std::vector<double>>> Residuals::predicted_sensor(
     const double* parameters) const {
-  const NoisySensor* const sensor = implementation_->reference->sensor();
-  if (sensor == nullptr) return std::nullopt;
-  std::vector<std::size_t> all(size());
-  std::iota(all.begin(), all.end(), 0);
-  std::vector<double> values(size());
-  sensor->predict(all.data(), size(), parameters, values.data());
-  return std::pair(sensor->quantity(), std::move(values));
+  const LamsOnSamples* const laser = implementation_->reference->laser();
+  if (laser == nullptr) return std::nullopt;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < size(); ++i) values.push_back(laser->predicted_at(i, parameters));
+  return std::pair(Quantity::lams_airspeed, std::move(values));
 }
 
 std::shared_ptr<const FlightSamples> Residuals::at_common_pressures() const {
@@ -249,8 +245,9 @@ std::vector<double> Residuals::quantity(Quantity quantity, const double* paramet
   const Implementation& impl = *implementation_;
   std::vector<double> result(size(), nan);
   if (!impl.model.batch().finds(quantity)) return result;
-  const ColumnsAt columns(impl.model, *impl.samples, parameters);
-  impl.model.batch().run(columns.inputs(), {{quantity, result.data()}}, size(), parameters);
+  ModelSamples store;
+  const std::vector<Batch::Input> inputs = columns_at(parameters, impl.model, *impl.samples, store);
+  impl.model.batch().run(inputs, {{quantity, result.data()}}, size(), parameters);
   return result;
 }
 

@@ -4,13 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <utility>
 
-#include <pcor/base/error.hpp>
 #include <pcor/base/note.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
@@ -18,12 +17,10 @@
 #include <pcor/residuals/reference.hpp>
 #include "flight/flight_file.hpp"
 #include "numerics/missing.hpp"
-#include "residuals/contradicting_signs.hpp"
-#include "residuals/flaps_by_lift.hpp"
-#include "residuals/mark_frozen.hpp"
 #include "residuals/moving_columns.hpp"
 #include "residuals/time_spans.hpp"
 #include "roles/fast_series.hpp"
+#include "roles/find_frozen.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/resolution.hpp"
@@ -33,8 +30,6 @@ namespace pcor {
 using namespace internal;
 
 namespace {
-
-constexpr double considerable_share = 0.1;  // fraction of the samples of a flight
 
 /// True airspeed from the measured pressures, m/s: within 2 %, for regimes and masks.
 std::vector<double> measured_airspeed(const ModelSamples& samples) {
@@ -55,21 +50,6 @@ std::vector<double> measured_airspeed(const ModelSamples& samples) {
   }
   return airspeed;
 }
-
-/// Regimes that require a series of the motion.
-struct Loss {
-  Quantity role;
-  std::string_view text;
-};
-
-constexpr std::array<Loss, 4> losses{{
-    {Quantity::altitude,
-     "no height is recorded: climbs and descents, levels and bands of altitude are not found"},
-    {Quantity::roll, "no roll is recorded: turns, circles and reverse headings are not found"},
-    {Quantity::pitch, "no pitch is recorded: pitch manoeuvres are found by the angle of attack alone"},
-    {Quantity::heading,
-     "no heading is recorded: circles and reverse headings are found by the ground track alone"},
-}};
 
 FlightMotion read_motion(const Flight& flight, const ModelDefinition& model, FlightSamples& samples) {
   std::vector<std::string> by_usual_names;
@@ -102,22 +82,18 @@ FlightMotion read_motion(const Flight& flight, const ModelDefinition& model, Fli
         fmt::format("regimes use variables with standard names that the model does not name: {}",
                     fmt::join(by_usual_names, ", ")));
   }
-  const std::array<const std::vector<double>*, losses.size()> found{&motion.altitude, &motion.roll,
-                                                                    &motion.pitch, &motion.heading};
-  for (std::size_t i = 0; i < losses.size(); ++i) {
-    if (found[i]->empty()) samples.notes.emplace_back(std::string(losses[i].text));
+  for (const auto& [series, loss] :
+       {std::pair(&motion.altitude,
+                  "no height is recorded: climbs and descents, levels and bands of altitude are not found"),
+        std::pair(&motion.roll, "no roll is recorded: turns, circles and reverse headings are not found"),
+        std::pair(&motion.pitch,
+                  "no pitch is recorded: pitch manoeuvres are found by the angle of attack alone"),
+        std::pair(&motion.heading,
+                  "no heading is recorded: circles and reverse headings are found by the ground track "
+                  "alone")}) {
+    if (series->empty()) samples.notes.emplace_back(loss);
   }
   return motion;
-}
-
-/// ADIFR/QCR, otherwise the angle of attack, deg; empty if neither is recorded.
-std::vector<double> read_attack(const Flight& flight, const ModelDefinition& model,
-                                const FlightMotion& motion) {
-  std::vector<double> ratio = read_role(flight, model, Quantity::attack_differential_pressure).values;
-  const std::vector<double> qcr = read_role(flight, model, Quantity::radome_dynamic_pressure).values;
-  if (ratio.empty() || qcr.empty()) return motion.attack;
-  for (std::size_t i = 0; i < ratio.size(); ++i) ratio[i] /= qcr[i];
-  return ratio;
 }
 
 /// Reads recorded flaps, otherwise infers them from the lift.
@@ -127,7 +103,13 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
   samples.flaps = std::move(recorded.values);
   samples.flaps_variable = std::move(recorded.variable);
   if (!samples.flaps.empty()) return;
-  const std::vector<double> attack = read_attack(flight, model, samples.motion);
+  // ADIFR/QCR, otherwise the angle of attack, deg; empty if neither is recorded.
+  std::vector<double> attack = read_role(flight, model, Quantity::attack_differential_pressure).values;
+  const std::vector<double> qcr = read_role(flight, model, Quantity::radome_dynamic_pressure).values;
+  if (attack.empty() || qcr.empty())
+    attack = samples.motion.attack;
+  else
+    std::transform(attack.begin(), attack.end(), qcr.begin(), attack.begin(), std::divides<>());
   const std::optional<FlapsByLift> lift =
       attack.empty() ? std::nullopt : find_flaps_by_lift(samples, attack, min_airspeed);
   if (!lift) {
@@ -136,7 +118,7 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
         "them with --min-airspeed or --intervals");
     return;
   }
-  samples.flaps_by_lift = lift->out;
+  for (const bool is_out : lift->out) samples.flaps.push_back(is_out ? 100.0 : 0.0);
   const auto out = std::count(lift->out.begin(), lift->out.end(), true);
   if (out == 0) {
     samples.notes.push_back(
@@ -154,8 +136,8 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
       times_of(marked_segments(lift->out), samples.time), out,
       slow == 0 ? "" : fmt::format(", {} below {:g} m/s", slow, min_airspeed), 100.0 * lift->deficit,
       100.0 * lift->deviation);
-  const double share = static_cast<double>(out) / static_cast<double>(lift->out.size());
-  samples.notes.push_back(share > considerable_share ? warning_note(note) : std::move(note));
+  const bool is_considerable = static_cast<double>(out) / static_cast<double>(lift->out.size()) > 0.1;
+  samples.notes.push_back(is_considerable ? warning_note(note) : std::move(note));
 }
 
 /// Reads recorded inputs at some rate.
@@ -174,15 +156,13 @@ ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& in
 
 /// Notes pressures whose resolution is a considerable part of their noise.
 void note_coarse(const ModelSamples& samples, Notes& notes) {
-  for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
-    const std::vector<double>* const values = samples.find(quantity);
-    const double step = values == nullptr ? 0.0 : resolution_of(*values);
+  for (const auto& [quantity, variable] : samples.variables) {
+    if (quantity != Quantity::static_pressure && quantity != Quantity::dynamic_pressure) continue;
+    const double step = resolution_of(*samples.find(quantity));
     if (step < coarse_pressure) continue;
-    const auto variable = std::find_if(samples.variables.begin(), samples.variables.end(),
-                                       [quantity](const auto& each) { return each.first == quantity; });
     notes.push_back(fmt::format(
-        "{} is recorded in steps of {:.2g} hPa: rounding alone contributes {:.2g} hPa rms of noise",
-        variable->second, step, rounding_of(step)));
+        "{} is recorded in steps of {:.2g} hPa: rounding alone contributes {:.2g} hPa rms of noise", variable,
+        step, rounding_of(step)));
   }
 }
 
@@ -257,7 +237,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
   }
   if (chain.derives(Quantity::wetness)) {
     add(Quantity::wetness,
-        wetness_of(*samples.find(Quantity::liquid_water), time, step, chain.time_of(Quantity::wetness)));
+        remembered(Quantity::wetness, samples, time, step, chain.time_of(Quantity::wetness)));
   }
   if (chain.derives(Quantity::airspeed_rate)) {
     // Corrected pressures are used: in a pitch manoeuvre delta-p changes faster than the dynamic pressure.
@@ -268,6 +248,19 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
   return samples;
 }
 
+void internal::mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double min_airspeed) {
+  std::vector<bool> flying;
+  for (const double airspeed : samples.motion.airspeed) flying.push_back(airspeed >= min_airspeed);
+  ModelSamples& read = samples.*part;
+  for (const auto& [quantity, variable] : read.variables) {
+    const std::vector<double>& values = *read.find(quantity);
+    const std::vector<Segment> frozen = find_frozen(values, flying, always_varies(quantity));
+    for (const Segment& span : frozen) read.frozen.push_back({quantity, span.first, span.count});
+    if (!frozen.empty())
+      samples.notes.push_back(warning_note(frozen_text(variable, quantity, values, samples.time, frozen)));
+  }
+}
+
 std::optional<std::vector<bool>> internal::flaps_extended(const Flight& flight,
                                                           const ModelDefinition& model) {
   FlightSamples samples;
@@ -275,25 +268,25 @@ std::optional<std::vector<bool>> internal::flaps_extended(const Flight& flight,
   samples.step = flight.time().step;
   samples.time = record_times(flight);
   const auto read = [&](Quantity role) { return read_role(flight, model, role).values; };
-  if (const std::vector<double> recorded = read(Quantity::flaps); !recorded.empty()) {
-    std::vector<bool> extended;
-    for (const double percent : recorded) extended.push_back(percent > flaps_in);
-    return extended;
+  samples.flaps = read(Quantity::flaps);
+  if (samples.flaps.empty()) {
+    for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure,
+                                Quantity::recovery_temperature, Quantity::ambient_temperature}) {
+      std::vector<double> values = read(role);
+      const bool is_pressure = role == Quantity::static_pressure || role == Quantity::dynamic_pressure;
+      if (values.empty() && is_pressure) values.assign(samples.time.size(), nan);  // no plausible value
+      if (!values.empty()) samples.model.columns.emplace_back(role, std::move(values));
+    }
+    samples.motion.airspeed = measured_airspeed(samples.model);
+    samples.motion.vertical_speed = read(Quantity::vertical_speed);
+    samples.motion.roll = read(Quantity::roll);
+    samples.motion.attack = read(Quantity::attack);
+    read_flaps(flight, model, MaskOptions().min_airspeed, samples);
   }
-  for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure,
-                              Quantity::recovery_temperature, Quantity::ambient_temperature}) {
-    std::vector<double> values = read(role);
-    const bool is_pressure = role == Quantity::static_pressure || role == Quantity::dynamic_pressure;
-    if (values.empty() && is_pressure) values.assign(samples.time.size(), nan);  // no plausible value
-    if (!values.empty()) samples.model.columns.emplace_back(role, std::move(values));
-  }
-  samples.motion.airspeed = measured_airspeed(samples.model);
-  samples.motion.vertical_speed = read(Quantity::vertical_speed);
-  samples.motion.roll = read(Quantity::roll);
-  samples.motion.attack = read(Quantity::attack);
-  read_flaps(flight, model, MaskOptions().min_airspeed, samples);
-  if (samples.flaps_by_lift.empty()) return std::nullopt;
-  return std::move(samples.flaps_by_lift);
+  if (samples.flaps.empty()) return std::nullopt;
+  std::vector<bool> extended;
+  for (const double percent : samples.flaps) extended.push_back(percent > flaps_in);
+  return extended;
 }
 
 FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, const Reference& reference,

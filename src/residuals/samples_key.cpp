@@ -1,24 +1,13 @@
-#include "residuals/samples_key.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <pcor/residuals/reference.hpp>
 #include "parallel/digest.hpp"
+#include "residuals/samples.hpp"
 #include "roles/model_inputs.hpp"
 
 namespace pcor::internal {
 namespace {
-
-void add(std::string& text, const RadomeCalibration& radome) {
-  text += fmt::format("|{},{},{}", radome.offset, radome.slope, radome.slope_mach);
-}
-
-void add(std::string& text, const ModelEffect& effect, bool with_parameters) {
-  text += fmt::format("|{}:{}:{}:{}:{},{}", effect.id, effect.formula, fmt::join(effect.parameter_names, ","),
-                      static_cast<int>(effect.location), effect.scaling.static_pressure,
-                      effect.scaling.dynamic_pressure);
-  if (with_parameters) text += fmt::format(":{}", fmt::join(effect.parameters, ","));
-}
 
 std::string text_of(const UserIntervals& intervals) {
   std::string text = intervals.flight;
@@ -45,10 +34,15 @@ std::string inputs_of(const ModelDefinition& file, bool with_laser) {
                       static_cast<int>(model.lams.approach), fmt::join(model.recovery.coefficients, ","),
                       model.policy.taper_below, model.policy.taper_power, model.policy.minimum,
                       model.policy.min_dynamic_pressure);
-  add(text, model.attack_radome);
-  add(text, model.sideslip_radome);
+  for (const RadomeCalibration& radome : {model.attack_radome, model.sideslip_radome})
+    text += fmt::format("|{},{},{}", radome.offset, radome.slope, radome.slope_mach);
   const bool with_parameters = chain.derives(Quantity::airspeed_rate) || chain.derives(Quantity::wetness);
-  for (const ModelEffect& effect : model.effects) add(text, effect, with_parameters);
+  for (const ModelEffect& effect : model.effects) {
+    text += fmt::format("|{}:{}:{}:{}:{},{}", effect.id, effect.formula,
+                        fmt::join(effect.parameter_names, ","), static_cast<int>(effect.location),
+                        effect.scaling.static_pressure, effect.scaling.dynamic_pressure);
+    if (with_parameters) text += fmt::format(":{}", fmt::join(effect.parameters, ","));
+  }
   for (const EffectLocation location : model.additions)
     text += fmt::format("|@{}", static_cast<int>(location));
   return text;

@@ -8,7 +8,7 @@
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
-#include "residuals/residual_sums.hpp"
+#include "residuals/flight_statistics.hpp"
 
 namespace pcor {
 

@@ -7,18 +7,14 @@
 #include <cstddef>
 
 #include <pcor/base/utc.hpp>
+#include "regimes/series.hpp"
 
 namespace pcor::internal {
 
 std::vector<Segment> marked_segments(const std::vector<bool>& marked, std::size_t max_gap) {
   std::vector<Segment> segments;
-  for (std::size_t i = 0; i < marked.size(); ++i) {
-    if (!marked[i]) continue;
-    if (segments.empty() || segments.back().first + segments.back().count + max_gap < i)
-      segments.push_back({i, 1});
-    else
-      segments.back().count = i + 1 - segments.back().first;
-  }
+  const std::vector<Run> runs = runs_where(marked.size(), [&](std::size_t i) { return marked[i]; });
+  for (const Run& run : bridged(runs, max_gap)) segments.push_back({run.first, run.length()});
   return segments;
 }
 

@@ -7,17 +7,25 @@
 #include <cctype>
 #include <deque>
 #include <mutex>
-#include <optional>
 
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
 #include "base/text_file.hpp"
 #include "base/toml_reader.hpp"
 #include "model_io/model_names.hpp"
-#include "roles/aircraft_data.hpp"
 #include "roles/usual_variables.hpp"
 
 namespace pcor::internal {
+
+// The files of data/aircraft; the build embeds them (embed.cmake).
+namespace aircraft {
+extern const std::string_view ncar;
+extern const std::string_view faam_core;
+extern const std::string_view halo_bahamas;
+extern const std::string_view noaa_wp_3d;
+extern const std::string_view wyoming_king_air;
+}  // namespace aircraft
+
 namespace {
 
 constexpr std::string_view format = "pcor-aircraft/1";

@@ -63,17 +63,9 @@ ModelCandidate law_of_model(const std::filesystem::path& path, ModelDefinition m
   return law;
 }
 
-std::string names_of(const std::vector<ModelCandidate>& laws) {
-  std::vector<std::string> names;
-  names.reserve(laws.size());
-  for (const ModelCandidate& law : laws) names.push_back(law.path.stem().string());
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
 /// Why none fits.
 std::string reasons_of(const std::vector<ModelCandidate>& laws) {
   std::vector<std::string> reasons;
-  reasons.reserve(laws.size());
   for (const ModelCandidate& law : laws) {
     const std::string name = law.path.stem().string();
     reasons.push_back(!law.is_in_time      ? fmt::format("{} is valid for other dates", name)
@@ -153,10 +145,12 @@ ModelCandidate model_candidate(const Flight& flight, const std::vector<std::file
                    [&](const ModelCandidate& law) { return rank_of(law, family) != rank_of(first, family); }),
       laws.end());
   if (laws.size() > 1) {
+    std::vector<std::string> names;
+    for (const ModelCandidate& law : laws) names.push_back(law.path.stem().string());
     throw Error(Error::Code::model,
                 fmt::format("{}: {} match equally well; name one with --model, or set in_processing = true "
                             "in the [law] of the model used operationally",
-                            who, names_of(laws)));
+                            who, fmt::join(names, ", ")));
   }
   return laws.front();
 }

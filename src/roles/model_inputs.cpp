@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include <pcor/base/error.hpp>
-#include <pcor/base/note.hpp>
 #include <pcor/base/suggest.hpp>
 #include <pcor/base/utc.hpp>
 #include "base/quoting.hpp"
@@ -97,22 +96,18 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
                                 unit.empty() ? std::string(" (not stated)") : ", " + unit));
     inputs.push_back({name, extra_quantity(i), UnitConversion()});
   }
-  std::vector<std::string> flagged;
-  std::vector<std::string> without_range;
-  for (const ModelInput& input : inputs) {
-    flight.require_values(input.variable);
-    if (!flight.variable(input.variable).ignored_range.empty()) without_range.push_back(input.variable);
-    if (!flight.variable(input.variable).flags.empty()) flagged.push_back(input.variable);
-  }
-  if (!flagged.empty()) {
-    notes.push_back(fmt::format("samples flagged as bad or missing in the file are treated as missing: {}",
-                                fmt::join(flagged, ", ")));
-  }
-  if (!without_range.empty()) {
-    notes.push_back(
-        fmt::format("the valid ranges of these variables in the file are not numbers and were ignored: {}",
-                    fmt::join(without_range, ", ")));
-  }
+  for (const ModelInput& input : inputs) flight.require_values(input.variable);
+  const auto note = [&](const char* text, const auto& concerns) {
+    std::vector<std::string> names;
+    for (const ModelInput& input : inputs) {
+      if (concerns(flight.variable(input.variable))) names.push_back(input.variable);
+    }
+    if (!names.empty()) notes.push_back(fmt::format("{}: {}", text, fmt::join(names, ", ")));
+  };
+  note("samples flagged as bad or missing in the file are treated as missing",
+       [](const VariableInfo& variable) { return !variable.flags.empty(); });
+  note("the valid ranges of these variables in the file are not numbers and were ignored",
+       [](const VariableInfo& variable) { return !variable.ignored_range.empty(); });
   return inputs;
 }
 

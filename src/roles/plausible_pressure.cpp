@@ -97,8 +97,62 @@ class PressureCheck {
         family_(family_of(model, flight)),
         static_pressure_(values_of(Quantity::static_pressure)) {}
 
-  std::optional<ImpossiblePressure> static_pressure() const;
-  std::optional<ImpossiblePressure> dynamic_pressure() const;
+  std::optional<ImpossiblePressure> static_pressure() const {
+    if (!is_in_doubt(Quantity::static_pressure) || static_pressure_.empty()) return std::nullopt;
+    double of_height = nan;
+    double max_of_height = 0.1;
+    const std::string height = height_of(flight_, model_, family_);
+    if (!height.empty() && model_.units.count(Quantity::altitude) == 0) {
+      std::vector<double> expected = some_values(flight_, family_, height, Quantity::altitude);
+      if (const double middle = median(expected); middle > 11000.0)
+        max_of_height += 1e-5 * (middle - 11000.0);
+      if (!are_feet(static_pressure_, expected)) {
+        std::transform(expected.begin(), expected.end(), expected.begin(), standard_pressure);
+        of_height = ratio_of(static_pressure_, expected);
+      }
+    }
+    bool is_confirmed = false;
+    std::optional<ImpossiblePressure> contradicted;
+    const auto compare = [&](const PressurePair& pair, bool is_measured) {
+      const double ratio = ratio_of(
+          static_pressure_, some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure));
+      is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_other);
+      const bool other_is_wrong =
+          std::abs(of_height - 1.0) <= max_of_height && std::abs(of_height / ratio - 1.0) > max_of_height;
+      if (!contradicted && std::abs(ratio - 1.0) > max_of_other && !other_is_wrong)
+        contradicted = finding(Quantity::static_pressure, ratio, pair.static_pressure);
+    };
+    each_other_system(&PressurePair::static_pressure, Quantity::static_pressure, compare);
+    if (std::abs(of_height - 1.0) > max_of_height) {
+      const ImpossiblePressure wrong = finding(Quantity::static_pressure, of_height, "the height " + height);
+      // Two systems may be wrong by the same unit; by other amounts the height is.
+      if (!is_confirmed || !wrong.unit.empty()) return wrong;
+    }
+    return is_confirmed ? std::nullopt : contradicted;
+  }
+
+  std::optional<ImpossiblePressure> dynamic_pressure() const {
+    constexpr double flown = 20.0;  // hPa
+    if (!is_in_doubt(Quantity::dynamic_pressure)) return std::nullopt;
+    const std::vector<double> recorded = values_of(Quantity::dynamic_pressure);
+    bool is_confirmed = false;
+    std::optional<ImpossiblePressure> contradicted;
+    const auto compare = [&](const PressurePair& pair, bool is_measured) {
+      const std::vector<double> other =
+          some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure);
+      std::vector<double> expected =
+          some_values(flight_, family_, pair.dynamic_pressure, Quantity::dynamic_pressure);
+      if (!(std::abs(ratio_of(static_pressure_, other) - 1.0) <= max_of_other)) return;
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        expected[i] = expected[i] > flown ? other[i] + expected[i] - static_pressure_[i] : nan;
+      const double ratio = ratio_of(recorded, expected);
+      is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_dynamic);
+      if (!contradicted && std::abs(ratio - 1.0) > max_of_dynamic)
+        contradicted = finding(Quantity::dynamic_pressure, ratio, pair.name());
+    };
+    each_other_system(&PressurePair::dynamic_pressure, Quantity::dynamic_pressure, compare);
+    return is_confirmed ? std::nullopt : contradicted;
+  }
 
  private:
   static constexpr double max_of_other = 0.05;
@@ -138,62 +192,6 @@ class PressureCheck {
   const VariableNaming& family_;
   std::vector<double> static_pressure_;
 };
-
-std::optional<ImpossiblePressure> PressureCheck::static_pressure() const {
-  if (!is_in_doubt(Quantity::static_pressure) || static_pressure_.empty()) return std::nullopt;
-  double of_height = nan;
-  double max_of_height = 0.1;
-  const std::string height = height_of(flight_, model_, family_);
-  if (!height.empty() && model_.units.count(Quantity::altitude) == 0) {
-    std::vector<double> expected = some_values(flight_, family_, height, Quantity::altitude);
-    if (const double middle = median(expected); middle > 11000.0) max_of_height += 1e-5 * (middle - 11000.0);
-    if (!are_feet(static_pressure_, expected)) {
-      std::transform(expected.begin(), expected.end(), expected.begin(), standard_pressure);
-      of_height = ratio_of(static_pressure_, expected);
-    }
-  }
-  bool is_confirmed = false;
-  std::optional<ImpossiblePressure> contradicted;
-  const auto compare = [&](const PressurePair& pair, bool is_measured) {
-    const double ratio = ratio_of(
-        static_pressure_, some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure));
-    is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_other);
-    const bool other_is_wrong =
-        std::abs(of_height - 1.0) <= max_of_height && std::abs(of_height / ratio - 1.0) > max_of_height;
-    if (!contradicted && std::abs(ratio - 1.0) > max_of_other && !other_is_wrong)
-      contradicted = finding(Quantity::static_pressure, ratio, pair.static_pressure);
-  };
-  each_other_system(&PressurePair::static_pressure, Quantity::static_pressure, compare);
-  if (std::abs(of_height - 1.0) > max_of_height) {
-    const ImpossiblePressure wrong = finding(Quantity::static_pressure, of_height, "the height " + height);
-    // Two systems may be wrong by the same unit; by other amounts the height is.
-    if (!is_confirmed || !wrong.unit.empty()) return wrong;
-  }
-  return is_confirmed ? std::nullopt : contradicted;
-}
-
-std::optional<ImpossiblePressure> PressureCheck::dynamic_pressure() const {
-  constexpr double flown = 20.0;  // hPa
-  if (!is_in_doubt(Quantity::dynamic_pressure)) return std::nullopt;
-  const std::vector<double> recorded = values_of(Quantity::dynamic_pressure);
-  bool is_confirmed = false;
-  std::optional<ImpossiblePressure> contradicted;
-  const auto compare = [&](const PressurePair& pair, bool is_measured) {
-    const std::vector<double> other =
-        some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure);
-    std::vector<double> expected =
-        some_values(flight_, family_, pair.dynamic_pressure, Quantity::dynamic_pressure);
-    if (!(std::abs(ratio_of(static_pressure_, other) - 1.0) <= max_of_other)) return;
-    for (std::size_t i = 0; i < expected.size(); ++i)
-      expected[i] = expected[i] > flown ? other[i] + expected[i] - static_pressure_[i] : nan;
-    const double ratio = ratio_of(recorded, expected);
-    is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_dynamic);
-    if (!contradicted && std::abs(ratio - 1.0) > max_of_dynamic)
-      contradicted = finding(Quantity::dynamic_pressure, ratio, pair.name());
-  };
-  each_other_system(&PressurePair::dynamic_pressure, Quantity::dynamic_pressure, compare);
-  return is_confirmed ? std::nullopt : contradicted;
-}
 
 }  // namespace
 

@@ -216,30 +216,6 @@ std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described&
   }
 }
 
-}  // namespace
-
-std::vector<std::string> plain_words(std::string_view text) {
-  std::string spaced;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto letter = static_cast<unsigned char>(text[i]);
-    const bool hump =
-        i > 0 && std::isupper(letter) != 0 && std::islower(static_cast<unsigned char>(text[i - 1])) != 0;
-    if (hump) spaced += ' ';
-    spaced += std::isalpha(letter) != 0 ? static_cast<char>(std::tolower(letter)) : ' ';
-  }
-  std::vector<std::string> words;
-  for (const std::string& word : split(spaced, ' ')) {
-    const auto known = std::find_if(written_out.begin(), written_out.end(),
-                                    [&](const auto& each) { return each.first == word; });
-    for (const std::string& part : split(known == written_out.end() ? word : known->second, ' ')) {
-      if (!has(words, part)) words.push_back(part);
-    }
-  }
-  return words;
-}
-
-namespace {
-
 /// The candidates for one series, or for all if `series` is empty.
 std::map<std::string, std::vector<RoleCandidate>> candidates_of(const Flight& flight,
                                                                 std::string_view series) {
@@ -265,6 +241,26 @@ std::map<std::string, std::vector<RoleCandidate>> candidates_of(const Flight& fl
 }
 
 }  // namespace
+
+std::vector<std::string> plain_words(std::string_view text) {
+  std::string spaced;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto letter = static_cast<unsigned char>(text[i]);
+    const bool hump =
+        i > 0 && std::isupper(letter) != 0 && std::islower(static_cast<unsigned char>(text[i - 1])) != 0;
+    if (hump) spaced += ' ';
+    spaced += std::isalpha(letter) != 0 ? static_cast<char>(std::tolower(letter)) : ' ';
+  }
+  std::vector<std::string> words;
+  for (const std::string& word : split(spaced, ' ')) {
+    const auto known = std::find_if(written_out.begin(), written_out.end(),
+                                    [&](const auto& each) { return each.first == word; });
+    for (const std::string& part : split(known == written_out.end() ? word : known->second, ' ')) {
+      if (!has(words, part)) words.push_back(part);
+    }
+  }
+  return words;
+}
 
 std::vector<RoleCandidate> role_candidates(const Flight& flight, std::string_view series) {
   return candidates_of(flight, series)[std::string(series)];

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <pcor/simulate/simulate.hpp>
+#include <vector>
+
 namespace pcor::internal::simulate {
 
 inline constexpr double pascal_per_hpa = 100.0;
@@ -16,9 +19,6 @@ struct Air {
 
 /// Gas constant, J/(kg K): the mean of those of dry air and vapour by mass.
 double gas_constant(const Air& air);
-
-/// Specific heat at constant pressure, J/(kg K): 7/2 R_d and 4 R_w by mass.
-double specific_heat(const Air& air);
 
 /// Density, kg/m3.
 double density(const Air& air);
@@ -43,5 +43,32 @@ double saturation_pressure(double temperature);
 
 /// The dew point over water, K, of a vapour pressure in hPa above zero.
 double dew_point(double vapor_pressure);
+
+/// Gravity, m/s2, at a latitude (deg) and height (m): Somigliana's formula of WGS 84, falling with height as
+/// the ellipsoid's field does to second order. Accuracy 1e-7 up to 20 km.
+double gravity(double latitude, double height);
+
+/// The column of air over a place: hydrostatic balance of moist air, integrated upwards from the ground.
+///
+/// The temperature falls by the lapse rate from the ground to the tropopause and is constant above it; the
+/// inversion adds its strength over 200 m. The relative humidity goes from its lower to its upper value in
+/// the inversion and to 2 % at the tropopause.
+class Column {
+ public:
+  /// @throws Error if the air would be colder than 150 K below the tropopause.
+  Column(const Scenario::Atmosphere& atmosphere, double latitude);
+
+  /// Air at a height, m. The last value is used beyond the column (500 m below the ground to 18 km).
+  Air at(double height) const;
+
+ private:
+  double bottom_;
+  std::vector<double> log_pressure_;
+  std::vector<Air> levels_;
+};
+
+/// Dissipation rate of turbulence, m2/s3, at a height in m: the boundary-layer value up to the inversion, the
+/// free-troposphere value from 300 m above it, their geometric interpolation in between.
+double dissipation(const Scenario::Atmosphere& atmosphere, double height);
 
 }  // namespace pcor::internal::simulate

@@ -21,7 +21,6 @@ AircraftInfo make_c130() {
   a.wing_area = 162.1;
   a.lift_slope = 0.0905;  // this and the next fitted to the angles of the memo's envelope at 56 t
   a.zero_lift = -4.3;
-  a.flap_lift = 6.0;
   a.drag_constant = 0.035;
   a.induced_drag = 0.045;
   a.weight = 58000.0;
@@ -32,13 +31,11 @@ AircraftInfo make_c130() {
   a.max_speed = 155.0;
   a.lift_off_speed = 65.0;
   a.max_mach = 0.62;
-  a.max_attack = 12.0;
   a.ceiling = 9000.0;
   a.climb_rate = 5.0;
   a.speed_run_low = 98.0;
   a.speed_run_high = 150.0;
   a.speed_run_rate = 0.25;
-  a.clear_above = 12000.0;
   a.attack = {5.776, 15.031, 0.0};
   a.sideslip = {-0.012004, 12.2115, 0.0};
   return a;
@@ -53,7 +50,6 @@ AircraftInfo make_gv() {
   a.wing_area = 105.6;
   a.lift_slope = 0.085;  // this and the next fitted to 2.5 deg in cruise
   a.zero_lift = -0.4;
-  a.flap_lift = 6.0;
   a.drag_constant = 0.018;
   a.induced_drag = 0.050;
   a.weight = 36000.0;
@@ -64,13 +60,11 @@ AircraftInfo make_gv() {
   a.max_speed = 260.0;
   a.lift_off_speed = 75.0;
   a.max_mach = 0.885;
-  a.max_attack = 12.0;
   a.ceiling = 15000.0;
   a.climb_rate = 8.0;
   a.speed_run_low = 158.0;
   a.speed_run_high = 225.0;
   a.speed_run_rate = 0.35;
-  a.clear_above = 12000.0;
   a.attack = {5.5156, 19.07, 2.08};
   a.sideslip = {-0.052888, 21.15507, 0.0};
   return a;

@@ -36,7 +36,7 @@ struct AircraftInfo {
   double wing_area = 0.0;      ///< m2
   double lift_slope = 0.0;     ///< slope of the lift coefficient at low Mach number, 1/deg
   double zero_lift = 0.0;      ///< angle of attack without lift, flaps up, deg
-  double flap_lift = 0.0;      ///< decrease of the zero-lift angle with full flaps, deg
+  double flap_lift = 6.0;      ///< decrease of the zero-lift angle with full flaps, deg
   double drag_constant = 0.0;  ///< drag coefficient C_D = drag_constant + induced_drag C_L^2
   double induced_drag = 0.0;
   double weight = 0.0;              ///< initial weight, kg
@@ -48,13 +48,13 @@ struct AircraftInfo {
   double max_speed = 0.0;       ///< m/s
   double lift_off_speed = 0.0;  ///< m/s
   double max_mach = 0.0;
-  double max_attack = 0.0;      ///< before the stall, deg
-  double ceiling = 0.0;         ///< m
-  double climb_rate = 0.0;      ///< usual, m/s
-  double speed_run_low = 0.0;   ///< usual, m/s
-  double speed_run_high = 0.0;  ///< usual, m/s
-  double speed_run_rate = 0.0;  ///< usual, m/s2
-  double clear_above = 0.0;     ///< height at which half of the laser's samples are missing, m
+  double max_attack = 12.0;      ///< before the stall, deg
+  double ceiling = 0.0;          ///< m
+  double climb_rate = 0.0;       ///< usual, m/s
+  double speed_run_low = 0.0;    ///< usual, m/s
+  double speed_run_high = 0.0;   ///< usual, m/s
+  double speed_run_rate = 0.0;   ///< usual, m/s2
+  double clear_above = 12000.0;  ///< height at which half of the laser's samples are missing, m
 
   Radome attack{};
   Radome sideslip{};

@@ -26,9 +26,8 @@ void add(Series& series, const Truth& truth, Value value) {
 
 bool in_cloud(const Truth& truth, std::size_t i) { return truth.liquid_water[i] > 0.0; }
 
-template <double Law::*Term>
 void add_to_law(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
-  system->law.*Term += effect.parameters.begin()->second;
+  system->law.*find_fault(effect.id)->term += effect.parameters.begin()->second;
 }
 
 template <double SystemFaults::*Fault>
@@ -243,16 +242,16 @@ bool acts_on_systems(const Effect& effect, const FaultInfo& info) {
 
 const std::vector<FaultInfo>& fault_info() {
   static const std::vector<FaultInfo> info{
-      {"static-constant", Target::system, {{"a0", "1"}}, add_to_law<&Law::a0>},
-      {"static-alpha", Target::system, {{"a1", "1"}}, add_to_law<&Law::a1>},
-      {"static-qp", Target::system, {{"a2", "1"}}, add_to_law<&Law::a2>},
-      {"static-attack", Target::system, {{"a3", "1/deg"}}, add_to_law<&Law::a3>},
-      {"static-alpha-quad", Target::system, {{"a4", "1/deg2"}}, add_to_law<&Law::a4>},
-      {"static-mach", Target::system, {{"m1", "1"}}, add_to_law<&Law::m1>},
-      {"static-mach2", Target::system, {{"m2", "1"}}, add_to_law<&Law::m2>},
-      {"static-mach3", Target::system, {{"m3", "1"}}, add_to_law<&Law::m3>},
-      {"static-beta-odd", Target::system, {{"b1", "1"}}, add_to_law<&Law::b1>},
-      {"static-beta-even", Target::system, {{"b2", "1/deg2"}}, add_to_law<&Law::b2>},
+      {"static-constant", Target::system, {{"a0", "1"}}, add_to_law, &Law::a0},
+      {"static-alpha", Target::system, {{"a1", "1"}}, add_to_law, &Law::a1},
+      {"static-qp", Target::system, {{"a2", "1"}}, add_to_law, &Law::a2},
+      {"static-attack", Target::system, {{"a3", "1/deg"}}, add_to_law, &Law::a3},
+      {"static-alpha-quad", Target::system, {{"a4", "1/deg2"}}, add_to_law, &Law::a4},
+      {"static-mach", Target::system, {{"m1", "1"}}, add_to_law, &Law::m1},
+      {"static-mach2", Target::system, {{"m2", "1"}}, add_to_law, &Law::m2},
+      {"static-mach3", Target::system, {{"m3", "1"}}, add_to_law, &Law::m3},
+      {"static-beta-odd", Target::system, {{"b1", "1"}}, add_to_law, &Law::b1},
+      {"static-beta-even", Target::system, {{"b2", "1/deg2"}}, add_to_law, &Law::b2},
       {"static-transonic",
        Target::system,
        {{"strength", "1"}, {"onset", "1", 0.82}, {"power", "1", 2.0}},
@@ -320,10 +319,10 @@ const std::vector<FaultInfo>& fault_info() {
 }
 
 const FaultInfo* find_fault(std::string_view id) {
-  const auto& info = fault_info();
-  const auto found =
-      std::find_if(info.begin(), info.end(), [id](const FaultInfo& each) { return each.id == id; });
-  return found == info.end() ? nullptr : &*found;
+  for (const FaultInfo& info : fault_info()) {
+    if (info.id == id) return &info;
+  }
+  return nullptr;
 }
 
 const Series Truth::*find_series(std::string_view name) {

@@ -60,6 +60,7 @@ struct FaultInfo {
   Target target;
   std::vector<FaultParameter> parameters;
   void (*act)(const Scenario::Effect& effect, const Truth& truth, SystemFaults* system, Faults& faults);
+  double Scenario::Law::*term = nullptr;  ///< the term of a law that the effect adds to, if any
 };
 
 /// Every effect that a scenario may have.

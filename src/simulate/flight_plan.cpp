@@ -23,9 +23,8 @@ class Plan {
  public:
   explicit Plan(const Scenario& scenario)
       : pilot_(scenario), commanded_height_(scenario.atmosphere.ground_height), commanded_speed_(0.0) {
-    std::size_t steps = 0;
     for (const Leg& leg : scenario.legs) {
-      steps = pilot_.truth().size();
+      const std::size_t steps = pilot_.truth().size();
       fly(leg);
       legs_.push_back({leg.kind, steps, pilot_.truth().size()});
     }
@@ -37,14 +36,16 @@ class Plan {
   void fly(const Leg& leg) {
     switch (leg.kind) {
       case Kind::ground:
-        return wait(leg);
+        for (std::size_t i = 0; i < steps_of(leg.duration); ++i) pilot_.step({}, leg);
+        return;
       case Kind::take_off:
         return take_off(leg);
       case Kind::climb:
       case Kind::descent:
         return change_height(leg);
       case Kind::level:
-        return level(leg);
+        settle(leg);
+        return hold_for(leg, leg.duration);
       case Kind::pitch:
         return pitch(leg);
       case Kind::yaw:
@@ -63,10 +64,6 @@ class Plan {
       case Kind::landing:
         return land(leg);
     }
-  }
-
-  void wait(const Leg& leg) {
-    for (std::size_t i = 0; i < steps_of(leg.duration); ++i) pilot_.step({}, leg);
   }
 
   void take_off(const Leg& leg) {
@@ -90,11 +87,6 @@ class Plan {
     do {
       pilot_.step(hold(leg.rate), leg);
     } while (!arrived());
-  }
-
-  void level(const Leg& leg) {
-    settle(leg);
-    hold_for(leg, leg.duration);
   }
 
   // The vertical speed is W sin(2 pi t/P), growing over the first and dying over the last half cycle, which

@@ -10,28 +10,6 @@
 
 namespace pcor::internal::simulate {
 
-/// Number used by a leg.
-struct LegNumber {
-  std::string_view key;
-  double Scenario::Leg::*value;
-};
-
-/// Every number of a leg.
-inline constexpr std::array<LegNumber, 12> leg_numbers{{
-    {"duration", &Scenario::Leg::duration},
-    {"altitude", &Scenario::Leg::altitude},
-    {"speed", &Scenario::Leg::speed},
-    {"rate", &Scenario::Leg::rate},
-    {"low", &Scenario::Leg::low},
-    {"high", &Scenario::Leg::high},
-    {"period", &Scenario::Leg::period},
-    {"cycles", &Scenario::Leg::cycles},
-    {"amplitude", &Scenario::Leg::amplitude},
-    {"roll", &Scenario::Leg::roll},
-    {"angle", &Scenario::Leg::angle},
-    {"flaps", &Scenario::Leg::flaps},
-}};
-
 /// Kind of leg: its name in scenarios and the numbers it uses.
 struct LegInfo {
   Scenario::Leg::Kind kind;

@@ -3,11 +3,10 @@
 #include <optional>
 #include <pcor/simulate/simulate.hpp>
 
+#include "simulate/air.hpp"
 #include "simulate/aircraft.hpp"
-#include "simulate/atmosphere.hpp"
 #include "simulate/random.hpp"
 #include "simulate/truth.hpp"
-#include "simulate/turbulence.hpp"
 
 namespace pcor::internal::simulate {
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -16,7 +17,6 @@
 #include "simulate/aircraft.hpp"
 #include "simulate/effects.hpp"
 #include "simulate/flight_plan.hpp"
-#include "simulate/scenario_keys.hpp"
 #include "simulate/truth.hpp"
 
 namespace pcor {
@@ -30,6 +30,127 @@ using namespace simulate;
 constexpr std::string_view scenario_format = "pcor-scenario/1";
 
 constexpr double min_height = 10.0;  // m above the ground, of a low pass
+
+/// The values that a number may have, with its unit for the message.
+struct Domain {
+  double minimum;
+  double maximum;
+  std::string_view unit;
+};
+
+constexpr double unlimited = 1e9;
+
+/// Number of a table: key, destination and domain.
+template <class Object>
+struct NumberKey {
+  std::string_view key;
+  double Object::*value;
+  Domain domain;
+};
+
+constexpr std::array<NumberKey<Scenario>, 5> scenario_keys{{
+    {"latitude", &Scenario::latitude, {-85.0, 85.0, "deg"}},
+    {"longitude", &Scenario::longitude, {-180.0, 180.0, "deg"}},
+    {"heading", &Scenario::heading, {0.0, 360.0, "deg"}},
+    {"weight", &Scenario::weight, {10000.0, 90000.0, "kg"}},
+    {"recovery_factor", &Scenario::recovery_factor, {0.0, 1.2, ""}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Atmosphere>, 18> atmosphere_keys{{
+    {"ground_pressure", &Scenario::Atmosphere::ground_pressure, {500.0, 1100.0, "hPa"}},
+    {"ground_height", &Scenario::Atmosphere::ground_height, {-400.0, 5000.0, "m"}},
+    {"ground_temperature", &Scenario::Atmosphere::ground_temperature, {220.0, 330.0, "K"}},
+    {"lapse_rate", &Scenario::Atmosphere::lapse_rate, {-5.0, 12.0, "K/km"}},
+    {"inversion_height", &Scenario::Atmosphere::inversion_height, {0.0, 20000.0, "m"}},
+    {"inversion_strength", &Scenario::Atmosphere::inversion_strength, {0.0, 20.0, "K"}},
+    {"tropopause", &Scenario::Atmosphere::tropopause, {5000.0, 18000.0, "m"}},
+    {"ground_humidity", &Scenario::Atmosphere::ground_humidity, {0.1, 100.0, "%"}},
+    {"upper_humidity", &Scenario::Atmosphere::upper_humidity, {0.1, 100.0, "%"}},
+    {"wind_speed", &Scenario::Atmosphere::wind_speed, {0.0, 40.0, "m/s"}},
+    {"wind_from", &Scenario::Atmosphere::wind_from, {0.0, 360.0, "deg"}},
+    {"wind_shear", &Scenario::Atmosphere::wind_shear, {-5.0, 10.0, "m/s per km"}},
+    {"wind_drift", &Scenario::Atmosphere::wind_drift, {0.0, 10.0, "m/s"}},
+    {"wind_drift_time", &Scenario::Atmosphere::wind_drift_time, {1.0, 1e5, "s"}},
+    {"turbulence", &Scenario::Atmosphere::turbulence, {1e-9, 0.1, "m2/s3"}},
+    {"boundary_layer", &Scenario::Atmosphere::boundary_layer, {1e-9, 0.1, "m2/s3"}},
+    {"pressure_height_east", &Scenario::Atmosphere::pressure_height_east, {-100.0, 100.0, "m per 100 km"}},
+    {"pressure_height_north", &Scenario::Atmosphere::pressure_height_north, {-100.0, 100.0, "m per 100 km"}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Cloud>, 4> cloud_keys{{
+    {"base", &Scenario::Cloud::base, {-400.0, 20000.0, "m"}},
+    {"top", &Scenario::Cloud::top, {-400.0, 20000.0, "m"}},
+    {"liquid", &Scenario::Cloud::liquid, {0.0, 10.0, "g/m3"}},
+    {"cover", &Scenario::Cloud::cover, {0.0, 1.0, ""}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Noise>, 4> noise_keys{{
+    {"rms", &Scenario::Noise::rms, {0.0, unlimited, ""}},
+    {"bias", &Scenario::Noise::bias, {-unlimited, unlimited, ""}},
+    {"memory", &Scenario::Noise::memory, {0.0, 1e5, "s"}},
+    {"resolution", &Scenario::Noise::resolution, {0.0, unlimited, ""}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Lams>, 6> lams_keys{{
+    {"elevation", &Scenario::Lams::elevation, {-45.0, 45.0, "deg"}},
+    {"azimuth", &Scenario::Lams::azimuth, {-45.0, 45.0, "deg"}},
+    {"mismatch", &Scenario::Lams::mismatch, {0.0, 10.0, "m/s"}},
+    {"mismatch_memory", &Scenario::Lams::mismatch_memory, {0.0, 100.0, "s"}},
+    {"dropout", &Scenario::Lams::dropout, {0.0, 1.0, ""}},
+    {"clear_above", &Scenario::Lams::clear_above, {0.0, 50000.0, "m"}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Avionics>, 2> avionics_keys{{
+    {"response", &Scenario::Avionics::response, {0.0, 100.0, "s"}},
+    {"delay", &Scenario::Avionics::delay, {-10.0, 10.0, "s"}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Outliers>, 2> outlier_keys{{
+    {"fraction", &Scenario::Outliers::fraction, {0.0, 1.0, ""}},
+    {"size", &Scenario::Outliers::size, {0.0, unlimited, ""}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Gap>, 2> gap_keys{{
+    {"start", &Scenario::Gap::start, {0.0, unlimited, "s"}},
+    {"duration", &Scenario::Gap::duration, {0.0, unlimited, "s"}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Leg>, 12> leg_keys{{
+    {"duration", &Scenario::Leg::duration, {1.0, 86400.0, "s"}},
+    {"altitude", &Scenario::Leg::altitude, {-400.0, unlimited, "m"}},
+    {"speed", &Scenario::Leg::speed, {0.0, unlimited, "m/s"}},
+    {"rate", &Scenario::Leg::rate, {0.5, 30.0, "m/s"}},
+    {"low", &Scenario::Leg::low, {0.0, unlimited, "m/s"}},
+    {"high", &Scenario::Leg::high, {0.0, unlimited, "m/s"}},
+    {"period", &Scenario::Leg::period, {3.0, 120.0, "s"}},
+    {"cycles", &Scenario::Leg::cycles, {1.0, 1000.0, ""}},
+    {"amplitude", &Scenario::Leg::amplitude, {0.1, 15.0, "deg"}},
+    {"roll", &Scenario::Leg::roll, {1.0, 60.0, "deg"}},
+    {"angle", &Scenario::Leg::angle, {-3600.0, 3600.0, "deg"}},
+    {"flaps", &Scenario::Leg::flaps, {0.0, 100.0, "percent"}},
+}};
+
+/// Domain of a number of a leg: that of its key, unless it depends on the kind or the aircraft.
+Domain leg_domain(const NumberKey<Scenario::Leg>& number, Scenario::Leg::Kind kind,
+                  const AircraftInfo& aircraft) {
+  using Kind = Scenario::Leg::Kind;
+  const bool slow = kind == Kind::take_off || kind == Kind::landing;
+  if (number.key == "altitude") return {number.domain.minimum, aircraft.ceiling, "m"};
+  if (number.key == "speed" || number.key == "low" || number.key == "high")
+    return {slow ? aircraft.lift_off_speed : aircraft.min_speed, aircraft.max_speed, "m/s"};
+  if (number.key == "rate" && kind == Kind::speed_run) return {0.05, 2.0, "m/s2"};
+  if (number.key == "amplitude" && kind == Kind::pitch) return {0.1, 8.0, "m/s2"};
+  return number.domain;
+}
+
+/// Domain of a parameter of an effect.
+Domain parameter_domain(std::string_view key) {
+  if (key == "tau" || key == "drying") return {0.0, 600.0, "s"};
+  if (key == "seconds") return {-60.0, 60.0, "s"};
+  if (key == "fraction") return {-1.0, 1.0, ""};
+  if (key == "scale") return {-unlimited, unlimited, ""};
+  return {-1e6, 1e6, ""};
+}
 
 Names split_words(std::string_view text) {
   std::istringstream stream{std::string(text)};
@@ -77,7 +198,13 @@ class Reader final : TomlReader {
 
   Scenario read(std::string_view text) {
     const toml::table root = parse(text);
-    check_format(root);
+    const Entry entry = format_of(root, "is a scenario", scenario_format);
+    const std::string format = TomlReader::text(entry);
+    if (format != scenario_format) {
+      fail(entry,
+           fmt::format("{} is not the format of a scenario that this program reads; write format = \"{}\"",
+                       quote(format), scenario_format));
+    }
     read_root(root);
     return std::move(scenario_);
   }
@@ -123,62 +250,49 @@ class Reader final : TomlReader {
     return actions;
   }
 
-  void check_format(const toml::table& root) const {
-    const Entry entry = format_of(root, "is a scenario", scenario_format);
-    const std::string format = text(entry);
-    if (format == scenario_format) return;
-    fail(entry,
-         fmt::format("{} is not the format of a scenario that this program reads; write format = \"{}\"",
-                     quote(format), scenario_format));
-  }
-
   void read_root(const toml::table& root) {
-    std::map<std::string, Entry> later;
-    const Action keep = [&](const Entry& entry) { later.emplace(entry.key, entry); };
+    const std::pair<const char*, void (Reader::*)(const Entry&)> sections[] = {
+        {"atmosphere", &Reader::read_atmosphere},
+        {"system", &Reader::read_systems},
+        {"lams", &Reader::read_lams},
+        {"avionics", &Reader::read_avionics},
+        {"noise", &Reader::read_noise},
+        {"leg", &Reader::read_legs},
+        {"effect", &Reader::read_effects},
+        {"outliers", &Reader::read_outliers},
+        {"gap", &Reader::read_gaps}};
+    bool has_aircraft = false;
+    std::map<std::string, Entry> given;
     Actions actions = numbers(scenario_, scenario_keys);
     actions.insert(actions.end(),
                    {{"format", [](const Entry&) {}},
                     {"name", [&](const Entry& entry) { scenario_.name = text(entry); }},
-                    {"aircraft", [&](const Entry& entry) { read_aircraft(entry); }},
+                    {"aircraft",
+                     [&](const Entry& entry) {
+                       const bool is_gv = one_of(entry, {"C-130", "GV"}) == "GV";
+                       scenario_.aircraft = is_gv ? Scenario::Aircraft::gv : Scenario::Aircraft::c130;
+                       has_aircraft = true;
+                     }},
                     {"seed", [&](const Entry& entry) { read_seed(entry); }},
                     {"start", [&](const Entry& entry) { read_start(entry); }},
                     {"rate", [&](const Entry& entry) { read_rate(entry); }},
-                    {"noiseless", [&](const Entry& entry) { scenario_.noise_on = !boolean(entry); }},
-                    {"atmosphere", keep},
-                    {"system", keep},
-                    {"lams", keep},
-                    {"avionics", keep},
-                    {"noise", keep},
-                    {"leg", keep},
-                    {"effect", keep},
-                    {"outliers", keep},
-                    {"gap", keep}});
+                    {"noiseless", [&](const Entry& entry) { scenario_.noise_on = !boolean(entry); }}});
+    for (const auto& [key, read] : sections)
+      actions.emplace_back(key, [&given](const Entry& entry) { given.emplace(entry.key, entry); });
     each(root, "a scenario", actions);
     if (scenario_.name.empty()) fail(Position{1, 1}, "the scenario has no name; add name = \"...\"");
-    if (!has_aircraft_)
+    if (!has_aircraft)
       fail(Position{1, 1}, R"(the scenario has no aircraft; add aircraft = "C-130" or "GV")");
-    const auto with = [&](const std::string& key, void (Reader::*reader)(const Entry&)) {
-      const auto found = later.find(key);
-      if (found != later.end()) (this->*reader)(found->second);
-    };
-    with("atmosphere", &Reader::read_atmosphere);
-    with("system", &Reader::read_systems);
-    if (scenario_.systems.empty()) fail(Position{1, 1}, "there is no pair of pressures; add a [[system]]");
-    with("lams", &Reader::read_lams);
-    with("avionics", &Reader::read_avionics);
-    scenario_.noise = usual_noise(scenario_);
-    with("noise", &Reader::read_noise);
-    with("leg", &Reader::read_legs);
-    if (scenario_.legs.empty()) fail(Position{1, 1}, "the scenario has no leg; add a [[leg]]");
-    with("effect", &Reader::read_effects);
-    with("outliers", &Reader::read_outliers);
-    with("gap", &Reader::read_gaps);
-  }
-
-  void read_aircraft(const Entry& entry) {
-    const std::string name = one_of(entry, {"C-130", "GV"});
-    scenario_.aircraft = name == "GV" ? Scenario::Aircraft::gv : Scenario::Aircraft::c130;
-    has_aircraft_ = true;
+    for (const auto& [key, read] : sections) {
+      if (const auto found = given.find(key); found != given.end()) (this->*read)(found->second);
+      if (read == &Reader::read_systems) {
+        if (scenario_.systems.empty())
+          fail(Position{1, 1}, "there is no pair of pressures; add a [[system]]");
+        scenario_.noise = usual_noise(scenario_);
+      }
+      if (read == &Reader::read_legs && scenario_.legs.empty())
+        fail(Position{1, 1}, "the scenario has no leg; add a [[leg]]");
+    }
   }
 
   void read_seed(const Entry& entry) {
@@ -248,9 +362,10 @@ class Reader final : TomlReader {
 
   void read_law(const Entry& section, Scenario::Law& law) const {
     Actions actions;
-    for (const LawKey& key : law_keys) {
-      actions.emplace_back(std::string(key.id), [this, &law, key](const Entry& entry) {
-        law.*key.value = number(entry, {-10.0, 10.0, ""});
+    for (const FaultInfo& info : fault_info()) {
+      if (info.term == nullptr) continue;
+      actions.emplace_back(std::string(info.id), [this, &law, &info](const Entry& entry) {
+        law.*info.term = number(entry, {-10.0, 10.0, ""});
       });
     }
     each(table(section), "law", actions);
@@ -295,13 +410,12 @@ class Reader final : TomlReader {
       leg.position = position_of(position);
       const LegInfo& info = leg_kind(items, position);
       leg.kind = info.kind;
-      std::map<std::string, Entry> given;
       Actions actions{{"kind", [](const Entry&) {}}};
       for (const std::string& key : split_words(info.keys)) {
         actions.emplace_back(key, [&](const Entry& entry) {
-          const auto which = std::find_if(leg_numbers.begin(), leg_numbers.end(),
-                                          [&](const LegNumber& each) { return each.key == entry.key; });
-          leg.*which->value = number(entry, leg_domain(entry.key, leg.kind, aircraft));
+          const auto which = std::find_if(leg_keys.begin(), leg_keys.end(),
+                                          [&](const auto& each) { return each.key == entry.key; });
+          leg.*which->value = number(entry, leg_domain(*which, leg.kind, aircraft));
         });
       }
       each(items, fmt::format("a leg of kind {}", quote(info.name)), actions);
@@ -358,7 +472,6 @@ class Reader final : TomlReader {
   void read_effects(const Entry& section) {
     tables(section, [this](const toml::table& items, Position position) {
       Scenario::Effect effect;
-      effect.position = position_of(position);
       const FaultInfo& info = effect_info(items, position);
       effect.id = info.id;
       Actions actions{{"id", [](const Entry&) {}},
@@ -476,7 +589,6 @@ class Reader final : TomlReader {
   }
 
   Scenario scenario_;
-  bool has_aircraft_ = false;
 };
 
 }  // namespace

@@ -11,6 +11,18 @@
 namespace pcor::internal::simulate {
 namespace {
 
+/// Inputs of a port's law at one moment.
+struct PortState {
+  double pressure;      ///< static pressure of the air, hPa
+  double total;         ///< total pressure at the pitot, hPa
+  double attack_ratio;  ///< ADIFR/QCR as calibrated
+  double sideslip_ratio;
+  double attack;    ///< deg
+  double sideslip;  ///< deg
+  double mach;      ///< Mach number for the law; NaN: Mach number of the pair in dry air
+  double extra;     ///< hPa
+};
+
 double at(const Series& series, std::size_t i) { return series.empty() ? 0.0 : series[i]; }
 
 /// Fading factor of a law at a dynamic pressure, hPa: no defect without flow.
@@ -66,14 +78,54 @@ double root_of(const Miss& miss, double last, double miss_last, double now, doub
   return now;
 }
 
-}  // namespace
-
+/// The static defect at one moment: the d for which
+///
+///     d = p_m law(q_m/p_m, ...) + extra,   p_m = p - d,   q_m = total - p_m
+///
+/// because the published laws use measured quantities. Solved by the secant method to 1e-11 hPa. Below q_m =
+/// 20 hPa the law fades as (q_m/20)^2: without flow there is no defect.
 double static_defect(const Scenario::Law& law, const PortState& state) {
   constexpr double tolerance = 1e-11;  // hPa
   const auto miss = [&](double d) { return law_value(law, state, state.pressure - d) + state.extra - d; };
   const double first_miss = miss(state.extra);
   return root_of(miss, state.extra, first_miss, state.extra + first_miss, tolerance);
 }
+
+void add_noise(const Scenario& scenario, const std::string& variable, Series& series) {
+  const auto found = scenario.noise.find(variable);
+  if (found == scenario.noise.end() || !scenario.noise_on) return;
+  const Scenario::Noise& noise = found->second;
+  const double kept = noise.memory > 0.0 ? std::exp(-time_step / noise.memory) : 0.0;
+  const double deviation = noise.rms / std::sqrt(variance_of_mean(kept, internal_rate));
+  Drift drift(scenario.seed, "noise " + variable);
+  for (double& value : series) {
+    value += noise.bias + deviation * drift.next(kept);
+    if (noise.resolution > 0.0) value = noise.resolution * std::round(value / noise.resolution);
+  }
+}
+
+void add_outliers(const Scenario& scenario, const std::string& variable, std::vector<double>& values) {
+  for (const Scenario::Outliers& outliers : scenario.outliers) {
+    if (outliers.variable != variable) continue;
+    Random random(scenario.seed, "outliers " + variable);
+    for (double& value : values) {
+      if (random.uniform() < outliers.fraction) value += outliers.size * random.normal();
+    }
+  }
+}
+
+void remove_gaps(const Scenario& scenario, const std::string& variable, std::vector<double>& values,
+                 int rate) {
+  for (const Scenario::Gap& gap : scenario.gaps) {
+    if (gap.variable != variable) continue;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double time = static_cast<double>(i) / rate;
+      if (time >= gap.start && time < gap.start + gap.duration) values[i] = nan;
+    }
+  }
+}
+
+}  // namespace
 
 Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftInfo& aircraft) {
   constexpr double tolerance = 1e-12;
@@ -217,32 +269,7 @@ Series delayed(Series series, double seconds) {
   return late;
 }
 
-std::vector<double> Recorder::record(const std::string& variable, Series series, int rate) const {
-  const auto response = faults_.response.find(variable);
-  if (response != faults_.response.end()) series = with_response(std::move(series), response->second);
-  const auto clock = faults_.clock.find(variable);
-  if (clock != faults_.clock.end()) series = delayed(std::move(series), clock->second);
-  add_noise(variable, series);
-  std::vector<double> values = means(series, rate);
-  add_outliers(variable, values);
-  remove_gaps(variable, values, rate);
-  return values;
-}
-
-void Recorder::add_noise(const std::string& variable, Series& series) const {
-  const auto found = scenario_.noise.find(variable);
-  if (found == scenario_.noise.end() || !scenario_.noise_on) return;
-  const Scenario::Noise& noise = found->second;
-  const double kept = noise.memory > 0.0 ? std::exp(-time_step / noise.memory) : 0.0;
-  const double deviation = noise.rms / std::sqrt(variance_of_mean(kept, internal_rate));
-  Drift drift(scenario_.seed, "noise " + variable);
-  for (double& value : series) {
-    value += noise.bias + deviation * drift.next(kept);
-    if (noise.resolution > 0.0) value = noise.resolution * std::round(value / noise.resolution);
-  }
-}
-
-std::vector<double> Recorder::means(const Series& series, int rate) {
+std::vector<double> means(const Series& series, int rate) {
   const auto steps = static_cast<std::size_t>(internal_rate / rate);
   std::vector<double> values(series.size() / steps);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -258,24 +285,17 @@ std::vector<double> Recorder::means(const Series& series, int rate) {
   return values;
 }
 
-void Recorder::add_outliers(const std::string& variable, std::vector<double>& values) const {
-  for (const Scenario::Outliers& outliers : scenario_.outliers) {
-    if (outliers.variable != variable) continue;
-    Random random(scenario_.seed, "outliers " + variable);
-    for (double& value : values) {
-      if (random.uniform() < outliers.fraction) value += outliers.size * random.normal();
-    }
-  }
-}
-
-void Recorder::remove_gaps(const std::string& variable, std::vector<double>& values, int rate) const {
-  for (const Scenario::Gap& gap : scenario_.gaps) {
-    if (gap.variable != variable) continue;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const double time = static_cast<double>(i) / rate;
-      if (time >= gap.start && time < gap.start + gap.duration) values[i] = nan;
-    }
-  }
+std::vector<double> recorded(const Scenario& scenario, const Faults& faults, const std::string& variable,
+                             Series series, int rate) {
+  const auto response = faults.response.find(variable);
+  if (response != faults.response.end()) series = with_response(std::move(series), response->second);
+  const auto clock = faults.clock.find(variable);
+  if (clock != faults.clock.end()) series = delayed(std::move(series), clock->second);
+  add_noise(scenario, variable, series);
+  std::vector<double> values = means(series, rate);
+  add_outliers(scenario, variable, values);
+  remove_gaps(scenario, variable, values, rate);
+  return values;
 }
 
 }  // namespace pcor::internal::simulate

@@ -24,24 +24,6 @@ struct RadomeReading {
   Series sideslip;          ///< BDIFR, hPa
 };
 
-/// The static defect at one moment: the d for which
-///
-///     d = p_m law(q_m/p_m, ...) + extra,   p_m = p - d,   q_m = total - p_m
-///
-/// because the published laws use measured quantities. Solved by the secant method to 1e-11 hPa. Below q_m =
-/// 20 hPa the law fades as (q_m/20)^2: without flow there is no defect.
-struct PortState {
-  double pressure;      ///< static pressure of the air, hPa
-  double total;         ///< total pressure at the pitot, hPa
-  double attack_ratio;  ///< ADIFR/QCR as calibrated
-  double sideslip_ratio;
-  double attack;    ///< deg
-  double sideslip;  ///< deg
-  double mach;      ///< Mach number for the law; NaN: Mach number of the pair in dry air
-  double extra;     ///< hPa
-};
-double static_defect(const Scenario::Law& law, const PortState& state);
-
 /// Mach number, 1, with which `law` gives the defect of the first system: see `Scenario::Avionics`. It
 /// approaches the true one as the laws fade.
 Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftInfo& aircraft);
@@ -69,25 +51,12 @@ Series with_response(Series series, double tau);
 /// Series delayed by `seconds` (advanced if negative); its ends are held.
 Series delayed(Series series, double seconds);
 
-/// Converts the input of a sensor to recorded values.
-class Recorder {
- public:
-  Recorder(const Scenario& scenario, const Faults& faults) : scenario_(scenario), faults_(faults) {}
+/// Recorded values of a sensor from its input: applies response, clock, noise and resolution of `variable`,
+/// averages over the intervals of `rate` samples per second, then adds outliers and gaps.
+std::vector<double> recorded(const Scenario& scenario, const Faults& faults, const std::string& variable,
+                             Series series, int rate);
 
-  /// Applies response, clock, noise and resolution of `variable`, averages over the intervals of `rate`
-  /// samples per second (NaN if fewer than half of the steps have a value), then adds outliers and gaps.
-  std::vector<double> record(const std::string& variable, Series series, int rate) const;
-
-  /// Means over the intervals alone.
-  static std::vector<double> means(const Series& series, int rate);
-
- private:
-  void add_noise(const std::string& variable, Series& series) const;
-  void add_outliers(const std::string& variable, std::vector<double>& values) const;
-  void remove_gaps(const std::string& variable, std::vector<double>& values, int rate) const;
-
-  const Scenario& scenario_;
-  const Faults& faults_;
-};
+/// Means over the intervals of `rate` samples per second; NaN if fewer than half of the steps have a value.
+std::vector<double> means(const Series& series, int rate);
 
 }  // namespace pcor::internal::simulate

@@ -7,6 +7,7 @@
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/physics/constants.hpp>
 #include <pcor/simulate/simulate.hpp>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -39,8 +40,7 @@ class Recording {
       : scenario_(scenario),
         truth_(truth),
         aircraft_(info_of(scenario.aircraft)),
-        faults_(faults_of(scenario, truth)),
-        recorder_(scenario, faults_) {
+        faults_(faults_of(scenario, truth)) {
     record_pressures();
     record_air();
     record_avionics();
@@ -51,14 +51,14 @@ class Recording {
   std::vector<RecordedVariable>& columns() { return columns_; }
 
  private:
-  std::vector<double>& record(const std::string& name, const std::string& units, const std::string& what,
+  std::vector<double>& record(std::string_view name, std::string_view units, std::string_view what,
                               Series series, int rate) {
-    put(name, units, what, recorder_.record(name, std::move(series), rate), rate);
+    put(name, units, what, recorded(scenario_, faults_, std::string(name), std::move(series), rate), rate);
     return columns_.back().values;
   }
 
-  void put(const std::string& name, const std::string& units, const std::string& what,
-           std::vector<double> values, int rate) {
+  void put(std::string_view name, std::string_view units, std::string_view what, std::vector<double> values,
+           int rate) {
     OutputVariable variable;
     variable.name = name;
     variable.rate = rate;
@@ -77,8 +77,8 @@ class Recording {
       record(system.static_pressure, "hPa", "raw static pressure", std::move(pair.static_pressure), rate);
       record(system.dynamic_pressure, "hPa", "raw dynamic pressure", std::move(pair.dynamic_pressure), rate);
       put("TRUE_PCOR_" + system.static_pressure, "hPa",
-          "static defect of " + system.static_pressure + ", to be added to it",
-          Recorder::means(pair.defect, rate), rate);
+          "static defect of " + system.static_pressure + ", to be added to it", means(pair.defect, rate),
+          rate);
       if (i == 0) record_radome(pair.defect);
     }
   }
@@ -93,7 +93,7 @@ class Recording {
         record("ADIFR", "hPa", "vertical differential pressure, radome", std::move(radome.attack), rate);
     const std::vector<double> side =
         record("BDIFR", "hPa", "horizontal differential pressure, radome", std::move(radome.sideslip), rate);
-    const std::vector<double> mach = Recorder::means(truth_.mach, rate);
+    const std::vector<double> mach = means(truth_.mach, rate);
     std::vector<double> attack(q.size());
     std::vector<double> sideslip(q.size());
     constexpr double min_flow = 1.0;  // hPa; minimum for valid port readings
@@ -111,7 +111,7 @@ class Recording {
     Thermometer first = aircraft_.thermometer;
     if (!std::isnan(scenario_.recovery_factor)) first.recovery = {scenario_.recovery_factor, 0.0, 0.0, 0.0};
     for (const Thermometer& thermometer : {first, aircraft_.second_thermometer}) {
-      record(std::string(thermometer.name), "degC", "recovery temperature",
+      record(thermometer.name, "degC", "recovery temperature",
              celsius(read_thermometer(thermometer, faults_, truth_)), rate);
     }
     Series vapor = truth_.vapor_pressure;
@@ -134,10 +134,8 @@ class Recording {
     const auto filtered = [this](Series series) {
       return delayed(with_response(std::move(series), scenario_.avionics.response), scenario_.avionics.delay);
     };
-    Series dynamic = truth_.total_pressure;
-    for (std::size_t i = 0; i < dynamic.size(); ++i) dynamic[i] -= truth_.pressure[i];
     record("PS_A", "hPa", "avionics static pressure", filtered(truth_.pressure), slow);
-    record("QC_A", "hPa", "avionics dynamic pressure", filtered(std::move(dynamic)), slow);
+    record("QC_A", "hPa", "avionics dynamic pressure", filtered(true_dynamic_pressure()), slow);
     Series mach = scenario_.avionics.has_law ? mach_of_law(scenario_, truth_, aircraft_) : truth_.mach;
     record("MACH_A", "1", "avionics Mach number", filtered(std::move(mach)), scenario_.rate);
   }
@@ -145,12 +143,10 @@ class Recording {
   void record_motion() {
     for (const TruthInfo& info : truth_info) {
       if (info.recorded.empty()) continue;
-      Series series = truth_.*info.series;
-      if (info.unit == "degC") series = celsius(std::move(series));
-      std::vector<double>& values =
-          record(std::string(info.recorded), std::string(info.unit), std::string(info.description),
-                 std::move(series), info.fast ? scenario_.rate : slow);
-      if (info.angle) wrap(values);
+      std::vector<double>& values = record(info.recorded, info.unit, info.description, in_unit_of_file(info),
+                                           info.fast ? scenario_.rate : slow);
+      if (!info.angle) continue;
+      for (double& degrees : values) degrees -= 360.0 * std::floor(degrees / 360.0);
     }
   }
 
@@ -158,15 +154,22 @@ class Recording {
     for (const TruthInfo& info : truth_info) {
       if (info.name.empty()) continue;
       const int rate = info.fast ? scenario_.rate : slow;
-      Series series = truth_.*info.series;
-      if (info.unit == "degC") series = celsius(std::move(series));
-      put(std::string(info.name), std::string(info.unit), "truth: " + std::string(info.description),
-          Recorder::means(series, rate), rate);
+      put(info.name, info.unit, "truth: " + std::string(info.description), means(in_unit_of_file(info), rate),
+          rate);
     }
+    put("TRUE_QC", "hPa", "truth: dynamic pressure", means(true_dynamic_pressure(), scenario_.rate),
+        scenario_.rate);
+  }
+
+  Series true_dynamic_pressure() const {
     Series dynamic = truth_.total_pressure;
     for (std::size_t i = 0; i < dynamic.size(); ++i) dynamic[i] -= truth_.pressure[i];
-    put("TRUE_QC", "hPa", "truth: dynamic pressure", Recorder::means(dynamic, scenario_.rate),
-        scenario_.rate);
+    return dynamic;
+  }
+
+  /// The truth in the unit of the file.
+  Series in_unit_of_file(const TruthInfo& info) const {
+    return info.unit == "degC" ? celsius(truth_.*info.series) : truth_.*info.series;
   }
 
   static Series celsius(Series kelvin) {
@@ -174,15 +177,10 @@ class Recording {
     return kelvin;
   }
 
-  static void wrap(std::vector<double>& degrees) {
-    for (double& value : degrees) value -= 360.0 * std::floor(value / 360.0);
-  }
-
   const Scenario& scenario_;
   const Truth& truth_;
   const AircraftInfo& aircraft_;
   Faults faults_;
-  Recorder recorder_;
   std::vector<RecordedVariable> columns_;
 };
 

@@ -1,8 +1,8 @@
 #include "temperature/height_least_squares.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -23,6 +23,13 @@ void for_each_segment(const HeightRecord& record, const See& see) {
 
 }  // namespace
 
+Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale =
+      information.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  return scale.asDiagonal() * inverse_of(scaled) * scale.asDiagonal();
+}
+
 std::vector<double> height_differences(const HeightRecord& record, const std::vector<double>& coefficients) {
   std::vector<double> result(record.blocks.size());
   for_each_segment(record, [&](std::size_t first, std::size_t end) {
@@ -31,7 +38,8 @@ std::vector<double> height_differences(const HeightRecord& record, const std::ve
     for (std::size_t i = first; i < end; ++i) {
       const HeightBlock& block = record.blocks[i];
       result[i] = block.excess;
-      for (std::size_t k = 0; k < coefficients.size(); ++k) result[i] -= coefficients[k] * block.columns[k];
+      for (std::size_t k = 0; k < coefficients.size(); ++k)
+        result[i] -= coefficients[k] * block.columns[as_index(k)];
       sum += result[i] * static_cast<double>(block.samples);
       count += static_cast<double>(block.samples);
     }
@@ -40,30 +48,21 @@ std::vector<double> height_differences(const HeightRecord& record, const std::ve
   return result;
 }
 
-double samples_as_one(const std::vector<HeightRecord>& records, const std::vector<double>& coefficients) {
-  std::vector<std::vector<double>> left;
+double samples_as_one(const HeightRecord& record, const std::vector<double>& coefficients) {
+  const std::vector<double> left = height_differences(record, coefficients);
   double squares = 0.0;
-  double blocks = 0.0;
+  for (const double height : left) squares += height * height;
   double samples = 0.0;
-  std::size_t longest = 0;
-  for (const HeightRecord& record : records) {
-    left.push_back(height_differences(record, coefficients));
-    for (const double height : left.back()) squares += height * height;
-    for (const HeightBlock& block : record.blocks) samples += static_cast<double>(block.samples);
-    blocks += static_cast<double>(record.blocks.size());
-    longest = std::max(longest, record.blocks.size());
-  }
+  for (const HeightBlock& block : record.blocks) samples += static_cast<double>(block.samples);
   // To the first lag without correlation: heights about their mean have negative ones beyond.
   double as_one = 1.0;
-  for (std::size_t lag = 1; lag < longest; ++lag) {
+  for (std::size_t lag = 1; lag < left.size(); ++lag) {
     double products = 0.0;
-    for (const std::vector<double>& heights : left) {
-      for (std::size_t i = lag; i < heights.size(); ++i) products += heights[i] * heights[i - lag];
-    }
+    for (std::size_t i = lag; i < left.size(); ++i) products += left[i] * left[i - lag];
     if (!(products > 0.0)) break;
     as_one += 2.0 * products / squares;
   }
-  return as_one * samples / blocks;
+  return as_one * samples / static_cast<double>(left.size());
 }
 
 TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& records, std::size_t terms) {
@@ -78,8 +77,7 @@ TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& reco
       double count = 0.0;
       const auto row_of = [&](std::size_t i) {
         Eigen::VectorXd row(n + 1);
-        for (Eigen::Index k = 0; k < n; ++k) row[k] = record.blocks[i].columns[static_cast<std::size_t>(k)];
-        row[n] = record.blocks[i].excess;
+        row << record.blocks[i].columns.head(n), record.blocks[i].excess;
         return row;
       };
       for (std::size_t i = first; i < end; ++i) {
@@ -99,10 +97,7 @@ TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& reco
     });
   }
   TemperatureFit fit;
-  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() *
-                                  inverse_of(scale.asDiagonal() * information * scale.asDiagonal()) *
-                                  scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scaled_inverse(information);
   const Eigen::VectorXd best = inverse * right;
   fit.sigma = std::sqrt(std::max(0.0, squares - best.dot(right)) / samples);
   for (Eigen::Index k = 0; k < n; ++k) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "numerics/decompositions.hpp"
@@ -12,6 +11,7 @@
 #include "numerics/parallel_for.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "parallel/flight_partition.hpp"
+#include "temperature/height_least_squares.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 enum HeightState : Eigen::Index { drift, wander, slope_east, slope_north, state_count };
 
 // Columns of the filter: the height, and the columns of the unknowns.
-constexpr Eigen::Index filtered = 1 + HeightEquations::unknowns;
+constexpr Eigen::Index filtered = 1 + height_unknowns;
 using Covariance = Eigen::Matrix<double, state_count, state_count>;
 using Vector = Eigen::Matrix<double, state_count, 1>;
 using Means = Eigen::Matrix<double, state_count, filtered>;
@@ -59,16 +59,19 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
   p(slope_east, slope_east) = p(slope_north, slope_north) = slope * slope;
   const bool has_slopes = slope > 0.0;
   const double walk = noise.walk * noise.walk;
+  const auto fade = [&](double fading, double variance) {
+    x.row(wander) *= fading;
+    p.row(wander) *= fading;
+    p.col(wander) *= fading;
+    p(wander, wander) += variance;
+  };
   const HeightBlock* before = nullptr;
   for (const HeightBlock& block : record.blocks) {
     if (before != nullptr) {
       const double gap = block.time - before->time - 0.5 * (block.length + before->length);
       if (gap > 0.0) {
         const double fading = std::exp(-gap / noise.wander_time);
-        x.row(wander) *= fading;
-        p.row(wander) *= fading;
-        p.col(wander) *= fading;
-        p(wander, wander) += noise.wander * noise.wander * (1.0 - fading * fading);
+        fade(fading, noise.wander * noise.wander * (1.0 - fading * fading));
         p(drift, drift) += walk * gap;
       }
     }
@@ -99,16 +102,12 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
     const double variance = seen.dot(reached) + slow.of_mean + walk * block.length / 3.0 +
                             noise.white * noise.white / static_cast<double>(block.samples);
     Row measured;
-    measured << block.excess, Eigen::Map<const Eigen::RowVector3d>(block.columns.data()),
-        Eigen::Map<const Eigen::Matrix<double, 1, height_errors>>(block.errors.data());
+    measured << block.excess, block.columns.transpose();
     const Row innovation = measured - seen.transpose() * x;
     see(block, innovation, variance);
 
     // Propagated to the end of the block, including correlations with the measured mean.
-    x.row(wander) *= slow.fading;
-    p.row(wander) *= slow.fading;
-    p.col(wander) *= slow.fading;
-    p(wander, wander) += slow.variance;
+    fade(slow.fading, slow.variance);
     p(drift, drift) += walk * block.length;
     reached(wander) = reached(wander) * slow.fading + slow.covariance;
     reached(drift) += 0.5 * walk * block.length;
@@ -152,138 +151,99 @@ double restricted_deviance(const HeightEquations& equations, Eigen::Index terms)
   return equations.deviance(terms) + equations.log_information(terms);
 }
 
-/// The restricted likelihood around its greatest value, over the logarithms of the noise.
-class AroundLikeliest {
- public:
-  using Logarithms = Eigen::Matrix<double, searched.size(), 1>;
+std::vector<double> logarithms_of(double Searched::*bound) {
+  std::vector<double> x;
+  for (const Searched& each : searched) x.push_back(std::log(each.*bound));
+  return x;
+}
 
-  struct Point {
-    Logarithms x;
-    HeightEquations equations;
-    double rise = 0.0;  // increase of -2 ln L, including the prior
-  };
+using Logarithms = Eigen::Matrix<double, searched.size(), 1>;
 
-  AroundLikeliest(const std::vector<HeightRecord>& records, Eigen::Index terms, const HeightPrior& prior,
-                  const MostLikely& likely, const Workers& workers)
-      : records_(records), terms_(terms), prior_(prior), likely_(likely), workers_(workers) {
-    const std::vector<double> x = as_logarithms(likely.noise);
-    for (std::size_t i = 0; i < searched.size(); ++i) {
-      const Eigen::Index row = as_index(i);
-      centre_[row] = x[i];
-      lower_[row] = std::log(searched[i].minimum);
-      upper_[row] = std::log(searched[i].maximum);
-    }
-  }
-
-  /// One standard deviation of the noise to both sides along each principal axis of -2 ln L.
-  std::array<std::array<Point, 2>, searched.size()> standard_deviations() const {
-    // Along one parameter each, towards the middle of its bounds, to a rise of about 1.
-    constexpr double first_step = 0.2;
-    std::array<Point, searched.size()> one;
-    Logarithms step;
-    for (std::size_t i = 0; i < searched.size(); ++i) {
-      const Eigen::Index row = as_index(i);
-      const double inwards = 2.0 * centre_[row] < lower_[row] + upper_[row] ? 1.0 : -1.0;
-      one[i] = rise_by_one(Logarithms::Unit(row) * inwards, first_step, 3);
-      step[row] = one[i].x[row] - centre_[row];
-    }
-    // The rise as a quadratic form of these steps, with no curvature that differences made too small.
-    constexpr double min_curvature = 0.05;
-    Eigen::Matrix<double, searched.size(), searched.size()> rises;
-    for (std::size_t i = 0; i < searched.size(); ++i) {
-      const Eigen::Index row = as_index(i);
-      rises(row, row) = one[i].rise;
-      for (std::size_t j = 0; j < i; ++j) {
-        const Eigen::Index column = as_index(j);
-        Logarithms both = centre_;
-        both[row] += step[row];
-        both[column] += step[column];
-        rises(row, column) = rises(column, row) = 0.5 * (at(both).rise - one[i].rise - one[j].rise);
-      }
-    }
-    const SymmetricEigen axes = symmetric_eigen(rises);
-    std::array<std::array<Point, 2>, searched.size()> result;
-    for (std::size_t i = 0; i < searched.size(); ++i) {
-      const Eigen::Index k = as_index(i);
-      const double curvature = std::max(axes.eigenvalues()[k], min_curvature);
-      const Logarithms axis = step.cwiseProduct(axes.eigenvectors().col(k)) / std::sqrt(curvature);
-      result[i] = {rise_by_one(axis, 1.0, 2), rise_by_one(-axis, 1.0, 2)};
-    }
-    return result;
-  }
-
- private:
-  Point at(const Logarithms& x) const {
-    Point point;
-    point.x = x.cwiseMax(lower_).cwiseMin(upper_);
-    point.equations =
-        height_equations(records_, as_noise({point.x.begin(), point.x.end()}), prior_, workers_);
-    // Irrelevant noise components have no lower limit: all have a prior of a factor of 4.5.
-    constexpr double known_to = 1.5;
-    point.rise = restricted_deviance(point.equations, terms_) - likely_.deviance +
-                 (point.x - centre_).squaredNorm() / (known_to * known_to);
-    if (!std::isfinite(point.rise)) point.rise = std::numeric_limits<double>::max();
-    return point;
-  }
-
-  /// Distance along `direction` at which -2 ln L is 1 above its minimum, to 20 %, in `trials`; or the
-  /// distance to a bound.
-  Point rise_by_one(const Logarithms& direction, double reach, int trials) const {
-    constexpr double min_rise = 1e-3;
-    Point point = at(centre_ + reach * direction);
-    for (int trial = 1; trial < trials && std::abs(point.rise - 1.0) > 0.2; ++trial) {
-      reach *= std::clamp(1.0 / std::sqrt(std::max(point.rise, min_rise)), 0.25, 4.0);
-      point = at(centre_ + reach * direction);
-    }
-    return point;
-  }
-
-  const std::vector<HeightRecord>& records_;
-  Eigen::Index terms_;
-  const HeightPrior& prior_;
-  const MostLikely& likely_;
-  const Workers& workers_;
-  Logarithms centre_;
-  Logarithms lower_;
-  Logarithms upper_;
+/// The restricted likelihood at some noise.
+struct NoisePoint {
+  Logarithms x;
+  HeightEquations equations;
+  double rise = 0.0;  // increase of -2 ln L from its minimum, including the prior
 };
 
+/// One standard deviation of the noise to both sides along each principal axis of -2 ln L.
+std::vector<std::array<NoisePoint, 2>> standard_deviations_of_noise(const std::vector<HeightRecord>& records,
+                                                                    Eigen::Index terms,
+                                                                    const HeightPrior& prior,
+                                                                    const MostLikely& likely,
+                                                                    const Workers& workers) {
+  const Logarithms centre = Eigen::Map<const Logarithms>(as_logarithms(likely.noise).data());
+  const Logarithms lower = Eigen::Map<const Logarithms>(logarithms_of(&Searched::minimum).data());
+  const Logarithms upper = Eigen::Map<const Logarithms>(logarithms_of(&Searched::maximum).data());
+  const auto at = [&](const Logarithms& x) {
+    NoisePoint point;
+    point.x = x.cwiseMax(lower).cwiseMin(upper);
+    point.equations = height_equations(records, as_noise({point.x.begin(), point.x.end()}), prior, workers);
+    // Irrelevant noise components have no lower limit: all have a prior of a factor of 4.5.
+    constexpr double known_to = 1.5;
+    point.rise = restricted_deviance(point.equations, terms) - likely.deviance +
+                 (point.x - centre).squaredNorm() / (known_to * known_to);
+    if (!std::isfinite(point.rise)) point.rise = std::numeric_limits<double>::max();
+    return point;
+  };
+  // Distance along `direction` at which -2 ln L is 1 above its minimum, to 20 %, in `trials`; or the distance
+  // to a bound.
+  const auto rise_by_one = [&](const Logarithms& direction, double reach, int trials) {
+    constexpr double min_rise = 1e-3;
+    NoisePoint point = at(centre + reach * direction);
+    for (int trial = 1; trial < trials && std::abs(point.rise - 1.0) > 0.2; ++trial) {
+      reach *= std::clamp(1.0 / std::sqrt(std::max(point.rise, min_rise)), 0.25, 4.0);
+      point = at(centre + reach * direction);
+    }
+    return point;
+  };
+  // Along one parameter each, towards the middle of its bounds, to a rise of about 1.
+  constexpr double first_step = 0.2;
+  Logarithms step;
+  Eigen::Matrix<double, searched.size(), searched.size()> rises;
+  for (Eigen::Index i = 0; i < step.size(); ++i) {
+    const double inwards = 2.0 * centre[i] < lower[i] + upper[i] ? 1.0 : -1.0;
+    const NoisePoint point = rise_by_one(Logarithms::Unit(i) * inwards, first_step, 3);
+    step[i] = point.x[i] - centre[i];
+    rises(i, i) = point.rise;
+  }
+  // The rise as a quadratic form of these steps, with no curvature that differences made too small.
+  constexpr double min_curvature = 0.05;
+  for (Eigen::Index i = 0; i < step.size(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      Logarithms both = centre;
+      both[i] += step[i];
+      both[j] += step[j];
+      rises(i, j) = rises(j, i) = 0.5 * (at(both).rise - rises(i, i) - rises(j, j));
+    }
+  }
+  const SymmetricEigen axes = symmetric_eigen(rises);
+  std::vector<std::array<NoisePoint, 2>> result;
+  for (Eigen::Index k = 0; k < step.size(); ++k) {
+    const double curvature = std::max(axes.eigenvalues()[k], min_curvature);
+    const Logarithms axis = step.cwiseProduct(axes.eigenvectors().col(k)) / std::sqrt(curvature);
+    result.push_back({rise_by_one(axis, 1.0, 2), rise_by_one(-axis, 1.0, 2)});
+  }
+  return result;
+}
+
 /// Which unknowns there are: the coefficients of the first `terms` powers, and errors that have a size.
-std::vector<Eigen::Index> free_unknowns(const std::array<double, height_errors>& sizes, Eigen::Index terms) {
+std::vector<Eigen::Index> free_unknowns(const HeightUnknowns& sizes, Eigen::Index terms) {
   std::vector<Eigen::Index> free;
-  for (Eigen::Index k = 0; k < terms; ++k) free.push_back(k);
-  for (std::size_t k = 0; k < height_errors; ++k) {
-    if (sizes[k] > 0.0) free.push_back(as_index(calibration_terms + k));
+  for (Eigen::Index k = 0; k < height_unknowns; ++k) {
+    if (k < terms || sizes[k] > 0.0) free.push_back(k);
   }
   return free;
 }
 
-HeightEquations::Matrix with_prior(HeightEquations::Matrix information,
-                                   const std::array<double, height_errors>& sizes) {
-  for (std::size_t k = 0; k < height_errors; ++k) {
-    const Eigen::Index at = as_index(calibration_terms + k);
-    if (sizes[k] > 0.0) information(at, at) += 1.0 / (sizes[k] * sizes[k]);
+/// Covariance of the free unknowns, which have different units.
+Eigen::MatrixXd free_covariance(HeightEquations::Matrix information, const HeightUnknowns& sizes,
+                                const std::vector<Eigen::Index>& free) {
+  if (free.empty()) return {};
+  for (Eigen::Index k = 0; k < height_unknowns; ++k) {
+    if (sizes[k] > 0.0) information(k, k) += 1.0 / (sizes[k] * sizes[k]);
   }
-  return information;
-}
-
-/// Prior penalty of the other errors.
-double sum_of_prior(const HeightEquations::Vector& all, const std::array<double, height_errors>& sizes) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < height_errors; ++k) {
-    const double error = all[as_index(calibration_terms + k)];
-    if (sizes[k] > 0.0) sum += error * error / (sizes[k] * sizes[k]);
-  }
-  return sum;
-}
-
-/// The inverse of an information matrix whose unknowns have different units.
-Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& information) {
-  if (information.size() == 0) return information;
-  const Eigen::VectorXd scale =
-      information.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_of(scaled) * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scaled_inverse(information(free, free));
   return 0.5 * (inverse + inverse.transpose());
 }
 
@@ -295,22 +255,17 @@ HeightEquations& HeightEquations::operator+=(const HeightEquations& other) {
   sizes = other.sizes;
   squares += other.squares;
   log_determinant += other.log_determinant;
-  blocks += other.blocks;
   return *this;
 }
 
 HeightEquations::Matrix HeightEquations::covariance_of_unknowns(Eigen::Index terms) const {
   const std::vector<Eigen::Index> free = free_unknowns(sizes, terms);
-  const Eigen::MatrixXd inverse = scaled_inverse(with_prior(information, sizes)(free, free));
   Matrix result = Matrix::Zero();
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    for (std::size_t j = 0; j < free.size(); ++j)
-      result(free[i], free[j]) = inverse(as_index(i), as_index(j));
-  }
+  result(free, free) = free_covariance(information, sizes, free);
   return result;
 }
 
-HeightEquations::Vector HeightEquations::best_unknowns(Eigen::Index terms) const {
+HeightUnknowns HeightEquations::best_unknowns(Eigen::Index terms) const {
   return covariance_of_unknowns(terms) * right;
 }
 
@@ -323,22 +278,26 @@ Eigen::VectorXd HeightEquations::best(Eigen::Index terms) const { return best_un
 double HeightEquations::log_information(Eigen::Index terms) const {
   const std::vector<Eigen::Index> free = free_unknowns(sizes, terms);
   if (free.empty()) return 0.0;
-  return -std::log(scaled_inverse(with_prior(information, sizes)(free, free)).determinant());
+  return -std::log(free_covariance(information, sizes, free).determinant());
 }
 
-double HeightEquations::deviance_of_heights(const Vector& all) const {
+double HeightEquations::deviance_of_heights(const HeightUnknowns& all) const {
   return log_determinant + squares - 2.0 * all.dot(right) + all.dot(information * all);
 }
 
 double HeightEquations::deviance_at(const Eigen::VectorXd& a) const {
   // The other errors are optimised for these coefficients.
-  Vector all = Vector::Zero();
+  HeightUnknowns all = HeightUnknowns::Zero();
   all.head(a.size()) = a;
   HeightEquations left = *this;
   left.right -= information * all;
-  const Vector errors = left.best_unknowns(0);
+  const HeightUnknowns errors = left.best_unknowns(0);
   all += errors;
-  return deviance_of_heights(all) + sum_of_prior(errors, sizes);
+  double of_prior = 0.0;
+  for (Eigen::Index k = 0; k < height_unknowns; ++k) {
+    if (sizes[k] > 0.0) of_prior += errors[k] * errors[k] / (sizes[k] * sizes[k]);
+  }
+  return deviance_of_heights(all) + of_prior;
 }
 
 double HeightEquations::deviance(Eigen::Index terms) const { return deviance_at(best(terms)); }
@@ -346,35 +305,32 @@ double HeightEquations::deviance(Eigen::Index terms) const { return deviance_at(
 HeightEquations height_equations(const HeightRecord& record, const HeightNoise& noise,
                                  const HeightPrior& prior) {
   HeightEquations result;
-  result.sizes = prior.errors;
+  result.sizes = prior.sizes;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
     if (block.starts_segment) return;  // this block only determines the unknown initial height
     const double weight = 1.0 / variance;
-    const HeightEquations::Vector columns = innovation.tail<HeightEquations::unknowns>().transpose();
+    const HeightUnknowns columns = innovation.tail<height_unknowns>().transpose();
     result.information.noalias() += weight * columns * columns.transpose();
     result.right += weight * innovation(0) * columns;
     result.squares += weight * innovation(0) * innovation(0);
     result.log_determinant += std::log(variance);
-    ++result.blocks;
   });
   return result;
 }
 
 std::vector<double> height_innovations(const HeightRecord& record, const HeightNoise& noise,
-                                       const HeightPrior& prior, const HeightEquations::Vector& all) {
+                                       const HeightPrior& prior, const HeightUnknowns& all) {
   std::vector<double> result;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
-    const double left = innovation(0) - innovation.tail<HeightEquations::unknowns>().dot(all);
+    const double left = innovation(0) - innovation.tail<height_unknowns>().dot(all);
     result.push_back(block.starts_segment ? nan : left / std::sqrt(variance));
   });
   return result;
 }
 
-HeightRecord without_unknowns(HeightRecord record, const HeightEquations::Vector& all) {
+HeightRecord without_unknowns(HeightRecord record, const HeightUnknowns& all) {
   for (HeightBlock& block : record.blocks) {
-    for (std::size_t k = 0; k < calibration_terms; ++k) block.excess -= all[as_index(k)] * block.columns[k];
-    for (std::size_t k = 0; k < height_errors; ++k)
-      block.excess -= all[as_index(calibration_terms + k)] * block.errors[k];
+    for (Eigen::Index k = 0; k < height_unknowns; ++k) block.excess -= all[k] * block.columns[k];
   }
   return record;
 }
@@ -390,7 +346,7 @@ HeightEquations height_equations(const std::vector<HeightRecord>& records, const
     });
   });
   HeightEquations sum;
-  sum.sizes = prior.errors;
+  sum.sizes = prior.sizes;
   for (const HeightEquations& one : each) sum += one;
   return sum;
 }
@@ -423,19 +379,13 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
     }
     return value;
   };
-  std::vector<double> lower;
-  std::vector<double> upper;
-  for (const Searched& each : searched) {
-    lower.push_back(std::log(each.minimum));
-    upper.push_back(std::log(each.maximum));
-  }
   std::vector<double> x = as_logarithms(start);
   // BOBYQA finds the valley; a restart from its end corrects steps that stopped at a bound.
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
     nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(x.size()));
-    search.set_lower_bounds(lower);
-    search.set_upper_bounds(upper);
+    search.set_lower_bounds(logarithms_of(&Searched::minimum));
+    search.set_upper_bounds(logarithms_of(&Searched::maximum));
     search.set_initial_step(held == nullptr ? 1.0 : 0.3);
     // If the slope of isobars and the walk are nearly confounded the valley is flat: a small gain of one
     // trial does not indicate its minimum, but trials that are close together do.
@@ -453,8 +403,7 @@ Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, 
                                       const Workers& workers) {
   Eigen::MatrixXd covariance = likely.equations.covariance(terms);
   Eigen::MatrixXd more = Eigen::MatrixXd::Zero(terms, terms);
-  for (const auto& [above, below] :
-       AroundLikeliest(records, terms, prior, likely, workers).standard_deviations()) {
+  for (const auto& [above, below] : standard_deviations_of_noise(records, terms, prior, likely, workers)) {
     more += 0.5 * (above.equations.covariance(terms) + below.equations.covariance(terms)) - covariance;
     const Eigen::VectorXd moved = above.equations.best(terms) - below.equations.best(terms);
     more += 0.25 * moved * moved.transpose();

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
-#include <functional>
 #include <vector>
 
 #include "parallel/workers.hpp"
@@ -30,8 +28,8 @@ struct HeightPrior {
   /// `HeightRecord::slope_left`. 0: level.
   double slope = 1e-4;
   /// Prior standard deviation of each error, the same in all flights, in the units of `HeightError`. 0:
-  /// excluded.
-  std::array<double, height_errors> errors{};
+  /// excluded; for the coefficients, which have no prior, too.
+  HeightUnknowns sizes = HeightUnknowns::Zero();
 };
 
 /// Gaussian likelihood of heights, reduced to the normal equations of the coefficients: up to a constant,
@@ -41,22 +39,19 @@ struct HeightPrior {
 /// where c = (a, b): coefficients a of the temperature, of which there may be fewer, and errors b of the
 /// static pressure and the humidity, which have a prior. Errors with a prior of size 0 are excluded.
 struct HeightEquations {
-  static constexpr Eigen::Index unknowns = calibration_terms + height_errors;
-  using Matrix = Eigen::Matrix<double, unknowns, unknowns>;
-  using Vector = Eigen::Matrix<double, unknowns, 1>;
+  using Matrix = Eigen::Matrix<double, height_unknowns, height_unknowns>;
 
   Matrix information = Matrix::Zero();
-  Vector right = Vector::Zero();
-  std::array<double, height_errors> sizes{};
+  HeightUnknowns right = HeightUnknowns::Zero();
+  HeightUnknowns sizes = HeightUnknowns::Zero();  ///< of the prior
   double squares = 0.0;
   double log_determinant = 0.0;
-  std::size_t blocks = 0;
 
   HeightEquations& operator+=(const HeightEquations& other);
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(information, right, sizes, squares, log_determinant, blocks);
+    archive(information, right, sizes, squares, log_determinant);
   }
 
   /// -2 ln L at the best coefficients of the first `terms` powers, the others zero.
@@ -66,14 +61,14 @@ struct HeightEquations {
   Eigen::VectorXd best(Eigen::Index terms) const;
   Eigen::MatrixXd covariance(Eigen::Index terms) const;
   /// All unknowns at their best with the first `terms` powers, the others zero, and their covariance.
-  Vector best_unknowns(Eigen::Index terms) const;
+  HeightUnknowns best_unknowns(Eigen::Index terms) const;
   Matrix covariance_of_unknowns(Eigen::Index terms) const;
   /// ln det of the information on the first `terms` coefficients and the other errors.
   double log_information(Eigen::Index terms) const;
   /// -2 ln L at given coefficients of the first powers, the other errors at their best.
   double deviance_at(const Eigen::VectorXd& coefficients) const;
   /// Deviance of the heights without the prior: -2 ln L without the last sum.
-  double deviance_of_heights(const Vector& all) const;
+  double deviance_of_heights(const HeightUnknowns& all) const;
 };
 
 /// One pass of a Kalman filter over a flight: states are the drift of the integral, the slow GPS noise, the
@@ -86,10 +81,10 @@ HeightEquations height_equations(const HeightRecord& record, const HeightNoise& 
 /// Innovations of that filter at given coefficients, in standard deviations: white with variance 1 for a
 /// correct noise model. NaN at the start of a segment.
 std::vector<double> height_innovations(const HeightRecord& record, const HeightNoise& noise,
-                                       const HeightPrior& prior, const HeightEquations::Vector& unknowns);
+                                       const HeightPrior& prior, const HeightUnknowns& unknowns);
 
 /// Record with the fitted unknowns subtracted from its heights.
-HeightRecord without_unknowns(HeightRecord record, const HeightEquations::Vector& unknowns);
+HeightRecord without_unknowns(HeightRecord record, const HeightUnknowns& unknowns);
 
 /// Sum over flights, computed in parallel: identical to the last bit for any assignment of workers.
 HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,17 +18,16 @@ namespace {
 
 constexpr double min_height_range = 300.0;  // m
 constexpr double kappa = 2.0 / 7.0;         // R/cp of dry air
-
-using Powers = std::array<double, calibration_terms>;
-using Errors = std::array<double, height_errors>;
+constexpr double block_length = 10.0;       // s
+/// s without pressure or temperature that the integral crosses in one step
+constexpr double max_bridge = 10.0;
 
 /// Integral at a sample in use.
 struct Point {
   std::size_t sample = 0;
   bool starts_segment = false;
   double excess = 0.0;  // m
-  Powers columns{};
-  Errors errors{};
+  HeightUnknowns columns;
 };
 
 /// The integral along a flight, sample by sample.
@@ -44,6 +42,7 @@ class Integration {
   std::vector<Point> run(HeightRecord& record) {
     const std::vector<RegimeSet> regimes = regimes_of_samples(air_.time(), air_.samples->intervals);
     std::vector<Point> points;
+    HeightUnknowns squares = HeightUnknowns::Zero();  // of the static pressure change for one unit, hPa2
     for (std::size_t i = 0; i < air_.size(); ++i) {
       // Without pressure it is not known to fly either: that is a gap, which `advance` may cross.
       const bool takes_part = air_.flying[i] && !regimes[i][static_cast<std::size_t>(Regime::take_off)];
@@ -57,13 +56,12 @@ class Integration {
         ++record.missing_heights;
         continue;
       }
-      points.push_back({i, starts_, air_.geopotential_height[i] - height_, columns_, errors_});
-      for (std::size_t k = 0; k < height_errors; ++k)
-        squares_[k] += std::pow(last_shares_[k] * air_.pressure[i], 2);
+      points.push_back({i, starts_, air_.geopotential_height[i] - height_, columns_});
+      squares += (last_shares_ * air_.pressure[i]).cwiseAbs2();
       starts_ = false;
     }
     const double count = std::max(1.0, static_cast<double>(points.size()));
-    for (std::size_t k = 0; k < height_errors; ++k) record.rms_of_unit[k] = std::sqrt(squares_[k] / count);
+    record.rms_of_unit = (squares / count).cwiseSqrt();
     return points;
   }
 
@@ -75,13 +73,13 @@ class Integration {
   /// Advances the integral to sample `i`; restarts after a gap.
   void advance(std::size_t i) {
     if (!has_value(i)) {
-      if (going_ && air_.time()[i] - air_.time()[last_] > options_.max_bridge) going_ = false;
+      if (going_ && air_.time()[i] - air_.time()[last_] > max_bridge) going_ = false;
       return;
     }
     if (going_) {
       const double across = air_.time()[i] - air_.time()[last_];
       const double step = step_between(last_, i);
-      if (across > options_.max_bridge || std::isnan(step)) {
+      if (across > max_bridge || std::isnan(step)) {
         going_ = false;
       } else {
         const double before = air_.temperature[last_] - constants::ice_point;
@@ -92,11 +90,11 @@ class Integration {
         // The thickness is proportional to R_a, whose excess over dry air is due to the vapour.
         const double dry =
             hydrostatic_step(air_.pressure[last_], air_.pressure[i], dry_air<double>().gas_constant);
-        errors_[with_vapor] += (step - dry) * mean;
+        columns_[with_vapor] += (step - dry) * mean;
         double power_before = 1.0;
         double power_here = 1.0;
-        for (double& column : columns_) {
-          column += step * 0.5 * (power_before + power_here);
+        for (Eigen::Index k = 0; k < lasting; ++k) {
+          columns_[k] += step * 0.5 * (power_before + power_here);
           power_before *= before;
           power_here *= here;
         }
@@ -106,29 +104,30 @@ class Integration {
       going_ = true;
       starts_ = true;
       height_ = 0.0;
-      columns_ = {};
-      errors_ = {};
+      columns_.setZero();
       last_shares_ = shares_at(i);
     }
     last_ = i;
   }
 
   /// Relative pressure change of each error of one unit. If the angle is missing, its previous value is used.
-  Errors shares_at(std::size_t i) const {
-    const auto known = [](double share, double else_share) { return std::isnan(share) ? else_share : share; };
-    return {1.0 / air_.pressure[i], 1.0,
-            known(air_.dynamic[i] / air_.pressure[i], last_shares_[with_dynamic]),
-            attack_.empty() ? 0.0 : known(attack_[i], last_shares_[with_attack]), 0.0};
+  HeightUnknowns shares_at(std::size_t i) const {
+    HeightUnknowns shares = last_shares_;
+    shares[lasting] = 1.0 / air_.pressure[i];
+    shares[with_static] = 1.0;
+    const double by_dynamic = air_.dynamic[i] / air_.pressure[i];
+    if (!std::isnan(by_dynamic)) shares[with_dynamic] = by_dynamic;
+    if (!attack_.empty() && !std::isnan(attack_[i])) shares[with_attack] = attack_[i];
+    return shares;
   }
 
-  void add_errors(const Errors& shares, double step, double temperature, double scale_height) {
-    for (std::size_t k = 0; k < height_errors; ++k)
-      errors_[k] += scale_height * (shares[k] - last_shares_[k]);
+  void add_errors(const HeightUnknowns& shares, double step, double temperature, double scale_height) {
+    columns_ += scale_height * (shares - last_shares_);
     // The static correction is subtracted from the dynamic pressure, and therefore changes the dynamic
     // heating.
     if (options_.recovers) {
       for (const HeightError k : {with_static, with_dynamic, with_attack})
-        errors_[k] -= step * temperature * kappa * 0.5 * (shares[k] + last_shares_[k]);
+        columns_[k] -= step * temperature * kappa * 0.5 * (shares[k] + last_shares_[k]);
     }
     last_shares_ = shares;
   }
@@ -151,10 +150,8 @@ class Integration {
   bool starts_ = false;
   std::size_t last_ = 0;
   double height_ = 0.0;
-  Powers columns_{};
-  Errors errors_{};
-  Errors last_shares_{};
-  Errors squares_{};  // squared static pressure change for one unit, hPa2
+  HeightUnknowns columns_ = HeightUnknowns::Zero();
+  HeightUnknowns last_shares_ = HeightUnknowns::Zero();
 };
 
 /// Marks GPS errors that are impossible motions: spikes are excluded, and the integral restarts at a step.
@@ -198,14 +195,26 @@ bool has_ground_velocity(const FlightAir& air, std::size_t i) {
   return !air.east_speed.empty() && !std::isnan(air.east_speed[i] + air.north_speed[i]);
 }
 
+/// Velocity through the air to the east and north, m/s; NaN if unknown.
+Eigen::Vector2d air_velocity(const FlightAir& air, std::size_t i) {
+  const std::vector<double>& headings = air.samples->motion.heading;
+  if (headings.empty() || air.airspeed.empty()) return {nan, nan};
+  const double heading = headings[i] * constants::radians_per_degree;
+  return {air.airspeed[i] * std::sin(heading), air.airspeed[i] * std::cos(heading)};
+}
+
 /// Ground velocity to the east and north, m/s; if missing, velocity through the air from airspeed and
 /// heading. Without any heading or track, the airspeed counts as northward.
 Eigen::Vector2d velocity(const FlightAir& air, std::size_t i) {
   if (has_ground_velocity(air, i)) return {air.east_speed[i], air.north_speed[i]};
   if (way_known(air) == WayKnown::length) return {0.0, air.airspeed[i]};
-  const std::vector<double>& headings = air.samples->motion.heading;
-  const double heading = headings.empty() ? nan : headings[i] * constants::radians_per_degree;
-  return {air.airspeed[i] * std::sin(heading), air.airspeed[i] * std::cos(heading)};
+  return air_velocity(air, i);
+}
+
+/// Wind to the east and north, m/s; NaN if unknown.
+Eigen::Vector2d wind_at(const FlightAir& air, std::size_t i) {
+  if (air.east_speed.empty()) return {nan, nan};
+  return Eigen::Vector2d(air.east_speed[i], air.north_speed[i]) - air_velocity(air, i);
 }
 
 /// Displacement from the first sample, m, to the east and north. Missing velocities are replaced by the last
@@ -243,16 +252,16 @@ class BlockMeans {
     last_ = i;
     block_.time += air_.time()[i] - air_.time()[first_];
     block_.excess += point.excess;
-    for (std::size_t k = 0; k < calibration_terms; ++k) block_.columns[k] += point.columns[k];
-    for (std::size_t k = 0; k < height_errors; ++k) block_.errors[k] += point.errors[k];
+    block_.columns += point.columns;
     block_.east += way_.east[i];
     block_.north += way_.north[i];
     block_.height += air_.geopotential_height[i];
     block_.pressure += air_.pressure[i];
     block_.temperature += air_.temperature[i] - constants::ice_point;
     const double turning = coriolis_parameter(air_.latitude[i]) / constants::standard_gravity;
-    block_.slope_east += turning * wind_north(i);
-    block_.slope_north -= turning * wind_east(i);
+    const Eigen::Vector2d wind = wind_at(air_, i);
+    block_.slope_east += turning * wind[1];
+    block_.slope_north -= turning * wind[0];
   }
 
   std::size_t first() const { return first_; }
@@ -264,8 +273,7 @@ class BlockMeans {
     for (double* value : {&result.time, &result.excess, &result.east, &result.north, &result.height,
                           &result.pressure, &result.temperature, &result.slope_east, &result.slope_north})
       *value /= n;
-    for (double& column : result.columns) column /= n;
-    for (double& error : result.errors) error /= n;
+    result.columns /= n;
     result.time += air_.time()[first_];
     result.length = n * air_.step();
     const double kelvin = result.temperature + constants::ice_point;
@@ -276,20 +284,6 @@ class BlockMeans {
   }
 
  private:
-  bool has_wind() const {
-    return !air_.east_speed.empty() && !air_.samples->motion.heading.empty() && !air_.airspeed.empty();
-  }
-  double heading(std::size_t i) const {
-    return air_.samples->motion.heading[i] * constants::radians_per_degree;
-  }
-  /// Wind components, m/s; NaN if unknown.
-  double wind_east(std::size_t i) const {
-    return has_wind() ? air_.east_speed[i] - air_.airspeed[i] * std::sin(heading(i)) : nan;
-  }
-  double wind_north(std::size_t i) const {
-    return has_wind() ? air_.north_speed[i] - air_.airspeed[i] * std::cos(heading(i)) : nan;
-  }
-
   const FlightAir& air_;
   const Way& way_;
   HeightBlock block_;
@@ -360,8 +354,8 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
     if (means.samples() > 0) record.blocks.push_back(means.take());
   };
   for (const Point& point : points) {
-    const bool full = means.samples() > 0 && air.time()[point.sample] - air.time()[means.first()] >=
-                                                 options.block - 0.5 * air.step();
+    const bool full = means.samples() > 0 &&
+                      air.time()[point.sample] - air.time()[means.first()] >= block_length - 0.5 * air.step();
     if (point.starts_segment || full) finish();
     if (record.way == WayKnown::over_ground && !has_ground_velocity(air, point.sample)) ++record.unknown_ways;
     means.add(point);

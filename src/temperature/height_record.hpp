@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <Eigen/Dense>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -19,7 +19,17 @@ inline constexpr std::size_t calibration_terms = 3;
 /// proportional to the static pressure (static-constant), the dynamic pressure (static-qp), the angle of
 /// attack times the static pressure (static-alpha, static-attack), and the vapour pressure (humidity-error).
 /// The second affects heights only through the temperature.
-enum HeightError : std::size_t { lasting, with_static, with_dynamic, with_attack, with_vapor, height_errors };
+enum HeightError : Eigen::Index {
+  lasting = calibration_terms,
+  with_static,
+  with_dynamic,
+  with_attack,
+  with_vapor,
+  height_unknowns
+};
+
+/// A value for each coefficient of the calibration, followed by one for each `HeightError`.
+using HeightUnknowns = Eigen::Matrix<double, height_unknowns, 1>;
 
 /// Means over a few seconds of a flight: GPS height compared with the integral of the hydrostatic equation
 /// from the start of the segment.
@@ -28,19 +38,18 @@ struct HeightBlock {
   double time = 0.0;            ///< middle, s since 1970 UTC
   double length = 0.0;          ///< averaging time, s
   double excess = 0.0;  ///< GPS geopotential height minus integral with the uncorrected temperature, m
-  /// Change of the integral for one unit of a0 (K), a1 (1), a2 (1/K), m.
-  std::array<double, calibration_terms> columns{};
+  /// Change of the integral for one unit of a0 (K), a1 (1), a2 (1/K), m; then change of `excess` for one unit
+  /// of each error: m/hPa; m for an error as large as the static pressure, and as the dynamic pressure; m for
+  /// one of the radome ratio, or 1 deg, times the static pressure; last, m for a relative error of 1 of the
+  /// vapour pressure.
+  HeightUnknowns columns = HeightUnknowns::Zero();
   double east = 0.0;            ///< way flown, m (`WayKnown`)
   double north = 0.0;           ///< m
   double height = 0.0;          ///< geopotential height by GPS, m
   double pressure = 0.0;        ///< corrected static pressure, hPa
   double temperature = 0.0;     ///< uncorrected, degC
   double metres_per_hpa = 0.0;  ///< R_a T/(g p): thickness of a layer of 1 hPa, m/hPa
-  /// Change of `excess` for one unit of each error: m/hPa; m for an error as large as the static pressure,
-  /// and as the dynamic pressure; m for one of the radome ratio, or 1 deg, times the static pressure; last, m
-  /// for a relative error of 1 of the vapour pressure.
-  std::array<double, height_errors> errors{};
-  double climb = 0.0;       ///< m/s
+  double climb = 0.0;           ///< m/s
   double slope_east = 0.0;  ///< slope of isobaric surfaces from the geostrophic wind, 1; NaN without a wind
   double slope_north = 0.0;
   std::size_t samples = 0;
@@ -48,7 +57,7 @@ struct HeightBlock {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(starts_segment, time, length, excess, columns, east, north, height, pressure, temperature,
-            metres_per_hpa, errors, climb, slope_east, slope_north, samples);
+            metres_per_hpa, climb, slope_east, slope_north, samples);
   }
 };
 
@@ -75,8 +84,8 @@ struct HeightRecord {
   bool returns = false;          ///< ends within 50 km of its start
   double min_temperature = 0.0;  ///< degC
   double max_temperature = 0.0;  ///< degC
-  /// Rms of the static pressure by one unit of each of its errors, hPa.
-  std::array<double, height_errors> rms_of_unit{};
+  /// Rms of the static pressure by one unit of each of its errors, hPa; zero for the coefficients.
+  HeightUnknowns rms_of_unit = HeightUnknowns::Zero();
   /// Stated variance of delta-p of the model, averaged over the samples, hPa2; nullopt if not stated.
   std::optional<double> law_variance{};
   Notes notes;
@@ -90,14 +99,12 @@ struct HeightRecord {
 };
 
 struct HeightRecordOptions {
-  double block = 10.0;          ///< s
   double min_climb_rate = 0.0;  ///< m/s; slower blocks are excluded, and each climb is a segment
   /// The temperature is that of a thermometer less the heating by the flow, for which it has to know the Mach
   /// number: where delta-p is too large by a part x of the pressure, that is x R/cp of the temperature too
   /// much, (p/(p + q))^(R/cp) being their ratio where all of the heating is recovered.
   bool recovers = false;
-  bool has_radome = true;    ///< angle-of-attack errors in units of the radome ratio; otherwise of degrees
-  double max_bridge = 10.0;  ///< s without pressure or temperature that the integral crosses in one step
+  bool has_radome = true;  ///< angle-of-attack errors in units of the radome ratio; otherwise of degrees
 };
 
 /// Integrates the hydrostatic equation along a flight (memo eq. 24 in its exact form, geopotential height),

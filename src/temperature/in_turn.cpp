@@ -1,3 +1,4 @@
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -5,7 +6,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/temperature/temperature.hpp>
 #include "campaign/flight_air.hpp"
-#include "fit/lineage.hpp"
+#include "fit/fitted_model.hpp"
 #include "model_io/calibration.hpp"
 #include "parallel/flight_partition.hpp"
 
@@ -22,25 +23,17 @@ constexpr double settled_temperature = 1e-3;  // K
 /// The rms difference of delta-p of two models over the flights, in the air, hPa.
 double defect_change(const FlightSet& flights, const ModelDefinition& before, const ModelDefinition& after,
                      const TemperatureOptions& options) {
-  using SquaresAndCount = std::pair<double, double>;
-  double squares = 0.0;
-  double count = 0.0;
-  for (const SquaresAndCount& part : flights.share().of_each_flight<SquaresAndCount>([&](std::size_t number) {
-         const FlightAir first = read_flight_air(flights, number, before, options.mask);
-         const FlightAir second = read_flight_air(flights, number, after, options.mask);
-         SquaresAndCount own{0.0, 0.0};
-         for (std::size_t i = 0; i < first.size(); ++i) {
-           const double change = second.static_defect[i] - first.static_defect[i];
-           if (!first.flying[i] || std::isnan(change)) continue;
-           own.first += change * change;
-           own.second += 1.0;
-         }
-         return own;
-       })) {
-    squares += part.first;
-    count += part.second;
-  }
-  return std::sqrt(squares / count);
+  const auto sum = flights.share().sum_of_each_flight<Eigen::Vector2d>([&](std::size_t number) {
+    const FlightAir first = read_flight_air(flights, number, before, options.mask);
+    const FlightAir second = read_flight_air(flights, number, after, options.mask);
+    Eigen::Vector2d squares_and_count = Eigen::Vector2d::Zero();
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      const double change = second.static_defect[i] - first.static_defect[i];
+      if (first.flying[i] && !std::isnan(change)) squares_and_count += Eigen::Vector2d(change * change, 1.0);
+    }
+    return squares_and_count;
+  });
+  return std::sqrt(sum[0] / sum[1]);
 }
 
 }  // namespace

@@ -1,11 +1,9 @@
 #include "temperature/isobar_slope.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <utility>
 #include <vector>
 
 #include <pcor/physics/geodesy.hpp>
@@ -13,28 +11,18 @@
 namespace pcor {
 namespace {
 
-constexpr std::array<std::pair<IsobarSlope, std::string_view>, 6> slope_names{{
-    {IsobarSlope::fitted, "fitted"},
-    {IsobarSlope::none, "none"},
-    {IsobarSlope::level_legs, "level-legs"},
-    {IsobarSlope::climb_descent, "climb-descent"},
-    {IsobarSlope::whole_flight, "whole-flight"},
-    {IsobarSlope::geostrophic, "geostrophic"},
-}};
+// In the order of the enumeration.
+constexpr std::array<std::string_view, 6> slope_names{"fitted",        "none",         "level-legs",
+                                                      "climb-descent", "whole-flight", "geostrophic"};
 
 }  // namespace
 
-std::string_view to_string(IsobarSlope slope) {
-  return std::find_if(slope_names.begin(), slope_names.end(),
-                      [slope](const auto& each) { return each.first == slope; })
-      ->second;
-}
+std::string_view to_string(IsobarSlope slope) { return slope_names.at(static_cast<std::size_t>(slope)); }
 
 std::optional<IsobarSlope> isobar_slope_named(std::string_view name) {
-  for (const auto& [slope, slope_name] : slope_names) {
-    if (slope_name == name) return slope;
-  }
-  return std::nullopt;
+  const auto found = std::find(slope_names.begin(), slope_names.end(), name);
+  if (found == slope_names.end()) return std::nullopt;
+  return static_cast<IsobarSlope>(found - slope_names.begin());
 }
 
 }  // namespace pcor
@@ -55,9 +43,7 @@ constexpr double slope_left_by_estimates = 1.0 / 3.0;
 /// Location with a known height of an isobaric surface, and the surface or leg that it belongs to.
 struct Sighting {
   long group = 0;
-  double east = 0.0;
-  double north = 0.0;
-  double height = 0.0;
+  Eigen::Vector3d place;  // east, north, height
 };
 
 double height_at(const HeightBlock& block, double pressure) {
@@ -79,26 +65,23 @@ std::vector<Sighting> sightings(const HeightRecord& record, IsobarSlope option) 
         leg_pressure = block.pressure;
       }
       was_level = is_level;
-      if (is_level) result.push_back({leg, block.east, block.north, height_at(block, leg_pressure)});
+      if (is_level) result.push_back({leg, {block.east, block.north, height_at(block, leg_pressure)}});
       continue;
     }
     if (option == IsobarSlope::climb_descent && rate < climbing) continue;
     const long bin = std::lround(block.pressure / bin_hpa);
-    result.push_back({bin, block.east, block.north, height_at(block, bin_hpa * static_cast<double>(bin))});
+    result.push_back({bin, {block.east, block.north, height_at(block, bin_hpa * static_cast<double>(bin))}});
   }
   return result;
 }
 
 }  // namespace
 
-IsobarSlopeEstimate estimate_isobar_slope(const HeightRecord& record, IsobarSlope option) {
+Eigen::Vector2d estimate_isobar_slope(const HeightRecord& record, IsobarSlope option) {
   const std::vector<Sighting> all = sightings(record, option);
-  std::map<long, Eigen::Vector4d> sums;  // east, north, height, number
-  for (const Sighting& s : all) {
-    Eigen::Vector4d& sum = sums.try_emplace(s.group, Eigen::Vector4d::Zero()).first->second;
-    sum += Eigen::Vector4d(s.east, s.north, s.height, 1.0);
-  }
-  IsobarSlopeEstimate result;
+  std::map<long, Eigen::Vector4d> sums;  // place, and number
+  for (const Sighting& s : all)
+    sums.try_emplace(s.group, Eigen::Vector4d::Zero()).first->second += s.place.homogeneous();
   // The scatter of surfaces against their usual slope: a direction that is not flown stays level.
   Eigen::Matrix2d information =
       Eigen::Matrix2d::Identity() * (height_scatter * height_scatter / (usual_slope * usual_slope));
@@ -106,15 +89,11 @@ IsobarSlopeEstimate estimate_isobar_slope(const HeightRecord& record, IsobarSlop
   for (const Sighting& s : all) {
     const Eigen::Vector4d& sum = sums.at(s.group);
     if (sum[3] < 2.0) continue;
-    const Eigen::Vector2d offset(s.east - sum[0] / sum[3], s.north - sum[1] / sum[3]);
-    information += offset * offset.transpose();
-    right += offset * (s.height - sum[2] / sum[3]);
-    ++result.blocks;
+    const Eigen::Vector3d offset = s.place - sum.hnormalized();
+    information += offset.head<2>() * offset.head<2>().transpose();
+    right += offset.head<2>() * offset[2];
   }
-  const Eigen::Vector2d slope = information.ldlt().solve(right);
-  result.east = slope[0];
-  result.north = slope[1];
-  return result;
+  return information.ldlt().solve(right);
 }
 
 void take_off_isobar_slope(HeightRecord& record, IsobarSlope option) {
@@ -155,9 +134,8 @@ void take_off_isobar_slope(HeightRecord& record, IsobarSlope option) {
     }
     return;
   }
-  const IsobarSlopeEstimate slope = estimate_isobar_slope(record, option);
-  for (HeightBlock& block : record.blocks)
-    block.excess -= slope.east * block.east + slope.north * block.north;
+  const Eigen::Vector2d slope = estimate_isobar_slope(record, option);
+  for (HeightBlock& block : record.blocks) block.excess -= slope[0] * block.east + slope[1] * block.north;
 }
 
 }  // namespace pcor::internal

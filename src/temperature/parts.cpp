@@ -14,18 +14,17 @@ namespace {
 constexpr double rare = 0.01;  // significance level of a difference
 
 /// Common correction at the mean temperature of a part, the ratio of the columns of a1 and a0.
-PartCorrection common_at(double temperature, const HeightEquations::Vector& unknowns) {
+PartCorrection common_at(double temperature, const HeightUnknowns& unknowns) {
   PartCorrection part;
   part.temperature = temperature;
   double power = 1.0;
-  for (Eigen::Index k = 0; k < as_index(calibration_terms); ++k, power *= temperature)
-    part.common += unknowns[k] * power;
+  for (Eigen::Index k = 0; k < lasting; ++k, power *= temperature) part.common += unknowns[k] * power;
   return part;
 }
 
 /// Records of residual heights, with the columns of a0 in climbs, a0 in descents, and both times the
 /// temperature.
-HeightRecord with_climbs_and_descents(const HeightRecord& whole, const HeightEquations::Vector& unknowns) {
+HeightRecord with_climbs_and_descents(const HeightRecord& whole, const HeightUnknowns& unknowns) {
   HeightRecord record = without_unknowns(whole, unknowns);
   double climbs = 0.0;
   double descents = 0.0;
@@ -34,7 +33,7 @@ HeightRecord with_climbs_and_descents(const HeightRecord& whole, const HeightEqu
     const double step = block.starts_segment ? 0.0 : block.columns[0] - before;
     before = block.columns[0];
     (step > 0.0 ? climbs : descents) += step;
-    block.columns = {climbs, descents, block.columns[1]};
+    block.columns.head<lasting>() = Eigen::Vector3d(climbs, descents, block.columns[1]);
   }
   return record;
 }
@@ -43,7 +42,7 @@ HeightRecord with_climbs_and_descents(const HeightRecord& whole, const HeightEqu
 
 std::vector<PartCorrection> corrections_of_flights(const std::vector<HeightRecord>& records,
                                                    const HeightNoise& noise, const HeightPrior& prior,
-                                                   const HeightEquations::Vector& unknowns) {
+                                                   const HeightUnknowns& unknowns) {
   std::vector<PartCorrection> parts;
   for (const HeightRecord& record : records) {
     const HeightEquations one = height_equations(record, noise, prior);
@@ -60,7 +59,7 @@ std::vector<PartCorrection> corrections_of_flights(const std::vector<HeightRecor
 std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector<HeightRecord>& records,
                                                                const HeightNoise& noise,
                                                                const HeightPrior& prior,
-                                                               const HeightEquations::Vector& unknowns,
+                                                               const HeightUnknowns& unknowns,
                                                                const Workers& workers) {
   std::vector<HeightRecord> parted;
   for (const HeightRecord& record : records) parted.push_back(with_climbs_and_descents(record, unknowns));

@@ -11,7 +11,7 @@ namespace pcor::internal {
 /// with the common errors of the pressure, which do not differ between flights.
 std::vector<PartCorrection> corrections_of_flights(const std::vector<HeightRecord>& records,
                                                    const HeightNoise& noise, const HeightPrior& prior,
-                                                   const HeightEquations::Vector& unknowns);
+                                                   const HeightUnknowns& unknowns);
 
 /// Corrections estimated from climbs and from descents: two constants, with free errors of the pressure
 /// proportional to the dynamic pressure and the angle of attack, because these change between the two. Empty
@@ -19,7 +19,7 @@ std::vector<PartCorrection> corrections_of_flights(const std::vector<HeightRecor
 std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector<HeightRecord>& records,
                                                                const HeightNoise& noise,
                                                                const HeightPrior& prior,
-                                                               const HeightEquations::Vector& unknowns,
+                                                               const HeightUnknowns& unknowns,
                                                                const Workers& workers);
 
 /// Test of heterogeneity between parts, and its size.

@@ -2,23 +2,84 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <array>
-#include <cstddef>
+#include <cmath>
+#include <limits>
 #include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pcor/physics/constants.hpp>
-#include "campaign/flight_air.hpp"
+#include "campaign/model_parameters.hpp"
 #include "model_io/archived_model.hpp"
 #include "model_io/calibration.hpp"
+#include "numerics/decompositions.hpp"
+#include "numerics/triangular_factor.hpp"
+#include "residuals/model_on_samples.hpp"
+#include "roles/aircraft_family.hpp"
 #include "roles/recorded_model.hpp"
-#include "temperature/dry_air.hpp"
-#include "temperature/law_doubt.hpp"
+#include "roles/recorded_series.hpp"
+#include "roles/usual_variables.hpp"
 
 namespace pcor::internal {
 namespace {
+
+constexpr double dry_above = 5000.0;  // m; above it vapour makes less than 0.2 K of virtual temperature
+/// The part of a thickness that vapour makes in the driest air below: 0.03 hPa at 600 hPa.
+constexpr double min_part = 1e-5;
+
+constexpr std::array humidities{Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point};
+
+/// [variables] and [humidity] that would make the air moist.
+std::string remedy(const ModelDefinition& model, const Flight& flight) {
+  for (const Quantity role : humidities) {
+    const auto named = model.variables.find(role);
+    if (named == model.variables.end()) continue;
+    if (!model.model.moist) return "give the model [humidity] moist = true";
+    return fmt::format("{} contains no water vapour: name another humidity in the model's [variables]",
+                       named->second);
+  }
+  const VariableNaming& family = family_of(model, flight);
+  for (const Quantity role : humidities) {
+    for (const std::string& variable : family.names_of(info_of(role).name)) {
+      if (has_values(flight, variable, std::string(info_of(role).unit), family.unit_of(variable)))
+        return fmt::format(
+            "give the model [variables] {} = \"{}\", which the flight records, and [humidity] "
+            "moist = true",
+            info_of(role).name, variable);
+    }
+  }
+  return "name the flight's vapor_pressure, dew_point or frost_point in the model's [variables], and give it "
+         "[humidity] moist = true";
+}
+
+/// One standard deviation of the coefficients along each principal axis of their covariance, scaled alike.
+std::vector<Eigen::VectorXd> standard_deviations(const std::vector<double>& covariance, Eigen::Index count) {
+  const Eigen::Map<const Eigen::MatrixXd> matrix(covariance.data(), count, count);
+  const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt();
+  const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
+  const SymmetricEigen axes = symmetric_eigen(inverse.asDiagonal() * matrix * inverse.asDiagonal());
+  std::vector<Eigen::VectorXd> changes;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    if (axes.eigenvalues()[k] > 0.0)
+      changes.emplace_back(std::sqrt(axes.eigenvalues()[k]) * scale.cwiseProduct(axes.eigenvectors().col(k)));
+  }
+  return changes;
+}
+
+/// True if an uncertainty is stated of a coefficient of the law itself, not of a sensor.
+bool states_law(const ModelDefinition& model, const ModelUncertainty& stated) {
+  std::size_t position = 0;
+  const auto count = static_cast<std::size_t>(std::lround(std::sqrt(stated.covariance.size())));
+  for (const ModelEffect& effect : model.model.effects) {
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p, ++position) {
+      if (location_of(effect) == EffectLocation::static_defect &&
+          stated.covariance[position * count + position] > 0.0)
+        return true;
+    }
+  }
+  return false;
+}
 
 constexpr const char* steps_variable = "HYDSTEP";
 constexpr const char* calibration_attribute = "temperature_calibration";
@@ -145,6 +206,58 @@ HeightRecord record_of(const FlightSet& flights, std::size_t number, const Model
 }
 
 }  // namespace
+
+std::string trouble_with_dry_air(const HeightRecord& record, const ModelDefinition& model,
+                                 const Flight& flight) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  double by_vapor = 0.0;
+  for (const HeightBlock& block : record.blocks) {
+    lowest = std::min(lowest, block.height);
+    highest = std::max(highest, block.height);
+    by_vapor = std::max(by_vapor, std::abs(block.columns[with_vapor]));
+  }
+  if (lowest > dry_above || by_vapor > min_part * (highest - lowest)) return "";
+  return fmt::format(
+      "{}: it climbs or descends down to {:.0f} m in air assumed dry; below {:.0f} m neglected vapour "
+      "resembles a thermometer error of up to 3 K; {}",
+      record.name, lowest, dry_above, remedy(model, flight));
+}
+
+std::optional<double> stated_law_variance(const ModelDefinition& model, const FlightAir& air) {
+  const ModelUncertainty stated = uncertainty_of(model);
+  const bool has_rest = stated.static_defect > 0.0 || stated.static_defect_ratio > 0.0;
+  if (!has_rest && !states_law(model, stated)) return std::nullopt;
+  double sum = 0.0;
+  const auto add_mean_square = [&](const auto& value) {
+    double count = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < air.size(); ++i) {
+      const double here = value(i);
+      if (!air.flying[i] || std::isnan(here)) continue;
+      squares += here * here;
+      count += 1.0;
+    }
+    if (count > 0.0) sum += squares / count;
+  };
+  add_mean_square([&](std::size_t i) {
+    return std::hypot(stated.static_defect, stated.static_defect_ratio * air.pressure[i]);
+  });
+  if (stated.has_systematic()) {
+    const ModelOnSamples law(model, air.samples->model);
+    std::vector<double> parameters = law.parameters();
+    Eigen::Map<Eigen::VectorXd> moved(parameters.data(), as_index(parameters.size()));
+    const Eigen::VectorXd start = moved;
+    std::vector<double> defect(air.size());
+    for (const Eigen::VectorXd& change : standard_deviations(stated.covariance, start.size())) {
+      moved = start + change;
+      law.batch().run(law.columns(), {{Quantity::static_defect, defect.data()}}, defect.size(),
+                      parameters.data());
+      add_mean_square([&](std::size_t i) { return defect[i] - air.static_defect[i]; });
+    }
+  }
+  return sum;
+}
 
 FlightHeightRecord read_heights(const FlightSet& flights, std::size_t number, const ModelDefinition& model,
                                 const TemperatureOptions& options) {

@@ -8,6 +8,7 @@
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/temperature/temperature.hpp>
+#include "campaign/flight_air.hpp"
 #include "temperature/height_record.hpp"
 
 namespace pcor::internal {
@@ -24,6 +25,16 @@ struct FlightHeightRecord {
     archive(excluded, code, dry, record);
   }
 };
+
+/// Reason against assuming dry air for a flight: it reaches below 5 km, where neglected vapour resembles a
+/// thermometer that reads too low by up to a few K. Names a humidity variable for the model, if there is one.
+/// Empty if the integral includes the vapour, or the flight stays above.
+std::string trouble_with_dry_air(const HeightRecord& record, const ModelDefinition& model,
+                                 const Flight& flight);
+
+/// Variance of delta-p stated by a model, hPa2, averaged over the samples in the air: from the covariance of
+/// its coefficients, and its remaining error. nullopt if the model states neither.
+std::optional<double> stated_law_variance(const ModelDefinition& model, const FlightAir& air);
 
 /// Reads the heights and the air of a flight without the temperature correction of the model.
 /// @param number of the flight

@@ -33,10 +33,6 @@ using namespace internal;
 
 namespace {
 
-/// Typical size of an effect with one coefficient.
-template <class Effect>
-constexpr double usual_size = Effect::info().parameters[0].typical;
-
 constexpr double law_default = 0.3;  // hPa, the rms of the memo's eq. 18
 constexpr double significant = 2.6;  // standard errors, which chance makes once in 100 times
 
@@ -46,21 +42,20 @@ class TemperatureCalibration {
                          const TemperatureOptions& options)
       : flights_(flights), model_(model), options_(options), workers_(flights.comm(), options.threads) {
     prior_.slope = options.slope == IsobarSlope::none ? 0.0 : options.slope_size;
-    has_radome_ = model.variables.count(Quantity::attack_differential_pressure) > 0;
   }
 
   TemperatureResult run() {
     read();
     find_prior();
-    const std::size_t max_terms = static_cast<std::size_t>(options_.degree.value_or(2)) + 1;
-    most_likely_ =
-        maximise_likelihood(records_, static_cast<Eigen::Index>(max_terms), prior_, start(), workers_);
+    terms_ = static_cast<std::size_t>(options_.degree.value_or(2)) + 1;
+    most_likely_.noise = start();
+    maximise();
     std::vector<HeightEquations> equations;
     for (const HeightRecord& record : records_)
       equations.push_back(height_equations(record, most_likely_.noise, prior_));
-    const Degrees degrees(equations, max_terms);
-    result_.degrees = degrees.choices();
-    terms_ = options_.degree ? max_terms : degrees.worthwhile_terms();
+    const DegreeSelection degrees = select_degree(equations, terms_);
+    result_.degrees = degrees.choices;
+    if (!options_.degree) terms_ = degrees.terms;
     fit();
     describe_flights();
     write_notes();
@@ -80,13 +75,11 @@ class TemperatureCalibration {
       if (options_.progress) options_.progress(++done, flights_.share().local_count());
       return part;
     });
-    std::string first_trouble;
     for (std::size_t number = 0; number < flights_.size(); ++number) {
       FlightHeightRecord& part = parts[number];
       FlightHeights& heights = result_.flights.emplace_back();
       heights.flight = flights_.name(number);
       heights.excluded = part.excluded;
-      if (first_trouble.empty()) first_trouble = part.excluded;
       if (!part.record) continue;
       if (dry_.empty()) dry_ = part.dry;
       levelled_.push_back(*part.record);
@@ -97,9 +90,9 @@ class TemperatureCalibration {
       records_.push_back(std::move(*part.record));
     }
     if (!records_.empty()) return;
-    if (flights_.size() == 1) throw Error(parts.front().code, first_trouble);
+    if (flights_.size() == 1) throw Error(parts.front().code, parts.front().excluded);
     throw Error(Error::Code::samples, fmt::format("no usable flight among {} flights; the first: {}",
-                                                  flights_.size(), first_trouble));
+                                                  flights_.size(), parts.front().excluded));
   }
 
   /// Priors of the other errors: of the humidity its typical error. The error of each term of the model is
@@ -107,13 +100,12 @@ class TemperatureCalibration {
   /// typical size of its effect.
   void find_prior() {
     double variances = 0.0;
-    std::array<double, height_errors> squares{};
+    HeightUnknowns squares = HeightUnknowns::Zero();
     bool is_stated = true;
     for (const HeightRecord& record : records_) {
       is_stated = is_stated && record.law_variance;
       variances += record.law_variance.value_or(0.0);
-      for (std::size_t k = 0; k < height_errors; ++k)
-        squares[k] += record.rms_of_unit[k] * record.rms_of_unit[k];
+      squares += record.rms_of_unit.cwiseAbs2();
     }
     const auto count = static_cast<double>(records_.size());
     const double rms = is_stated ? std::sqrt(variances / count) : model_.law.rms_hpa.value_or(law_default);
@@ -124,10 +116,14 @@ class TemperatureCalibration {
       if (!(squares[error] > 0.0) || !(is_stated || model_.law.rms_hpa || is_in_law)) return usual;
       return std::min(usual, law_error_ / std::sqrt(squares[error] / count));
     };
-    prior_.errors[with_dynamic] = size(with_dynamic, effects::StaticQp::info());
-    prior_.errors[with_attack] =
-        size(with_attack, has_radome_ ? effects::StaticAlpha::info() : effects::StaticAttack::info());
-    prior_.errors[with_vapor] = usual_size<effects::HumidityError>;
+    prior_.sizes[with_dynamic] = size(with_dynamic, effects::StaticQp::info());
+    prior_.sizes[with_attack] = size(with_attack, attack_effect());
+    prior_.sizes[with_vapor] = effects::HumidityError::info().parameters[0].typical;
+  }
+
+  EffectInfo attack_effect() const {
+    return model_.variables.count(Quantity::attack_differential_pressure) > 0 ? effects::StaticAlpha::info()
+                                                                              : effects::StaticAttack::info();
   }
 
   /// Initial noise: of modern differential GPS if its heights are that smooth, otherwise of older GPS.
@@ -141,25 +137,22 @@ class TemperatureCalibration {
     }
     HeightNoise noise;
     if (changes.empty()) return noise;
-    const double size = std::max(0.02, median(std::move(changes)));
-    noise.white = size;
-    noise.wander = size;
-    noise.walk = 0.05 * size;
+    noise.white = noise.wander = std::max(0.02, median(std::move(changes)));
+    noise.walk = 0.05 * noise.white;
     return noise;
   }
 
   void maximise() {
-    most_likely_ = maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_,
-                                       most_likely_.noise, workers_);
+    most_likely_ = maximise_likelihood(records_, as_index(terms_), prior_, most_likely_.noise, workers_);
   }
 
   /// Implausible coefficients of the most likely correction: "a1 = -0.0785, outside [-0.05, 0.05]". Empty if
   /// it is possible.
   std::string impossible() const {
-    const Eigen::VectorXd best = most_likely_.equations.best(static_cast<Eigen::Index>(terms_));
+    const Eigen::VectorXd best = most_likely_.equations.best(as_index(terms_));
     for (std::size_t k = 0; k < terms_; ++k) {
       const ParameterInfo info = effects::TempCalibration::info().parameters[k];
-      const double value = best[static_cast<Eigen::Index>(k)];
+      const double value = best[as_index(k)];
       if (value < info.lower || value > info.upper) {
         return fmt::format("{} = {:.3g} {}, outside [{:g}, {:g}]", info.name, value, info.unit, info.lower,
                            info.upper);
@@ -186,28 +179,26 @@ class TemperatureCalibration {
                           ? "these flights do not determine this number of coefficients: reduce --degree"
                           : "check recovery_temperature and the altitude in the model"));
     }
-    const auto n = static_cast<Eigen::Index>(terms_);
+    const Eigen::Index n = as_index(terms_);
     const HeightEquations& equations = most_likely_.equations;
-    const Eigen::VectorXd best = equations.best(n);
+    unknowns_ = equations.best_unknowns(n);
     Eigen::MatrixXd covariance = covariance_over_noise(records_, n, prior_, most_likely_, workers_);
+    const HeightEquations::Matrix of_unknowns = equations.covariance_of_unknowns(n);
     const Eigen::MatrixXd moved_by =
-        equations.covariance_of_unknowns(n) * equations.information.rightCols<height_errors>();
-    const Eigen::VectorXd per_hpa = moved_by.col(lasting).head(n);
-    const Eigen::VectorXd per_part = moved_by.col(with_static).head(n);
+        of_unknowns * equations.information.rightCols<height_unknowns - lasting>();
+    const Eigen::VectorXd per_hpa = moved_by.col(0).head(n);
+    const Eigen::VectorXd per_part = moved_by.col(with_static - lasting).head(n);
     find_parts();
-    find_law_error<effects::StaticQp>(with_dynamic);
-    if (has_radome_) {
-      find_law_error<effects::StaticAlpha>(with_attack);
-    } else {
-      find_law_error<effects::StaticAttack>(with_attack);
-    }
-    find_humidity_error();
+    find_law_error(effects::StaticQp::info(), with_dynamic, of_unknowns);
+    find_law_error(attack_effect(), with_attack, of_unknowns);
+    result_.humidity_change = unknowns_[with_vapor];
+    result_.humidity_error = std::sqrt(of_unknowns(with_vapor, with_vapor));
     find_unseen_errors();
     const Eigen::MatrixXd unseen = covariance_of_unseen(per_hpa, per_part / mean_pressure());
     const HeightNoise& noise = most_likely_.noise;
     result_.likelihood.sigma = std::hypot(noise.white, noise.wander);
     for (Eigen::Index k = 0; k < n; ++k) {
-      result_.likelihood.coefficients.push_back(best[k]);
+      result_.likelihood.coefficients.push_back(unknowns_[k]);
       result_.likelihood.standard_errors.push_back(std::sqrt(covariance(k, k) + unseen(k, k)));
       result_.per_hpa.push_back(per_hpa[k]);
       std::vector<double>& row = result_.covariance.emplace_back();
@@ -258,20 +249,18 @@ class TemperatureCalibration {
   /// and descents, which limits the accuracy of a common correction.
   Eigen::MatrixXd covariance_of_unseen(const Eigen::VectorXd& per_hpa,
                                        const Eigen::VectorXd& per_hpa_in_proportion) const {
-    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(per_hpa.size(), per_hpa.size());
     const Eigen::VectorXd by_zero = result_.pressure_error * per_hpa;
     const Eigen::VectorXd by_law = result_.law_error * per_hpa_in_proportion;
-    covariance += by_zero * by_zero.transpose() + by_law * by_law.transpose();
+    Eigen::MatrixXd covariance = by_zero * by_zero.transpose() + by_law * by_law.transpose();
     covariance(0, 0) += result_.spread_of_flights * result_.spread_of_flights +
                         result_.spread_of_climbs * result_.spread_of_climbs;
     return covariance;
   }
 
   void find_parts() {
-    const HeightEquations::Vector unknowns = most_likely_.equations.best_unknowns(as_index(terms_));
-    result_.parts_by_flight = corrections_of_flights(records_, most_likely_.noise, prior_, unknowns);
+    result_.parts_by_flight = corrections_of_flights(records_, most_likely_.noise, prior_, unknowns_);
     result_.parts_by_climb =
-        corrections_of_climbs_and_descents(records_, most_likely_.noise, prior_, unknowns, workers_);
+        corrections_of_climbs_and_descents(records_, most_likely_.noise, prior_, unknowns_, workers_);
     result_.spread_of_flights = disagreement_of(result_.parts_by_flight).spread;
     result_.spread_of_climbs = disagreement_of(result_.parts_by_climb).spread;
   }
@@ -283,7 +272,7 @@ class TemperatureCalibration {
     double maximum = 0.0;
     for (const HeightRecord& record : records_) {
       for (const HeightBlock& block : record.blocks) {
-        const double pressure = block.errors[error] / block.metres_per_hpa;
+        const double pressure = block.columns[error] / block.metres_per_hpa;
         if (block.starts_segment) minimum = maximum = pressure;
         minimum = std::min(minimum, pressure);
         maximum = std::max(maximum, pressure);
@@ -293,36 +282,26 @@ class TemperatureCalibration {
     return range;
   }
 
-  template <class Effect>
-  void find_law_error(HeightError error) {
-    const Eigen::Index n = as_index(terms_);
-    const Eigen::Index at = as_index(calibration_terms + error);
-    LawError found;
-    found.effect = Effect::info().id;
-    found.parameter = Effect::info().parameters[0].name;
+  void find_law_error(const EffectInfo& effect, HeightError error,
+                      const HeightEquations::Matrix& covariance) {
+    if (!(most_likely_.equations.information(error, error) > 0.0)) return;
+    LawError& found = result_.law_errors.emplace_back();
+    found.effect = effect.id;
+    found.parameter = effect.parameters[0].name;
     // A pressure that is too high needs a correction that is lower.
-    found.change = -most_likely_.equations.best_unknowns(n)[at];
-    found.standard_error = std::sqrt(most_likely_.equations.covariance_of_unknowns(n)(at, at));
-    found.size = prior_.errors[error];
+    found.change = -unknowns_[error];
+    found.standard_error = std::sqrt(covariance(error, error));
+    found.size = prior_.sizes[error];
     found.range = std::abs(found.change) * range_of(error);
-    if (most_likely_.equations.information(at, at) > 0.0) result_.law_errors.push_back(std::move(found));
-  }
-
-  void find_humidity_error() {
-    const Eigen::Index n = as_index(terms_);
-    const Eigen::Index at = as_index(calibration_terms + with_vapor);
-    result_.humidity_change = most_likely_.equations.best_unknowns(n)[at];
-    result_.humidity_error = std::sqrt(most_likely_.equations.covariance_of_unknowns(n)(at, at));
   }
 
   /// Values below and above at which -2 ln L, with the noise and the other coefficients optimised, is 1 above
   /// its minimum, including the variance that the likelihood cannot detect.
   std::array<double, 2> profile_interval(Eigen::Index term, double error, double unseen) const {
-    const double best = result_.likelihood.coefficients[static_cast<std::size_t>(term)];
+    const double best = unknowns_[term];
     const auto deviance_at = [&](double value) {
       const HeldCoefficient held{term, value};
-      return maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, most_likely_.noise,
-                                 workers_, &held)
+      return maximise_likelihood(records_, as_index(terms_), prior_, most_likely_.noise, workers_, &held)
           .deviance;
     };
     const double minimum = deviance_at(best);
@@ -343,16 +322,17 @@ class TemperatureCalibration {
   /// of isobars of each flight as unknowns: slopes estimated beforehand would include errors of the model
   /// that differ between climbs and descents. Weighted mean over the flights.
   void compare_with_least_squares() {
-    const HeightEquations::Vector unknowns = most_likely_.equations.best_unknowns(as_index(terms_));
     double weights = 0.0;
     double sum = 0.0;
     for (const HeightRecord& record : records_) {
-      std::vector<HeightRecord> left{without_unknowns(record, unknowns)};
+      HeightRecord left = without_unknowns(record, unknowns_);
       const bool one_direction = record.way == WayKnown::length;
-      for (HeightBlock& block : left[0].blocks)
-        block.columns = {block.columns[0], one_direction ? block.north : block.east, block.north};
+      for (HeightBlock& block : left.blocks) {
+        block.columns[1] = one_direction ? block.north : block.east;
+        block.columns[2] = block.north;
+      }
       const std::size_t terms = prior_.slope == 0.0 ? 1 : one_direction ? 2 : 3;
-      const TemperatureFit fit = fit_height_by_least_squares(left, terms);
+      const TemperatureFit fit = fit_height_by_least_squares({left}, terms);
       const double error = fit.standard_errors[0] * std::sqrt(samples_as_one(left, fit.coefficients));
       if (!std::isfinite(error) || !(error > 0.0) || !std::isfinite(fit.coefficients[0])) continue;
       weights += 1.0 / (error * error);
@@ -385,8 +365,6 @@ class TemperatureCalibration {
   }
 
   void describe_flights() {
-    const HeightEquations::Vector unknowns =
-        most_likely_.equations.best_unknowns(static_cast<Eigen::Index>(terms_));
     double squares = 0.0;
     double products = 0.0;
     double count = 0.0;
@@ -407,7 +385,7 @@ class TemperatureCalibration {
       flight.after = height_differences(*levelled, result_.likelihood.coefficients);
       flight.rms_before = rms(flight.before);
       flight.rms_after = rms(flight.after);
-      flight.innovation = height_innovations(*record, most_likely_.noise, prior_, unknowns);
+      flight.innovation = height_innovations(*record, most_likely_.noise, prior_, unknowns_);
       for (std::size_t i = 1; i < flight.innovation.size(); ++i) {
         const double product = flight.innovation[i] * flight.innovation[i - 1];
         if (std::isnan(product)) continue;
@@ -429,19 +407,10 @@ class TemperatureCalibration {
     return std::sqrt(squares / static_cast<double>(values.size()));
   }
 
-  /// Correction with the largest ratio to its standard error.
-  const TemperatureCorrection& surest() const {
-    return *std::max_element(result_.corrections.begin(), result_.corrections.end(),
-                             [](const TemperatureCorrection& one, const TemperatureCorrection& other) {
-                               return std::abs(one.correction) * other.standard_error <
-                                      std::abs(other.correction) * one.standard_error;
-                             });
-  }
-
   /// Rms of heights about their mean in each segment, with a correction and without the other errors, m.
   double rms_without_other_errors(const std::vector<double>& coefficients) const {
-    HeightEquations::Vector others = most_likely_.equations.best_unknowns(as_index(terms_));
-    others.head(as_index(calibration_terms)).setZero();
+    HeightUnknowns others = unknowns_;
+    others.head<lasting>().setZero();
     std::vector<double> heights;
     for (const HeightRecord& record : levelled_) {
       const std::vector<double> own = height_differences(without_unknowns(record, others), coefficients);
@@ -450,56 +419,53 @@ class TemperatureCalibration {
     return rms(heights);
   }
 
-  /// Tests whether the correction is an improvement.
-  void compare_with_none() {
-    const double before = rms_without_other_errors({});
-    const double after = rms_without_other_errors(result_.likelihood.coefficients);
-    if (!dry_.empty()) {
-      result_.worse = dry_;
-      return;
-    }
-    const TemperatureCorrection& at = surest();
+  /// Reason for which the correction is no improvement; empty if it is one.
+  std::string reason_against() const {
+    if (!dry_.empty()) return dry_;
     const double gain = result_.degrees.front().deviance - result_.degrees[terms_].deviance;
     if (gain < worthwhile_gain) {
-      result_.worse =
-          fmt::format("the correction is not significant: -2 ln L decreases by {:.1f} (threshold {:g})", gain,
-                      worthwhile_gain);
-      return;
+      return fmt::format("the correction is not significant: -2 ln L decreases by {:.1f} (threshold {:g})",
+                         gain, worthwhile_gain);
     }
+    // The correction with the largest ratio to its standard error.
+    const TemperatureCorrection& at = *std::max_element(
+        result_.corrections.begin(), result_.corrections.end(), [](const auto& one, const auto& other) {
+          return std::abs(one.correction) * other.standard_error <
+                 std::abs(other.correction) * one.standard_error;
+        });
     if (std::abs(at.correction) < significant * at.standard_error) {
-      result_.worse = fmt::format(
+      return fmt::format(
           "the correction is not significant: at {:.0f} C, its best determined temperature, the correction "
           "is {} K (threshold {:g} standard errors, p = 0.01)",
           at.temperature, with_error(at.correction, at.standard_error), significant);
-      return;
     }
+    const double before = rms_without_other_errors({});
+    const double after = rms_without_other_errors(result_.likelihood.coefficients);
     if (after > before) {
-      result_.worse = fmt::format(
+      return fmt::format(
           "height rms with the correction is {:.2f} m, without it {:.2f} m, although the likelihood improves",
           after, before);
-      return;
     }
     if (std::abs(result_.least_squares_add) > significant_ratio * result_.least_squares_add_error) {
-      result_.worse = fmt::format(
+      return fmt::format(
           "least squares on height contradicts the likelihood: it would add {} K to the correction, more "
           "than {:g} standard errors",
           with_error(result_.least_squares_add, result_.least_squares_add_error), significant_ratio);
-      return;
     }
     for (const std::vector<PartCorrection>* parts : {&result_.parts_by_flight, &result_.parts_by_climb}) {
       for (const PartCorrection& part : *parts) {
         if (!is_made_worse(part)) continue;
-        result_.worse = fmt::format(
+        return fmt::format(
             "separate fit {}, common correction {:+.2f} K: the correction degrades it by more than three "
             "standard errors",
             part_text(part), part.common);
-        return;
       }
     }
+    return "";
   }
 
   void write_notes() {
-    compare_with_none();
+    result_.worse = reason_against();
     result_.warnings = temperature_warnings(result_);
     if (!result_.worse.empty()) result_.notes.push_back(result_.worse);
     if (!options_.degree && records_.size() < min_for_choice) {
@@ -508,7 +474,7 @@ class TemperatureCalibration {
                       "flights (decrease of -2 ln L above {:.0f} per coefficient); --degree sets it",
                       records_.size(), records_.size() == 1 ? "" : "s", worthwhile_gain));
     }
-    const bool attack_is_unknown = prior_.errors[with_attack] > 0.0 && result_.law_errors.size() < 2;
+    const bool attack_is_unknown = prior_.sizes[with_attack] > 0.0 && result_.law_errors.size() < 2;
     for (const Notes& more :
          {result_.notes_on_degree, noise_notes(result_), method_notes(options_, attack_is_unknown),
           record_notes(records_, options_.slope)})
@@ -516,19 +482,18 @@ class TemperatureCalibration {
   }
 
   void write_provenance() {
-    Provenance temperature;
-    temperature.emplace_back("program", ProvenanceValue{std::string("pcor " PCOR_VERSION)});
-    temperature.emplace_back("method", ProvenanceValue{std::string("likelihood of heights by GPS")});
-    temperature.emplace_back("slope_of_isobars", ProvenanceValue{std::string(to_string(options_.slope))});
     ProvenanceList flights;
     for (const FlightHeights& flight : result_.flights) {
       if (flight.excluded.empty()) flights.emplace_back(ProvenanceValue{flight.flight});
     }
-    temperature.emplace_back("flights", ProvenanceValue{std::move(flights)});
-    temperature.emplace_back("samples", ProvenanceValue{static_cast<std::int64_t>(result_.samples)});
-    temperature.emplace_back("sigma_m", ProvenanceValue{result_.likelihood.sigma});
-    temperature.emplace_back("pressure_error_hpa", ProvenanceValue{result_.pressure_error});
-    temperature.emplace_back("law_error_hpa", ProvenanceValue{result_.law_error});
+    Provenance temperature{{"program", std::string("pcor " PCOR_VERSION)},
+                           {"method", std::string("likelihood of heights by GPS")},
+                           {"slope_of_isobars", std::string(to_string(options_.slope))},
+                           {"flights", std::move(flights)},
+                           {"samples", static_cast<std::int64_t>(result_.samples)},
+                           {"sigma_m", result_.likelihood.sigma},
+                           {"pressure_error_hpa", result_.pressure_error},
+                           {"law_error_hpa", result_.law_error}};
     Provenance& all = result_.model.provenance;
     all.erase(std::remove_if(all.begin(), all.end(),
                              [](const auto& entry) { return entry.first == "temperature"; }),
@@ -540,13 +505,13 @@ class TemperatureCalibration {
   const ModelDefinition& model_;
   const TemperatureOptions& options_;
   Workers workers_;
-  bool has_radome_ = false;
   std::string dry_;         // objection to dry air for a flight in use
   double law_error_ = 0.0;  // standard deviation of delta-p, hPa, before the heights are seen
   HeightPrior prior_;
   std::vector<HeightRecord> records_;
   std::vector<HeightRecord> levelled_;  // heights after subtraction of an estimated isobar slope
   MostLikely most_likely_;
+  HeightUnknowns unknowns_ = HeightUnknowns::Zero();  // the most likely ones
   std::size_t terms_ = 1;
   TemperatureResult result_;
 };

@@ -16,6 +16,11 @@ namespace {
 constexpr double much_noise = 3.0;  // m, of the GPS height
 constexpr double much_drift = 1.0;  // m in a minute; a usual slope of isobars, 10 m in 100 km, makes 0.7
 
+/// Whether heights detect an error of the static-pressure model.
+bool is_seen(const LawError& error) {
+  return std::abs(error.change) > significant_ratio * error.standard_error && error.range > usual_zero;
+}
+
 /// Comparison of an error that heights detect with its stated size.
 const char* size_text(const LawError& error) {
   if (is_beyond_prior(error)) return "but an undetected error of the same size may remain: ";
@@ -24,10 +29,6 @@ const char* size_text(const LawError& error) {
 }
 
 }  // namespace
-
-bool is_seen(const LawError& error) {
-  return std::abs(error.change) > significant_ratio * error.standard_error && error.range > usual_zero;
-}
 
 bool is_beyond_prior(const LawError& error) {
   return is_seen(error) && std::abs(error.change) > significant_ratio * error.size;

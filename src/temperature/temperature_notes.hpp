@@ -16,9 +16,6 @@ inline constexpr double significant_ratio = 3.0;
 /// Usual zero of a static transducer, hPa. It is constant, and models were fitted to pressures that have it.
 inline constexpr double usual_zero = effects::PsfdBias::info().parameters[0].typical;
 
-/// Whether heights detect an error of the static-pressure model.
-bool is_seen(const LawError& error);
-
 /// Whether heights detect an error of the static-pressure model that is larger than its prior allows.
 bool is_beyond_prior(const LawError& error);
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include <pcor/base/utc.hpp>
@@ -21,22 +20,16 @@ std::vector<double> joined(const TemperatureResult& result, std::vector<double> 
 }
 
 ReportTable coefficient_table(const TemperatureResult& result) {
-  ReportTable table;
-  table.title = "Coefficients";
-  table.caption =
+  ReportTable table{
+      "Coefficients",
       "T corrected = T + a0 + a1 t + a2 t², t in °C. The standard error comes from the curvature of the "
       "likelihood, averaged over likely noise models; the interval is the profile likelihood at e^(-1/2), "
       "with the noise re-optimised for each value. Least squares on height, as in Cooper (2012), assumes "
       "independent heights and level or known isobars: its errors are too small. " +
-      pressure_error_text(result) + ".";
-  table.headers = {"",
-                   "likelihood",
-                   result.pressure_error > 0.0 ? "std. error" : "std. error, noise only",
-                   "interval",
-                   "least squares",
-                   "its error",
-                   "per 1 hPa of static pressure",
-                   "unit"};
+          pressure_error_text(result) + ".",
+      {"", "likelihood", result.pressure_error > 0.0 ? "std. error" : "std. error, noise only", "interval",
+       "least squares", "its error", "per 1 hPa of static pressure", "unit"},
+      {}};
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
     table.rows.push_back({fmt::format("a{}", k), fmt::format("{:+.5g}", result.likelihood.coefficients[k]),
                           fmt::format("{:.2g}", result.likelihood.standard_errors[k]),
@@ -49,13 +42,13 @@ ReportTable coefficient_table(const TemperatureResult& result) {
 }
 
 ReportTable degree_table(const TemperatureResult& result) {
-  ReportTable table;
-  table.title = "Which degree";
-  table.caption =
+  ReportTable table{
+      "Which degree",
       "-2 ln L minus its value without correction: for all flights, and for each flight with the "
       "coefficients of the others. A coefficient is kept if it improves the prediction of held-out flights "
-      "by more than 4 and by more than two standard errors.";
-  table.headers = {"correction", "all flights", "held-out flights", "std. error"};
+      "by more than 4 and by more than two standard errors.",
+      {"correction", "all flights", "held-out flights", "std. error"},
+      {}};
   const auto number = [](double x) { return std::isnan(x) ? std::string("-") : fmt::format("{:.1f}", x); };
   for (const DegreeChoice& choice : result.degrees)
     table.rows.push_back({degree_name(choice.degree), number(choice.deviance), number(choice.held_out),
@@ -64,13 +57,12 @@ ReportTable degree_table(const TemperatureResult& result) {
 }
 
 ReportTable flight_table(const TemperatureResult& result) {
-  ReportTable table;
-  table.title = "Flights";
-  table.caption =
+  ReportTable table{
+      "Flights",
       "Rms of GPS height minus integral, about its mean in each segment and an estimate of the slope of "
-      "isobars: the remainder with the correction is noise and the drift of the integral.";
-  table.headers = {"flight",      "samples",       "segments",     "coldest, °C",
-                   "warmest, °C", "rms before, m", "rms after, m", ""};
+      "isobars: the remainder with the correction is noise and the drift of the integral.",
+      {"flight", "samples", "segments", "coldest, °C", "warmest, °C", "rms before, m", "rms after, m", ""},
+      {}};
   for (const FlightHeights& flight : result.flights) {
     if (!flight.excluded.empty()) {
       table.rows.push_back({flight.flight, "", "", "", "", "", "", "excluded: " + flight.excluded});
@@ -85,13 +77,13 @@ ReportTable flight_table(const TemperatureResult& result) {
 }
 
 ReportTable part_table(const TemperatureResult& result) {
-  ReportTable table;
-  table.title = "Separate fits of parts";
-  table.caption =
+  ReportTable table{
+      "Separate fits of parts",
       "Correction of each flight, and of climbs and descents: the common correction plus a constant, with "
       "the error due to noise. If they differ significantly (p < 0.01), the standard deviation between them "
-      "is included in the errors of the coefficients.";
-  table.headers = {"part", "at, °C", "separate fit, K", "std. error, K", "all data, K"};
+      "is included in the errors of the coefficients.",
+      {"part", "at, °C", "separate fit, K", "std. error, K", "all data, K"},
+      {}};
   for (const std::vector<PartCorrection>* parts : {&result.parts_by_flight, &result.parts_by_climb}) {
     for (const PartCorrection& part : *parts)
       table.rows.push_back({part.part, fmt::format("{:.1f}", part.temperature),
@@ -102,12 +94,12 @@ ReportTable part_table(const TemperatureResult& result) {
 }
 
 ReportTable law_table(const TemperatureResult& result) {
-  ReportTable table;
-  table.title = "Errors of the law";
-  table.caption =
+  ReportTable table{
+      "Errors of the law",
       "Errors of the static-pressure coefficients estimated from heights, fitted with those of the "
-      "temperature and corrected.";
-  table.headers = {"effect", "coefficient", "lacks", "std. error", "range over the flights, hPa"};
+      "temperature and corrected.",
+      {"effect", "coefficient", "lacks", "std. error", "range over the flights, hPa"},
+      {}};
   for (const LawError& error : result.law_errors)
     table.rows.push_back({error.effect, error.parameter, fmt::format("{:+.4g}", error.change),
                           fmt::format("{:.2g}", error.standard_error), fmt::format("{:.2f}", error.range)});
@@ -115,12 +107,12 @@ ReportTable law_table(const TemperatureResult& result) {
 }
 
 BarPanel correction_bars(const TemperatureResult& result) {
-  BarPanel panel;
-  panel.title = "The correction";
-  panel.caption =
-      "Correction added to the temperature, with its standard error, over the range of the flights.";
-  panel.axis = "correction";
-  panel.unit = "K";
+  BarPanel panel{
+      "The correction",
+      "Correction added to the temperature, with its standard error, over the range of the flights.",
+      {},
+      "correction",
+      "K"};
   for (const TemperatureCorrection& at : result.corrections)
     panel.bars.push_back({fmt::format("{:.0f} °C", at.temperature), at.correction, at.standard_error});
   return panel;
@@ -206,27 +198,19 @@ Report temperature_report(const TemperatureResult& result) {
 
   report.items.emplace_back(correction_bars(result));
   report.items.emplace_back(coefficient_table(result));
-  TimePanel difference;
-  difference.title = "GPS height minus the integral of the hydrostatic equation";
-  difference.caption =
+  report.items.emplace_back(TimePanel{
+      "GPS height minus the integral of the hydrostatic equation",
       "Means over 10 s, about the mean of each segment, after subtraction of an estimated slope of isobars. "
-      "A thermometer error makes the difference follow the height.";
-  difference.columns = {"before", "after"};
-  difference.axis = "height difference";
-  report.items.emplace_back(difference);
-  TimePanel height;
-  height.title = "Height";
-  height.caption = "Geopotential height by GPS.";
-  height.columns = {"height"};
-  report.items.emplace_back(height);
-  BinnedPanel binned;
-  binned.title = "Innovations of the likelihood";
-  binned.caption =
+      "A thermometer error makes the difference follow the height.",
+      {"before", "after"},
+      "height difference"});
+  report.items.emplace_back(TimePanel{"Height", "Geopotential height by GPS.", {"height"}});
+  report.items.emplace_back(BinnedPanel{
+      "Innovations of the likelihood",
       "Innovations of the filter in standard deviations. A mean that varies with a variable indicates an "
-      "error of the correction.";
-  binned.y = {"innovation"};
-  binned.x_choices = {"temperature", "height"};
-  report.items.emplace_back(binned);
+      "error of the correction.",
+      {"innovation"},
+      {"temperature", "height"}});
   report.items.emplace_back(part_table(result));
   report.items.emplace_back(law_table(result));
   report.items.emplace_back(degree_table(result));

@@ -3,126 +3,62 @@
 #include <pcor/units/units.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cmath>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <string_view>
-#include <utility>
+#include <vector>
 
 #include "base/quoting.hpp"
 
 namespace pcor {
 namespace {
 
-struct Alias {
-  std::string_view seen;      // spelling in flight files
+// Spellings of units in flight files that UDUNITS does not know or misinterprets: "C" would be coulomb, "mb"
+// millibarn, "cnt" centinit, "N/cm3" newton per cubic centimetre.
+struct Spellings {
   std::string_view standard;  // spelling of UDUNITS
+  std::vector<std::string_view> seen;
 };
-
-// Units in flight files that UDUNITS does not know or misinterprets: "C" would be coulomb, "mb" millibarn,
-// "cnt" centinit, "N/cm3" newton per cubic centimetre. Ordered by `seen`.
-constexpr std::array aliases{
-    Alias{"#", "1"},
-    Alias{"#/L", "L-1"},
-    Alias{"#/cc", "cm-3"},
-    Alias{"#/cm3", "cm-3"},
-    Alias{"#/l", "L-1"},
-    Alias{"#/liter", "L-1"},
-    Alias{"#/m3", "m-3"},
-    Alias{"C", "degC"},
-    Alias{"DEG", "degree"},
-    Alias{"Deg", "degree"},
-    Alias{"Deg C", "degC"},
-    Alias{"Deg_C", "degC"},
-    Alias{"Degrees C", "degC"},
-    Alias{"Degs", "degree"},
-    Alias{"FT", "ft"},
-    Alias{"HPA", "hPa"},
-    Alias{"HPa", "hPa"},
-    Alias{"KPa", "kPa"},
-    Alias{"KTS", "knot"},
-    Alias{"Lpm", "L/min"},
-    Alias{"M", "m"},
-    Alias{"M-1", "m-1"},
-    Alias{"M/S", "m/s"},
-    Alias{"M/s", "m/s"},
-    Alias{"M/s2", "m/s2"},
-    Alias{"M/sec", "m/s"},
-    Alias{"MB", "mbar"},
-    Alias{"MBAR", "mbar"},
-    Alias{"Mb", "mbar"},
-    Alias{"Mbar", "mbar"},
-    Alias{"N/A", "1"},
-    Alias{"N/L", "L-1"},
-    Alias{"N/cM3", "cm-3"},
-    Alias{"N/cm3", "cm-3"},
-    Alias{"NA", "1"},
-    Alias{"PSI", "psi"},
-    Alias{"RPM", "rpm"},
-    Alias{"VDC", "V"},
-    Alias{"Vdc", "V"},
-    Alias{"W/M2", "W/m2"},
-    Alias{"cnt", "1"},
-    Alias{"cnts", "1"},
-    Alias{"decimal degrees", "degree"},
-    Alias{"deg", "degree"},
-    Alias{"deg C", "degC"},
-    Alias{"deg E", "degree"},
-    Alias{"deg K", "K"},
-    Alias{"deg N", "degree"},
-    Alias{"deg true", "degree"},
-    Alias{"deg. C", "degC"},
-    Alias{"deg/S", "degree/s"},
-    Alias{"deg/s", "degree/s"},
-    Alias{"degE", "degree"},
-    Alias{"degN", "degree"},
-    Alias{"deg_T", "degree"},
-    Alias{"deg_true", "degree"},
-    Alias{"degree C", "degC"},
-    Alias{"degree_T", "degree"},
-    Alias{"degrees C", "degC"},
-    Alias{"degrees east", "degree"},
-    Alias{"degrees north", "degree"},
-    Alias{"degrees true", "degree"},
-    Alias{"degrees_T", "degree"},
-    Alias{"degs", "degree"},
-    Alias{"degs C", "degC"},
-    Alias{"dimensionless", "1"},
-    Alias{"fpm", "ft/min"},
-    Alias{"fraction", "1"},
-    Alias{"g/M3", "g/m3"},
-    Alias{"gm/kg", "g/kg"},
-    Alias{"gm/m3", "g/m3"},
-    Alias{"hpa", "hPa"},
-    Alias{"kn", "knot"},
-    Alias{"lpm", "L/min"},
-    Alias{"m MSL", "m"},
-    Alias{"mb", "mbar"},
-    Alias{"mb/s", "mbar/s"},
-    Alias{"mps", "m/s"},
-    Alias{"nondimensional", "1"},
-    Alias{"none", "1"},
-    Alias{"pct", "percent"},
-    Alias{"psia", "psi"},
-    Alias{"slpm", "L/min"},
-    Alias{"splm", "L/min"},
-    Alias{"std cm3/s", "cm3/s"},
-    Alias{"uM", "um"},
-    Alias{"unitless", "1"},
-    Alias{"vdc", "V"},
-    Alias{"vlpm", "L/min"},
-    Alias{"vol cm3/s", "cm3/s"},
-};
-
-constexpr bool aliases_are_ordered() {
-  for (std::size_t i = 1; i < aliases.size(); ++i)
-    if (!(aliases[i - 1].seen < aliases[i].seen)) return false;
-  return true;
+const std::vector<Spellings>& spellings() {
+  static const std::vector<Spellings> all{
+      {"1",
+       {"#", "N/A", "NA", "cnt", "cnts", "dimensionless", "fraction", "nondimensional", "none", "unitless"}},
+      {"K", {"deg K"}},
+      {"L-1", {"#/L", "#/l", "#/liter", "N/L"}},
+      {"L/min", {"Lpm", "lpm", "slpm", "splm", "vlpm"}},
+      {"V", {"VDC", "Vdc", "vdc"}},
+      {"W/m2", {"W/M2"}},
+      {"cm-3", {"#/cc", "#/cm3", "N/cM3", "N/cm3"}},
+      {"cm3/s", {"std cm3/s", "vol cm3/s"}},
+      {"degC", {"C", "Deg C", "Deg_C", "Degrees C", "deg C", "deg. C", "degree C", "degrees C", "degs C"}},
+      {"degree",
+       {"DEG", "Deg", "Degs", "decimal degrees", "deg", "deg E", "deg N", "deg true", "degE", "degN", "deg_T",
+        "deg_true", "degree_T", "degrees east", "degrees north", "degrees true", "degrees_T", "degs"}},
+      {"degree/s", {"deg/S", "deg/s"}},
+      {"ft", {"FT"}},
+      {"ft/min", {"fpm"}},
+      {"g/kg", {"gm/kg"}},
+      {"g/m3", {"g/M3", "gm/m3"}},
+      {"hPa", {"HPA", "HPa", "hpa"}},
+      {"kPa", {"KPa"}},
+      {"knot", {"KTS", "kn"}},
+      {"m", {"M", "m MSL"}},
+      {"m-1", {"M-1"}},
+      {"m-3", {"#/m3"}},
+      {"m/s", {"M/S", "M/s", "M/sec", "mps"}},
+      {"m/s2", {"M/s2"}},
+      {"mbar", {"MB", "MBAR", "Mb", "Mbar", "mb"}},
+      {"mbar/s", {"mb/s"}},
+      {"percent", {"pct"}},
+      {"psi", {"PSI", "psia"}},
+      {"rpm", {"RPM"}},
+      {"um", {"uM"}},
+  };
+  return all;
 }
-static_assert(aliases_are_ordered());
 
 struct Deleter {
   void operator()(ut_system* system) const { ut_free_system(system); }
@@ -175,10 +111,10 @@ std::string how_to_state(const UnitOwner& owner, const std::string& to) {
 }  // namespace
 
 std::string standard_unit(const std::string& unit) {
-  const auto alias =
-      std::lower_bound(aliases.begin(), aliases.end(), std::string_view(unit),
-                       [](const Alias& each, std::string_view requested) { return each.seen < requested; });
-  return alias != aliases.end() && alias->seen == unit ? std::string(alias->standard) : unit;
+  for (const auto& [standard, seen] : spellings()) {
+    if (std::find(seen.begin(), seen.end(), unit) != seen.end()) return std::string(standard);
+  }
+  return unit;
 }
 
 bool is_known_unit(const std::string& unit) {

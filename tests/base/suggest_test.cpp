@@ -34,7 +34,7 @@ TEST(Suggest, OffersOnlyCloseNames) {
 }
 
 TEST(Suggest, NumberOfSuggestionsIsLimited) {
-  EXPECT_THAT(suggest("QC", {"QCA", "QCB", "QCC", "QCD"}, 2), ElementsAre("QCA", "QCB"));
+  EXPECT_THAT(suggest("QC", {"QCA", "QCB", "QCC", "QCD"}), ElementsAre("QCA", "QCB", "QCC"));
 }
 
 TEST(DidYouMean, JoinsSuggestionsWithOr) {

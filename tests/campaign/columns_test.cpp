@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "campaign/model_parameters.hpp"
 #include "diagnose/candidates.hpp"
 #include "support/short_flight.hpp"
 
@@ -26,9 +27,6 @@ using pcor::ModelDefinition;
 using pcor::ModelEffect;
 using pcor::Quantity;
 using pcor::Residuals;
-using pcor::internal::Candidate;
-using pcor::internal::CandidateSet;
-using pcor::internal::FlightColumns;
 using pcor::test::laser_model;
 
 namespace {
@@ -97,13 +95,11 @@ FlightSamples made_flight(const std::vector<Quantity>& roles, double laser_noise
     samples.model.columns.emplace_back(quantity, std::move(values));
   }
   samples.model.roles = recorded;
-  for (const auto& [quantity, values] : samples.model.columns) {
-    if (quantity == Quantity::altitude) samples.reference.columns = {{quantity, values}};
-  }
+  if (const auto* altitude = samples.model.find(Quantity::altitude))
+    samples.reference.columns = {{Quantity::altitude, *altitude}};
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
-  for (auto& [quantity, values] : samples.model.columns) {
-    if (quantity != Quantity::lams_airspeed) continue;
+  if (auto* laser = samples.model.find(Quantity::lams_airspeed)) {
     const std::vector<double>& p = *samples.model.find(Quantity::static_pressure);
     const std::vector<double>& q = *samples.model.find(Quantity::dynamic_pressure);
     for (std::size_t i = 0; i < count; ++i) {
@@ -111,7 +107,7 @@ FlightSamples made_flight(const std::vector<Quantity>& roles, double laser_noise
       const double mach = std::sqrt(5.0 * (std::pow(q[i] / p[i] + 1.0, 2.0 / 7.0) - 1.0));
       const double recovery = (*samples.model.find(Quantity::recovery_temperature))[i];
       const double speed = mach * std::sqrt(1.4 * 287.0 * recovery / (1.0 + 0.19 * mach * mach));
-      values[i] = speed + laser_noise * normal(engine);
+      (*laser)[i] = speed + laser_noise * normal(engine);
     }
   }
   return samples;
@@ -138,25 +134,23 @@ struct Made {
   explicit Made(double laser_noise = 0.3,
                 std::shared_ptr<const pcor::Reference> compared_with = pcor::lams_reference())
       : reference(std::move(compared_with)),
-        set(pcor::internal::find_candidates(model, {formula()}, {}, {reference})),
+        set(find_candidates(model, {formula()}, {}, {reference})),
         samples(std::make_shared<const FlightSamples>(made_flight(set.extended.roles(), laser_noise))),
-        columns(pcor::internal::find_columns(samples, model, set, 0, {}, 1.0)) {}
+        columns(find_columns(samples, model, set, 0, {}, 1.0)) {}
 };
 
 /// The same samples with the laser at the model's airspeed.
 std::shared_ptr<const FlightSamples> without_laser_noise(const Made& made) {
   const Residuals residuals(made.samples, made.model, *made.reference);
   auto samples = std::make_shared<FlightSamples>(*made.samples);
-  for (auto& [quantity, values] : samples->model.columns) {
-    if (quantity == Quantity::lams_airspeed)
-      values = residuals.predicted_sensor(residuals.parameters().data())->second;
-  }
+  *samples->model.find(Quantity::lams_airspeed) =
+      residuals.predicted_sensor(residuals.parameters().data())->second;
   return samples;
 }
 
 std::vector<double> residual_of(const std::shared_ptr<const FlightSamples>& samples,
                                 const ModelDefinition& model, const std::vector<double>& parameters,
-                                const pcor::Reference& reference = *pcor::lams_reference()) {
+                                const pcor::Reference& reference) {
   const Residuals residuals(samples, model, reference);
   std::vector<std::size_t> all(samples->time.size());
   std::iota(all.begin(), all.end(), 0);
@@ -165,8 +159,41 @@ std::vector<double> residual_of(const std::shared_ptr<const FlightSamples>& samp
   return values;
 }
 
-/// Compares every column of a candidate with a centred difference of the residuals of `quiet`, with the
-/// effect in the model. @return the effects of which nothing reaches the residual
+/// Columns of the first candidate with an effect.
+Eigen::MatrixXf columns_of(const FlightColumns& columns, const CandidateSet& set, const std::string& effect) {
+  std::size_t number = 0;
+  while (set.candidates.at(number).effect.id != effect) ++number;
+  return columns.candidates.middleCols(static_cast<Eigen::Index>(set.first_column(number)),
+                                       static_cast<Eigen::Index>(set.candidates[number].tested.size()));
+}
+
+/// Compares a column with a centred difference of the residuals of `quiet`.
+/// @param position of the coefficient among the parameters of `model`
+void expect_difference(const Made& made, const std::shared_ptr<const FlightSamples>& quiet,
+                       const ModelDefinition& model, std::size_t position, const Eigen::VectorXf& column,
+                       const std::string& name) {
+  std::vector<double> parameters;
+  for (const ModelEffect& effect : model.model.effects)
+    parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
+  const double largest = static_cast<double>(column.cwiseAbs().maxCoeff());
+  // A centred difference over 0.01 hPa: curvature below 1e-6 of the derivative, rounding below 1e-9.
+  const double size = 0.01 / largest;
+  const double middle = parameters[position];
+  parameters[position] = middle + size;
+  const std::vector<double> above = residual_of(quiet, model, parameters, *made.reference);
+  parameters[position] = middle - size;
+  const std::vector<double> below = residual_of(quiet, model, parameters, *made.reference);
+  for (std::size_t i = 0; i < above.size(); i += 3) {
+    if (std::isnan(made.columns.given[i])) continue;
+    const double difference = -(above[i] - below[i]) / (2.0 * size);
+    // Columns have the precision of a float, 6e-8.
+    EXPECT_NEAR(static_cast<double>(column[static_cast<Eigen::Index>(i)]), difference, 2e-5 * largest)
+        << name << " at " << i;
+  }
+}
+
+/// Compares every column of a candidate with differences of residuals with the effect in the model. @return
+/// the effects of which nothing reaches the residual
 std::set<std::string> expect_differences(const Made& made,
                                          const std::shared_ptr<const FlightSamples>& quiet) {
   std::set<std::string> without_trace;
@@ -177,32 +204,14 @@ std::set<std::string> expect_differences(const Made& made,
     with.model.effects.push_back(candidate.effect);
     with.fits.clear();
     for (const auto& [role, variable] : made.set.extended.variables) with.variables[role] = variable;
-    std::vector<double> parameters;
-    for (const ModelEffect& effect : with.model.effects)
-      parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
-    const std::size_t first = parameters.size() - candidate.effect.parameters.size();
-    for (std::size_t k = 0; k < candidate.tested.size(); ++k, ++column) {
+    for (const CandidateParameter& tested : candidate.tested) {
+      const Eigen::VectorXf found = made.columns.candidates.col(column++);
       if (candidate.is_shared || candidate.memory != 0.0) continue;  // its column is made of one of these
-      const Eigen::VectorXd found = made.columns.candidates.col(column).cast<double>();
-      const double largest = found.cwiseAbs().maxCoeff();
-      if (largest == 0.0) {
+      if (found.cwiseAbs().maxCoeff() == 0.0F) {
         without_trace.insert(candidate.effect.id);
-        continue;
-      }
-      // A centred difference over 0.01 hPa: curvature below 1e-6 of the derivative, rounding below 1e-9.
-      const double size = 0.01 / largest;
-      const std::size_t position = first + candidate.tested[k].index;
-      std::vector<double> moved = parameters;
-      moved[position] += size;
-      const std::vector<double> above = residual_of(quiet, with, moved, *made.reference);
-      moved[position] = parameters[position] - size;
-      const std::vector<double> below = residual_of(quiet, with, moved, *made.reference);
-      for (std::size_t i = 0; i < above.size(); i += 3) {
-        if (std::isnan(made.columns.given[i])) continue;
-        const double difference = -(above[i] - below[i]) / (2.0 * size);
-        // Columns have the precision of a float, 6e-8.
-        EXPECT_NEAR(found[static_cast<Eigen::Index>(i)], difference, 2e-5 * largest)
-            << candidate.effect.id << "." << candidate.tested[k].name << " at " << i;
+      } else {
+        expect_difference(made, quiet, with, parameter_count(made.model.model) + tested.index, found,
+                          candidate.effect.id + "." + tested.name);
       }
     }
   }
@@ -236,7 +245,7 @@ TEST(Columns, HeightColumnsSkipMinutesWithUnusedSamples) {
   auto samples = std::make_shared<FlightSamples>(*made.samples);
   samples->flaps.assign(samples->time.size(), 0.0);
   samples->flaps[200] = 30.0;  // percent
-  const FlightColumns columns = pcor::internal::find_columns(samples, made.model, made.set, 0, {}, 1.0);
+  const FlightColumns columns = find_columns(samples, made.model, made.set, 0, {}, 1.0);
   for (const std::size_t i : {35U, 169U, 231U, 365U}) EXPECT_FALSE(std::isnan(columns.given[i])) << i;
   for (const std::size_t i : {29U, 170U, 200U, 230U, 370U}) EXPECT_TRUE(std::isnan(columns.given[i])) << i;
 }
@@ -244,23 +253,13 @@ TEST(Columns, HeightColumnsSkipMinutesWithUnusedSamples) {
 TEST(Columns, BaseColumnsEqualFiniteDifferences) {
   const Made made;
   const std::shared_ptr<const FlightSamples> quiet = without_laser_noise(made);
-  const std::vector<double> parameters = Residuals(made.samples, made.model, *made.reference).parameters();
   ASSERT_EQ(made.columns.base.cols(), 3);
   std::vector<std::string> base;
   for (const BaseCoefficient& coefficient : made.set.base) base.push_back(coefficient.name);
   EXPECT_THAT(base, testing::ElementsAre("static-constant.a0", "static-alpha.a1", "static-qp.a2"));
-  for (Eigen::Index column = 0; column < 3; ++column) {
-    const Eigen::VectorXd found = made.columns.base.col(column).cast<double>();
-    const double largest = found.cwiseAbs().maxCoeff();
-    const double size = 0.01 / largest;
-    std::vector<double> moved = parameters;
-    moved[static_cast<std::size_t>(column)] += size;
-    const std::vector<double> above = residual_of(quiet, made.model, moved);
-    moved[static_cast<std::size_t>(column)] -= 2.0 * size;
-    const std::vector<double> below = residual_of(quiet, made.model, moved);
-    for (std::size_t i = 0; i < above.size(); i += 3)
-      EXPECT_NEAR(found[static_cast<Eigen::Index>(i)], -(above[i] - below[i]) / (2.0 * size), 2e-5 * largest);
-  }
+  for (std::size_t k = 0; k < 3; ++k)
+    expect_difference(made, quiet, made.model, k, made.columns.base.col(static_cast<Eigen::Index>(k)),
+                      base[k]);
 }
 
 TEST(Columns, FixedCoefficientsHaveNoColumn) {
@@ -268,8 +267,8 @@ TEST(Columns, FixedCoefficientsHaveNoColumn) {
   made.model.fits.resize(3);
   for (pcor::EffectFit& fit : made.model.fits) fit.resize(1);
   made.model.fits[1][0].fixed = true;
-  made.set = pcor::internal::find_candidates(made.model, {formula()}, {}, {made.reference});
-  const FlightColumns columns = pcor::internal::find_columns(made.samples, made.model, made.set, 0, {}, 1.0);
+  made.set = find_candidates(made.model, {formula()}, {}, {made.reference});
+  const FlightColumns columns = find_columns(made.samples, made.model, made.set, 0, {}, 1.0);
   EXPECT_EQ(columns.base.cols(), 2);
   EXPECT_TRUE(columns.base.col(1).isApprox(made.columns.base.col(2)));
 }
@@ -294,11 +293,10 @@ TEST(Columns, ExcludeLaserNoise) {
 
 TEST(Columns, ResidualsEqualThoseOfTheModel) {
   const Made made;
-  const std::vector<double> expected = residual_of(
-      made.samples, made.model, Residuals(made.samples, made.model, *made.reference).parameters());
-  EXPECT_EQ(made.columns.given, expected);
-  // The pressure of the model is that of its chain.
   const Residuals residuals(made.samples, made.model, *made.reference);
+  EXPECT_EQ(made.columns.given,
+            residual_of(made.samples, made.model, residuals.parameters(), *made.reference));
+  // The pressure of the model is that of its chain.
   EXPECT_EQ(made.columns.corrected_pressure,
             residuals.quantity(Quantity::corrected_static_pressure, residuals.parameters().data()));
   EXPECT_EQ(made.columns.quantity(Quantity::attack), *made.samples->model.find(Quantity::attack));
@@ -307,7 +305,7 @@ TEST(Columns, ResidualsEqualThoseOfTheModel) {
 
 TEST(Columns, SamplesAfterTheFirstPartAreMissing) {
   Made made;
-  const FlightColumns half = pcor::internal::find_columns(made.samples, made.model, made.set, 0, {}, 0.5);
+  const FlightColumns half = find_columns(made.samples, made.model, made.set, 0, {}, 0.5);
   for (std::size_t i = 0; i < half.given.size(); ++i) {
     EXPECT_EQ(std::isnan(half.given[i]), i >= 200) << i;
   }
@@ -318,20 +316,11 @@ TEST(Columns, OnlyShortGapsAreBridged) {
   Made made;
   const auto with_gap = [&](std::size_t gap) {
     auto samples = std::make_shared<FlightSamples>(*made.samples);
-    for (auto& [quantity, values] : samples->model.columns) {
-      if (quantity == Quantity::cabin_pressure)
-        std::fill(values.begin() + 100, values.begin() + 100 + static_cast<std::ptrdiff_t>(gap),
-                  std::nan(""));
-    }
-    const FlightColumns columns = pcor::internal::find_columns(samples, made.model, made.set, 0, {}, 1.0);
+    std::fill_n(samples->model.find(Quantity::cabin_pressure)->begin() + 100, gap, std::nan(""));
+    const FlightColumns columns = find_columns(samples, made.model, made.set, 0, {}, 1.0);
     // The model itself does not need the cabin.
     EXPECT_EQ(std::count(columns.mask.begin(), columns.mask.end(), pcor::Mask::none), 400);
-    Eigen::Index column = 0;
-    for (const Candidate& candidate : made.set.candidates) {
-      if (candidate.effect.id == "static-leak") break;
-      column += static_cast<Eigen::Index>(candidate.tested.size());
-    }
-    return Eigen::VectorXf(columns.candidates.col(column));
+    return Eigen::VectorXf(columns_of(columns, made.set, "static-leak").col(0));
   };
   const Eigen::VectorXf few = with_gap(30);
   EXPECT_TRUE(few.allFinite());
@@ -345,21 +334,12 @@ TEST(Columns, AreZeroWhereTheReferenceSeesNothing) {
   ModelEffect effect = formula();
   effect.location = pcor::EffectLocation::temperature;
   const pcor::References references{made.reference, pcor::pressure_reference("PS")};
-  const CandidateSet set = pcor::internal::find_candidates(made.model, {effect}, {}, references);
+  const CandidateSet set = find_candidates(made.model, {effect}, {}, references);
   auto samples = std::make_shared<FlightSamples>(*made.samples);
   samples->reference.columns = {
       {Quantity::corrected_static_pressure, *samples->model.find(Quantity::static_pressure)}};
-  for (auto& [quantity, values] : samples->model.columns) {
-    if (quantity == Quantity::roll) std::fill(values.begin() + 100, values.begin() + 200, std::nan(""));
-  }
-  const FlightColumns columns = pcor::internal::find_columns(samples, made.model, set, 1, {}, 1.0);
+  std::fill_n(samples->model.find(Quantity::roll)->begin() + 100, 100, std::nan(""));
+  const FlightColumns columns = find_columns(samples, made.model, set, 1, {}, 1.0);
   EXPECT_GT(std::count(columns.mask.begin() + 100, columns.mask.begin() + 200, pcor::Mask::none), 0);
-  Eigen::Index column = 0;
-  for (const Candidate& candidate : set.candidates) {
-    const auto width = static_cast<Eigen::Index>(candidate.tested.size());
-    if (candidate.effect.id == effect.id) {
-      EXPECT_EQ(columns.candidates.middleCols(column, width).cwiseAbs().sum(), 0.0F);
-    }
-    column += width;
-  }
+  EXPECT_EQ(columns_of(columns, set, effect.id).cwiseAbs().sum(), 0.0F);
 }

@@ -2,19 +2,17 @@
 
 #include <gmock/gmock.h>
 #include <pcor/base/error.hpp>
-#include <pcor/simulate/simulate.hpp>
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
+#include "support/short_flight.hpp"
 #include "support/synthetic_samples.hpp"
-#include "support/temporary_directory.hpp"
 
 namespace fs = std::filesystem;
 
@@ -24,8 +22,6 @@ using pcor::test::IsError;
 using pcor::test::NetcdfMaker;
 
 namespace {
-
-const fs::path scenarios = PCOR_SOURCE_DIR "/data/scenarios";
 
 void make(const fs::path& path, const std::vector<double>& seconds = {0, 1, 2}) {
   NetcdfMaker maker(path);
@@ -42,6 +38,15 @@ class FlightSets : public testing::Test {
       if (fs::read_symlink(entry.path(), gone).parent_path() == directory.path()) ++count;
     }
     return count;
+  }
+
+  std::vector<fs::path> make_flights(int count) const {
+    std::vector<fs::path> paths;
+    for (int i = 0; i < count; ++i) {
+      paths.push_back(directory / ("flight" + std::to_string(i) + ".nc"));
+      make(paths.back());
+    }
+    return paths;
   }
 
   test::TemporaryDirectory directory;
@@ -63,11 +68,7 @@ TEST_F(FlightSets, OpenFlightIsSharedBySubsets) {
 }
 
 TEST_F(FlightSets, AtMostSixteenFilesAreOpen) {
-  std::vector<fs::path> paths;
-  for (int i = 0; i < 20; ++i) {
-    paths.push_back(directory / ("flight" + std::to_string(i) + ".nc"));
-    make(paths.back());
-  }
+  const std::vector<fs::path> paths = make_flights(20);
   {
     const FlightSet flights(paths);
     for (std::size_t i = 0; i < paths.size(); ++i) EXPECT_EQ(flights[i].path(), paths[i]);
@@ -99,11 +100,7 @@ TEST_F(FlightSets, RefuseAReplacedChangedOrRemovedFile) {
 }
 
 TEST_F(FlightSets, RefuseAFileReplacedWhileClosed) {
-  std::vector<fs::path> paths;
-  for (int i = 0; i < 17; ++i) {
-    paths.push_back(directory / ("flight" + std::to_string(i) + ".nc"));
-    make(paths.back());
-  }
+  const std::vector<fs::path> paths = make_flights(17);
   const FlightSet flights(paths);
   flights.outlines();  // opens all of them, so the first is closed
   make(directory / "other.nc", {0, 1, 2, 3});
@@ -137,9 +134,8 @@ TEST_F(FlightSets, RefuseFlightsOfTwoAircraft) {
 }
 
 TEST_F(FlightSets, KeepSamplesForEachSetOfRoles) {
-  const fs::path path = directory / "short.nc";
-  simulate_flight(read_scenario(scenarios / "c130-short.toml"), path);
-  ModelDefinition model = read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  const fs::path& path = test::short_flight();
+  ModelDefinition model = test::laser_model();
   const FlightSet flights{path};
   const MaskOptions mask;
   const auto samples = [&](const ModelDefinition& of) {

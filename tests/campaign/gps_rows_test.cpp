@@ -6,26 +6,41 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numeric>
 
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 using namespace pcor::internal;
 
+namespace {
+
+class GpsRowsOfCircles : public testing::Test {
+ protected:
+  GpsRowsOfCircles() {
+    pcor::simulate_flight(pcor::read_scenario(pcor::test::scenarios / "c130-circles.toml"),
+                          directory_ / "circles.nc");
+  }
+
+  pcor::FlightSamples samples(const pcor::Reference& reference) const {
+    return pcor::read_samples(pcor::Flight(directory_ / "circles.nc"), model, reference);
+  }
+
+  const pcor::ModelDefinition model = pcor::test::laser_model();
+  const std::vector<double> parameters{0.004, 0.02, 0.03};
+
+ private:
+  pcor::test::TemporaryDirectory directory_;
+};
+
+}  // namespace
+
 // The model takes dry air where the humidity is missing, and the airspeed jumps.
-TEST(GpsRows, SamplesWithoutTheRecordedHumidityHaveNoRow) {
-  const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
-  const pcor::test::TemporaryDirectory directory;
-  pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-circles.toml"), directory / "circles.nc");
-  const pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
-  const pcor::Flight flight(directory / "circles.nc");
+TEST_F(GpsRowsOfCircles, SamplesWithoutTheRecordedHumidityHaveNoRow) {
   for (const auto& reference : {pcor::wind_reference(model), pcor::height_reference(model)}) {
     const GpsKind kind = *gps_kind(*reference);
-    pcor::FlightSamples samples = pcor::read_samples(flight, model, *reference);
+    pcor::FlightSamples samples = this->samples(*reference);
     std::vector<std::size_t> used(samples.time.size());
     std::iota(used.begin(), used.end(), 0);
-    const std::vector<double> parameters{0.004, 0.02, 0.03};
     const auto residuals = [&] {
       const GpsRows rows = gps_rows(kind, samples, model, used, parameters.data(), {0, 1, 2});
       return Eigen::VectorXd(rows.rows.rightCols(1));
@@ -48,14 +63,8 @@ TEST(GpsRows, SamplesWithoutTheRecordedHumidityHaveNoRow) {
   }
 }
 
-TEST(GpsRows, OneMissingSampleDoesNotBreakTheHeight) {
-  const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
-  const pcor::test::TemporaryDirectory directory;
-  pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-circles.toml"), directory / "circles.nc");
-  const pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
-  pcor::FlightSamples samples =
-      pcor::read_samples(pcor::Flight(directory / "circles.nc"), model, *pcor::height_reference(model));
-  const std::vector<double> parameters{0.004, 0.02, 0.03};
+TEST_F(GpsRowsOfCircles, OneMissingSampleDoesNotBreakTheHeight) {
+  pcor::FlightSamples samples = this->samples(*pcor::height_reference(model));
   const auto breaks = [&] {
     const GpsRows rows = gps_rows(GpsKind::height, samples, model, {}, parameters.data(), {0, 1, 2});
     return std::count(rows.is_break.begin(), rows.is_break.end(), true);

@@ -29,6 +29,8 @@ std::shared_ptr<FlightSamples> samples_of(const ModelDefinition& model, const Re
   return std::make_shared<FlightSamples>(read_samples(pcor::Flight(short_flight()), model, reference));
 }
 
+const std::shared_ptr<const Reference> lams = pcor::lams_reference();
+
 /// The laser's model with an effect that is not at the static ports, in which nothing is linear.
 ModelDefinition curved_model() {
   ModelDefinition model = laser_model();
@@ -48,6 +50,10 @@ std::shared_ptr<const Reference> second_system(const ModelDefinition& own) {
 LinearRows rows_of(const std::shared_ptr<const FlightSamples>& samples, const ModelDefinition& model,
                    const Reference& reference, const RowsSetup& setup) {
   return {pcor::Residuals(samples, model, reference), model, reference, setup};
+}
+
+LinearRows rows_of(const ModelDefinition& model, const Reference& reference) {
+  return rows_of(samples_of(model, reference), model, reference, {Inputs::recorded, free_parameters(model)});
 }
 
 std::vector<std::size_t> all_parameters(const LinearRows& rows) {
@@ -86,9 +92,7 @@ void expect_differences(const LinearRows& rows) {
 
 TEST(LinearRows, DerivativesAreDifferencesOfResiduals) {
   for (const ModelDefinition& model : {laser_model(), curved_model()}) {
-    const auto reference = pcor::lams_reference();
-    const LinearRows rows =
-        rows_of(samples_of(model, *reference), model, *reference, {Inputs::recorded, free_parameters(model)});
+    const LinearRows rows = rows_of(model, *lams);
     EXPECT_EQ(rows.is_linear(), model.model.effects.size() == 3);
     expect_differences(rows);
   }
@@ -98,8 +102,7 @@ TEST(LinearRows, DerivativesAreDifferencesOfResiduals) {
 TEST(LinearRows, TwoSystemRowsAreOppositeAtCommonPressures) {
   const ModelDefinition model = laser_model();
   const auto reference = second_system(model);
-  const LinearRows rows =
-      rows_of(samples_of(model, *reference), model, *reference, {Inputs::recorded, free_parameters(model)});
+  const LinearRows rows = rows_of(model, *reference);
   EXPECT_TRUE(rows.is_linear());
   const std::vector<double>& start = rows.residuals().parameters();
   const Eigen::Index own = static_cast<Eigen::Index>(parameter_count(model.model));
@@ -114,9 +117,7 @@ TEST(LinearRows, TwoSystemRowsAreOppositeAtCommonPressures) {
 
 TEST(LinearRows, MeansEqualMeansOfSamplesInEachBin) {
   const ModelDefinition model = curved_model();
-  const auto reference = pcor::lams_reference();
-  const LinearRows rows =
-      rows_of(samples_of(model, *reference), model, *reference, {Inputs::recorded, free_parameters(model)});
+  const LinearRows rows = rows_of(model, *lams);
   const std::vector<double>& start = rows.residuals().parameters();
   const Eigen::VectorXd residual = at_used(rows, start, {});
   std::vector<double> series(rows.residuals().size(), std::nan(""));
@@ -140,16 +141,12 @@ TEST(LinearRows, MeansEqualMeansOfSamplesInEachBin) {
 
 TEST(LinearRows, EverySampleHasUseOrReason) {
   const ModelDefinition model = laser_model();
-  const auto reference = pcor::lams_reference();
-  const auto samples = samples_of(model, *reference);
+  const auto samples = samples_of(model, *lams);
   samples->flaps.assign(samples->time.size(), 0.0);
   std::fill(samples->flaps.begin() + 300, samples->flaps.begin() + 320, 30.0);  // percent
-  for (auto& [quantity, values] : samples->model.columns) {
-    if (quantity == Quantity::lams_airspeed)
-      std::fill(values.begin() + 400, values.begin() + 415, std::nan(""));
-  }
+  std::fill_n(samples->model.find(Quantity::lams_airspeed)->begin() + 400, 15, std::nan(""));
   constexpr double share = 0.25;
-  const LinearRows rows = rows_of(samples, model, *reference, {Inputs::recorded, {}, share});
+  const LinearRows rows = rows_of(samples, model, *lams, {Inputs::recorded, {}, share});
   const auto counts = rows.residuals().mask_counts();
   EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::size_t{0}), samples->time.size());
   for (std::size_t i = 300; i < 320; ++i) EXPECT_EQ(rows.mask()[i], Mask::flaps) << i;
@@ -165,8 +162,7 @@ TEST(LinearRows, EverySampleHasUseOrReason) {
 
 TEST(LinearRows, StageUsesOnlySamplesInItsIntervals) {
   const ModelDefinition model = laser_model();
-  const auto reference = pcor::lams_reference();
-  const auto samples = samples_of(model, *reference);
+  const auto samples = samples_of(model, *lams);
   const double begin = samples->time.front();
   const auto at = [begin](double first, double last) {
     pcor::Interval interval;
@@ -177,8 +173,7 @@ TEST(LinearRows, StageUsesOnlySamplesInItsIntervals) {
   };
   // The second overlaps the first and contains the samples after it; the third contains no samples.
   samples->intervals = {at(200.0, 230.0), at(220.0, 240.0), at(1e6, 2e6), at(500.0, 510.0)};
-  const LinearRows rows =
-      rows_of(samples, model, *reference, {Inputs::recorded, {}, 1.0, {pcor::Regime::turn}});
+  const LinearRows rows = rows_of(samples, model, *lams, {Inputs::recorded, {}, 1.0, {pcor::Regime::turn}});
   ASSERT_EQ(rows.interval_count(), 3U);
   for (std::size_t i = 0; i < rows.used().size(); ++i) {
     const double time = samples->time[rows.used()[i]] - begin;
@@ -192,17 +187,16 @@ TEST(LinearRows, StageUsesOnlySamplesInItsIntervals) {
 // With masks that are known residuals and derivatives are the same.
 TEST(LinearRows, GivenMaskGivesTheSameRows) {
   const ModelDefinition model = curved_model();
-  const auto reference = pcor::lams_reference();
-  const auto samples = samples_of(model, *reference);
+  const auto samples = samples_of(model, *lams);
   const RowsSetup setup{Inputs::noise_free, free_parameters(model)};
-  const LinearRows found = rows_of(samples, model, *reference, setup);
-  const LinearRows given(pcor::Residuals(samples, model, *reference, found.mask()), model, *reference, setup);
+  const LinearRows found = rows_of(samples, model, *lams, setup);
+  const LinearRows given(pcor::Residuals(samples, model, *lams, found.mask()), model, *lams, setup);
   const std::vector<double>& start = found.residuals().parameters();
   EXPECT_EQ(given.used(), found.used());
   EXPECT_EQ(at_used(given, start, all_parameters(given)), at_used(found, start, all_parameters(found)));
   // The laser at which derivatives are taken is the prediction by the pressures at which they are taken.
   const auto inputs = std::make_shared<const pcor::FlightSamples>(found.inputs());
-  const pcor::Residuals at_inputs(inputs, model, *reference, found.mask());
+  const pcor::Residuals at_inputs(inputs, model, *lams, found.mask());
   const std::vector<double>& shown = *inputs->model.find(Quantity::lams_airspeed);
   EXPECT_THAT(shown, testing::Pointwise(testing::NanSensitiveDoubleEq(),
                                         at_inputs.predicted_sensor(start.data())->second));

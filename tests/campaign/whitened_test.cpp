@@ -11,10 +11,6 @@
 
 using namespace pcor::internal;
 
-using pcor::internal::Binning;
-using pcor::internal::NoiseModel;
-using pcor::internal::WhitenedSystem;
-
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
@@ -48,6 +44,10 @@ struct Example {
       noise.level.push_back(level);
     }
     noise.coefficients = {memory};
+  }
+
+  WhitenedSystem system() const {
+    return find_scores(FlightPartition(bins.size()), bins, columns, residuals, noise);
   }
 
   /// The covariance of the noise of a flight.
@@ -91,9 +91,7 @@ TEST(WhitenedSystem, EqualsGeneralisedLeastSquares) {
   for (const double drift : {0.0, 0.3, 3.0}) {
     Example example({300, 150}, 4, 1);
     example.noise.slow = {0.5 * drift, 0.0, drift, 0.2 * drift};
-    const WhitenedSystem scores =
-        pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
-                                    example.columns, example.residuals, example.noise);
+    const WhitenedSystem scores = example.system();
     // Rounding, of matrices whose condition is 1e5 at most.
     EXPECT_TRUE(scores.information.isApprox(expected(example), 1e-9)) << drift;
     EXPECT_TRUE(scores.information.isApprox(scores.information.transpose(), 1e-14));
@@ -106,9 +104,7 @@ TEST(WhitenedSystem, EqualsGeneralisedLeastSquares) {
 TEST(WhitenedSystem, BlockScoresSumToTotalScore) {
   Example example({300, 150}, 4, 2);
   example.noise.slow = {0.0, 0.5, 0.0, 0.0};
-  const WhitenedSystem scores =
-      pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
-                                  example.columns, example.residuals, example.noise);
+  const WhitenedSystem scores = example.system();
   // The residual without coefficients has the score of the input residual.
   Eigen::VectorXd score = Eigen::VectorXd::Zero(4);
   for (std::size_t f = 0; f < 2; ++f)
@@ -130,19 +126,17 @@ TEST(WhitenedSystem, BlockScoresSumToTotalScore) {
 // noise.
 TEST(WhitenedSystem, MarginalizedColumnsAddToNoiseCovariance) {
   const Example example({200}, 5, 4);
-  const auto system_of = [&](const Eigen::MatrixXd& columns) {
-    return pcor::internal::find_scores(pcor::internal::FlightPartition(1), example.bins, {columns},
-                                       example.residuals, example.noise);
-  };
-  WhitenedSystem system = system_of(example.columns[0]);
-  pcor::internal::marginalize(system, 2);
+  WhitenedSystem system = example.system();
+  marginalize(system, 2);
   const Eigen::MatrixXd uncertain = example.columns[0].rightCols(2);
   const Eigen::MatrixXd covariance = example.covariance(0) + uncertain * uncertain.transpose();
   Eigen::MatrixXd all(example.columns[0].rows(), 4);
   all << example.columns[0].leftCols(3), example.residuals[0];
   // Rounding, of matrices whose condition is 1e5 at most.
   EXPECT_TRUE(system.information.isApprox(all.transpose() * covariance.ldlt().solve(all), 1e-9));
-  EXPECT_TRUE(system.plain.isApprox(system_of(example.columns[0].leftCols(3)).plain, 1e-12));
+  Example fewer = example;
+  fewer.columns[0].conservativeResize(Eigen::NoChange, 3);
+  EXPECT_TRUE(system.plain.isApprox(fewer.system().plain, 1e-12));
   EXPECT_EQ(system.rows[0].cols(), 4);
 }
 
@@ -153,13 +147,9 @@ TEST(WhitenedSystem, DriftReducesInformationOfSlowColumns) {
   for (Eigen::Index i = 0; i < example.columns[0].rows(); ++i)
     example.columns[0](i, 0) = std::cos(3.0 * M_PI * example.bins[0].time()[static_cast<std::size_t>(i)] /
                                         example.bins[0].time().back());
-  const WhitenedSystem without =
-      pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
-                                  example.columns, example.residuals, example.noise);
+  const WhitenedSystem without = example.system();
   example.noise.slow = {0.0, 0.0, 1.0, 0.0};
-  const WhitenedSystem with =
-      pcor::internal::find_scores(pcor::internal::FlightPartition(example.bins.size()), example.bins,
-                                  example.columns, example.residuals, example.noise);
+  const WhitenedSystem with = example.system();
   // Forty minutes hold a few pieces of a drift of 800 s and 1 hPa: the coefficient of a wave is known to a
   // few tenths of it.
   EXPECT_LT(with.information(0, 0), 20.0);

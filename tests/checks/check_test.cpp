@@ -92,14 +92,6 @@ CheckResult named(const Checks& checks, const std::string& name) {
   return {};
 }
 
-double number(const CheckResult& result, const std::string& name) {
-  for (const auto& [each, value] : result.numbers) {
-    if (each == name) return value;
-  }
-  ADD_FAILURE() << result.name << " has no number " << name << "; " << result.reason;
-  return std::nan("");
-}
-
 Checks with_both(const std::vector<fs::path>& flights) {
   CheckOptions options;
   options.second = second_model();
@@ -156,7 +148,7 @@ TEST_F(CheckTest, TotalPressureIsInsensitiveToStaticDefects) {
   const Checks before = with_both({fly(with(""), 1)});
   const Checks after = with_both({fly(with(defect), 1)});
   const auto mean = [](const Checks& checks, const char* name) {
-    return number(named(checks, name), "mean_difference_hpa");
+    return named(checks, name).number("mean_difference_hpa");
   };
   // Pressures are stored to 3e-5 hPa.
   EXPECT_NEAR(mean(before, "total-pressure"), 0.0, 1e-4);
@@ -172,7 +164,7 @@ TEST_F(CheckTest, TotalPressureDetectsTransducerError) {
   const CheckResult result = named(with_both({fly(head + bias + aloft + manoeuvres, 1)}), "total-pressure");
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
   // The noise of the transducers, 0.03 hPa, over an hour.
-  EXPECT_NEAR(number(result, "mean_difference_hpa"), 0.8, 0.01);
+  EXPECT_NEAR(result.number("mean_difference_hpa"), 0.8, 0.01);
 }
 
 // Reverse headings and circles
@@ -190,7 +182,7 @@ TEST_F(CheckTest, ExcludesClimbsForTheAvionics) {
   const Checks checks = check({fly(one_system + slow + aloft, 12)}, first_model());
   for (const char* name : {"total-pressure", "static-pressure"}) {
     const CheckResult result = named(checks, name);
-    EXPECT_LT(std::abs(number(result, "mean_difference_hpa")), 0.15) << name;
+    EXPECT_LT(std::abs(result.number("mean_difference_hpa")), 0.15) << name;
     EXPECT_THAT(result.finding, HasSubstr("PS_A/QC_A"));
     EXPECT_THAT(result.notes, testing::Contains(test::Says("avionics")));
   }
@@ -208,9 +200,9 @@ TEST_F(CheckTest, ReverseHeadingsDetectAirspeedError) {
     const double truth = true_airspeed_error(flight, first_model());
     EXPECT_GT(std::abs(truth), 1.0);  // a gain of 3 % of q is about 1.5 % of 118 m/s
     const CheckResult result = named(check({flight}, first_model()), "reverse-heading");
-    EXPECT_EQ(number(result, "pairs"), 2.0);
-    const double error = number(result, "airspeed_error_stderr_m_s");
-    const double off = number(result, "airspeed_error_m_s") - truth;
+    EXPECT_EQ(result.number("pairs"), 2.0);
+    const double error = result.number("airspeed_error_stderr_m_s");
+    const double off = result.number("airspeed_error_m_s") - truth;
     EXPECT_EQ(result.verdict, CheckVerdict::inconsistent) << result.finding;
     if (std::abs(off) < 2.0 * error) ++within;
     squares += std::pow(off / error, 2);
@@ -232,9 +224,9 @@ TEST_F(CheckTest, CirclesDetectAirspeedError) {
     const fs::path flight = fly(text, static_cast<std::uint64_t>(seed));
     const double truth = true_airspeed_error(flight, first_model());
     const CheckResult result = named(check({flight}, first_model()), "circles");
-    EXPECT_EQ(number(result, "circles"), 4.0);
-    const double error = number(result, "airspeed_error_stderr_m_s");
-    if (std::abs(number(result, "airspeed_error_m_s") - truth) < 2.0 * error) ++within;
+    EXPECT_EQ(result.number("circles"), 4.0);
+    const double error = result.number("airspeed_error_stderr_m_s");
+    if (std::abs(result.number("airspeed_error_m_s") - truth) < 2.0 * error) ++within;
     EXPECT_LT(error, 0.3);
   }
   EXPECT_GE(within, 16);  // tolerance of the reverse headings
@@ -253,7 +245,7 @@ TEST_F(CheckTest, WrongThermometerIsRejected) {
   EXPECT_NE(named(checks, "layers").verdict, CheckVerdict::consistent);
   EXPECT_EQ(named(checks, "lams-temperature").verdict, CheckVerdict::inconsistent);
   // The truth is -0.533 - 0.0097 t at t = -3.5 degC. Pressures have no error, for which 0.1 K are allowed.
-  EXPECT_NEAR(number(named(checks, "layers"), "offset_k"), -0.5, 0.05);
+  EXPECT_NEAR(named(checks, "layers").number("offset_k"), -0.5, 0.05);
 }
 
 TEST_F(CheckTest, LayersDetectStaticLineLag) {
@@ -280,11 +272,11 @@ TEST_F(CheckTest, EighteenPairsReachTheStandardErrorOfTheMemo) {
   for (int seed = 1; seed <= flights; ++seed) {
     const CheckResult result =
         named(check({fly(text, static_cast<std::uint64_t>(seed))}, first_model()), "reverse-heading");
-    ASSERT_EQ(number(result, "pairs"), 18.0);
-    EXPECT_LT(number(result, "sum_stderr_m_s"), 0.2);
+    ASSERT_EQ(result.number("pairs"), 18.0);
+    EXPECT_LT(result.number("sum_stderr_m_s"), 0.2);
     // Nothing is wrong: beyond four errors once in 16000.
-    EXPECT_LT(std::abs(number(result, "sum_m_s")), 4.0 * number(result, "sum_stderr_m_s"));
-    squares += std::pow(number(result, "sum_stderr_scatter_m_s"), 2);
+    EXPECT_LT(std::abs(result.number("sum_m_s")), 4.0 * result.number("sum_stderr_m_s"));
+    squares += std::pow(result.number("sum_stderr_scatter_m_s"), 2);
   }
   EXPECT_LT(std::sqrt(squares / flights), 0.2);
   EXPECT_GT(std::sqrt(squares / flights), 0.03);  // the wind does drift between the legs
@@ -300,7 +292,7 @@ TEST_F(CheckTest, PitchAndYawDetectWrongTerms) {
   const CheckResult pitch = named(checks, "pitch");
   EXPECT_EQ(pitch.verdict, CheckVerdict::inconsistent) << pitch.finding;
   // 4e-4 of 700 hPa, within four standard errors.
-  EXPECT_NEAR(number(pitch, "slope_hpa_deg"), 0.28, 4.0 * number(pitch, "slope_stderr_hpa_deg") + 0.01);
+  EXPECT_NEAR(pitch.number("slope_hpa_deg"), 0.28, 4.0 * pitch.number("slope_stderr_hpa_deg") + 0.01);
   const CheckResult yaw = named(checks, "yaw");
   EXPECT_EQ(yaw.verdict, CheckVerdict::inconsistent) << yaw.finding;
 
@@ -309,14 +301,14 @@ TEST_F(CheckTest, PitchAndYawDetectWrongTerms) {
   const CheckResult against_height = named(without, "pitch");
   EXPECT_THAT(against_height.finding, HasSubstr("against GPS height"));
   EXPECT_EQ(against_height.verdict, CheckVerdict::inconsistent) << against_height.finding;
-  EXPECT_NEAR(number(against_height, "slope_hpa_deg"), 0.28,
-              4.0 * number(against_height, "slope_stderr_hpa_deg") + 0.01);
+  EXPECT_NEAR(against_height.number("slope_hpa_deg"), 0.28,
+              4.0 * against_height.number("slope_stderr_hpa_deg") + 0.01);
   // The second system cannot detect common errors, except for a tenth, the sum of the a2 of both laws, which
   // read a dynamic pressure that the fault changes.
   const CheckResult against_second = named(without, "yaw");
   EXPECT_THAT(against_second.finding, HasSubstr("against second system"));
   EXPECT_NE(against_second.verdict, CheckVerdict::inconsistent) << against_second.finding;
-  EXPECT_LT(std::abs(number(against_second, "slope_hpa_deg")), 0.15 * std::abs(number(yaw, "slope_hpa_deg")));
+  EXPECT_LT(std::abs(against_second.number("slope_hpa_deg")), 0.15 * std::abs(yaw.number("slope_hpa_deg")));
 }
 
 TEST_F(CheckTest, ManoeuvreWithoutTheLaserUsesTheNextReference) {
@@ -336,7 +328,7 @@ TEST_F(CheckTest, ManoeuvreWithoutTheLaserUsesTheNextReference) {
     if (air.time()[i] >= last_yaw) air.laser->static_defect[i] = std::nan("");
   }
   const CheckResult result = check_yaw(flights);
-  EXPECT_EQ(number(result, "manoeuvres"), 2.0);
+  EXPECT_EQ(result.number("manoeuvres"), 2.0);
   EXPECT_THAT(result.finding, HasSubstr("against LAMS and second system"));
   EXPECT_THAT(result.notes, testing::Contains(test::Says("PSFRD/QCFR is uncorrected")));
 }
@@ -351,10 +343,10 @@ TEST_F(CheckTest, SpeedRunDetectsSpeedDependentTerm) {
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent) << result.finding;
   // 0.0308 of the change of q from 95 to 145 m/s at 700 hPa (54 hPa) is missing: 1.7 hPa, somewhat less than
   // that as the airspeed goes in a line and q in a bend.
-  EXPECT_NEAR(number(result, "delta_p_across_hpa"), -1.6, 0.3);
+  EXPECT_NEAR(result.number("delta_p_across_hpa"), -1.6, 0.3);
   // The airspeed gives the same result, within four standard errors of the wind.
-  EXPECT_NEAR(number(result, "delta_p_across_from_wind_hpa"), number(result, "delta_p_across_hpa"),
-              4.0 * number(result, "delta_p_across_from_wind_stderr_hpa"));
+  EXPECT_NEAR(result.number("delta_p_across_from_wind_hpa"), result.number("delta_p_across_hpa"),
+              4.0 * result.number("delta_p_across_from_wind_stderr_hpa"));
 }
 
 // Flights that cannot be checked
@@ -440,8 +432,8 @@ TEST_F(CheckTest, RunsOnARealFlight) {
   const Checks checks = check({flight}, std::nullopt);
   const CheckResult total = named(checks, "total-pressure");
   ASSERT_TRUE(total.ran) << total.reason;
-  EXPECT_NEAR(number(total, "slope"), 1.0, 0.001);  // 0.7 hPa over the envelope
-  EXPECT_LT(std::abs(number(total, "mean_difference_hpa")), 0.3);
+  EXPECT_NEAR(total.number("slope"), 1.0, 0.001);  // 0.7 hPa over the envelope
+  EXPECT_LT(std::abs(total.number("mean_difference_hpa")), 0.3);
   for (const CheckResult& result : checks.results)
     EXPECT_NE(result.ran, !result.reason.empty()) << result.name;
 }

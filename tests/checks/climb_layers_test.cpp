@@ -1,5 +1,6 @@
 // Temperature of layers: the memo's sums, their errors, and the implied correction.
 #include "checks/climb_layers.hpp"
+#include "checks/standard_air.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,6 +25,7 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
+using test::standard_air;
 using testing::IsEmpty;
 using testing::SizeIs;
 
@@ -127,33 +129,6 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-/// Air in memory: an aircraft that climbs and descends through the standard atmosphere with the gas constant
-/// given, as if the standard's constants were its own.
-FlightAir made(const std::vector<double>& heights, double warmer = 0.0) {
-  constexpr double standard_gas_constant = 8314.32 / 28.9644;
-  FlightAir air;
-  auto samples = std::make_shared<FlightSamples>();
-  samples->name = "made";
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    samples->time.push_back(1e9 + static_cast<double>(i));
-    air.pressure.push_back(standard_pressure(heights[i]));
-    air.temperature.push_back(standard_temperature(heights[i]) + warmer);
-  }
-  const std::size_t count = heights.size();
-  air.flying.assign(count, true);
-  air.gas_constant.assign(count, standard_gas_constant);
-  air.airspeed.assign(count, 100.0);
-  air.east_speed.assign(count, 100.0);
-  air.north_speed.assign(count, 0.0);
-  air.height = air.geopotential_height = heights;
-  air.latitude.assign(count, 45.0);
-  for (const double pressure : air.pressure) air.pressure_altitude.push_back(pressure_altitude(pressure));
-  for (std::size_t i = 0; i < count; ++i)
-    air.d_value.push_back(air.geopotential_height[i] - air.pressure_altitude[i]);
-  air.samples = std::move(samples);
-  return air;
-}
-
 std::vector<double> climb(double from, double to, double rate) {
   std::vector<double> heights;
   for (double height = from; rate > 0.0 ? height <= to : height >= to; height += rate)
@@ -177,16 +152,18 @@ Layer layer_of(double predicted, double measured, std::size_t number) {
   return layer;
 }
 
-LayerUncertainty height_noise_alone() {
-  LayerUncertainty uncertainty;
-  uncertainty.height_noise = 1.0;
+LayerOptions noise_and_gradient(double height_noise, double gradient) {
+  LayerOptions uncertainty;
+  uncertainty.pressure_noise = uncertainty.static_bias = uncertainty.static_change = 0.0;
+  uncertainty.height_noise = height_noise;
+  uncertainty.gradient = gradient;
   return uncertainty;
 }
 
 // The sums
 
 TEST(Layers, TemperatureEqualsMeanOfStandardAtmosphere) {
-  const FlightLayers found = find_layers(made(climb(1000.0, 5000.0, 5.0)));
+  const FlightLayers found = find_layers(standard_air(climb(1000.0, 5000.0, 5.0)));
   ASSERT_THAT(found.layers, SizeIs(4));
   for (const Layer& layer : found.layers) {
     // The harmonic mean over height where T is linear in it: the thickness over ln(T_end/T_begin).
@@ -202,7 +179,7 @@ TEST(Layers, TemperatureEqualsMeanOfStandardAtmosphere) {
 TEST(Layers, PartsHaveEqualThicknessAndShareEnds) {
   LayerOptions options;
   options.thickness = 700.0;
-  const FlightLayers found = find_layers(made(climb(1000.0, 4500.0, 5.0)), options);
+  const FlightLayers found = find_layers(standard_air(climb(1000.0, 4500.0, 5.0)), options);
   ASSERT_THAT(found.layers, SizeIs(5));
   for (std::size_t i = 0; i < found.layers.size(); ++i) {
     EXPECT_NEAR(found.layers[i].s2, 700.0, 5.0);  // tolerance of one sample
@@ -216,23 +193,23 @@ TEST(Layers, ClimbAndDescentGiveTheSameDifference) {
   std::vector<double> heights = climb(1000.0, 3000.0, 5.0);
   const std::vector<double> down = climb(3000.0, 1000.0, -5.0);
   heights.insert(heights.end(), down.begin(), down.end());
-  const FlightLayers found = find_layers(made(heights, 0.4));
+  const FlightLayers found = find_layers(standard_air(heights, 0.4));
   ASSERT_THAT(found.layers, SizeIs(4));
   for (const Layer& layer : found.layers) EXPECT_NEAR(layer.difference(), -0.4, 1e-4);
   EXPECT_LT(found.layers[3].s2, 0.0);
 }
 
 TEST(Layers, RequireAMinimumClimbRateAndThickness) {
-  EXPECT_THAT(find_layers(made(climb(1000.0, 3000.0, 1.5))).layers, IsEmpty());
-  EXPECT_THAT(find_layers(made(climb(1000.0, 1400.0, 5.0))).layers, IsEmpty());
-  EXPECT_THAT(find_layers(made(std::vector<double>(600, 2000.0))).layers, IsEmpty());
+  EXPECT_THAT(find_layers(standard_air(climb(1000.0, 3000.0, 1.5))).layers, IsEmpty());
+  EXPECT_THAT(find_layers(standard_air(climb(1000.0, 1400.0, 5.0))).layers, IsEmpty());
+  EXPECT_THAT(find_layers(standard_air(std::vector<double>(600, 2000.0))).layers, IsEmpty());
   LayerOptions slow;
   slow.min_climb_rate = 1.0;
-  EXPECT_THAT(find_layers(made(climb(1000.0, 3000.0, 1.5)), slow).layers, SizeIs(2));
+  EXPECT_THAT(find_layers(standard_air(climb(1000.0, 3000.0, 1.5)), slow).layers, SizeIs(2));
 }
 
 TEST(Layers, EndAtGapsMissingValuesAndHeightSteps) {
-  const FlightAir whole = made(climb(1000.0, 3400.0, 5.0));
+  const FlightAir whole = standard_air(climb(1000.0, 3400.0, 5.0));
   const auto layers_of = [](const FlightAir& air) {
     LayerOptions options;
     options.thickness = 5000.0;
@@ -266,13 +243,14 @@ TEST(LayerErrors, EqualThoseOfTheMemo) {
   LayerOptions options;
   options.pressure_noise = 0.1;
   options.thickness = 1e4;
-  const FlightLayers found = find_layers(made(climb(12000.0 * 0.3048, 16000.0 * 0.3048, 5.0)), options);
+  const FlightLayers found =
+      find_layers(standard_air(climb(12000.0 * 0.3048, 16000.0 * 0.3048, 5.0)), options);
   ASSERT_THAT(found.layers, SizeIs(1));
   EXPECT_NEAR(found.layers[0].pressure_begin, 644.0, 1.0);
   EXPECT_NEAR(found.layers[0].pressure_end, 549.0, 1.0);
   EXPECT_NEAR(found.layers[0].errors.pressure_noise / std::sqrt(2.0), 0.3, 0.05);
   // The memo: 10 m in 100 km at 200 m/s while climbing 5 m/s is 0.004 of the temperature, about 1 K.
-  FlightAir fast = made(climb(9000.0, 11000.0, 5.0));
+  FlightAir fast = standard_air(climb(9000.0, 11000.0, 5.0));
   fast.east_speed.assign(fast.size(), 200.0);
   options.gradient = 10.0;
   const FlightLayers gradient = find_layers(fast, options);
@@ -281,8 +259,8 @@ TEST(LayerErrors, EqualThoseOfTheMemo) {
 }
 
 TEST(LayerErrors, AreIndependentOfTheNumberOfSamples) {
-  const FlightAir fast = made(climb(1000.0, 3000.0, 10.0));
-  const FlightAir slow = made(climb(1000.0, 3000.0, 2.5));
+  const FlightAir fast = standard_air(climb(1000.0, 3000.0, 10.0));
+  const FlightAir slow = standard_air(climb(1000.0, 3000.0, 2.5));
   LayerOptions options;
   options.height_noise = 1.0;
   options.gradient = 0.0;
@@ -297,7 +275,7 @@ TEST(LayerErrors, AreIndependentOfTheNumberOfSamples) {
 TEST(LayerErrors, EqualTheChangeByAnInjectedError) {
   // Each error is added to the air, and the temperature changes by the stated error: first order in the
   // error, and the ends meet samples, so to 1 %.
-  const FlightAir air = made(climb(1000.0, 3000.0, 5.0));
+  const FlightAir air = standard_air(climb(1000.0, 3000.0, 5.0));
   LayerOptions options;
   options.thickness = 1e4;
   options.height_noise = 1.0;
@@ -331,19 +309,19 @@ TEST(LayerErrors, HeightNoiseIsEstimatedFromTheFlight) {
     return air;
   };
   const std::vector<double> up = climb(1000.0, 3000.0, 5.0);
-  EXPECT_NEAR(find_layers(wave(made(up))).uncertainty.height_noise, 1.41, 0.05);
-  EXPECT_EQ(find_layers(made(up)).uncertainty.height_noise, 0.15);
+  EXPECT_NEAR(find_layers(wave(standard_air(up))).uncertainty.height_noise, 1.41, 0.05);
+  EXPECT_EQ(find_layers(standard_air(up)).uncertainty.height_noise, 0.15);
   // Four minutes are too short: GPS of 2004.
-  EXPECT_EQ(find_layers(made(climb(1000.0, 2200.0, 5.0))).uncertainty.height_noise, 1.0);
+  EXPECT_EQ(find_layers(standard_air(climb(1000.0, 2200.0, 5.0))).uncertainty.height_noise, 1.0);
   // A wrong thermometer does not count as noise of the height.
-  EXPECT_EQ(find_layers(made(up, 2.0)).uncertainty.height_noise, 0.15);
+  EXPECT_EQ(find_layers(standard_air(up, 2.0)).uncertainty.height_noise, 0.15);
 }
 
 TEST(LayerErrors, PressureGradientIsEstimatedFromLevelLegs) {
   std::vector<double> heights(700, 1000.0);
   const std::vector<double> up = climb(1000.0, 3000.0, 5.0);
   heights.insert(heights.end(), up.begin(), up.end());
-  FlightAir air = made(heights);
+  FlightAir air = standard_air(heights);
   EXPECT_EQ(find_layers(air).uncertainty.gradient, 5.0);
   for (std::size_t i = 0; i < air.size(); ++i)  // 20 m per 100 km at 100 m/s
     air.geopotential_height[i] += 20.0 / 1e5 * 100.0 * static_cast<double>(i);
@@ -377,8 +355,8 @@ TEST(LayersOfSimulatedFlights, GiveTheOffsetWithinItsError) {
     double mean = 0.0;
     for (const Layer& layer : found.layers)
       mean += truth(air, layer) / static_cast<double>(found.layers.size());
-    scores.push_back((fit.offset - mean) / fit.offset_error);
-    EXPECT_LT(fit.offset_error, 0.25);  // half of the offset that the memo looks for
+    scores.push_back((fit.offset.value - mean) / fit.offset.error);
+    EXPECT_LT(fit.offset.error, 0.25);  // half of the offset that the memo looks for
   }
   EXPECT_LT(rms(scores), 1.5);
   // Below one, because isobars that slope the same all the time cancel better than they are trusted to.
@@ -392,10 +370,10 @@ TEST(LayersOfSimulatedFlights, SeveralFlightsGiveOffsetAndSlope) {
   const double share = ambient_share(0.34);
   const double slope = -share * injected_slope / (1.0 + share * injected_slope);
   const double offset = -share * injected_offset / (1.0 + share * injected_slope);
-  EXPECT_NEAR(fit.correction_at(273.15), offset, 2.5 * fit.correction_error_at(273.15));
-  EXPECT_NEAR(fit.c1, slope, 2.5 * fit.c1_error);
-  EXPECT_LT(fit.correction_error_at(273.15), 0.1);
-  EXPECT_LT(fit.c1_error, 0.01);
+  EXPECT_NEAR(fit.correction_at(273.15).value, offset, 2.5 * fit.correction_at(273.15).error);
+  EXPECT_NEAR(fit.c1.value, slope, 2.5 * fit.c1.error);
+  EXPECT_LT(fit.correction_at(273.15).error, 0.1);
+  EXPECT_LT(fit.c1.error, 0.01);
 }
 
 // A real flight
@@ -437,7 +415,7 @@ TEST(LayerFit, ReproducesTheMeanOfTheTableInTheMemo) {
   std::vector<std::size_t> misprints;
   for (std::size_t i = 0; i < std::size(rows); ++i) {
     FlightLayers flight;
-    flight.uncertainty = height_noise_alone();
+    flight.uncertainty = noise_and_gradient(1.0, 0.0);
     flight.layers = {layer_of(rows[i].predicted + 273.15, rows[i].measured + 273.15, 0)};
     const double difference = flight.layers[0].difference();
     if (std::abs(difference - rows[i].printed) > 0.015) misprints.push_back(i);
@@ -450,56 +428,51 @@ TEST(LayerFit, ReproducesTheMeanOfTheTableInTheMemo) {
   EXPECT_NEAR(printed, -0.55, 0.005);
   const LayerFit fit = fit_layers(flights);
   // Weights are (1/T)^2 of equal errors of height, nearly equal.
-  EXPECT_NEAR(fit.offset, -0.54, 0.006);
+  EXPECT_NEAR(fit.offset.value, -0.54, 0.006);
   EXPECT_EQ(fit.layers, 7U);
 }
 
 TEST(LayerFit, FindsALineAndItsErrors) {
   FlightLayers flight;
-  flight.uncertainty = height_noise_alone();
+  flight.uncertainty = noise_and_gradient(1.0, 0.0);
   for (std::size_t i = 0; i < 9; ++i) {
     const double measured = 240.0 + 5.0 * static_cast<double>(i);
     flight.layers.push_back(layer_of(measured - 0.55 - 0.01 * (measured - 273.15), measured, i));
   }
   const LayerFit fit = fit_layers({flight});
-  EXPECT_NEAR(fit.c1, -0.01, 1e-9);
-  EXPECT_NEAR(fit.correction_at(273.15), -0.55, 1e-9);
-  EXPECT_NEAR(fit.chi_squared, 0.0, 1e-9);
-  EXPECT_EQ(fit.degrees_of_freedom, 7U);
+  EXPECT_NEAR(fit.c1.value, -0.01, 1e-9);
+  EXPECT_NEAR(fit.correction_at(273.15).value, -0.55, 1e-9);
   // In the memo's form, at 0 K, c0 is ten times and more as uncertain as at the centre.
-  EXPECT_NEAR(fit.correction_at(0.0), -0.55 + 2.7315, 1e-9);
-  EXPECT_GT(fit.correction_error_at(0.0), 10.0 * fit.c0_error);
+  EXPECT_NEAR(fit.correction_at(0.0).value, -0.55 + 2.7315, 1e-9);
+  EXPECT_GT(fit.correction_at(0.0).error, 10.0 * fit.c0.error);
 }
 
 TEST(LayerFit, SharedEndsOfLayersAreCorrelated) {
   // Three layers of a climb: the height between them drops out of the mean of the whole.
-  const FlightAir air = made(climb(1000.0, 4000.0, 5.0));
-  LayerOptions options;
-  options.pressure_noise = options.static_bias = options.static_change = 0.0;
-  options.gradient = 0.0;
+  const FlightAir air = standard_air(climb(1000.0, 4000.0, 5.0));
+  LayerOptions options = noise_and_gradient(nan_value, 0.0);
   FlightLayers cut = find_layers(air, options);
   ASSERT_THAT(cut.layers, SizeIs(3));
   options.thickness = 1e4;
   const FlightLayers whole = find_layers(air, options);
   ASSERT_THAT(whole.layers, SizeIs(1));
   const LayerFit one = fit_layers({whole});
-  EXPECT_NEAR(one.offset_error, whole.layers[0].errors.total(), 1e-12);
+  EXPECT_NEAR(one.offset.error, whole.layers[0].errors.total(), 1e-12);
   // The layers differ in temperature by 5 %; independent ones would have sqrt(3) times the error.
-  EXPECT_NEAR(fit_layers({cut}).offset_error / one.offset_error, 1.0, 0.1);
+  EXPECT_NEAR(fit_layers({cut}).offset.error / one.offset.error, 1.0, 0.1);
 }
 
 TEST(LayerFit, CommonErrorsDoNotAverageOut) {
   // The same climb twenty times: noise averages, the slope of the isobars only the fifth of each climb.
   FlightLayers flight;
-  flight.uncertainty.height_noise = 0.001;
-  flight.uncertainty.gradient = 10.0;
+  flight.uncertainty = noise_and_gradient(0.001, 10.0);
   for (std::size_t i = 0; i < 20; ++i) {
     Layer layer = layer_of(270.0, 270.0, i);
     layer.east = 20000.0;
     flight.layers.push_back(layer);
   }
   // 20 km at 10 m per 100 km: 2 m of 1000 m, 0.54 K.
-  EXPECT_NEAR(fit_layers({flight}).offset_error, 0.54 * std::sqrt(0.8 + 0.2 / 20.0), 0.002);
+  EXPECT_NEAR(fit_layers({flight}).offset.error, 0.54 * std::sqrt(0.8 + 0.2 / 20.0), 0.002);
   // Up and down on the same heading the mean cancels the flight's part.
   for (std::size_t i = 0; i < 20; i += 2) {
     std::swap(flight.layers[i].pressure_begin, flight.layers[i].pressure_end);
@@ -507,24 +480,24 @@ TEST(LayerFit, CommonErrorsDoNotAverageOut) {
     flight.layers[i].s2 *= -1.0;
     flight.layers[i].s3 *= -1.0;
   }
-  EXPECT_NEAR(fit_layers({flight}).offset_error, 0.54 * std::sqrt(0.2 / 20.0), 0.002);
+  EXPECT_NEAR(fit_layers({flight}).offset.error, 0.54 * std::sqrt(0.2 / 20.0), 0.002);
 }
 
 TEST(LayerFit, InconsistentLayersIncreaseTheErrors) {
   FlightLayers flight;
-  flight.uncertainty = height_noise_alone();
+  flight.uncertainty = noise_and_gradient(1.0, 0.0);
   for (std::size_t i = 0; i < 6; ++i)
     flight.layers.push_back(layer_of(270.0 + (i % 2 == 0 ? 3.0 : -3.0), 270.0, i));
   const LayerFit fit = fit_layers({flight});
   EXPECT_GT(fit.error_scale, 5.0);
-  EXPECT_NEAR(fit.offset_error, 3.0 / std::sqrt(5.0), 0.03);  // error estimated from the scatter
-  EXPECT_TRUE(std::isnan(fit.c1));                            // one temperature makes no line
+  EXPECT_NEAR(fit.offset.error, 3.0 / std::sqrt(5.0), 0.03);  // error estimated from the scatter
+  EXPECT_TRUE(std::isnan(fit.c1.value));                      // one temperature makes no line
 }
 
 TEST(LayerFit, EmptyFitIsUnknown) {
   const LayerFit fit = fit_layers({});
   EXPECT_EQ(fit.layers, 0U);
-  EXPECT_TRUE(std::isnan(fit.offset));
+  EXPECT_TRUE(std::isnan(fit.offset.value));
 }
 
 // Footnote 5 of the memo: T_a of every second, and a line through columns (1, T in K).
@@ -573,8 +546,8 @@ TEST(LayerFit, WorksWhereTheInversionOfTheMemoIsSingular) {
   EXPECT_GT(slope_error, 10.0 * injected_slope);
   // Layers of the same flight are correlated, and centred columns are orthogonal.
   const LayerFit fit = fit_layers({find_layers(air, exact_law())});
-  EXPECT_LT(fit.c1_error, 0.03);
-  EXPECT_NEAR(fit.c1, -injected_slope, 2.5 * fit.c1_error);
+  EXPECT_LT(fit.c1.error, 0.03);
+  EXPECT_NEAR(fit.c1.value, -injected_slope, 2.5 * fit.c1.error);
 }
 
 }  // namespace

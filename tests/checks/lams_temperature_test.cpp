@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -57,10 +56,6 @@ duration = 5400
   return flights;
 }
 
-std::map<std::string, double> numbers_of(const CheckResult& result) {
-  return {result.numbers.begin(), result.numbers.end()};
-}
-
 const std::string too_warm = "[[effect]]\nid = \"temp-offset\"\noffset = 1.5\n";
 const std::string cloud =
     "[[atmosphere.cloud]]\nbase = 2500\ntop = 3500\ncover = 0.4\n"
@@ -69,8 +64,7 @@ const std::string cloud =
 TEST(LamsTemperatureCheck, AgreesWithoutErrors) {
   const CheckResult result = check_lams_temperature(fly(""));
   ASSERT_TRUE(result.ran) << result.reason;
-  const auto numbers = numbers_of(result);
-  EXPECT_NEAR(numbers.at("offset_k"), 0.0, 3.0 * numbers.at("offset_stderr_k"));
+  EXPECT_NEAR(result.number("offset_k"), 0.0, 3.0 * result.number("offset_stderr_k"));
   EXPECT_EQ(result.verdict, CheckVerdict::consistent);
   EXPECT_THAT(result.cannot_see, HasSubstr("sample by sample"));
 }
@@ -79,19 +73,16 @@ TEST(LamsTemperatureCheck, DetectsAWarmThermometer) {
   const CheckResult result = check_lams_temperature(fly(too_warm));
   ASSERT_TRUE(result.ran);
   // 1.5 K of recovery temperature are 1.5/(1 + 0.2 r M^2) K of ambient, with M = 0.33.
-  const auto numbers = numbers_of(result);
-  EXPECT_NEAR(numbers.at("offset_k"), -1.47, 3.0 * numbers.at("offset_stderr_k") + 0.01);
+  EXPECT_NEAR(result.number("offset_k"), -1.47, 3.0 * result.number("offset_stderr_k") + 0.01);
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
 }
 
 TEST(LamsTemperatureCheck, CloudSamplesHaveASeparateOffset) {
   const CheckResult result = check_lams_temperature(fly(cloud));
   ASSERT_TRUE(result.ran);
-  const auto numbers = numbers_of(result);
-  ASSERT_EQ(numbers.count("cloud_offset_k"), 1U);
   // A thermometer that reads 2 K low when wet, and dries within 10 s.
-  EXPECT_GT(numbers.at("cloud_offset_k"), 1.2);
-  EXPECT_LT(std::abs(numbers.at("offset_k")), 0.5);
+  EXPECT_GT(result.number("cloud_offset_k"), 1.2);
+  EXPECT_LT(std::abs(result.number("offset_k")), 0.5);
   EXPECT_THAT(result.notes, Contains(test::Says("suspect")));
 }
 
@@ -110,16 +101,15 @@ TEST(LamsTemperatureCheck, NoiseIsLargerInTheBoundaryLayer) {
 
 TEST(LamsTemperatureCheck, FlightsOfAnotherRecordIntervalAreNotUsed) {
   CheckedFlights flights = fly("");
-  const auto alone = numbers_of(check_lams_temperature(flights));
+  const CheckResult alone = check_lams_temperature(flights);
   const CheckedFlight same = flights[0];
   flights.push_back(same);
   FlightSamples coarse = *same.air.samples;
   coarse.step = 2.0;
   flights[1].air.samples = std::make_shared<FlightSamples>(std::move(coarse));
   const CheckResult result = check_lams_temperature(flights);
-  const auto numbers = numbers_of(result);
   for (const char* name : {"samples", "offset_k", "offset_stderr_k"})
-    EXPECT_EQ(numbers.at(name), alone.at(name)) << name;
+    EXPECT_EQ(result.number(name), alone.number(name)) << name;
   EXPECT_THAT(result.notes, Contains(test::Says("1 of 2 flights are not used")));
 }
 

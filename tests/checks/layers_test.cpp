@@ -2,15 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
-#include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "checks/checks.hpp"
+#include "checks/standard_air.hpp"
 #include "support/says.hpp"
 
 using namespace pcor::internal;
@@ -25,33 +24,10 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 /// A climb and a descent in the standard atmosphere, with a thermometer that is too warm.
 CheckedFlight made(double too_warm) {
   CheckedFlight flight;
-  FlightAir& air = flight.air;
-  auto samples = std::make_shared<FlightSamples>();
-  samples->name = "made.nc";
-  for (int i = 0; i <= 1600; ++i) {
-    const double height = 1000.0 + 5.0 * std::min(i, 1600 - i);
-    samples->time.push_back(1e9 + i);
-    air.height.push_back(height);
-    air.pressure.push_back(standard_pressure(height));
-    air.temperature.push_back(standard_temperature(height) + too_warm);
-  }
-  const std::size_t count = air.height.size();
-  air.height_variable = "GGALT";
-  air.geopotential_height = air.height;
-  air.pressure_altitude = air.height;
-  air.flying.assign(count, true);
-  air.gas_constant.assign(count, 8314.32 / 28.9644);
-  air.airspeed.assign(count, 100.0);
-  air.east_speed.assign(count, 100.0);
-  air.north_speed.assign(count, 0.0);
-  air.latitude.assign(count, 45.0);
-  air.d_value.assign(count, 0.0);
-  air.samples = std::move(samples);
+  std::vector<double> heights;
+  for (int i = 0; i <= 1600; ++i) heights.push_back(1000.0 + 5.0 * std::min(i, 1600 - i));
+  flight.air = test::standard_air(heights, too_warm);
   return flight;
-}
-
-std::map<std::string, double> numbers_of(const CheckResult& result) {
-  return {result.numbers.begin(), result.numbers.end()};
 }
 
 TEST(LayersCheck, CorrectThermometerPasses) {
@@ -59,8 +35,8 @@ TEST(LayersCheck, CorrectThermometerPasses) {
   ASSERT_TRUE(result.ran) << result.reason;
   // One flight, with the usual errors of delta-p, does not detect 0.3 K at two standard errors.
   EXPECT_EQ(result.verdict, CheckVerdict::inconclusive);
-  EXPECT_EQ(numbers_of(result).at("layers"), 8.0);
-  EXPECT_NEAR(numbers_of(result).at("offset_k"), 0.0, 0.01);
+  EXPECT_EQ(result.number("layers"), 8.0);
+  EXPECT_NEAR(result.number("offset_k"), 0.0, 0.01);
   EXPECT_THAT(result.cannot_see, HasSubstr("delta-p"));
 }
 
@@ -68,7 +44,7 @@ TEST(LayersCheck, FindsAnOffsetBeyondItsError) {
   const CheckResult result = check_layers({made(2.0)});
   ASSERT_TRUE(result.ran);
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
-  EXPECT_NEAR(numbers_of(result).at("offset_k"), -2.0, 0.01);
+  EXPECT_NEAR(result.number("offset_k"), -2.0, 0.01);
   EXPECT_THAT(result.finding, HasSubstr("-2.00"));
 }
 

@@ -39,11 +39,10 @@ constexpr double airspeed = 118.0;     // m/s
 constexpr double temperature = 270.0;  // K
 constexpr double mach = 0.358;
 
-LegMean leg_of(const Row& row, double tail_wind) {
+LegMean leg_of(double heading, const Estimate& tail_wind) {
   LegMean leg;
-  leg.tail_wind = {tail_wind, 0.0};
-  leg.scatter = row.scatter;
-  leg.heading = row.heading;
+  leg.tail_wind = tail_wind;
+  leg.heading = heading;
   leg.airspeed = airspeed;
   leg.pressure = pressure;
   leg.mach = mach;
@@ -51,15 +50,14 @@ LegMean leg_of(const Row& row, double tail_wind) {
   return leg;
 }
 
-LegPair new_pair(std::size_t first) {
-  return pair_of(leg_of(table[first], table[first].tail_wind),
-                 leg_of(table[first + 1], table[first + 1].tail_wind));
+LegPair pair_in_table(std::size_t first, double Row::*tail_wind) {
+  const auto leg = [tail_wind](const Row& row) { return leg_of(row.heading, {row.*tail_wind, 0.0}); };
+  return pair_of(leg(table[first]), leg(table[first + 1]));
 }
 
-LegPair standard_pair(std::size_t first) {
-  return pair_of(leg_of(table[first], table[first].standard_wind),
-                 leg_of(table[first + 1], table[first + 1].standard_wind));
-}
+LegPair new_pair(std::size_t first) { return pair_in_table(first, &Row::tail_wind); }
+
+LegPair standard_pair(std::size_t first) { return pair_in_table(first, &Row::standard_wind); }
 
 // Half of the last digit that the memo's text prints.
 constexpr double printed = 0.0051;
@@ -112,16 +110,10 @@ TEST(LegPair, FirstLegOfTheMemoNeedsCorrectedTime) {
 
 /// A leg in a wind, m/s, with an airspeed that is too high.
 LegMean flown(double heading, double east, double north, double too_high) {
-  LegMean leg;
   const double sine = std::sin(heading * radians);
   const double cosine = std::cos(heading * radians);
-  leg.tail_wind = {east * sine + north * cosine - too_high, 0.1};
+  LegMean leg = leg_of(heading, {east * sine + north * cosine - too_high, 0.1});
   leg.cross_speed = east * cosine - north * sine;
-  leg.heading = heading;
-  leg.airspeed = airspeed;
-  leg.pressure = pressure;
-  leg.mach = mach;
-  leg.temperature = temperature;
   return leg;
 }
 

@@ -95,56 +95,38 @@ TEST(RedundantFit, LevelFlightShowsNoChangeOverTheRange) {
   EXPECT_EQ(large, 0U);  // four standard errors are one in 16,000
 }
 
+/// A flight with two pairs of pressures, whose difference is noise.
+CheckedFlight flight_of(std::size_t records, double step, double begin) {
+  CheckedFlight result;
+  std::mt19937_64 engine(records);
+  std::normal_distribution<double> noise(0.0, 0.05);
+  const auto samples = std::make_shared<pcor::FlightSamples>();
+  samples->step = step;
+  MeasuredPair one{"PSFD/QCF", {}, std::vector<double>(records, 60.0)};
+  MeasuredPair two{"PSFRD/QCFR", {}, std::vector<double>(records, 60.0)};
+  for (std::size_t i = 0; i < records; ++i) {
+    const auto record = static_cast<double>(i);
+    samples->time.push_back(begin + step * record);
+    one.static_pressure.push_back(700.0 + 50.0 * std::sin(0.01 * record));
+    two.static_pressure.push_back(one.static_pressure.back() + noise(engine));
+  }
+  result.air.samples = samples;
+  result.air.flying.assign(records, true);
+  result.measured = {one, two};
+  return result;
+}
+
 TEST(TotalPressureCheck, OrderOfFlightsDoesNotDetermineTheRecordInterval) {
-  const auto flight = [](std::size_t records, double step) {
-    CheckedFlight result;
-    std::mt19937_64 engine(records);
-    std::normal_distribution<double> noise(0.0, 0.05);
-    const auto samples = std::make_shared<pcor::FlightSamples>();
-    samples->step = step;
-    MeasuredPair one{"PSFD/QCF", {}, std::vector<double>(records, 60.0)};
-    MeasuredPair two{"PSFRD/QCFR", {}, std::vector<double>(records, 60.0)};
-    for (std::size_t i = 0; i < records; ++i) {
-      const auto record = static_cast<double>(i);
-      samples->time.push_back(1e5 * step + step * record);
-      one.static_pressure.push_back(700.0 + 50.0 * std::sin(0.01 * record));
-      two.static_pressure.push_back(one.static_pressure.back() + noise(engine));
-    }
-    result.air.samples = samples;
-    result.air.flying.assign(records, true);
-    result.measured = {one, two};
-    return result;
-  };
-  const CheckedFlight few = flight(300, 5.0);
-  const CheckedFlight many = flight(2000, 1.0);
+  const CheckedFlight few = flight_of(300, 5.0, 5e5);
+  const CheckedFlight many = flight_of(2000, 1.0, 1e5);
   for (const CheckedFlights& flights : {CheckedFlights{few, many}, CheckedFlights{many, few}}) {
     EXPECT_THAT(check_total_pressure(flights).numbers, testing::Contains(testing::Pair("samples", 2000.0)));
   }
 }
 
 TEST(TotalPressureCheck, FlightsOfAnotherRecordIntervalAreNotUsed) {
-  constexpr std::size_t records = 1200;
   const auto check_with = [](double second_step) {
-    std::mt19937_64 engine(1);
-    std::normal_distribution<double> noise(0.0, 0.05);
-    CheckedFlights flights(2);
-    for (CheckedFlight& flight : flights) {
-      const bool is_first = &flight == &flights.front();
-      const auto samples = std::make_shared<pcor::FlightSamples>();
-      samples->step = is_first ? 1.0 : second_step;
-      MeasuredPair one{"PSFD/QCF", {}, std::vector<double>(records, 60.0)};
-      MeasuredPair two{"PSFRD/QCFR", {}, std::vector<double>(records, 60.0)};
-      for (std::size_t i = 0; i < records; ++i) {
-        const auto record = static_cast<double>(i);
-        samples->time.push_back((is_first ? 0.0 : 1e5) + samples->step * record);
-        one.static_pressure.push_back(700.0 + 50.0 * std::sin(0.01 * record));
-        two.static_pressure.push_back(one.static_pressure.back() + noise(engine));
-      }
-      flight.air.samples = samples;
-      flight.air.flying.assign(records, true);
-      flight.measured = {one, two};
-    }
-    return check_total_pressure(flights);
+    return check_total_pressure({flight_of(1200, 1.0, 0.0), flight_of(1200, second_step, 1e5)});
   };
   const pcor::CheckResult result = check_with(2.0);
   EXPECT_THAT(result.numbers, testing::Contains(testing::Pair("samples", 1200.0)));

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <random>
 #include <string>
@@ -45,22 +44,17 @@ std::vector<double> white(std::size_t count, double rms, unsigned seed) {
   return values;
 }
 
-std::map<std::string, double> numbers_of(const CheckResult& result) {
-  return {result.numbers.begin(), result.numbers.end()};
-}
-
 TEST(SpectrumCheck, FindsTheFloorOfWhiteNoise) {
   const CheckResult result = check_spectrum({made(white(8000, 0.2, 1))});
   ASSERT_TRUE(result.ran) << result.reason;
-  auto numbers = numbers_of(result);
   // Three standard errors as stated, which must themselves be small: a thousand independent values and more.
-  EXPECT_NEAR(numbers.at("floor_hpa"), 0.2, 3.0 * numbers.at("floor_stderr_hpa"));
-  EXPECT_LT(numbers.at("floor_stderr_hpa"), 0.01);
-  EXPECT_NEAR(numbers.at("slope"), 0.0, 3.0 * numbers.at("slope_stderr"));
-  EXPECT_LT(numbers.at("slope_stderr"), 0.15);
+  EXPECT_NEAR(result.number("floor_hpa"), 0.2, 3.0 * result.number("floor_stderr_hpa"));
+  EXPECT_LT(result.number("floor_stderr_hpa"), 0.01);
+  EXPECT_NEAR(result.number("slope"), 0.0, 3.0 * result.number("slope_stderr"));
+  EXPECT_LT(result.number("slope_stderr"), 0.15);
   // 1 m/s more at the same total pressure and temperature is a Mach number of 0.36308 instead of 0.36, and so
   // 1.06 hPa less.
-  EXPECT_NEAR(numbers.at("floor_m_s"), numbers.at("floor_hpa") / 1.06, 0.002);
+  EXPECT_NEAR(result.number("floor_m_s"), result.number("floor_hpa") / 1.06, 0.002);
   EXPECT_THAT(result.finding, HasSubstr("flattens"));
   EXPECT_EQ(result.verdict, CheckVerdict::consistent);
 }
@@ -85,7 +79,7 @@ std::vector<double> falling(double step) {
 TEST(SpectrumCheck, FallingTurbulenceSpectrumIsReported) {
   const CheckResult result = check_spectrum({made(falling(0.02))});
   ASSERT_TRUE(result.ran);
-  EXPECT_LT(numbers_of(result).at("slope"), -1.5);
+  EXPECT_LT(result.number("slope"), -1.5);
   EXPECT_THAT(result.finding, HasSubstr("still falls"));
 }
 
@@ -93,7 +87,7 @@ TEST(SpectrumCheck, FallingTurbulenceSpectrumIsReported) {
 TEST(SpectrumCheck, TurbulenceAboveTheLimitIsNoEvidenceOfNoise) {
   const CheckResult result = check_spectrum({made(falling(4.0))});
   ASSERT_TRUE(result.ran) << result.reason;
-  EXPECT_GT(numbers_of(result).at("floor_hpa"), 0.3);
+  EXPECT_GT(result.number("floor_hpa"), 0.3);
   EXPECT_NE(result.verdict, CheckVerdict::inconsistent);
 }
 

@@ -21,10 +21,17 @@ TEST(Verdict, DependsOnSizeAndError) {
 }
 
 TEST(Verdict, OneInconsistentNumberMakesTheWholeInconsistent) {
-  EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
-  EXPECT_EQ(together(CheckVerdict::inconclusive, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
-  EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::inconclusive), CheckVerdict::inconclusive);
-  EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::consistent), CheckVerdict::consistent);
+  const auto number = [](double value, double error) { return judged({value, error}, 0.3, "K", ""); };
+  const TestStatistic consistent = number(0.0, 0.1);
+  const TestStatistic inconclusive = number(0.0, 0.4);
+  const TestStatistic inconsistent = number(0.5, 0.1);
+  CheckResult result;
+  for (const TestStatistic& other : {consistent, inconclusive}) {
+    decide({other, inconsistent}, result);
+    EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
+    decide({consistent, other}, result);
+    EXPECT_EQ(result.verdict, other.verdict);
+  }
 }
 
 TEST(Verdict, NamesTheDecidingNumber) {

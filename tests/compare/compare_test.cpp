@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "support/error_of.hpp"
+#include "support/short_flight.hpp"
 #include "support/synthetic_samples.hpp"
-#include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
 
 using pcor::ComparedModel;
@@ -34,18 +34,10 @@ namespace fs = std::filesystem;
 const fs::path data = fs::path(PCOR_SOURCE_DIR) / "data";
 
 /// The two-hour flight of the C-130 with all manoeuvres, the same for all tests.
-const fs::path& flight_file() {
-  static const pcor::test::TemporaryDirectory directory;
-  static const fs::path path = [] {
-    pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-eq18.toml"),
-                          directory / "flight.nc");
-    return directory / "flight.nc";
-  }();
-  return path;
-}
+fs::path flight_file() { return pcor::test::simulated("c130-eq18"); }
 
 ComparedModel laser_contender(double added_to_a0 = 0.0) {
-  ModelDefinition model = pcor::read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
+  ModelDefinition model = pcor::test::laser_model();
   model.model.effects[0].parameters[0] += added_to_a0;
   return {added_to_a0 == 0.0 ? "true law" : "shifted law", model, {pcor::lams_reference()}};
 }

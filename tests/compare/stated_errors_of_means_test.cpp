@@ -6,7 +6,6 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "support/many_seeds.hpp"
@@ -30,15 +29,9 @@ std::shared_ptr<const pcor::FlightSamples> flight(unsigned seed, const pcor::tes
   for (std::size_t i = 0; i < plan.samples; ++i)
     samples.motion.altitude[i] = 3000.0 + 2000.0 * std::sin(static_cast<double>(i) / 900.0 + seed);
   pcor::test::add_nuisance(made::reference_pressure(samples), seed + 100000, nuisance);
-  pcor::Interval interval;
-  for (const auto& [regime, begin, end] :
-       {std::make_tuple(pcor::Regime::climb, 200U, 1400U), std::make_tuple(pcor::Regime::climb, 5600U, 6500U),
-        std::make_tuple(pcor::Regime::pitch_manoeuvre, 3500U, 3800U)}) {
-    interval.regime = regime;
-    interval.begin = samples.time[begin];
-    interval.end = samples.time[end];
-    samples.intervals.push_back(interval);
-  }
+  samples.intervals = {{pcor::Regime::climb, samples.time[200], samples.time[1400]},
+                       {pcor::Regime::climb, samples.time[5600], samples.time[6500]},
+                       {pcor::Regime::pitch_manoeuvre, samples.time[3500], samples.time[3800]}};
   return std::make_shared<const pcor::FlightSamples>(samples);
 }
 

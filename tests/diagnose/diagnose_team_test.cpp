@@ -35,11 +35,6 @@ void serialize(Archive& archive, pcor::CoefficientEstimate& estimate) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, pcor::Evidence& evidence) {
-  archive(evidence.flight, evidence.begin, evidence.end, evidence.regimes, evidence.share);
-}
-
-template <class Archive>
 void serialize(Archive& archive, pcor::Alias& alias) {
   archive(alias.effect, alias.title, alias.correlation, alias.chi2_less, alias.size_to_usual, alias.estimates,
           alias.log_likelihood_less, alias.probability, alias.correction, alias.held, alias.is_alike);
@@ -56,8 +51,8 @@ void serialize(Archive& archive, pcor::Finding& finding) {
           finding.estimates, finding.held, finding.rms, finding.worst, finding.worst_flight,
           finding.worst_time, finding.chi2, finding.p_value, finding.rms_before, finding.rms_after,
           finding.gain, finding.gain_error, finding.events, finding.evidence, finding.aliases, finding.family,
-          finding.shape, finding.shape_beyond_model, finding.variants, finding.components,
-          finding.probability, finding.times_usual, finding.advice);
+          finding.shape, finding.variants, finding.components, finding.probability, finding.times_usual,
+          finding.advice);
 }
 
 template <class Archive>

@@ -5,11 +5,7 @@
 
 #include <random>
 
-using pcor::internal::Binning;
-using pcor::internal::find_mean_offsets;
-using pcor::internal::MeanOffset;
-using pcor::internal::NoiseModel;
-
+namespace pcor::internal {
 namespace {
 
 constexpr std::size_t rows = 300;
@@ -39,7 +35,7 @@ struct Flights {
   }
 
   std::vector<MeanOffset> steps() const {
-    return find_mean_offsets(pcor::internal::FlightPartition(bins.size()), bins, columns, residuals, noise);
+    return find_mean_offsets(FlightPartition(bins.size()), bins, columns, residuals, noise);
   }
 };
 
@@ -130,3 +126,4 @@ TEST(MeanSteps, RandomScatterIsNotSignificant) {
 }
 
 }  // namespace
+}  // namespace pcor::internal

@@ -16,14 +16,6 @@ namespace {
 constexpr double step = 4.0;  // s: every record is a bin
 constexpr Eigen::Index width = 3;
 
-Interval interval(Regime regime, double begin, double end) {
-  Interval made;
-  made.regime = regime;
-  made.begin = begin;
-  made.end = end;
-  return made;
-}
-
 /// Flights of 1000 s, with rows at random.
 class Flights {
  public:
@@ -72,15 +64,14 @@ class Flights {
   WhitenedSystem scores_;
 };
 
-const Interval ground = interval(Regime::ground, 0.0, 100.0);
-const Interval climb = interval(Regime::climb, 100.0, 900.0);
+const Interval ground{Regime::ground, 0.0, 100.0};
+const Interval climb{Regime::climb, 100.0, 900.0};
 
 TEST(FlownRegimes, DurationAndInformationAreMeansOverIntervals) {
   Flights flights;
-  flights.fly("first.nc",
-              {ground, interval(Regime::level, 100.0, 900.0), interval(Regime::yaw_manoeuvre, 200.0, 320.0)});
-  flights.fly("second.nc", {ground, interval(Regime::yaw_manoeuvre, 200.0, 300.0),
-                            interval(Regime::yaw_manoeuvre, 500.0, 580.0)});
+  flights.fly("first.nc", {ground, {Regime::level, 100.0, 900.0}, {Regime::yaw_manoeuvre, 200.0, 320.0}});
+  flights.fly("second.nc",
+              {ground, {Regime::yaw_manoeuvre, 200.0, 300.0}, {Regime::yaw_manoeuvre, 500.0, 580.0}});
   const std::vector<FlownRegime> regimes = flights.regimes();
   ASSERT_EQ(regimes.size(), 1U) << "neither on the ground nor level";
   const FlownRegime& yaw = regimes[0];
@@ -94,7 +85,7 @@ TEST(FlownRegimes, DurationAndInformationAreMeansOverIntervals) {
 
 TEST(FlownRegimes, TurnWithinAClimbIsCountedSeparately) {
   Flights flights;
-  flights.fly("first.nc", {ground, climb, interval(Regime::turn, 200.0, 400.0)});
+  flights.fly("first.nc", {ground, climb, {Regime::turn, 200.0, 400.0}});
   const std::vector<FlownRegime> regimes = flights.regimes();
   ASSERT_EQ(regimes.size(), 2U);
   EXPECT_EQ(regimes[0].regime, Regime::climb);
@@ -106,7 +97,7 @@ TEST(FlownRegimes, TurnWithinAClimbIsCountedSeparately) {
 
 TEST(FlownRegimes, RegimesWithoutSamplesAreOmitted) {
   Flights flights;
-  flights.fly("first.nc", {ground, climb, interval(Regime::circle, 700.0, 850.0)}, 600.0);
+  flights.fly("first.nc", {ground, climb, {Regime::circle, 700.0, 850.0}}, 600.0);
   const std::vector<FlownRegime> regimes = flights.regimes();
   ASSERT_EQ(regimes.size(), 1U);
   EXPECT_EQ(regimes[0].regime, Regime::climb);

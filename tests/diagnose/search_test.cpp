@@ -14,14 +14,6 @@
 using namespace pcor::internal;
 
 using pcor::Bounds;
-using pcor::internal::Binning;
-using pcor::internal::ColumnGroup;
-using pcor::internal::GroupScore;
-using pcor::internal::NoiseModel;
-using pcor::internal::Search;
-using pcor::internal::SearchOptions;
-using pcor::internal::SearchResult;
-using pcor::internal::WhitenedSystem;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
@@ -71,22 +63,20 @@ struct Problem {
   /// The column of a candidate.
   Eigen::MatrixXd::ColXpr candidate(Eigen::Index c) { return columns.col(base + c); }
 
-  /// Groups of one column each.
-  void one_by_one() {
-    for (Eigen::Index c = 0; c < columns.cols() - base; ++c) {
-      ColumnGroup group;
+  /// Groups of as many columns each.
+  void group_by(Eigen::Index count) {
+    for (Eigen::Index c = 0; c < columns.cols() - base; c += count) {
+      ColumnGroup& group = groups.emplace_back();
       group.first = c;
-      group.count = 1;
+      group.count = count;
       group.effect = groups.size();
-      group.bounds = {Bounds{}};
-      groups.push_back(group);
+      group.bounds.resize(static_cast<std::size_t>(count));
     }
   }
 
   Search search() {
-    if (groups.empty()) one_by_one();
-    scores =
-        pcor::internal::find_scores(pcor::internal::FlightPartition(1), bins, {columns}, {residual}, noise);
+    if (groups.empty()) group_by(1);
+    scores = find_scores(FlightPartition(1), bins, {columns}, {residual}, noise);
     return Search(scores, base, groups);
   }
 };
@@ -197,7 +187,7 @@ TEST(Search, ColumnsInTheBaseAreAbsorbed) {
 TEST(Search, RemainingShareIsThatOfTheWholeContribution) {
   Problem problem(2000, 5, 41);
   problem.candidate(0) = 2.0 * problem.columns.col(1);
-  problem.one_by_one();
+  problem.group_by(1);
   problem.groups[0].count = 2;
   problem.groups[0].bounds = {Bounds{}, Bounds{}};
   problem.groups.erase(problem.groups.begin() + 1);
@@ -214,7 +204,7 @@ TEST(Search, RemainingShareIsThatOfTheWholeContribution) {
 TEST(Search, EstimatesOutsideBoundsAreRejected) {
   Problem problem(600, 8, 5);
   problem.residual -= 0.5 * problem.candidate(3);
-  problem.one_by_one();
+  problem.group_by(1);
   problem.groups[3].bounds = {{0.0, 1.0}};
   const Search search = problem.search();
   EXPECT_FALSE(search.score(3, {}).possible);
@@ -226,7 +216,7 @@ TEST(Search, EstimatesOutsideBoundsAreRejected) {
 TEST(Search, AnEstimateWithinTwoErrorsOfItsBoundIsPossible) {
   Problem problem(600, 3, 6);
   problem.residual += 0.3 * problem.candidate(1);
-  problem.one_by_one();
+  problem.group_by(1);
   const GroupScore score = problem.search().score(1, {});
   const double error = std::sqrt(score.covariance(0, 0));
   problem.groups[1].bounds = {{score.estimate[0] + 1.9 * error, 10.0}};
@@ -240,7 +230,7 @@ TEST(Search, EffectOfTypicalSizeIsPreferred) {
   Problem problem(600, 6, 21);
   problem.candidate(2) = 0.99 * problem.candidate(1) + 0.14 * problem.candidate(2);
   problem.residual += 0.3 * problem.candidate(1);
-  problem.one_by_one();
+  problem.group_by(1);
   problem.groups[1].usual = {0.3};
   problem.groups[2].usual = {0.003};
   const Search search = problem.search();
@@ -249,7 +239,7 @@ TEST(Search, EffectOfTypicalSizeIsPreferred) {
   // But no size is impossible: without a rival, the effect is found.
   Problem alone(600, 6, 22);
   alone.residual += 0.3 * alone.candidate(2);
-  alone.one_by_one();
+  alone.group_by(1);
   alone.groups[2].usual = {0.01};
   EXPECT_THAT(alone.search().run({}).chosen, ElementsAre(2U));
 }
@@ -259,7 +249,7 @@ TEST(Search, EffectOfTypicalSizeIsPreferred) {
 TEST(Search, EvidenceOfOneColumnEqualsTheFormula) {
   Problem problem(4000, 1, 23);
   problem.residual += 0.05 * problem.candidate(0);
-  problem.one_by_one();
+  problem.group_by(1);
   problem.groups[0].usual = {0.05};
   const Search search = problem.search();
   const GroupScore score = search.score(0, {});
@@ -289,14 +279,7 @@ TEST(Search, OneEffectIsPreferredToAnEquivalentPair) {
 
 TEST(Search, FindsAGroupOfTwoColumns) {
   Problem problem(600, 12, 7, 0.5);
-  for (Eigen::Index g = 0; g < 6; ++g) {
-    ColumnGroup group;
-    group.first = 2 * g;
-    group.count = 2;
-    group.effect = static_cast<std::size_t>(g);
-    group.bounds = {Bounds{}, Bounds{}};
-    problem.groups.push_back(group);
-  }
+  problem.group_by(2);
   problem.residual += 0.3 * problem.candidate(8) - 0.3 * problem.candidate(9);
   const Search search = problem.search();
   ASSERT_THAT(search.run({}).chosen, ElementsAre(4U));
@@ -312,10 +295,7 @@ TEST(Search, AGroupOfEqualColumnsHasOneDegreeOfFreedom) {
   Problem problem(600, 2, 8);
   problem.candidate(1) = 3.0 * problem.candidate(0);
   problem.residual += 0.5 * problem.candidate(0);
-  ColumnGroup group;
-  group.count = 2;
-  group.bounds = {Bounds{}, Bounds{}};
-  problem.groups = {group};
+  problem.group_by(2);
   const Search search = problem.search();
   const GroupScore score = search.score(0, {});
   EXPECT_EQ(score.freedom, 1.0);
@@ -326,7 +306,7 @@ TEST(Search, AGroupOfEqualColumnsHasOneDegreeOfFreedom) {
 TEST(Search, OnlyOneShapeOfAnEffectIsChosen) {
   Problem problem(600, 6, 9);
   problem.residual += 0.4 * problem.candidate(0) + 0.4 * problem.candidate(1);
-  problem.one_by_one();
+  problem.group_by(1);
   problem.groups[1].effect = problem.groups[0].effect;
   EXPECT_THAT(run(problem).chosen, testing::AnyOf(ElementsAre(0U), ElementsAre(1U)));
 }
@@ -483,20 +463,19 @@ TEST(OneDegreeEquivalent, HasTheSameTailProbability) {
   for (const double freedom : {1.0, 2.0, 3.0, 6.0}) {
     double before = -1.0;
     for (double chi2 = 0.0; chi2 < 900.0; chi2 += 0.5) {
-      const double equivalent = pcor::internal::chi2_one_dof(chi2, freedom);
+      const double equivalent = chi2_one_dof(chi2, freedom);
       EXPECT_GE(equivalent, before);
       EXPECT_LE(equivalent, chi2 + 1e-12);
       before = equivalent;
       if (chi2 > 0.0 && chi2 < 500.0) {
-        const double tail = pcor::internal::chi_squared_tail(chi2, freedom);
-        EXPECT_NEAR(pcor::internal::chi_squared_tail(equivalent, 1.0), tail, 1e-7 * tail)
-            << freedom << " " << chi2;
+        const double tail = chi_squared_tail(chi2, freedom);
+        EXPECT_NEAR(chi_squared_tail(equivalent, 1.0), tail, 1e-7 * tail) << freedom << " " << chi2;
       }
     }
   }
   // Tables: 5 % of two degrees is 5.991, of one 3.841.
-  EXPECT_NEAR(pcor::internal::chi2_one_dof(5.991, 2.0), 3.841, 1e-3);
-  EXPECT_NEAR(pcor::internal::chi_squared_tail(12.592, 6.0), 0.05, 1e-5);
+  EXPECT_NEAR(chi2_one_dof(5.991, 2.0), 3.841, 1e-3);
+  EXPECT_NEAR(chi_squared_tail(12.592, 6.0), 0.05, 1e-5);
 }
 
 // An effect whose shape in nature differs from the formula leaves a rest; a second effect that resembles that
@@ -506,7 +485,7 @@ TEST(Search, UncertainShapeIsNotASecondEffect) {
   const Eigen::VectorXd rest = problem.candidate(3);  // column of the uncertain shape of the first effect
   problem.candidate(1) = rest + 0.2 * problem.candidate(1);
   problem.residual += 2.0 * problem.candidate(0) + 0.5 * rest + 0.4 * problem.candidate(2);
-  problem.one_by_one();
+  problem.group_by(1);
   problem.groups.pop_back();
   const Search exact = problem.search();
   EXPECT_THAT(exact.run({}).chosen, UnorderedElementsAre(0U, 1U, 2U));
@@ -525,7 +504,7 @@ TEST(Search, UncertainShapeIsNotARivalOfAnotherFinding) {
   const Eigen::VectorXd rest = problem.candidate(3);
   problem.candidate(1) = rest + 0.2 * problem.candidate(1);
   problem.residual += 2.0 * problem.candidate(0) + 0.8 * rest + 0.4 * problem.candidate(2);
-  problem.one_by_one();
+  problem.group_by(1);
   problem.groups.pop_back();
   problem.groups[0].shape_first = 3;
   problem.groups[0].shape_count = 1;
@@ -539,7 +518,7 @@ TEST(Search, UsualShapeIsPreferredOnlyOnTheSameSystem) {
   Problem problem(600, 2, 31);
   problem.candidate(1) = problem.candidate(0) + 0.03 * problem.candidate(1);
   problem.residual += 1.0 * problem.candidate(1);
-  problem.one_by_one();
+  problem.group_by(1);
   problem.groups[1].effect = problem.groups[0].effect;
   EXPECT_THAT(run(problem).chosen, ElementsAre(0U));
   problem.groups[1].system = 1;

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <pcor/effects/catalogue.hpp>

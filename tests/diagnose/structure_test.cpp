@@ -4,21 +4,13 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
-#include <set>
 #include <string>
 #include <vector>
 
 using namespace pcor::internal;
-
-using pcor::internal::Binning;
-using pcor::internal::NoiseModel;
-using pcor::internal::Smooth;
-using pcor::internal::Structure;
-using pcor::internal::StructureTest;
 
 namespace {
 
@@ -34,8 +26,8 @@ std::vector<double> draws(std::size_t count, unsigned seed) {
   return values;
 }
 
-pcor::internal::VariableValues known(const std::vector<double>& values) {
-  return {pcor::internal::FlightPartition(1), [&values](std::size_t) { return values; }};
+VariableValues known(const std::vector<double>& values) {
+  return {FlightPartition(1), [&values](std::size_t) { return values; }};
 }
 
 Eigen::MatrixXd functions_of(const Smooth& smooth, const std::vector<double>& values) {
@@ -47,6 +39,12 @@ Eigen::MatrixXd functions_of(const Smooth& smooth, const std::vector<double>& va
       rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = out[k];
   }
   return rows;
+}
+
+Eigen::MatrixXd with_constant(const Eigen::MatrixXd& rows) {
+  Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
+  with << rows, Eigen::VectorXd::Ones(rows.rows());
+  return with;
 }
 
 /// The part of a target that columns leave, 0 to 1.
@@ -89,7 +87,7 @@ struct Flight {
   }
 
   StructureTest test(const std::vector<Eigen::MatrixXd>& aside = {}) const {
-    StructureTest result(pcor::internal::FlightPartition(1), bins, columns, residuals, noise, 1, aside);
+    StructureTest result(FlightPartition(1), bins, columns, residuals, noise, 1, aside);
     for (std::size_t k = 0; k < variables.size(); ++k)
       result.add("v" + std::to_string(k), {variables[k].data()});
     return result;
@@ -110,8 +108,7 @@ TEST(Smooth, BasisHasALineAndNoConstant) {
     const Eigen::MatrixXd rows = functions_of(smooth, values);
     EXPECT_NEAR(rows.col(0).mean(), 0.0, 1e-12);
     EXPECT_NEAR(rows.col(0).squaredNorm() / 500.0, 1.0, 1e-12);
-    Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
-    with << rows, Eigen::VectorXd::Ones(rows.rows());
+    const Eigen::MatrixXd with = with_constant(rows);
     // A constant adds a separate direction.
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition(with);
     EXPECT_EQ(decomposition.rank(), rows.cols() + 1);
@@ -131,10 +128,8 @@ TEST(Smooth, FollowsABentCurve) {
   Eigen::VectorXd wave(600);
   for (Eigen::Index i = 0; i < 600; ++i) wave[i] = std::sin(values[static_cast<std::size_t>(i)]);
   const Eigen::MatrixXd rows = functions_of(Smooth::with_knots_at_values(known(values), 6), values);
-  Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
-  with << rows, Eigen::VectorXd::Ones(rows.rows());
   // Quadratic splines of knots h = 1.2 apart err by h^3/72 of the third derivative, some percent.
-  EXPECT_LT(left_of(with, wave), 0.05);
+  EXPECT_LT(left_of(with_constant(rows), wave), 0.05);
 }
 
 // For a switch with three positions every function is one column set: equal to a mean for each, less the
@@ -145,11 +140,9 @@ TEST(Smooth, FewLevelsAllowAnyFunctionOfThem) {
   const Smooth smooth = Smooth::with_knots_at_values(known(values), 6);
   EXPECT_EQ(smooth.columns(), 2U);
   const Eigen::MatrixXd rows = functions_of(smooth, values);
-  Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
-  with << rows, Eigen::VectorXd::Ones(rows.rows());
   Eigen::VectorXd target(90);
   for (Eigen::Index i = 0; i < 90; ++i) target[i] = i % 3 == 1 ? 5.0 : (i % 3 == 2 ? -1.0 : 0.5);
-  EXPECT_LT(left_of(with, target), 1e-10);
+  EXPECT_LT(left_of(with_constant(rows), target), 1e-10);
 }
 
 // A variable that is zero most of the time, as liquid water: quantiles fall together.
@@ -194,8 +187,7 @@ TEST(Smooth, EvenKnotsFollowAWaveInSparseValues) {
     wave[static_cast<Eigen::Index>(i)] = std::sin(2.0 * std::acos(-1.0) * values[i]);
   const auto left = [&](const Smooth& smooth) {
     const Eigen::MatrixXd rows = functions_of(smooth, values);
-    Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
-    with << rows, Eigen::VectorXd::Ones(rows.rows());
+    const Eigen::MatrixXd with = with_constant(rows);
     EXPECT_EQ(Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(with).rank(), with.cols());
     return left_of(with, wave);
   };
@@ -251,7 +243,7 @@ TEST(StructureTest, SlopeEqualsGeneralisedLeastSquares) {
     for (Eigen::Index j = 0; j < rows; ++j)
       covariance(i, j) =
           0.09 * std::pow(memory, std::abs(static_cast<double>(i - j))) / (1.0 - memory * memory) +
-          0.16 * std::exp(-step * std::abs(static_cast<double>(i - j)) / pcor::internal::slow_times[1]);
+          0.16 * std::exp(-step * std::abs(static_cast<double>(i - j)) / slow_times[1]);
   }
   Eigen::MatrixXd columns(rows, 2);
   columns << Eigen::VectorXd::Ones(rows), as_vector(flight.variables[0]);
@@ -341,8 +333,7 @@ TEST(StructureTest, FindsAnAngle) {
   for (Eigen::Index i = 0; i < 900; ++i)
     flight.residuals[0][i] +=
         0.3 * std::cos(flight.variables[2][static_cast<std::size_t>(i)] * std::acos(-1.0) / 180.0);
-  StructureTest test(pcor::internal::FlightPartition(1), flight.bins, flight.columns, flight.residuals,
-                     flight.noise, 1);
+  StructureTest test(FlightPartition(1), flight.bins, flight.columns, flight.residuals, flight.noise, 1);
   ASSERT_TRUE(test.add("heading", {flight.variables[2].data()}, 360.0));
   EXPECT_GT(test.structures()[0].gain, 50.0);
   EXPECT_EQ(test.structures()[0].freedom, 4.0);
@@ -361,8 +352,7 @@ TEST(StructureTest, ModelledEffectsAreNotStructure) {
 
 TEST(StructureTest, ConstantOrMissingVariablesAreSkipped) {
   Flight flight(300, 3, 6);
-  StructureTest test(pcor::internal::FlightPartition(1), flight.bins, flight.columns, flight.residuals,
-                     flight.noise, 1);
+  StructureTest test(FlightPartition(1), flight.bins, flight.columns, flight.residuals, flight.noise, 1);
   const std::vector<double> constant(300, 5.0);
   EXPECT_FALSE(test.add("constant", {constant.data()}));
   std::vector<double> gappy = flight.variables[0];
@@ -374,19 +364,18 @@ TEST(StructureTest, ConstantOrMissingVariablesAreSkipped) {
   EXPECT_TRUE(std::isfinite(test.structures()[0].gain));
 }
 
-pcor::internal::ChangeSlope changes(const std::vector<double>& residual,
-                                    const std::vector<double>& variable) {
-  return pcor::internal::slope_of_changes(pcor::internal::FlightPartition(1), {residual}, {variable.data()});
+ChangeSlope changes(const std::vector<double>& residual, const std::vector<double>& variable) {
+  return slope_of_changes(FlightPartition(1), {residual}, {variable.data()});
 }
 
 TEST(ChangeSlope, EqualsTheSlopeOfACause) {
   std::vector<double> residual = draws(3600, 20);
   const std::vector<double> cause = draws(3600, 21);
   for (std::size_t i = 0; i < cause.size(); ++i) residual[i] += 0.5 * cause[i];
-  const pcor::internal::ChangeSlope found = changes(residual, cause);
+  const ChangeSlope found = changes(residual, cause);
   EXPECT_NEAR(found.slope, 0.5, 4.0 * found.error);
   EXPECT_LT(found.error, 0.05) << "the changes of 3600 records have an error of 0.017";
-  pcor::internal::Structure slow;
+  Structure slow;
   slow.slope = 0.5;
   slow.slope_error = 0.02;
   EXPECT_TRUE(found.agrees_with(slow));

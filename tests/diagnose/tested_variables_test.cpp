@@ -3,21 +3,15 @@
 
 #include <gmock/gmock.h>
 
-#include <limits>
+#include <cmath>
 
+#include "numerics/missing.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 
-using pcor::internal::FlightColumns;
-using pcor::internal::recorded_variables;
-using pcor::internal::TestedVariable;
-using pcor::test::NetcdfMaker;
-using pcor::test::TemporaryDirectory;
-using testing::HasSubstr;
-
+namespace pcor::internal {
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t records = 60;
 
 class RecordedVariables : public testing::Test {
@@ -27,14 +21,14 @@ class RecordedVariables : public testing::Test {
                       const std::vector<double>& circle = {}) {
     const std::filesystem::path path = directory_ / "flight.nc";
     {
-      NetcdfMaker file(path);
+      test::NetcdfMaker file(path);
       std::vector<double> time(records);
       for (std::size_t i = 0; i < records; ++i) time[i] = static_cast<double>(i);
       file.time(time);
       const int variable = file.series("V", units, values, rate);
       if (!circle.empty()) file.numbers(variable, "modulus_range", NC_FLOAT, circle);
     }
-    const pcor::FlightSet files{path};
+    const FlightSet files{path};
     const FlightColumns flight;
     // The same flight twice, as two references see it.
     std::vector<TestedVariable> all = recorded_variables(files, {flight, flight}, {"Time"});
@@ -45,7 +39,7 @@ class RecordedVariables : public testing::Test {
   }
 
  private:
-  TemporaryDirectory directory_;
+  test::TemporaryDirectory directory_;
 };
 
 TEST_F(RecordedVariables, HigherRatesAreAveraged) {
@@ -53,21 +47,21 @@ TEST_F(RecordedVariables, HigherRatesAreAveraged) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
   const TestedVariable variable = read("percent", values, 5);
   EXPECT_EQ(variable.values[0]->at(1), 7.0);
-  EXPECT_THAT(variable.sampling, HasSubstr("means of 5 samples"));
+  EXPECT_THAT(variable.sampling, testing::HasSubstr("means of 5 samples"));
 }
 
 TEST_F(RecordedVariables, LowerRatesAreInterpolated) {
-  std::vector<double> values(records, missing);
+  std::vector<double> values(records, nan);
   for (std::size_t i = 0; i < records; i += 10) values[i] = static_cast<double>(i);
   const TestedVariable variable = read("percent", values);
   EXPECT_NEAR(variable.values[0]->at(37), 37.0, 1e-5);  // floats in the file
   EXPECT_TRUE(std::isnan(variable.values[0]->at(55)));  // after the last
-  EXPECT_THAT(variable.sampling, HasSubstr("one value in 10 records, interpolated"));
+  EXPECT_THAT(variable.sampling, testing::HasSubstr("one value in 10 records, interpolated"));
 }
 
 TEST_F(RecordedVariables, GapsAreKept) {
   std::vector<double> values(records, 1.0);
-  for (std::size_t i = 20; i < 55; ++i) values[i] = missing;
+  for (std::size_t i = 20; i < 55; ++i) values[i] = nan;
   const TestedVariable variable = read("percent", values);
   EXPECT_TRUE(std::isnan(variable.values[0]->at(30)));
   EXPECT_EQ(variable.sampling, "");
@@ -88,3 +82,4 @@ TEST_F(RecordedVariables, VariablesThatCoverTheCircleAreAngles) {
 }
 
 }  // namespace
+}  // namespace pcor::internal

@@ -7,59 +7,41 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "support/says.hpp"
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 using pcor::FittedParameter;
 using pcor::ModelDefinition;
 using pcor::RefitResult;
+using pcor::test::laser_model;
+using pcor::test::scenario_text;
+using pcor::test::simulated;
 using testing::Contains;
 using testing::HasSubstr;
 
 namespace {
 
-const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
-
-std::string text_of(const std::string& scenario) {
-  std::ifstream file(scenarios / (scenario + ".toml"));
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// A simulated flight, kept for all tests.
-std::filesystem::path flight(const std::string& scenario, const std::string& more = "") {
-  static const pcor::test::TemporaryDirectory directory;
-  const std::filesystem::path path =
-      directory / (scenario + std::to_string(std::hash<std::string>()(more)) + ".nc");
-  if (!std::filesystem::exists(path))
-    pcor::simulate_flight(pcor::parse_scenario(text_of(scenario) + more, scenario), path);
-  return path;
-}
-
 const std::string warm_thermometer = "\n[noise]\nTTRR = { rms = 0.03, bias = 0.3 }\n";
 
-ModelDefinition law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
-
 ModelDefinition no_law() {
-  ModelDefinition model = law();
+  ModelDefinition model = laser_model();
   for (auto& effect : model.model.effects) effect.parameters[0] = 0.0;
   return model;
 }
 
 RefitResult fit(const std::filesystem::path& path, const ModelDefinition& model,
-                const std::vector<std::string>& references) {
-  return pcor::refit({path}, model, pcor::read_references(references, model, {}).used);
+                const std::vector<std::string>& references, const pcor::RefitOptions& options = {}) {
+  return pcor::refit({path}, model, pcor::read_references(references, model, {}).used, options);
 }
 
 constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // values of usual flight
 
 /// Error of the fitted delta-p in usual flight, hPa.
 double error_of(const RefitResult& fit) {
-  const std::vector<ModelDefinition> models{fit.model, law()};
+  const std::vector<ModelDefinition> models{fit.model, laser_model()};
   std::vector<double> defects;
   for (const ModelDefinition& each : models) {
     const auto& effects = each.model.effects;
@@ -83,15 +65,14 @@ constexpr double error_of_qp = 0.01;  // stated for static-qp.a2
 
 /// Fit of static-constant only, with static-qp fixed at its true value plus `change`.
 RefitResult fit_of_constant(double change, const std::vector<std::string>& references) {
-  ModelDefinition model = law();
+  ModelDefinition model = laser_model();
   model.model.effects[2].parameters[0] += change;
   model.fits.resize(model.model.effects.size());
   for (auto& each : model.fits) each.resize(1);
   model.fits[2][0].standard_error = error_of_qp;
   pcor::RefitOptions options;
   options.fix = {"static-alpha", "static-qp"};
-  return pcor::refit({flight("c130-eight-circles")}, model, pcor::read_references(references, model, {}).used,
-                     options);
+  return fit(simulated("c130-eight-circles"), model, references, options);
 }
 
 /// Change of static-constant.a0 by one standard error of static-qp.a2, from two fits.
@@ -103,14 +84,14 @@ double change_by_qp(const std::vector<std::string>& references) {
 }  // namespace
 
 TEST(GpsFit, WindDeterminesTheLaw) {
-  const RefitResult result = fit(flight("c130-eq18"), no_law(), {"wind"});
+  const RefitResult result = fit(simulated("c130-eq18"), no_law(), {"wind"});
   EXPECT_LT(std::abs(error_of(result)), 0.4);
   EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
   EXPECT_LT(stated_by(result), 0.25);
 }
 
 TEST(GpsFit, WindAndHeightDetermineLawAndThermometer) {
-  const RefitResult result = fit(flight("c130-eq18", warm_thermometer), no_law(), {"wind", "height"});
+  const RefitResult result = fit(simulated("c130-eq18", warm_thermometer), no_law(), {"wind", "height"});
   EXPECT_LT(std::abs(error_of(result)), 0.3);
   EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
   EXPECT_THAT(result.notes, Contains(pcor::test::Says("the thermometer reads high by 0.")));
@@ -118,9 +99,9 @@ TEST(GpsFit, WindAndHeightDetermineLawAndThermometer) {
 
 // Shared with the nuisance, the offset was 0.3 K too small.
 TEST(GpsFit, ThermometerOffsetOfTheModelReplacesTheNuisance) {
-  const ModelDefinition model = pcor::add_effects(law(), {pcor::neutral_effect("temp-offset")});
+  const ModelDefinition model = pcor::add_effects(laser_model(), {pcor::neutral_effect("temp-offset")});
   const std::string hot = "\n[noise]\nTTRR = { rms = 0.03, bias = 2.0 }\n";
-  const RefitResult result = fit(flight("c130-eq18", hot), model, {"wind", "height"});
+  const RefitResult result = fit(simulated("c130-eq18", hot), model, {"wind", "height"});
   const FittedParameter& offset = result.parameters[3];
   ASSERT_EQ(offset.name, "temp-offset.offset");
   EXPECT_NEAR(offset.value, 2.0, 3.0 * offset.standard_error);
@@ -128,44 +109,40 @@ TEST(GpsFit, ThermometerOffsetOfTheModelReplacesTheNuisance) {
 }
 
 TEST(GpsFit, HoldsCoefficientsUndeterminedByOneHeading) {
-  const RefitResult result = fit(flight("c130-one-heading"), law(), {"wind"});
+  const RefitResult result = fit(simulated("c130-one-heading"), laser_model(), {"wind"});
   EXPECT_LT(std::abs(error_of(result)), 0.3) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);
   EXPECT_THAT(result.warnings, Contains(HasSubstr("circles")));
 }
 
 TEST(GpsFit, HeightAloneDoesNotDetermineTheLevel) {
-  const RefitResult result = fit(flight("c130-eq18", warm_thermometer), law(), {"height"});
+  const RefitResult result = fit(simulated("c130-eq18", warm_thermometer), laser_model(), {"height"});
   EXPECT_LT(std::abs(error_of(result)), 0.1) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);
   EXPECT_TRUE(result.worse.empty());
 }
 
 TEST(GpsFit, CombinesWithALaser) {
-  const RefitResult laser = fit(flight("c130-circles"), no_law(), {"lams"});
-  const RefitResult all = fit(flight("c130-circles"), no_law(), {"wind", "lams"});
+  const RefitResult laser = fit(simulated("c130-circles"), no_law(), {"lams"});
+  const RefitResult all = fit(simulated("c130-circles"), no_law(), {"wind", "lams"});
   EXPECT_LT(std::abs(error_of(all)), 3.0 * stated_by(all));
   EXPECT_LE(stated_by(all), stated_by(laser));
   EXPECT_EQ(all.flights.front().reference, "lams") << "single figures are those of the laser";
 }
 
 TEST(GpsFit, RefusesStages) {
-  const ModelDefinition model = law();
   pcor::RefitOptions options;
   options.stages.push_back({{pcor::Regime::speed_run}, {"static-qp"}});
-  EXPECT_ANY_THROW(
-      pcor::refit({flight("c130-circles")}, model, pcor::read_references({"wind"}, model, {}).used, options));
+  EXPECT_ANY_THROW(fit(simulated("c130-circles"), laser_model(), {"wind"}, options));
 }
 
 TEST(GpsFit, GpsAloneRefusesAPriorAndALoss) {
-  const ModelDefinition model = law();
-  const auto references = pcor::read_references({"wind"}, model, {}).used;
   pcor::RefitOptions with_prior;
   with_prior.use_prior = true;
-  EXPECT_ANY_THROW(pcor::refit({flight("c130-circles")}, model, references, with_prior));
+  EXPECT_ANY_THROW(fit(simulated("c130-circles"), laser_model(), {"wind"}, with_prior));
   pcor::RefitOptions with_loss;
   with_loss.loss = pcor::Loss::none;
-  EXPECT_ANY_THROW(pcor::refit({flight("c130-circles")}, model, references, with_loss));
+  EXPECT_ANY_THROW(fit(simulated("c130-circles"), laser_model(), {"wind"}, with_loss));
 }
 
 TEST(GpsFit, CoefficientAtItsBoundIsReported) {
@@ -174,7 +151,7 @@ TEST(GpsFit, CoefficientAtItsBoundIsReported) {
   model.fits.resize(model.model.effects.size());
   for (auto& each : model.fits) each.resize(1);
   model.fits[1][0].bounds = pcor::Bounds{0.0, 0.014};
-  const RefitResult result = fit(flight("c130-eq18"), model, {"wind"});
+  const RefitResult result = fit(simulated("c130-eq18"), model, {"wind"});
   EXPECT_TRUE(result.parameters[1].at_bound);
   EXPECT_DOUBLE_EQ(result.parameters[1].value, 0.014);
   EXPECT_FALSE(result.parameters[0].at_bound);
@@ -187,10 +164,10 @@ TEST(GpsFit, CoefficientAtItsBoundIsReported) {
 TEST(GpsFit, WarnsIfItDoesNotConverge) {
   const std::string effect = "\n[[effect]]\nid = \"static-beta-odd\"\nb1 = 0.01\n";
   const std::string yaw = "kind = \"yaw\"";
-  ModelDefinition model = law();
+  ModelDefinition model = laser_model();
   model = pcor::add_effects(model, {pcor::neutral_effect("static-beta-odd")});
   for (const bool is_fast : {false, true}) {
-    std::string text = text_of("c130-eq18") + effect;
+    std::string text = scenario_text("c130-eq18") + effect;
     for (std::size_t at = text.find(yaw); is_fast && at != std::string::npos; at = text.find(yaw, at + 1))
       text.insert(at + yaw.size(), "\nperiod = 3\ncycles = 40");
     const pcor::test::TemporaryDirectory directory;
@@ -205,22 +182,22 @@ TEST(GpsFit, WarnsIfItDoesNotConverge) {
 }
 
 TEST(GpsFit, GustsAreNotExcluded) {
-  const RefitResult result = fit(flight("c130-eq18"), law(), {"wind"});
+  const RefitResult result = fit(simulated("c130-eq18"), laser_model(), {"wind"});
   EXPECT_EQ(result.masks[static_cast<std::size_t>(pcor::Mask::burst)], 0U);
 }
 
 TEST(GpsFit, JackknifeUsesAllReferences) {
-  const RefitResult laser = fit(flight("c130-circles"), no_law(), {"lams"});
-  const RefitResult all = fit(flight("c130-circles"), no_law(), {"wind", "lams"});
+  const RefitResult laser = fit(simulated("c130-circles"), no_law(), {"lams"});
+  const RefitResult all = fit(simulated("c130-circles"), no_law(), {"wind", "lams"});
   EXPECT_NE(all.parameters[0].jackknife_error, laser.parameters[0].jackknife_error);
   EXPECT_GT(all.parameters[0].jackknife_error, 0.0);
 }
 
 TEST(GpsFit, GpsAloneKeepsTheStatedMisfit) {
-  ModelDefinition model = law();
+  ModelDefinition model = laser_model();
   model.uncertainty.static_defect = 0.3;
   model.uncertainty.static_defect_ratio = 0.001;
-  const RefitResult result = fit(flight("c130-eq18"), model, {"wind"});
+  const RefitResult result = fit(simulated("c130-eq18"), model, {"wind"});
   EXPECT_EQ(result.model.uncertainty.static_defect, 0.3);
   EXPECT_EQ(result.model.uncertainty.static_defect_ratio, 0.001);
   // A fit by GPS alone does not compute these.
@@ -230,12 +207,11 @@ TEST(GpsFit, GpsAloneKeepsTheStatedMisfit) {
 }
 
 TEST(GpsFit, FixedCoefficientsKeepTheirCovariance) {
-  const RefitResult laser = fit(flight("c130-eq18"), law(), {"lams"});
+  const RefitResult laser = fit(simulated("c130-eq18"), laser_model(), {"lams"});
   ASSERT_NE(laser.covariance[0][1], 0.0);
   pcor::RefitOptions options;
   options.fix = {laser.model.model.effects[0].id, laser.model.model.effects[1].id};
-  const auto references = pcor::read_references({"wind"}, laser.model, {}).used;
-  const RefitResult result = pcor::refit({flight("c130-eq18")}, laser.model, references, options);
+  const RefitResult result = fit(simulated("c130-eq18"), laser.model, {"wind"}, options);
   ASSERT_EQ(result.covariance.size(), 3U);  // the fitted coefficient, and the fixed ones
   EXPECT_EQ(result.covariance[1][2], laser.covariance[0][1]);
   EXPECT_EQ(result.covariance[1][1], laser.covariance[0][0]);

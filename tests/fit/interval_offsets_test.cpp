@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "fit/fit_flights.hpp"
-#include "fit/fit_parameters.hpp"
 #include "fit/solver.hpp"
 #include "support/synthetic_samples.hpp"
 
@@ -31,18 +30,11 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
       plan.outliers = 0.01;
       plan.defect = made::equation_18;
       FlightSamples samples = made::flight(plan);
-      for (const std::size_t begin : {200U, 600U, 900U, 1800U}) {  // the third continues the second
-        Interval interval;
-        interval.regime = Regime::pitch_manoeuvre;
-        interval.begin = samples.time[begin];
-        interval.end = samples.time[begin + 300];
-        samples.intervals.push_back(interval);
-      }
-      Interval instant;  // too short for a bin, so that its offset is free
-      instant.regime = Regime::pitch_manoeuvre;
-      instant.begin = samples.time[2200];
-      instant.end = samples.time[2201];
-      samples.intervals.push_back(instant);
+      for (const std::size_t begin : {200U, 600U, 900U, 1800U})  // the third continues the second
+        samples.intervals.push_back(
+            {Regime::pitch_manoeuvre, samples.time[begin], samples.time[begin + 300]});
+      // Too short for a bin, so that its offset is free.
+      samples.intervals.push_back({Regime::pitch_manoeuvre, samples.time[2200], samples.time[2201]});
       all.push_back(std::make_shared<const FlightSamples>(samples));
     }
     return all;
@@ -52,7 +44,6 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
     options_.loss = GetParam();
     options_.threads = 1;
     task_.start = Eigen::Vector3d(0.004, 0.02, 0.03);
-    task_.doubt = Eigen::Matrix3d::Zero();
     whole_ = std::make_unique<FitFlights>(task_, FitSetup{task_.start, {0, 1, 2}});
     whole_->weigh(task_.start);
     stage_ =
@@ -71,14 +62,7 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
   ModelDefinition model_ = made::model({"static-constant", "static-alpha", "static-qp"});
   References references_ = made::pressure_reference();
   FlightSet flights_{flights()};
-  FitTask task_{model_,
-                *references_.front(),
-                options_,
-                flights_,
-                fit_parameters(model_, *references_.front(), options_),
-                {},
-                {},
-                [] {}};
+  FitTask task_ = fit_task(model_, references_, options_, flights_);
   std::unique_ptr<FitFlights> whole_;
   std::unique_ptr<FitFlights> stage_;
 };
@@ -88,9 +72,7 @@ using IntervalOffsetsOfAnyLoss = IntervalOffsets;
 
 TEST_P(IntervalOffsetsOfLeastSquares, EqualTheSolutionForAllUnknowns) {
   const Solution found = solution();
-  std::vector<Eigen::MatrixXd> columns;  // derivatives of each flight by the slopes and by its offsets
-  std::vector<Eigen::VectorXd> residuals;
-  Eigen::Index bins = 0;
+  // Derivatives of each flight by the slopes and by its offsets, and its residual.
   const auto systems = stage_->of_each([&](std::size_t flight, const FitFlight& fit) {
     const FlightSamples& samples = fit.residuals().samples();
     const std::vector<double>& pressure = *samples.model.find(Quantity::static_pressure);
@@ -108,19 +90,16 @@ TEST_P(IntervalOffsetsOfLeastSquares, EqualTheSolutionForAllUnknowns) {
     own.rightCols(1) = stage_->weighted(flight, stage_->residual(flight, task_.start));
     return own;
   });
-  for (const Eigen::MatrixXd& system : systems) {
-    columns.emplace_back(system.leftCols(system.cols() - 1));
-    residuals.emplace_back(system.rightCols(1));
-    bins += system.rows();
-  }
+  Eigen::Index bins = 0;
+  for (const Eigen::MatrixXd& system : systems) bins += system.rows();
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(bins, 2 + 40);
   Eigen::VectorXd residual(bins);
   Eigen::Index row = 0;
-  for (std::size_t f = 0; f < columns.size(); ++f) {
-    const Eigen::Index count = columns[f].rows();
-    all.block(row, 0, count, 2) = columns[f].leftCols(2);
-    all.block(row, 2 + 4 * static_cast<Eigen::Index>(f), count, 4) = columns[f].rightCols(4);
-    residual.segment(row, count) = residuals[f];
+  for (std::size_t f = 0; f < systems.size(); ++f) {
+    const Eigen::Index count = systems[f].rows();
+    all.block(row, 0, count, 2) = systems[f].leftCols(2);
+    all.block(row, 2 + 4 * static_cast<Eigen::Index>(f), count, 4) = systems[f].middleCols(2, 4);
+    residual.segment(row, count) = systems[f].rightCols(1);
     row += count;
   }
   const Eigen::VectorXd step = all.colPivHouseholderQr().solve(-residual);

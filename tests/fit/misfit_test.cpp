@@ -56,9 +56,7 @@ TEST(Misfit, MissingRollGivesNoLoadFactor) {
   const References references = made::pressure_reference();
   const RefitOptions options;
   const FlightSet set({std::make_shared<const FlightSamples>(samples)});
-  FitTask task{
-      model, *references.front(), options, set, fit_parameters(model, *references.front(), options), {}, {},
-      [] {}};
+  FitTask task = fit_task(model, references, options, set);
   task.start = Eigen::Vector3d(0.004, 0.02, 0.03);
   FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
   const std::vector<Eigen::MatrixXd> states = binned_states(flights);
@@ -81,16 +79,12 @@ TEST(Misfit, IsNoNoiseOfAnyStaticPressure) {
   plan.noise = 0.1;
   plan.defect = curved;
   const ModelDefinition model = made::model({"static-constant", "static-alpha", "static-qp"});
-  const References references = made::pressure_reference();
+  References references = made::pressure_reference();
+  references.push_back(references.front());
   const RefitOptions options;
   const FlightSet set({made::shared(plan)});
-  FitTask task{
-      model, *references.front(), options, set, fit_parameters(model, *references.front(), options), {}, {},
-      [] {}};
+  FitTask task = fit_task(model, references, options, set);
   task.start = Eigen::Vector3d(0.004, 0.02, 0.03);
-  task.doubt = Eigen::Matrix3d::Zero();
-  FitTask same = task;
-  task.further.push_back(std::move(same));
   FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
   ASSERT_EQ(flights.joint().size(), 2U);
   Solution solution{task.start, std::vector<bool>(3, false), 1.0};

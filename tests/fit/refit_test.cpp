@@ -54,6 +54,27 @@ RefitOptions with_loss(Loss loss) {
   return options;
 }
 
+RefitOptions with_training_share(double share) {
+  RefitOptions options;
+  options.training_share = share;
+  return options;
+}
+
+/// A flight with a bias of 0.5 hPa in its second half; noise: 0.3 hPa.
+Flights with_biased_half() {
+  FlightSamples samples = made::flight(plan_18(14));
+  std::vector<double>& reference = made::reference_pressure(samples);
+  for (std::size_t i = reference.size() / 2; i < reference.size(); ++i) reference[i] += 0.5;
+  return {std::make_shared<FlightSamples>(samples)};
+}
+
+/// Sets the bounds of the first coefficient.
+void set_bounds(ModelDefinition& model, const pcor::Bounds& bounds) {
+  model.fits.resize(1);
+  model.fits[0].resize(1);
+  model.fits[0][0].bounds = bounds;
+}
+
 std::map<std::string, pcor::FittedParameter> by_name(const RefitResult& result) {
   std::map<std::string, pcor::FittedParameter> parameters;
   for (const pcor::FittedParameter& parameter : result.parameters) parameters[parameter.name] = parameter;
@@ -197,9 +218,7 @@ TEST(Refit, FixedCoefficientsAreUnchanged) {
 
 TEST(Refit, StopsAtABoundWithANote) {
   ModelDefinition model = made::model(equation_18);
-  model.fits.resize(1);
-  model.fits[0].resize(1);
-  model.fits[0][0].bounds = pcor::Bounds{-0.01, 0.002};
+  set_bounds(model, {-0.01, 0.002});
   const RefitResult result = fit({made::shared(plan_18(9))}, model);
   const auto found = by_name(result);
   EXPECT_NEAR(found.at("static-constant.a0").value, 0.002, 1e-9);
@@ -210,9 +229,7 @@ TEST(Refit, StopsAtABoundWithANote) {
 
 TEST(Refit, StopsAtABoundAsTheOnlyFreeCoefficient) {
   ModelDefinition model = made::model({"static-constant"});
-  model.fits.resize(1);
-  model.fits[0].resize(1);
-  model.fits[0][0].bounds = pcor::Bounds{-0.01, 0.0001};
+  set_bounds(model, {-0.01, 0.0001});
   const RefitResult result = fit({made::shared(plan_18(9))}, model);
   EXPECT_TRUE(by_name(result).at("static-constant.a0").at_bound);
   EXPECT_TRUE(std::isnan(by_name(result).at("static-constant.a0").standard_error));
@@ -253,10 +270,9 @@ TEST(Refit, ValueOfAnEffectWithAMinimumIsThatOfARefit) {
   const auto samples = made::shared(plan_18(11));
   ModelDefinition model = made::model(equation_18);
   model.model.policy.minimum = 1.0;
-  for (pcor::ModelEffect& effect : model.model.effects)
-    effect.parameters[0] = truth_18.at(
-        effect.id == "static-constant" ? "static-constant.a0"
-                                       : (effect.id == "static-alpha" ? "static-alpha.a1" : "static-qp.a2"));
+  model.model.effects[0].parameters[0] = truth_18.at("static-constant.a0");
+  model.model.effects[1].parameters[0] = truth_18.at("static-alpha.a1");
+  model.model.effects[2].parameters[0] = truth_18.at("static-qp.a2");
   const RefitResult all = fit({samples}, model);
   ASSERT_EQ(all.omissions.size(), 3U);
   for (std::size_t e = 0; e < all.omissions.size(); ++e) {
@@ -278,11 +294,7 @@ TEST(Refit, FitsSlopesToManoeuvresFirst) {
     if (samples.time[i] < begin || samples.time[i] >= end)
       made::reference_pressure(samples)[i] += 0.2 * adifr[i];
   }
-  pcor::Interval interval;
-  interval.regime = pcor::Regime::pitch_manoeuvre;
-  interval.begin = begin;
-  interval.end = end;
-  samples.intervals = {interval};
+  samples.intervals = {{pcor::Regime::pitch_manoeuvre, begin, end}};
   ModelDefinition model = made::model(equation_18);
   model.model.effects[2].parameters = {truth_18.at("static-qp.a2")};
   RefitOptions options;
@@ -299,15 +311,8 @@ TEST(Refit, FitsSlopesToManoeuvresFirst) {
 
 TEST(Refit, StagesFitAllCoefficients) {
   FlightSamples samples = made::flight(plan_18(17));
-  pcor::Interval first;
-  first.regime = pcor::Regime::pitch_manoeuvre;
-  first.begin = samples.time[600];
-  first.end = samples.time[1200];
-  pcor::Interval second = first;
-  second.regime = pcor::Regime::speed_run;
-  second.begin = samples.time[1500];
-  second.end = samples.time[2500];
-  samples.intervals = {first, second};
+  samples.intervals = {{pcor::Regime::pitch_manoeuvre, samples.time[600], samples.time[1200]},
+                       {pcor::Regime::speed_run, samples.time[1500], samples.time[2500]}};
   RefitOptions options;
   options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-alpha"}},
                     {{pcor::Regime::speed_run}, {"static-qp"}}};
@@ -416,9 +421,8 @@ TEST(Refit, GlobalSearchFindsOptimumThatTheStartMisses) {
 }
 
 TEST(Refit, ReportsHeldOutStatistics) {
-  RefitOptions options;
-  options.training_share = 0.5;
-  const RefitResult result = fit({made::shared(plan_18(14))}, made::model(equation_18), options);
+  const RefitResult result =
+      fit({made::shared(plan_18(14))}, made::model(equation_18), with_training_share(0.5));
   ASSERT_EQ(result.flights.size(), 2U);
   EXPECT_FALSE(result.flights[0].holdout);
   EXPECT_TRUE(result.flights[1].holdout);
@@ -430,9 +434,8 @@ TEST(Refit, ReportsHeldOutStatistics) {
 
 // Of less than half a block, the expected bias was that of the coefficients alone.
 TEST(Refit, ExpectedBiasOfAShortHeldOutPartIncludesItsNoise) {
-  RefitOptions options;
-  options.training_share = 0.97;
-  const RefitResult result = fit({made::shared(plan_18(14))}, made::model(equation_18), options);
+  const RefitResult result =
+      fit({made::shared(plan_18(14))}, made::model(equation_18), with_training_share(0.97));
   ASSERT_EQ(result.flights.size(), 2U);
   const pcor::FlightFit& held_out = result.flights[1];
   EXPECT_EQ(held_out.after.samples, 108U);
@@ -457,9 +460,7 @@ TEST(Refit, StartDoesNotDetermineWhichSamplesAreUsed) {
   const Flights flights{std::make_shared<FlightSamples>(samples)};
   ModelDefinition model = made::model(equation_18);
   const RefitResult near = fit(flights, model);
-  for (pcor::ModelEffect& effect : model.model.effects) {
-    if (effect.id == "static-qp") effect.parameters[0] = 0.6;
-  }
+  model.model.effects[2].parameters[0] = 0.6;
   const RefitResult far = fit(flights, model);
   EXPECT_EQ(near.samples, far.samples);
   for (const auto& [name, parameter] : by_name(near))
@@ -467,15 +468,7 @@ TEST(Refit, StartDoesNotDetermineWhichSamplesAreUsed) {
 }
 
 TEST(Refit, BiasedHeldOutPartIsReported) {
-  made::Plan plan = plan_18(14);
-  FlightSamples samples = *made::shared(plan);
-  std::vector<double>& reference = made::reference_pressure(samples);
-  for (std::size_t i = reference.size() / 2; i < reference.size(); ++i)
-    reference[i] += 0.5;  // noise: 0.3 hPa
-  RefitOptions options;
-  options.training_share = 0.5;
-  const RefitResult result =
-      fit({std::make_shared<FlightSamples>(samples)}, made::model(equation_18), options);
+  const RefitResult result = fit(with_biased_half(), made::model(equation_18), with_training_share(0.5));
   const std::optional<pcor::HeldOutPart> part = worst_held_out(result.flights);
   ASSERT_TRUE(part.has_value());
   EXPECT_TRUE(part->is_off());
@@ -485,16 +478,11 @@ TEST(Refit, BiasedHeldOutPartIsReported) {
 
 // The fit compensates an error of a fixed coefficient on all flights: it does not excuse a biased part.
 TEST(Refit, ErrorOfAFixedCoefficientDoesNotWidenTheExpectedBias) {
-  FlightSamples samples = *made::shared(plan_18(14));
-  std::vector<double>& reference = made::reference_pressure(samples);
-  for (std::size_t i = reference.size() / 2; i < reference.size(); ++i)
-    reference[i] += 0.5;  // noise: 0.3 hPa
-  RefitOptions options;
-  options.training_share = 0.5;
+  RefitOptions options = with_training_share(0.5);
   options.fix = {"static-constant"};
   ModelDefinition model = made::model(equation_18);
   model.model.effects.front().parameters = {truth_18.at("static-constant.a0")};
-  const Flights flights{std::make_shared<FlightSamples>(samples)};
+  const Flights flights = with_biased_half();
   const double exact = worst_held_out(fit(flights, model, options).flights)->expected;
   model.covariance = {{"static-constant.a0"}, {{1e-6}}};  // 0.7 hPa at 700 hPa
   const RefitResult result = fit(flights, model, options);

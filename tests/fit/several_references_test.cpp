@@ -7,39 +7,28 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 using pcor::FittedParameter;
 using pcor::ModelDefinition;
 using pcor::References;
 using pcor::RefitResult;
+using pcor::test::laser_model;
 
 namespace {
-
-const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
 
 constexpr double gain = 0.01;
 
 /// A quarter of an hour in which QCF reads 1 % too much.
-const std::filesystem::path& flight_file() {
-  static const pcor::test::TemporaryDirectory directory;
-  static const std::filesystem::path path = [] {
-    std::ifstream file(scenarios / "c130-short.toml");
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const std::string effect = "\n[[effect]]\nid = \"qcf-gain\"\non = \"PSFD\"\ngain = 0.01\n";
-    pcor::simulate_flight(pcor::parse_scenario(text + effect, "c130-short"), directory / "short.nc");
-    return directory / "short.nc";
-  }();
-  return path;
+std::filesystem::path flight_file() {
+  return pcor::test::simulated("c130-short", "\n[[effect]]\nid = \"qcf-gain\"\non = \"PSFD\"\ngain = 0.01\n");
 }
 
-ModelDefinition law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
-
-ModelDefinition law_with_gain() { return pcor::add_effects(law(), {pcor::neutral_effect("qcf-gain")}, {}); }
+ModelDefinition law_with_gain() {
+  return pcor::add_effects(laser_model(), {pcor::neutral_effect("qcf-gain")}, {});
+}
 
 RefitResult fit(const ModelDefinition& model, const std::vector<std::string>& references) {
   return pcor::refit({flight_file()}, model, pcor::read_references(references, model, {}).used);
@@ -62,8 +51,8 @@ TEST(SeveralReferences, CombinationSeparatesCoefficients) {
 }
 
 TEST(SeveralReferences, InsensitiveReferencesChangeNoCoefficient) {
-  const RefitResult alone = fit(law(), {"lams"});
-  const RefitResult both = fit(law(), {"lams", "total:PSFRD+QCFR"});
+  const RefitResult alone = fit(laser_model(), {"lams"});
+  const RefitResult both = fit(laser_model(), {"lams", "total:PSFRD+QCFR"});
   for (std::size_t p = 0; p < alone.parameters.size(); ++p) {
     EXPECT_EQ(both.parameters[p].value, alone.parameters[p].value);
     EXPECT_EQ(both.parameters[p].standard_error, alone.parameters[p].standard_error);
@@ -77,7 +66,7 @@ TEST(SeveralReferences, InsensitiveReferencesChangeNoCoefficient) {
 }
 
 TEST(SeveralReferences, CommonErrorsOfTwoSystemsStayUnresolved) {
-  ModelDefinition model = pcor::add_effects(law(), {pcor::neutral_effect("total-lag")}, {});
+  ModelDefinition model = pcor::add_effects(laser_model(), {pcor::neutral_effect("total-lag")}, {});
   model.fits.back().front().bounds =
       pcor::Bounds{-30.0, 30.0};  // the flight has no lag, and may go below zero
   const FittedParameter alone = parameter(fit(model, {"lams"}), "total-lag.tau");
@@ -103,11 +92,11 @@ TEST(SeveralReferences, StatedErrorOfASecondLawIsCarried) {
     second.fits.resize(second.model.effects.size());
     for (auto& each : second.fits) each.resize(1);
     second.fits[0][0].standard_error = stated;
-    References references = pcor::read_references({"lams"}, law(), {}).used;
+    References references = pcor::read_references({"lams"}, laser_model(), {}).used;
     references.push_back(pcor::static_system_reference(second));
     pcor::RefitOptions options;
     options.trust_reference = true;
-    return parameter(pcor::refit({flight_file()}, law(), references, options), "static-constant.a0");
+    return parameter(pcor::refit({flight_file()}, laser_model(), references, options), "static-constant.a0");
   };
   const FittedParameter fitted = fit_with(0.0);
   const double change = 0.5 * (fit_with(stated).value - fit_with(-stated).value);
@@ -121,13 +110,13 @@ TEST(SeveralReferences, StatedErrorOfASecondLawIsCarried) {
 // A second reference with the same errors adds no information. Counted as independent, it made the errors
 // sqrt(2) smaller.
 TEST(SeveralReferences, OneReferenceGivenTwiceHasTheErrorsOfOne) {
-  const References once = pcor::read_references({"lams"}, law(), {}).used;
+  const References once = pcor::read_references({"lams"}, laser_model(), {}).used;
   References twice = once;
   twice.push_back(once.front());
   pcor::RefitOptions options;
   options.trust_reference = true;
-  const RefitResult one = pcor::refit({flight_file()}, law(), once, options);
-  const RefitResult both = pcor::refit({flight_file()}, law(), twice, options);
+  const RefitResult one = pcor::refit({flight_file()}, laser_model(), once, options);
+  const RefitResult both = pcor::refit({flight_file()}, laser_model(), twice, options);
   for (std::size_t p = 0; p < one.parameters.size(); ++p) {
     const double error = one.parameters[p].standard_error;
     EXPECT_NEAR(both.parameters[p].value, one.parameters[p].value, 0.05 * error);
@@ -137,8 +126,8 @@ TEST(SeveralReferences, OneReferenceGivenTwiceHasTheErrorsOfOne) {
 }
 
 TEST(SeveralReferences, ReportStatisticsOfTheFirstReference) {
-  const RefitResult alone = fit(law(), {"pressure:TRUE_PS"});
-  const RefitResult both = fit(law(), {"pressure:TRUE_PS", "lams"});
+  const RefitResult alone = fit(laser_model(), {"pressure:TRUE_PS"});
+  const RefitResult both = fit(laser_model(), {"pressure:TRUE_PS", "lams"});
   EXPECT_EQ(both.samples, alone.samples);
   EXPECT_EQ(both.masks, alone.masks);
   EXPECT_EQ(both.flights.size(), 1U);

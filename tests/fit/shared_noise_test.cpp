@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "fit/fit_flights.hpp"
-#include "fit/fit_parameters.hpp"
 #include "support/synthetic_samples.hpp"
 
 // The noise of more flights than those from which its memory is found.
@@ -32,9 +31,7 @@ std::vector<double> deviations(std::size_t memory) {
     samples.push_back(made::shared(plan));
   }
   const FlightSet set(samples, {{}, &serial_communicator(), memory});
-  FitTask task{
-      model, *references.front(), options, set, fit_parameters(model, *references.front(), options), {}, {},
-      [] {}};
+  FitTask task = fit_task(model, references, options, set);
   task.start = Eigen::Vector3d(0.004127875, 0.021279816, 0.030849643);
   FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
   flights.measure_noise(task.start);

@@ -32,13 +32,9 @@ std::shared_ptr<const pcor::FlightSamples> flight(unsigned seed, const Nuisance&
   plan.defect = made::equation_18;
   pcor::FlightSamples samples = made::flight(plan);
   pcor::test::add_nuisance(made::reference_pressure(samples), seed + 100000, nuisance);
-  pcor::Interval manoeuvre;
-  manoeuvre.regime = pcor::Regime::pitch_manoeuvre;
-  for (const std::size_t begin : {1000U, 3500U, 6000U}) {
-    manoeuvre.begin = samples.time[begin];
-    manoeuvre.end = samples.time[begin + 300];
-    samples.intervals.push_back(manoeuvre);
-  }
+  for (const std::size_t begin : {1000U, 3500U, 6000U})
+    samples.intervals.push_back(
+        {pcor::Regime::pitch_manoeuvre, samples.time[begin], samples.time[begin + 300]});
   return std::make_shared<const pcor::FlightSamples>(samples);
 }
 

@@ -15,8 +15,7 @@
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/realtime/loop.hpp>
 #include <pcor/roles/add_effects.hpp>
-#include "fit/fitted_coefficients.hpp"
-#include "fit/surface_roughness.hpp"
+#include "fit/fitted_model.hpp"
 #include "support/synthetic_samples.hpp"
 
 namespace pcor {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "support/many_seeds.hpp"
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 // Two static systems that are fitted together: their difference is all that the flights know.
 
@@ -123,10 +123,7 @@ TEST(TwoSystems, StartAtTheTruthStaysAtTheTruth) {
 // For one effect in both laws the flights determine the difference, and the mean keeps the typical size of
 // both over the root of two, the error of a mean of two independent values.
 TEST(TwoSystems, CommonPartKeepsPriorError) {
-  const pcor::test::TemporaryDirectory directory;
-  const Pair pair = c130();
-  pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");
-  const pcor::RefitResult fit = fit_both(pair, directory / "flight.nc");
+  const pcor::RefitResult fit = fit_both(c130(), pcor::test::simulated("c130-eq18"));
   for (std::size_t p = 0; p < 3; ++p) {
     const pcor::FittedParameter& parameter = fit.parameters[p];
     const std::string effect = parameter.name.substr(0, parameter.name.find('.'));
@@ -138,13 +135,11 @@ TEST(TwoSystems, CommonPartKeepsPriorError) {
 }
 
 TEST(TwoSystems, WrongDifferenceCorrectsDifferenceOnly) {
-  const pcor::test::TemporaryDirectory directory;
   Pair pair = c130();
-  pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");
   constexpr double off = 0.0005;  // relative to the pressure: 0.3 to 0.5 hPa
   pair.own.model.effects[0].parameters[0] += off;
   pair.other.model.effects[0].parameters[0] -= off;
-  const pcor::RefitResult fit = fit_both(pair, directory / "flight.nc");
+  const pcor::RefitResult fit = fit_both(pair, pcor::test::simulated("c130-eq18"));
   const double own = fit.parameters[0].value - fit.parameters[0].start;
   const double other = fit.parameters[3].value - fit.parameters[3].start;
   ASSERT_EQ(fit.parameters[3].name, "reference:static-constant.a0");
@@ -154,9 +149,7 @@ TEST(TwoSystems, WrongDifferenceCorrectsDifferenceOnly) {
 }
 
 TEST(TwoSystems, FileCovarianceIsUsedAsPrior) {
-  const pcor::test::TemporaryDirectory directory;
   Pair pair = c130();
-  pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");
   // The own system is known to 1e-5 of the pressure; the other is off by half a hPa, and takes all of it.
   for (std::size_t e = 0; e < pair.own.model.effects.size(); ++e) {
     pair.own.fits.resize(pair.own.model.effects.size());
@@ -165,7 +158,7 @@ TEST(TwoSystems, FileCovarianceIsUsedAsPrior) {
   }
   constexpr double off = 0.0005;
   pair.other.model.effects[0].parameters[0] += off;
-  const pcor::RefitResult fit = fit_both(pair, directory / "flight.nc");
+  const pcor::RefitResult fit = fit_both(pair, pcor::test::simulated("c130-eq18"));
   EXPECT_NEAR(fit.parameters[0].value, fit.parameters[0].start, 2e-5);
   EXPECT_NEAR(fit.parameters[3].value - fit.parameters[3].start, -off, 0.1 * off);
 }

@@ -1,6 +1,6 @@
 // Error codes that programs can use without parsing the message.
 #include <gmock/gmock.h>
-#include <pcor/base/error_code.hpp>
+#include <pcor/base/error.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/units/units.hpp>
 

@@ -245,7 +245,6 @@ TEST_F(FlightTest, OldFilesHaveBaseTimeAndTimeOffset) {
     put_old_time(maker, midnight + 51720, {0, 1, 2});
   }
   EXPECT_THAT(times(), ElementsAre(midnight + 51720, midnight + 51721, midnight + 51722));
-  EXPECT_EQ(Flight(path()).time().source, "base_time + time_offset");
   EXPECT_EQ(Flight(path()).time_variable(), "time_offset");
 }
 
@@ -259,7 +258,6 @@ TEST_F(FlightTest, InvalidTimeUnitsFallBackToBaseTime) {
       maker.time({51720, 51721}, units);
     }
     EXPECT_THAT(times(), ElementsAre(midnight + 51720, midnight + 51721)) << units;
-    EXPECT_THAT(Flight(path()).time().source, HasSubstr("base_time"));
   }
 }
 
@@ -442,15 +440,9 @@ TEST_F(FlightTest, MissingTimeReportsTheRecord) {
   EXPECT_THAT(refusal(), IsError(Error::Code::time, "record 2"));
 }
 
-TEST_F(FlightTest, GapsAreAllowedAndListed) {
+TEST_F(FlightTest, GapsAreAllowedAndCounted) {
   make_with_times({100, 101, 110, 111, 200});
-  const Flight flight(path());
-  EXPECT_EQ(flight.time().gap_count, 2);
-  ASSERT_EQ(flight.time().gaps.size(), 2);
-  EXPECT_EQ(flight.time().gaps[0].record, 2);
-  EXPECT_EQ(flight.time().gaps[0].before, midnight + 101);
-  EXPECT_EQ(flight.time().gaps[0].after, midnight + 110);
-  EXPECT_EQ(flight.time().gaps[1].record, 4);
+  EXPECT_EQ(Flight(path()).time().gap_count, 2);
 }
 
 TEST_F(FlightTest, TimeStepsMayBeIrregularAndFractional) {

@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/base/error.hpp>
-#include <pcor/base/utc.hpp>
 #include <pcor/flight/flight_writer.hpp>
 
 #include <csignal>
@@ -172,9 +171,7 @@ class FlightWriterTest : public testing::Test {
   static std::optional<Error> write_much(const std::filesystem::path& path, NetcdfFormat kind) {
     return error_of([&] {
       constexpr std::size_t records = 4096;
-      NewFlight flight{midnight};
-      flight.kind = kind;
-      FlightWriter writer(path, flight, {});
+      FlightWriter writer(path, NewFlight{midnight, true, kind}, {});
       const std::size_t number = writer.define(pressure("PSXC", 25));
       const std::vector<double> values(records * 25, 850);
       for (std::size_t block = 0; block < 4; ++block) {
@@ -196,8 +193,7 @@ class FlightWriterTest : public testing::Test {
 // Written content
 
 TEST_F(FlightWriterTest, TimeAndVariablesFollowTheConventions) {
-  NewFlight flight{midnight + 86399};
-  FlightWriter writer(output, flight, {});
+  FlightWriter writer(output, NewFlight{midnight + 86399}, {});
   const std::size_t slow = writer.define(pressure());
   const std::size_t fast = writer.define(pressure("QCXC", 4));
   OutputVariable quality;
@@ -282,11 +278,9 @@ TEST_F(FlightWriterTest, WritesGlobalAttributes) {
 
 TEST_F(FlightWriterTest, AVariableWithoutAnyValueHasNoRange) {
   for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
-    NewFlight start{midnight};
-    start.kind = kind;
-    FlightWriter writer(output, start, {});
+    FlightWriter writer(output, NewFlight{midnight, true, kind}, {});
     const std::size_t number = writer.define(pressure());
-    writer.write_time_stamps({0, 1}, &start.first_time);
+    writer.write_time_stamps({0, 1}, &midnight);
     write_all(writer, number, {missing}, 1);
     writer.finish();
     EXPECT_THAT(Written(output).numbers("PSXC", "actual_range"), ElementsAre());
@@ -295,8 +289,7 @@ TEST_F(FlightWriterTest, AVariableWithoutAnyValueHasNoRange) {
 }
 
 TEST_F(FlightWriterTest, ValuesOutsideFloatRangeAreMissing) {
-  NewFlight start{midnight};
-  FlightWriter writer(output, start, {});
+  FlightWriter writer(output, NewFlight{midnight}, {});
   const std::size_t number = writer.define(pressure());
   const std::vector<double> times = sequence(midnight, 4);
   writer.write_time_stamps({0, 4}, times.data());
@@ -362,9 +355,7 @@ TEST_F(FlightWriterTest, StringAttributesAreCopied) {
 TEST_F(FlightWriterTest, BlocksFormTheWholeFile) {
   constexpr std::size_t records = 2 * pcor::records_per_block + 3;
   for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
-    NewFlight start{midnight};
-    start.kind = kind;
-    FlightWriter writer(output, start, {});
+    FlightWriter writer(output, NewFlight{midnight, true, kind}, {});
     const std::size_t number = writer.define(pressure("PSXC", 5));
     const std::vector<double> times = sequence(midnight, records), values = sequence(0, 5 * records);
     for (const RecordBlock block : pcor::blocks_of(records, 1000)) {
@@ -499,8 +490,7 @@ TEST_F(FlightWriterTest, NonTextAttributeNameIsReported) {
 }
 
 TEST_F(FlightWriterTest, FlagsMustBeWholeNumbers) {
-  NewFlight start{midnight};
-  FlightWriter writer(output, start, {});
+  FlightWriter writer(output, NewFlight{midnight}, {});
   OutputVariable quality;
   quality.name = "PCORFLAG";
   quality.flags = {{1, "missing_input"}};
@@ -567,8 +557,7 @@ TEST_F(FlightWriterTest, ASymbolicLinkIsFollowed) {
 TEST_F(FlightWriterTest, UnfinishedOutputIsHiddenAndRemovedOnSignal) {
   for (const NetcdfFormat kind : {NetcdfFormat::classic, NetcdfFormat::netcdf4}) {
     std::ofstream(output) << "old";
-    NewFlight flight{midnight};
-    flight.kind = kind;
+    const NewFlight flight{midnight, true, kind};
     FlightWriter first(output, flight, {}), second(output, flight, {});
     EXPECT_EQ(directory.entries(), 3) << "each has its own";
     for (const auto& entry : std::filesystem::directory_iterator(directory.path()))

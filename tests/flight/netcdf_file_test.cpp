@@ -4,7 +4,6 @@
 #include <netcdf.h>
 
 #include <numeric>
-#include <string>
 #include <vector>
 
 #include "flight/classic_netcdf.hpp"

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <pcor/improve/improve.hpp>
-#include <pcor/simulate/simulate.hpp>
 
 #include <filesystem>
 #include <map>
@@ -9,15 +8,13 @@
 #include <vector>
 
 #include "residuals/reference_on_samples.hpp"
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 // Number of times that a whole improvement opens its flights, reads their samples and builds residuals.
 
 using namespace pcor;
 
 namespace {
-
-const std::filesystem::path scenarios = PCOR_SOURCE_DIR "/data/scenarios";
 
 struct Counts {
   std::map<std::filesystem::path, std::size_t> reads{};  ///< number of reads of the samples of each flight
@@ -53,19 +50,18 @@ TEST(FlightReads, ImproveReadsFlightsOncePerSetOfRoles) {
   const test::TemporaryDirectory directory;
   std::vector<std::filesystem::path> paths;
   for (const std::uint64_t seed : {101U, 102U, 103U}) {
-    Scenario scenario = read_scenario(scenarios / "c130-hidden.toml");
+    Scenario scenario = read_scenario(test::scenarios / "c130-hidden.toml");
     scenario.seed = seed;
     paths.push_back(directory / (std::to_string(seed) + ".nc"));
     simulate_flight(scenario, paths.back());
   }
-  const ModelDefinition model = read_model(scenarios / "models" / "c130-psfd-eq18.toml");
   const FlightSet flights(paths);
   const auto counts = std::make_shared<Counts>();
   ImproveOptions options;
   options.refit.holdout = flights.part(2, 1);
   options.trace_variables = true;
-  const Improvement improvement =
-      improve(flights.part(0, 2), model, {std::make_shared<CountingReference>(counts)}, options);
+  const Improvement improvement = improve(flights.part(0, 2), test::laser_model(),
+                                          {std::make_shared<CountingReference>(counts)}, options);
   ASSERT_EQ(improvement.steps.size(), 2U) << "one effect is found";
   // Inputs of the model, inputs of it and all candidates, and both again with the effect that is added.
   for (const auto& [path, reads] : counts->reads) EXPECT_LE(reads, 4U) << path;

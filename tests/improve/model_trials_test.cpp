@@ -2,71 +2,49 @@
 
 #include <gtest/gtest.h>
 #include <pcor/roles/add_effects.hpp>
-#include <pcor/simulate/simulate.hpp>
 
 #include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "support/temporary_directory.hpp"
+#include "diagnose/rms.hpp"
+#include "support/short_flight.hpp"
 
-using pcor::ModelDefinition;
-using pcor::internal::coefficients_in;
-using pcor::internal::comparison_of;
-using pcor::internal::static_pressures_of;
-using pcor::internal::TrialComparison;
-using pcor::internal::TrialFlight;
-using pcor::internal::TrialModel;
-using pcor::internal::try_models;
-using pcor::internal::union_of;
-
+namespace pcor::internal {
 namespace {
 
 const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
-const pcor::test::TemporaryDirectory directory;
-
-/// A quarter of an hour of a C-130 with equation 18.
-std::filesystem::path flight() {
-  static const std::filesystem::path path = [] {
-    std::filesystem::path made = directory / "flight.nc";
-    pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-short.toml"), made);
-    return made;
-  }();
-  return path;
-}
 
 /// The law of the flight, with the laser.
 ModelDefinition law() {
-  ModelDefinition file = pcor::read_model(data / "models" / "c130-psfd-eq18.toml");
-  file.variables.emplace(pcor::Quantity::attack, "ATTACK");
-  file.variables.emplace(pcor::Quantity::sideslip, "SSLIP");
-  file.variables.emplace(pcor::Quantity::lams_airspeed, "VLAMS");
+  ModelDefinition file = read_model(data / "models" / "c130-psfd-eq18.toml");
+  file.variables.emplace(Quantity::attack, "ATTACK");
+  file.variables.emplace(Quantity::sideslip, "SSLIP");
+  file.variables.emplace(Quantity::lams_airspeed, "VLAMS");
   return file;
 }
 
 ModelDefinition with(const std::string& effect, double value) {
-  ModelDefinition file = pcor::add_effects(law(), {{effect}});
+  ModelDefinition file = add_effects(law(), {{effect}});
   file.model.effects.back().parameters[0] = value;
   return file;
 }
 
-std::vector<TrialFlight> tried(const std::vector<TrialModel>& models, const pcor::References& references,
-                               const pcor::RefitOptions& options = {}) {
-  return try_models({flight()}, models, references, options);
+std::vector<TrialFlight> tried(const std::vector<TrialModel>& models, const References& references,
+                               const RefitOptions& options = {}) {
+  return try_models({test::short_flight()}, models, references, options);
 }
 
 double rms_between(const std::vector<double>& a, const std::vector<double>& b,
                    const std::vector<std::size_t>& indices) {
-  double squares = 0.0;
-  for (const std::size_t i : indices) squares += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(squares / static_cast<double>(indices.size()));
+  SquareSum sum;
+  for (const std::size_t i : indices) sum.add(a[i] - b[i]);
+  return sum.rms();
 }
 
-}  // namespace
-
 TEST(Union, HasEachEffectOfAllModelsOnce) {
-  const ModelDefinition whole = union_of({with("static-mach", 0.01), with("static-beta-odd", 0.02)});
+  const ModelDefinition whole = union_of({{with("static-mach", 0.01)}, {with("static-beta-odd", 0.02)}});
   EXPECT_EQ(whole.model.effects.size(), law().model.effects.size() + 2);
   EXPECT_EQ(coefficients_in(whole, whole).size(), coefficients_in(law(), whole).size());
   EXPECT_EQ(coefficients_in(with("static-mach", 0.01), whole).back(), 0.0) << "an absent effect does nothing";
@@ -74,12 +52,12 @@ TEST(Union, HasEachEffectOfAllModelsOnce) {
 }
 
 TEST(Union, KeepsTheShapeOfAnAbsentEffect) {
-  ModelDefinition shaped = pcor::add_effects(law(), {{"pitot-angle", {0.0002, 4.0}}});
-  EXPECT_EQ(coefficients_in(law(), union_of({law(), shaped})).back(), 4.0);
+  ModelDefinition shaped = add_effects(law(), {{"pitot-angle", {0.0002, 4.0}}});
+  EXPECT_EQ(coefficients_in(law(), union_of({{law()}, {shaped}})).back(), 4.0);
 }
 
 TEST(Trials, AModelComparedWithItselfIsEqual) {
-  const std::vector<TrialFlight> flights = tried({{law()}, {law()}}, {pcor::lams_reference()});
+  const std::vector<TrialFlight> flights = tried({{law()}, {law()}}, {lams_reference()});
   const TrialComparison same = comparison_of(flights, 0, 1, false);
   EXPECT_EQ(same.gain, 0.0);
   EXPECT_EQ(same.rms_before, same.rms_after);
@@ -88,8 +66,7 @@ TEST(Trials, AModelComparedWithItselfIsEqual) {
 }
 
 TEST(Trials, TrueModelIsBetterAndWrongModelIsWorse) {
-  const std::vector<TrialFlight> flights =
-      tried({{law()}, {with("static-mach", 0.02)}}, {pcor::lams_reference()});
+  const std::vector<TrialFlight> flights = tried({{law()}, {with("static-mach", 0.02)}}, {lams_reference()});
   const TrialComparison there = comparison_of(flights, 1, 0, false);
   EXPECT_TRUE(there.is_better());
   EXPECT_GT(there.rms_before, there.rms_after);
@@ -110,10 +87,10 @@ TEST(Trials, NoisyFurtherReferencesAreIgnored) {
 }
 
 TEST(Trials, EverySampleIsFittedOrHeldOut) {
-  pcor::RefitOptions options;
+  RefitOptions options;
   options.training_share = 0.6;
-  options.holdout = {flight()};
-  const std::vector<TrialFlight> flights = tried({{law()}}, {pcor::lams_reference()}, options);
+  options.holdout = {test::short_flight()};
+  const std::vector<TrialFlight> flights = tried({{law()}}, {lams_reference()}, options);
   ASSERT_EQ(flights.size(), 2U);
   const std::size_t all = flights[0].fitted.size() + flights[0].held_out.size();
   EXPECT_NEAR(static_cast<double>(flights[0].fitted.size()), 0.6 * static_cast<double>(all), 1.0);
@@ -125,7 +102,7 @@ TEST(Trials, StaticPressuresDifferByTheEffect) {
   // static-constant adds a0 * p to delta-p: 0.001 of it is 0.9 hPa at 900 hPa.
   ModelDefinition more = law();
   more.model.effects[0].parameters[0] += 0.001;
-  const std::vector<TrialFlight> flights = tried({{law()}, {more}}, {pcor::lams_reference()});
+  const std::vector<TrialFlight> flights = tried({{law()}, {more}}, {lams_reference()});
   const std::vector<double> one = static_pressures_of(flights, 0);
   const std::vector<double> other = static_pressures_of(flights, 1);
   ASSERT_EQ(one.size(), flights[0].fitted.size());
@@ -136,10 +113,9 @@ TEST(Trials, StaticPressuresDifferByTheEffect) {
 }
 
 TEST(Trials, CommonErrorsCancelInTotalPressureDifference) {
-  const pcor::ModelEffect loss{"pitot-angle", {0.0004, 2.0}};
-  const pcor::References total{
-      pcor::total_pressure_reference(pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"))};
-  const ModelDefinition own = pcor::add_effects(law(), {loss});
+  const ModelEffect loss{"pitot-angle", {0.0004, 2.0}};
+  const References total{total_pressure_reference(read_model(data / "models" / "c130-psfrd-eq18.toml"))};
+  const ModelDefinition own = add_effects(law(), {loss});
   const std::vector<TrialFlight> flights = tried({{law()}, {own}, {own, {loss.id}}}, total);
   const TrialFlight& only = flights.front();
   const double alone = rms_between(only.residuals[0], only.residuals[1], only.fitted);
@@ -147,3 +123,6 @@ TEST(Trials, CommonErrorsCancelInTotalPressureDifference) {
   EXPECT_GT(alone, 0.1);
   EXPECT_EQ(alike, 0.0);
 }
+
+}  // namespace
+}  // namespace pcor::internal

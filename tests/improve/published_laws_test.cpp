@@ -13,15 +13,14 @@
 #include <vector>
 
 #include "support/short_flight.hpp"
+#include "support/test_name.hpp"
 
-using pcor::ModelDefinition;
-using pcor::Quantity;
-using pcor::test::short_flight;
 using testing::Gt;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
+namespace pcor {
 namespace {
 
 const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
@@ -31,7 +30,7 @@ const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "dat
 ModelDefinition law(const std::filesystem::path& path) {
   const std::map<std::string, std::string> alike{
       {"PSF", "PSFD"}, {"PSTF", "PSFRD"}, {"QCTF", "QCFR"}, {"TTHR1", "TTRR"}, {"RTH1", "RTF1"}};
-  ModelDefinition file = pcor::read_model(path);
+  ModelDefinition file = read_model(path);
   for (auto& [role, variable] : file.variables) {
     if (const auto found = alike.find(variable); found != alike.end()) variable = found->second;
   }
@@ -51,29 +50,21 @@ std::vector<std::filesystem::path> laws() {
   return paths;
 }
 
-std::string to_string(const testing::TestParamInfo<std::filesystem::path>& info) {
-  std::string name = info.param.stem().string();
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
-}  // namespace
-
 TEST(PublishedLaws, ThereAreTwentyFive) { EXPECT_THAT(laws(), SizeIs(25)); }
 
 TEST_P(PublishedLaw, EveryCommandAcceptsAFlightWithAllVariables) {
   const ModelDefinition file = law(GetParam());
   for (const std::string text : {"lams", "pressure:PS_A"}) {
     SCOPED_TRACE(text);
-    const std::shared_ptr<const pcor::Reference> reference = pcor::read_reference(text, file);
-    const pcor::Comparison comparison = pcor::compare({short_flight()}, {{"law", file, {reference}}});
+    const std::shared_ptr<const Reference> reference = read_reference(text, file);
+    const Comparison comparison = compare({test::short_flight()}, {{"law", file, {reference}}});
     EXPECT_THAT(comparison.models.front().all.samples, Gt(500U));
-    EXPECT_THAT(pcor::refit({short_flight()}, file, {reference}).samples, Gt(500U));
-    const pcor::Diagnosis diagnosis = pcor::diagnose({short_flight()}, file, {reference});
+    EXPECT_THAT(refit({test::short_flight()}, file, {reference}).samples, Gt(500U));
+    const Diagnosis diagnosis = diagnose({test::short_flight()}, file, {reference});
     EXPECT_THAT(diagnosis.candidates, Gt(10U));
-    pcor::ImproveOptions once;
+    ImproveOptions once;
     once.max_steps = 1;
-    EXPECT_THAT(pcor::improve({short_flight()}, file, {reference}, once).steps, Not(IsEmpty()));
+    EXPECT_THAT(improve({test::short_flight()}, file, {reference}, once).steps, Not(IsEmpty()));
   }
 }
 
@@ -82,8 +73,12 @@ TEST(Laws, PressureReferenceRequiresNoThermometer) {
   for (const Quantity role : {Quantity::recovery_temperature, Quantity::ambient_temperature,
                               Quantity::vapor_pressure, Quantity::dew_point, Quantity::lams_airspeed})
     file.variables.erase(role);
-  const std::shared_ptr<const pcor::Reference> reference = pcor::read_reference("pressure:PS_A", file);
-  EXPECT_THAT(pcor::diagnose({short_flight()}, file, {reference}).candidates, Gt(10U));
+  const std::shared_ptr<const Reference> reference = read_reference("pressure:PS_A", file);
+  EXPECT_THAT(diagnose({test::short_flight()}, file, {reference}).candidates, Gt(10U));
 }
 
-INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()), to_string);
+INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()),
+                         [](const auto& each) { return test::test_name(each.param.stem().string()); });
+
+}  // namespace
+}  // namespace pcor

@@ -1,8 +1,7 @@
-#include <pcor/inspect/gps_design.hpp>
+#include <pcor/inspect/inspect.hpp>
 
 #include <gmock/gmock.h>
 #include <pcor/fit/refit.hpp>
-#include <pcor/inspect/inspect.hpp>
 #include <pcor/simulate/simulate.hpp>
 
 #include <netcdf.h>

@@ -2,7 +2,6 @@
 #include "model_io/archived_model.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>

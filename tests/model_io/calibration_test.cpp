@@ -3,7 +3,6 @@
 #include "model_io/calibration.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <optional>
 #include <random>
 #include <sstream>
@@ -24,6 +25,7 @@
 #include <pcor/physics/recovery_factor.hpp>
 #include "model_io/output_table.hpp"
 #include "support/error_of.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace {
 
@@ -114,10 +116,34 @@ class Description {
  private:
   Description() { text_ << std::hexfloat; }
 
+  template <class... T>
+  void values(const T&... items) {
+    (value(items), ...);
+  }
+
   template <class T>
   void value(const T& item) {
     text_ << item << '|';
   }
+
+  template <class T>
+  void value(const std::vector<T>& items) {
+    for (const T& item : items) value(item);
+    text_ << ';';
+  }
+
+  template <class Key, class T>
+  void value(const std::pair<Key, T>& item) {
+    values(item.first, item.second);
+  }
+
+  template <class Key, class T>
+  void value(const std::map<Key, T>& items) {
+    for (const auto& item : items) value(item);
+    text_ << ';';
+  }
+
+  void value(Quantity quantity) { value(info_of(quantity).name); }
 
   void value(const std::optional<double>& item) {
     if (item) value(*item);
@@ -126,104 +152,37 @@ class Description {
 
   void value(const ProvenanceValue& item) {
     text_ << item.index() << ':';
-    if (const auto* list = std::get_if<ProvenanceList>(&item)) {
-      for (const ProvenanceValue& each : *list) value(each);
-    } else if (const auto* table = std::get_if<Provenance>(&item)) {
-      value(*table);
-    } else if (const auto* words = std::get_if<std::string>(&item)) {
-      value(*words);
-    } else if (const auto* number = std::get_if<double>(&item)) {
-      value(*number);
-    } else if (const auto* whole = std::get_if<std::int64_t>(&item)) {
-      value(*whole);
-    } else {
-      value(std::get<bool>(item));
-    }
+    std::visit([this](const auto& each) { value(each); }, item);
     text_ << '\n';
   }
 
-  void value(const Provenance& table) {
-    for (const auto& [key, item] : table) {
-      value(key);
-      value(item);
-    }
-  }
+  void value(const RadomeCalibration& radome) { values(radome.offset, radome.slope, radome.slope_mach); }
 
-  void value(const RadomeCalibration& radome) {
-    value(radome.offset);
-    value(radome.slope);
-    value(radome.slope_mach);
-  }
+  void value(const DomainRange& range) { values(range.quantity, range.lower, range.upper); }
 
   void add(const ModelDefinition& file) {
     const Model& model = file.model;
-    value(model.name);
-    value(model.aircraft);
+    values(model.name, model.aircraft);
     for (std::size_t i = 0; i < model.effects.size(); ++i) add_effect(file, i);
-    value(model.lams.elevation);
-    value(model.lams.azimuth);
-    value(static_cast<int>(model.lams.approach));
+    values(model.lams.elevation, model.lams.azimuth, static_cast<int>(model.lams.approach));
     for (const double coefficient : model.recovery.coefficients) value(coefficient);
-    value(model.moist);
-    value(model.attack_radome);
-    value(model.sideslip_radome);
-    value(model.policy.taper_below);
-    value(model.policy.taper_power);
-    value(model.policy.minimum);
-    value(model.policy.min_dynamic_pressure);
-    for (const DomainRange& range : model.domain) {
-      value(range.quantity);
-      value(range.lower);
-      value(range.upper);
-    }
-    for (const auto* roles : {&file.variables, &file.units}) {
-      for (const auto& [role, name] : *roles) {
-        value(info_of(role).name);
-        value(name);
-      }
-    }
-    for (const auto& [standard_name, name] : file.output) {
-      value(standard_name);
-      value(name);
-    }
-    value(file.recovery_factor_name);
-    value(file.law.source);
-    value(file.law.valid_from);
-    value(file.law.valid_to);
-    value(file.law.rms_hpa);
-    value(file.law.note);
-    for (const std::string& name : file.covariance.parameters) value(name);
-    for (const auto& row : file.covariance.matrix) {
-      for (const double number : row) value(number);
-    }
-    for (const auto& [role, size] : file.uncertainty.roles) {
-      value(info_of(role).name);
-      value(size);
-    }
-    value(file.uncertainty.static_defect);
-    value(file.uncertainty.static_defect_ratio);
-    value(file.provenance);
+    const Policy& policy = model.policy;
+    values(model.moist, model.attack_radome, model.sideslip_radome, policy.taper_below, policy.taper_power,
+           policy.minimum, policy.min_dynamic_pressure, model.domain);
+    values(file.variables, file.units, file.output, file.recovery_factor_name, file.law.source,
+           file.law.valid_from, file.law.valid_to, file.law.rms_hpa, file.law.note,
+           file.covariance.parameters, file.covariance.matrix, file.uncertainty.roles,
+           file.uncertainty.static_defect, file.uncertainty.static_defect_ratio, file.provenance);
   }
 
   void add_effect(const ModelDefinition& file, std::size_t number) {
     const ModelEffect& effect = file.model.effects[number];
-    value(effect.id);
-    value(effect.formula);
-    value(static_cast<int>(effect.location));
-    value(effect.scaling.static_pressure);
-    value(effect.scaling.dynamic_pressure);
-    value(effect.unit);
-    value(effect.source);
-    for (const std::string& name : effect.parameter_names) value(name);
+    values(effect.id, effect.formula, static_cast<int>(effect.location), effect.scaling.static_pressure,
+           effect.scaling.dynamic_pressure, effect.unit, effect.source, effect.parameter_names);
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      value(effect.parameters[i]);
       const ParameterFit fit = file.fit(number, i);
-      value(fit.fixed);
-      value(fit.standard_error);
-      if (fit.bounds) {
-        value(fit.bounds->lower);
-        value(fit.bounds->upper);
-      }
+      values(effect.parameters[i], fit.fixed, fit.standard_error);
+      if (fit.bounds) values(fit.bounds->lower, fit.bounds->upper);
       text_ << '\n';
     }
   }
@@ -457,18 +416,8 @@ class ModelGenerator {
   std::mt19937_64 random_;
 };
 
-// A separate directory for each test, removed afterwards.
 class ModelFileOnDisk : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    directory_ = fs::path(testing::TempDir()) /
-                 ("pcor-model-file-" + std::to_string(std::random_device()()) + test->name());
-    fs::create_directories(directory_);
-  }
-
-  void TearDown() override { fs::remove_all(directory_); }
-
   fs::path write(const std::string& name, const std::string& text) const {
     std::ofstream(directory_ / name, std::ios::binary) << text;
     return directory_ / name;
@@ -483,7 +432,7 @@ class ModelFileOnDisk : public testing::Test {
     return error_of([&] { read_model(path); });
   }
 
-  fs::path directory_;
+  test::TemporaryDirectory directory_;
 };
 
 }  // namespace
@@ -1004,7 +953,7 @@ TEST_F(ModelFileOnDisk, ErrorNamesTheFile) {
 
 TEST_F(ModelFileOnDisk, AbsentFileOrDirectoryIsRefused) {
   EXPECT_THAT(read_error_of(directory_ / "none.toml"), IsError(Error::Code::file, "none.toml"));
-  EXPECT_THAT(read_error_of(directory_), IsError(Error::Code::file, directory_.string()));
+  EXPECT_THAT(read_error_of(directory_.path()), IsError(Error::Code::file, directory_.path().string()));
 }
 
 TEST_F(ModelFileOnDisk, SavingReplacesAnExistingFile) {
@@ -1036,7 +985,7 @@ TEST_F(ModelFileOnDisk, UnwritableModelKeepsTheFile) {
   const fs::path output = write("out.toml", "old");
   EXPECT_THROW(save_model(file, output, {}), Error);
   EXPECT_EQ(content(output), "old");
-  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), fs::directory_iterator()), 1);
+  EXPECT_EQ(directory_.entries(), 1U);
 }
 
 TEST_F(ModelFileOnDisk, SavingToAMissingDirectoryFails) {

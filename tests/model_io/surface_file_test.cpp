@@ -9,9 +9,6 @@
 namespace pcor {
 namespace {
 
-using testing::HasSubstr;
-using testing::ThrowsMessage;
-
 ModelDefinition with_surface() {
   ModelDefinition file;
   file.model.name = "surface";
@@ -56,31 +53,29 @@ TEST(SurfaceFile, RestoresKnotsCoefficientsAndErrors) {
 
 TEST(SurfaceFile, InvalidSurfaceIsRefused) {
   const auto parse = [](const std::string& effect) {
-    return [effect] {
-      parse_model(
-          "format = \"pcor-model/1\"\n[variables]\nstatic_pressure = \"P\"\ndynamic_pressure = \"Q\"\n"
-          "[[effect]]\n" +
-              effect,
-          "test");
-    };
+    parse_model(
+        "format = \"pcor-model/1\"\n[variables]\nstatic_pressure = \"P\"\ndynamic_pressure = \"Q\"\n"
+        "[[effect]]\n" +
+            effect,
+        "test");
   };
   const std::string axes = "axes = { attack_ratio = [0.0, 1.0], mach = [0.2, 0.5] }\n";
   const std::string row = "[0, 0, 0, 0]";
   const std::string four = "coefficients = [" + row + "," + row + "," + row + "," + row + "]\n";
   const std::string id = "id = \"static-surface\"\n";
-  EXPECT_NO_THROW(parse(id + axes + four)());
-  EXPECT_THROW(parse(id)(), Error);
-  EXPECT_THROW(parse(id + axes)(), Error);
-  EXPECT_THROW(parse(id + four)(), Error);
-  EXPECT_THROW(parse(id + axes + "coefficients = [" + row + "]\n")(), Error);
-  EXPECT_THROW(parse(id + axes + "coefficients = []\n")(), Error);
-  EXPECT_THROW(parse(id + axes + "coefficients = [[1], [1, 2]]\n")(), Error);
-  EXPECT_THROW(parse(id + axes + "coefficients = 3\n")(), Error);
-  EXPECT_THROW(parse(id + "axes = { mach = [0.2, 0.5] }\n" + four)(), Error);
-  EXPECT_THROW(parse(id + "axes = { attack_ratio = [1.0, 0.0], mach = [0.2, 0.5] }\n" + four)(), Error);
-  EXPECT_THROW(parse(id + "axes = { attack_angle = [0.0, 1.0], mach = [0.2, 0.5] }\n" + four)(), Error);
-  EXPECT_THROW(parse(id + axes + four + "formula = \"2\"\n")(), Error);
-  EXPECT_THROW(parse("id = \"static-qp\"\n" + axes + four)(), Error);
+  EXPECT_NO_THROW(parse(id + axes + four));
+  EXPECT_THROW(parse(id), Error);
+  EXPECT_THROW(parse(id + axes), Error);
+  EXPECT_THROW(parse(id + four), Error);
+  EXPECT_THROW(parse(id + axes + "coefficients = [" + row + "]\n"), Error);
+  EXPECT_THROW(parse(id + axes + "coefficients = []\n"), Error);
+  EXPECT_THROW(parse(id + axes + "coefficients = [[1], [1, 2]]\n"), Error);
+  EXPECT_THROW(parse(id + axes + "coefficients = 3\n"), Error);
+  EXPECT_THROW(parse(id + "axes = { mach = [0.2, 0.5] }\n" + four), Error);
+  EXPECT_THROW(parse(id + "axes = { attack_ratio = [1.0, 0.0], mach = [0.2, 0.5] }\n" + four), Error);
+  EXPECT_THROW(parse(id + "axes = { attack_angle = [0.0, 1.0], mach = [0.2, 0.5] }\n" + four), Error);
+  EXPECT_THROW(parse(id + axes + four + "formula = \"2\"\n"), Error);
+  EXPECT_THROW(parse("id = \"static-qp\"\n" + axes + four), Error);
 }
 
 }  // namespace pcor

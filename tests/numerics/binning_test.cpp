@@ -13,8 +13,6 @@
 
 using namespace pcor::internal;
 
-using pcor::internal::Binning;
-
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();

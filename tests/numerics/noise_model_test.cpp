@@ -11,9 +11,6 @@
 
 using namespace pcor::internal;
 
-using pcor::internal::Binning;
-using pcor::internal::NoiseModel;
-
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
@@ -90,7 +87,7 @@ TEST(Whitening, CovarianceBecomesTheIdentity) {
     }
     covariance = level.asDiagonal() * covariance * level.asDiagonal();
     const Eigen::MatrixXd white =
-        pcor::internal::whitened(Eigen::MatrixXd::Identity(level.size(), level.size()), bins, noise, 0);
+        whitened(Eigen::MatrixXd::Identity(level.size(), level.size()), bins, noise, 0);
     const Eigen::MatrixXd left = white * covariance * white.transpose();
     // Rounding; the sums of the autocovariance are cut off at negligible terms.
     EXPECT_LT((left - Eigen::MatrixXd::Identity(level.size(), level.size())).cwiseAbs().maxCoeff(), 1e-10)
@@ -103,8 +100,8 @@ TEST(Whitening, EstimatedNoiseBecomesWhiteWithUnitVariance) {
   const auto level = [](std::size_t i) { return i < count / 2 ? 0.2 : 0.4; };
   const Eigen::VectorXd residual = second_order(count, 11, level);
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
-  const NoiseModel noise = pcor::internal::estimate_noise(bins, {residual});
-  const Eigen::VectorXd white = pcor::internal::whitened(residual, bins[0], noise, 0);
+  const NoiseModel noise = estimate_noise(bins, {residual});
+  const Eigen::VectorXd white = whitened(residual, bins[0], noise, 0);
   // Of white noise an autocorrelation has the deviation 1/sqrt(n); one of eight is beyond 3 of them once in
   // fifty, and this seed is not.
   for (Eigen::Index lag = 1; lag <= 8; ++lag)
@@ -120,7 +117,7 @@ TEST(NoiseModel, EstimatesCoefficientsAndLevels) {
   constexpr std::size_t count = 3600;
   const auto level = [](std::size_t i) { return i < count / 2 ? 0.2 : 0.4; };
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
-  const NoiseModel noise = pcor::internal::estimate_noise(bins, {second_order(count, 12, level)});
+  const NoiseModel noise = estimate_noise(bins, {second_order(count, 12, level)});
   ASSERT_GE(noise.coefficients.size(), 2U);
   // Standard errors sqrt((1 - 0.25)/3600) = 0.015; the slow noise removed by drift shapes adds the same
   // amount.
@@ -140,8 +137,8 @@ TEST(NoiseModel, SlowDriftDoesNotChangeTheEstimate) {
   Eigen::VectorXd drifting = residual;
   for (Eigen::Index i = 0; i < drifting.size(); ++i)
     drifting[i] += 2.0 * std::sin(2.0 * M_PI * static_cast<double>(i) * step / 1500.0);
-  const NoiseModel without = pcor::internal::estimate_noise(bins, {residual});
-  const NoiseModel with = pcor::internal::estimate_noise(bins, {drifting});
+  const NoiseModel without = estimate_noise(bins, {residual});
+  const NoiseModel with = estimate_noise(bins, {drifting});
   ASSERT_GE(with.coefficients.size(), 2U);
   // The drift is ten times the noise; what its shapes leave of it is below a twentieth of the noise.
   EXPECT_NEAR(with.coefficients[0], without.coefficients[0], 0.03);
@@ -152,9 +149,8 @@ TEST(NoiseModel, SlowDriftDoesNotChangeTheEstimate) {
 TEST(NoiseModel, EachFlightHasItsOwnLevel) {
   const std::vector<Binning> bins{bins_of(std::vector<double>(600, 0.0)),
                                   bins_of(std::vector<double>(900, 0.0))};
-  const NoiseModel noise =
-      pcor::internal::estimate_noise(bins, {second_order(600, 14, [](std::size_t) { return 0.1; }),
-                                            second_order(900, 15, [](std::size_t) { return 0.3; })});
+  const NoiseModel noise = estimate_noise(bins, {second_order(600, 14, [](std::size_t) { return 0.1; }),
+                                                 second_order(900, 15, [](std::size_t) { return 0.3; })});
   ASSERT_EQ(noise.level.size(), 2U);
   EXPECT_EQ(noise.level[0].size(), 600);
   EXPECT_EQ(noise.level[1].size(), 900);
@@ -172,20 +168,20 @@ TEST(NoiseModel, LevelsOfAFlightFollowFromTheSharedModel) {
                                                second_order(450, 16, level)};
   std::vector<Eigen::MatrixXd> columns;
   for (const Eigen::VectorXd& each : residuals) columns.emplace_back(Eigen::VectorXd::Ones(each.size()));
-  const NoiseModel noise = pcor::internal::find_noise(bins, columns, residuals).model;
+  const NoiseModel noise = find_noise(bins, columns, residuals).model;
   for (std::size_t f = 0; f < bins.size(); ++f) {
-    const auto levels = pcor::internal::noise_levels(bins[f], residuals[f], noise);
-    EXPECT_EQ(pcor::internal::level_of_bins(levels, bins[f]), noise.level[f]);
+    const auto levels = noise_levels(bins[f], residuals[f], noise);
+    EXPECT_EQ(level_of_bins(levels, bins[f]), noise.level[f]);
   }
   // Samples excluded from a flight do not change the levels of the other samples.
-  const auto levels = pcor::internal::noise_levels(bins[1], residuals[1], noise);
+  const auto levels = noise_levels(bins[1], residuals[1], noise);
   std::vector<double> part(900, 0.0);
   std::fill(part.begin() + 100, part.begin() + 400, std::nan(""));
-  const Eigen::VectorXd of_part = pcor::internal::level_of_bins(levels, bins_of(part));
+  const Eigen::VectorXd of_part = level_of_bins(levels, bins_of(part));
   EXPECT_EQ(of_part.head(100), noise.level[1].head(100));
   EXPECT_EQ(of_part.tail(500), noise.level[1].tail(500));
   // A flight without remaining samples has the common level.
-  const auto nothing = pcor::internal::noise_levels(Binning(), Eigen::VectorXd(), noise);
+  const auto nothing = noise_levels(Binning(), Eigen::VectorXd(), noise);
   ASSERT_EQ(nothing.size(), 1U);
   EXPECT_NEAR(nothing.front().rms, noise.scale * noise.common_level, 1e-12);
 }

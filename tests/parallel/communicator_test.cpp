@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <pcor/base/error_code.hpp>
+#include <pcor/base/error.hpp>
 #include "support/thread_team.hpp"
 
 namespace pcor {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <pcor/base/error_code.hpp>
+#include <pcor/base/error.hpp>
 
 namespace pcor {
 namespace {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -28,14 +29,20 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-// Equation 18 of the memo, in a C-130 with a laser.
-ModelDefinition lams_model() {
+// A model of two pressures. @param rest further variables, then further tables
+ModelDefinition pressure_model(const std::string& rest) {
   return parse_model(R"(
 format = "pcor-model/1"
-name = "test"
 [variables]
 static_pressure = "PSFD"
 dynamic_pressure = "QCF"
+)" + rest,
+                     "test.toml");
+}
+
+// Equation 18 of the memo, in a C-130 with a laser.
+ModelDefinition lams_model() {
+  return pressure_model(R"(
 recovery_temperature = "TTRR"
 vapor_pressure = "EDPC"
 radome_dynamic_pressure = "QCR"
@@ -56,8 +63,7 @@ parameters = { a1 = 0.021279816 }
 [[effect]]
 id = "static-qp"
 parameters = { a2 = 0.030849643 }
-)",
-                     "test.toml");
+)");
 }
 
 // Instrument readings in air that moves at `airspeed` with the static defect `defect`.
@@ -83,11 +89,12 @@ Reading reading(double airspeed, double defect) {
 // is 2 hPa.
 void write_flight(const std::filesystem::path& path, std::size_t records, int rate, double start = 50000.0) {
   const std::size_t samples = records * static_cast<std::size_t>(rate);
-  std::vector<double> p, q, attack, temperature, beam;
+  std::vector<double> p, q, radome, attack, temperature, beam;
   for (std::size_t i = 0; i < samples; ++i) {
     const Reading r = reading(110.0 + 20.0 * std::sin(0.001 * static_cast<double>(i)), 2.0);
     p.push_back(r.static_pressure);
     q.push_back(r.dynamic_pressure);
+    radome.push_back(100.0 * r.dynamic_pressure);
     attack.push_back(r.attack_pressure);
     temperature.push_back(r.recovery_temperature - 273.15);
     beam.push_back(r.beam_speed);
@@ -96,18 +103,21 @@ void write_flight(const std::filesystem::path& path, std::size_t records, int ra
   maker.time(test::sequence(start, records));
   maker.series("PSFD", "mbar", p, rate);
   maker.series("QCF", "hPa", q, rate);
-  maker.series(
-      "QCR", "Pa",
-      [&] {
-        std::vector<double> pascal = q;
-        for (double& value : pascal) value *= 100.0;
-        return pascal;
-      }(),
-      rate);
+  maker.series("QCR", "Pa", radome, rate);
   maker.series("ADIFR", "mb", attack, rate);
   maker.series("TTRR", "deg_C", temperature, rate);
   maker.series("VLAMS", "M/s", beam, rate);
   maker.series("EDPC", "hPa", std::vector<double>(records, vapor_pressure));
+}
+
+/// Inputs in level flight: name, unit and value.
+constexpr std::tuple<const char*, const char*, double> level_flight[] = {
+    {"PSFD", "hPa", 700.0}, {"QCF", "hPa", 60.0},    {"TTRR", "deg_C", 5.0},
+    {"QCR", "hPa", 60.0},   {"ADIFR", "hPa", -10.0}, {"EDPC", "hPa", 4.0}};
+
+/// Whether the flags of a sample have a bit.
+bool has(double flags, Quality bit) {
+  return (static_cast<std::uint32_t>(flags) & static_cast<std::uint32_t>(bit)) != 0;
 }
 
 class Process : public testing::Test {
@@ -132,26 +142,14 @@ class Process : public testing::Test {
                    const std::string& dead = "") const {
     test::NetcdfMaker maker(input_);
     maker.time(test::sequence(50000.0, records));
-    for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0},
-                                            {"QCF", "hPa", 60.0},
-                                            {"TTRR", "deg_C", 5.0},
-                                            {"QCR", "hPa", 60.0},
-                                            {"ADIFR", "hPa", -10.0},
-                                            {"EDPC", "hPa", 4.0}})
+    for (const auto& [name, unit, level] : level_flight)
       maker.series(name, unit, std::vector<double>(records, name == dead ? -9999.0 : level));
     if (!flaps.empty()) maker.series("FLAPS", "percent", flaps);
   }
 
-  std::string attribute(const std::string& variable, const std::string& name) {
-    int file = 0, number = 0;
-    std::size_t length = 0;
-    EXPECT_EQ(nc_open(output_.c_str(), NC_NOWRITE, &file), NC_NOERR);
-    EXPECT_EQ(nc_inq_varid(file, variable.c_str(), &number), NC_NOERR);
-    EXPECT_EQ(nc_inq_attlen(file, number, name.c_str(), &length), NC_NOERR) << name;
-    std::string text(length, ' ');
-    EXPECT_EQ(nc_get_att_text(file, number, name.c_str(), text.data()), NC_NOERR);
-    nc_close(file);
-    return text;
+  std::string attribute(const std::string& variable, const std::string& name) const {
+    const auto attributes = Flight(output_).variable(variable).attributes;
+    return std::map<std::string, std::string>(attributes.begin(), attributes.end()).at(name);
   }
 
   test::TemporaryDirectory directory_;
@@ -162,9 +160,7 @@ class Process : public testing::Test {
 // Values are stored as 32-bit floats: one part in 1.7e7, on each of a few inputs.
 TEST_F(Process, RecoversTheTrueAir) {
   write_flight(input_, 200, 1);
-  ProcessOptions options;
-  options.correct_with = CorrectWith::lams;
-  process_flight(input_, lams_model(), output_, options);
+  process_flight(input_, lams_model(), output_, {CorrectWith::lams});
   EXPECT_THAT(read("PCOR_LAMS", "hPa"), testing::Each(testing::DoubleNear(2.0, 3e-4)));
   EXPECT_THAT(read("PSXC", "hPa"), testing::Each(testing::DoubleNear(700.0, 3e-4)));
   EXPECT_THAT(read("ATX", "K"), testing::Each(testing::DoubleNear(270.0, 1e-4)));
@@ -196,21 +192,16 @@ TEST_F(Process, ImpossibleValuesAreMissing) {
   nc_redef(file);
   ASSERT_EQ(nc_put_att_float(file, dynamic_pressure, "valid_max", NC_FLOAT, 1, &valid_max), NC_NOERR);
   nc_close(file);
-  ProcessOptions options;
-  options.correct_with = CorrectWith::lams;
-  const ProcessSummary summary = process_flight(input_, lams_model(), output_, options);
+  const ProcessSummary summary = process_flight(input_, lams_model(), output_, {CorrectWith::lams});
   const std::vector<double> p = read("PSXC", "hPa"), temperature = read("ATX", "K"),
                             flags = read("PCORFLAG", "");
-  const auto has = [&flags](std::size_t record, Quality bit) {
-    return (static_cast<unsigned>(flags[record]) & static_cast<unsigned>(bit)) != 0;
-  };
   for (const std::size_t record : {3U, 4U, 5U, 6U}) {
     EXPECT_TRUE(std::isnan(p[record])) << record;
-    EXPECT_TRUE(
-        has(record, record == 6 ? Quality::dynamic_pressure_missing : Quality::static_pressure_missing));
+    EXPECT_TRUE(has(flags[record],
+                    record == 6 ? Quality::dynamic_pressure_missing : Quality::static_pressure_missing));
   }
   EXPECT_TRUE(std::isnan(temperature[7]));
-  EXPECT_TRUE(has(7, Quality::temperature_missing));
+  EXPECT_TRUE(has(flags[7], Quality::temperature_missing));
   EXPECT_NEAR(p[8], 700.0, 3e-4) << "and no other variable is affected";
   EXPECT_NEAR(temperature[8], 270.0, 1e-4);
   EXPECT_THAT(summary.notes,
@@ -283,9 +274,7 @@ TEST_F(Process, RefusesLamsWithoutALaser) {
   write_flight(input_, 10, 1);
   ModelDefinition model = lams_model();
   model.variables.erase(Quantity::lams_airspeed);
-  ProcessOptions options;
-  options.correct_with = CorrectWith::lams;
-  EXPECT_THAT(test::error_of([&] { process_flight(input_, model, output_, options); }),
+  EXPECT_THAT(test::error_of([&] { process_flight(input_, model, output_, {CorrectWith::lams}); }),
               test::IsError(Error::Code::model, "lams_airspeed"));
   EXPECT_FALSE(std::filesystem::exists(output_));
 }
@@ -315,16 +304,11 @@ TEST_F(Process, CalibratesARecordedAmbientTemperature) {
     maker.series("ATX", "degC", {-20, 0, 10});
   }
   const auto model = [](const std::string& effect) {
-    return parse_model(R"(
-format = "pcor-model/1"
-[variables]
-static_pressure = "PSFD"
-dynamic_pressure = "QCF"
+    return pressure_model(R"(
 ambient_temperature = "ATX"
 [humidity]
 moist = false
-)" + effect,
-                       "calibrated.toml");
+)" + effect);
   };
   const ModelDefinition plain = model(""), calibrated = model(R"(
 [[effect]]
@@ -487,18 +471,12 @@ TEST_F(FilteredTemperature, MissingSampleGivesAMissingResult) {
 // One sensor of a noisy flight is frozen for two minutes.
 TEST_F(Process, FrozenSensorGivesMissingValuesAndANote) {
   constexpr std::size_t first = 2000, count = 120, records = 4000;
-  const auto bit = static_cast<std::uint32_t>(Quality::sensor_frozen);
   for (const std::string frozen : {"PSFD", "QCF", "TTRR"}) {
     std::mt19937_64 engine(1);
     std::normal_distribution<double> noise(0.0, 0.05);
     auto maker = std::make_unique<test::NetcdfMaker>(input_);
     maker->time(test::sequence(50000.0, records));
-    for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0},
-                                            {"QCF", "hPa", 60.0},
-                                            {"TTRR", "deg_C", 5.0},
-                                            {"QCR", "hPa", 60.0},
-                                            {"ADIFR", "hPa", -10.0},
-                                            {"EDPC", "hPa", 4.0}}) {
+    for (const auto& [name, unit, level] : level_flight) {
       std::vector<double> values;
       for (std::size_t i = 0; i < records; ++i) {
         const bool is_held = name == frozen && i > first && i < first + count;
@@ -514,15 +492,13 @@ TEST_F(Process, FrozenSensorGivesMissingValuesAndANote) {
     EXPECT_THAT(summary.notes, Contains(test::Says(frozen + " is frozen")));
     const std::string result = frozen == "TTRR" ? "TASX" : "PSXC";
     const std::vector<double> missing_values = read(result, ""), flags = read("PCORFLAG", "");
-    ProcessOptions keep;
-    keep.keep_frozen = true;
-    process_flight(input_, model, output_, keep);
+    process_flight(input_, model, output_, steady());
     const std::vector<double> kept = read(result, ""), kept_flags = read("PCORFLAG", "");
     for (std::size_t i = 0; i < records; ++i) {
       const bool is_frozen = i >= first && i < first + count;
-      ASSERT_EQ((static_cast<std::uint32_t>(flags[i]) & bit) != 0, is_frozen) << i;
+      ASSERT_EQ(has(flags[i], Quality::sensor_frozen), is_frozen) << i;
       ASSERT_EQ(std::isnan(missing_values[i]), is_frozen) << i;
-      ASSERT_EQ((static_cast<std::uint32_t>(kept_flags[i]) & bit) != 0, is_frozen) << i;
+      ASSERT_EQ(has(kept_flags[i], Quality::sensor_frozen), is_frozen) << i;
       ASSERT_FALSE(std::isnan(kept[i])) << i;
     }
   }
@@ -540,8 +516,7 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
     std::size_t marked = 0;
     const std::vector<double> flags = read("PCORFLAG", "");
     for (std::size_t i = 0; i < records; ++i) {
-      const bool is_outside =
-          (static_cast<std::uint32_t>(flags[i]) & static_cast<std::uint32_t>(Quality::outside_domain)) != 0;
+      const bool is_outside = has(flags[i], Quality::outside_domain);
       EXPECT_TRUE(!is_outside || i >= extended_from) << i;
       marked += is_outside ? 1 : 0;
     }
@@ -587,27 +562,18 @@ TEST_F(Process, ReportsUnevenSamples) {
     maker.series("PSFD", "hPa", p);
     maker.series("QCF", "hPa", q);
   }
-  const ModelDefinition model = parse_model(R"(
-format = "pcor-model/1"
-name = "lagging"
-[variables]
-static_pressure = "PSFD"
-dynamic_pressure = "QCF"
+  const ModelDefinition model = pressure_model(R"(
 [[effect]]
 id = "static-lag"
 parameters = { tau = 5.0 }
-)",
-                                            "test.toml");
+)");
   process_flight(input_, model, output_);
   const std::vector<double> corrected = read("PSXC", ""), flags = read("PCORFLAG", "");
-  const auto bit = static_cast<std::uint32_t>(Quality::uneven_samples);
   for (std::size_t i = 0; i < time.size(); ++i) {
     const bool is_right = std::abs(corrected[i] - p[i] - 2.5) < 0.1;
-    EXPECT_TRUE(is_right || (static_cast<std::uint32_t>(flags[i]) & bit) != 0 || std::isnan(corrected[i]))
-        << i;
-    if (i < 80) {  // more than the window before the first of them
-      EXPECT_EQ(static_cast<std::uint32_t>(flags[i]) & bit, 0U) << i;
-    }
+    const bool is_marked = has(flags[i], Quality::uneven_samples);
+    EXPECT_TRUE(is_right || is_marked || std::isnan(corrected[i])) << i;
+    EXPECT_TRUE(i >= 80 || !is_marked) << i;  // more than the window before the first of them
   }
 }
 
@@ -641,8 +607,7 @@ TEST_F(Process, SeparatesRampAndFlight) {
                             flags = read("PCORFLAG", "");
   double sum = 0.0;
   for (std::size_t i = 0; i < samples; ++i) {
-    const auto bits = static_cast<std::uint32_t>(flags[i]);
-    EXPECT_EQ((bits & static_cast<std::uint32_t>(Quality::no_airflow)) != 0, i < ramp) << i;
+    EXPECT_EQ(has(flags[i], Quality::no_airflow), i < ramp) << i;
     EXPECT_EQ(std::isnan(airspeed[i]), i < ramp) << i;
     if (i >= ramp) sum += defect[i] / (samples - ramp);
   }
@@ -700,9 +665,7 @@ TEST_F(Process, WritesTheRequestedUncertainties) {
 
 TEST_F(Process, LaserCorrectedResultsHaveNoUncertainty) {
   write_flight(input_, 20, 1);
-  ProcessOptions options;
-  options.correct_with = CorrectWith::lams;
-  process_flight(input_, uncertain_model(), output_, options);
+  process_flight(input_, uncertain_model(), output_, {CorrectWith::lams});
   EXPECT_GT(read("PCOR_uncertainty", "hPa")[5], 0.0);
   EXPECT_TRUE(std::isnan(read("PSXC_uncertainty", "hPa")[5]));
 }
@@ -773,15 +736,10 @@ TEST_F(Process, HydrostaticStepsSumToTheHeight) {
     maker.series("TTRR", "degC", std::vector<double>(8, 5.0));
     maker.series("EDPC", "hPa", std::vector<double>(8, 0.0));
   }
-  ModelDefinition model = parse_model(R"(
-format = "pcor-model/1"
-[variables]
-static_pressure = "PSFD"
-dynamic_pressure = "QCF"
+  ModelDefinition model = pressure_model(R"(
 recovery_temperature = "TTRR"
 vapor_pressure = "EDPC"
-)",
-                                      "plain.toml");
+)");
   EXPECT_THAT(process_flight(input_, model, output_).outputs, testing::Not(Contains("HYDSTEP")));
   model.model.effects.push_back({"temp-calibration", {0.5, -0.01, 0.0001}});
   ProcessOptions options;
@@ -832,19 +790,13 @@ TEST_F(Process, RatesAreAvailableOnBothSidesOfAGap) {
     maker.series("PSFD", "hPa", {700, 701, 702, 703, 800, 801, 900});
     maker.series("QCF", "hPa", std::vector<double>(7, 60.0));
   }
-  ModelDefinition model = parse_model(R"(
-format = "pcor-model/1"
-name = "lag"
-[variables]
-static_pressure = "PSFD"
-dynamic_pressure = "QCF"
+  const ModelDefinition model = pressure_model(R"(
 [humidity]
 moist = false
 [[effect]]
 id = "static-lag"
 parameters = { tau = 0.5 }
-)",
-                                      "lag.toml");
+)");
   const ProcessSummary summary = process_flight(input_, model, output_);
   EXPECT_EQ(summary.gaps, 2U);
   const std::vector<double> p = read("PSXC", "hPa");
@@ -875,20 +827,14 @@ class NoisyLag : public Process {
       maker.series("QCF", "hPa", std::vector<double>(records, 60.0));
       maker.series("TTRR", "K", temperature);
     }
-    const ModelDefinition model = parse_model(R"(
-format = "pcor-model/1"
-name = "lag"
-[variables]
-static_pressure = "PSFD"
-dynamic_pressure = "QCF"
+    const ModelDefinition model = pressure_model(R"(
 recovery_temperature = "TTRR"
 [humidity]
 moist = false
 [[effect]]
 id = "temp-lag"
 parameters = { tau = 8.0 }
-)",
-                                              "lag.toml");
+)");
     return process_flight(input_, model, output_, steady());
   }
 };

@@ -51,8 +51,14 @@ std::vector<std::string> in_words(const std::vector<Interval>& intervals) {
   return words;
 }
 
+// Regimes of a flight of `last` seconds after the user's changes.
+std::vector<std::string> applied(const UserIntervals& user, const std::vector<Interval>& regimes,
+                                 double last = 99.0) {
+  return in_words(apply(user, regimes, midnight, midnight + last));
+}
+
 Interval found(Regime regime, double begin, double end, int pair = 0) {
-  return {regime, midnight + begin, midnight + end, pair, "", false};
+  return {regime, midnight + begin, midnight + end, pair};
 }
 
 UserIntervals veto(std::optional<Regime> regime, double begin, double end) {
@@ -63,7 +69,7 @@ UserIntervals veto(std::optional<Regime> regime, double begin, double end) {
 
 UserIntervals add(Regime regime, double begin, double end, int pair = 0) {
   UserIntervals user;
-  user.add.push_back({regime, midnight + begin, midnight + end, pair, "", true});
+  user.add.push_back({regime, midnight + begin, midnight + end, pair});
   return user;
 }
 
@@ -98,7 +104,6 @@ reason = "PSXC iced"
   EXPECT_EQ(utc_text(user.add[0].begin), "2011-11-17 20:10:00");
   EXPECT_EQ(utc_text(user.add[0].end), "2011-11-17 20:13:00");
   EXPECT_EQ(user.add[0].note, "seen in VSPD");
-  EXPECT_TRUE(user.add[0].by_user);
   EXPECT_EQ(user.add[1].pair, 2);
   EXPECT_EQ(user.add[1].begin, 21 * hour);
   EXPECT_EQ(user.add[1].end, 21 * hour + 240);
@@ -216,48 +221,40 @@ TEST(TimesOfTheDay, AreNearestIfOutsideTheFlight) {
 
 TEST(Applied, EmptyIntervalsChangeNoRegime) {
   const std::vector<Interval> regimes{found(Regime::level, 0, 100), found(Regime::turn, 20, 30)};
-  EXPECT_THAT(in_words(apply({}, regimes, midnight, midnight + 99)),
-              ElementsAre("level 0-100", "turn 20-30"));
+  EXPECT_THAT(applied({}, regimes), ElementsAre("level 0-100", "turn 20-30"));
 }
 
 TEST(Applied, VetoRemovesOnlyTheOverlap) {
   const std::vector<Interval> regimes{found(Regime::level, 0, 100), found(Regime::turn, 20, 40)};
-  EXPECT_THAT(in_words(apply(veto(Regime::turn, 30, 50), regimes, midnight, midnight + 99)),
-              ElementsAre("level 0-100", "turn 20-30"));
-  EXPECT_THAT(in_words(apply(veto(Regime::turn, 25, 35), regimes, midnight, midnight + 99)),
+  EXPECT_THAT(applied(veto(Regime::turn, 30, 50), regimes), ElementsAre("level 0-100", "turn 20-30"));
+  EXPECT_THAT(applied(veto(Regime::turn, 25, 35), regimes),
               ElementsAre("level 0-100", "turn 20-25", "turn 35-40"));
-  EXPECT_THAT(in_words(apply(veto(std::nullopt, 10, 50), regimes, midnight, midnight + 99)),
-              ElementsAre("level 0-10", "level 50-100"));
-  EXPECT_THAT(in_words(apply(veto(Regime::turn, 40, 50), regimes, midnight, midnight + 99)), SizeIs(2));
+  EXPECT_THAT(applied(veto(std::nullopt, 10, 50), regimes), ElementsAre("level 0-10", "level 50-100"));
+  EXPECT_THAT(applied(veto(Regime::turn, 40, 50), regimes), SizeIs(2));
 }
 
 TEST(Applied, VetoRemovesWholeManoeuvresAndBothLegs) {
   const std::vector<Interval> regimes{
       found(Regime::pitch_manoeuvre, 0, 100), found(Regime::reverse_heading, 200, 300, 1),
       found(Regime::reverse_heading, 400, 500, 1), found(Regime::reverse_heading, 600, 700, 2)};
-  EXPECT_THAT(in_words(apply(veto(Regime::pitch_manoeuvre, 90, 110), regimes, midnight, midnight + 999)),
-              SizeIs(3));
-  EXPECT_THAT(in_words(apply(veto(Regime::reverse_heading, 450, 460), regimes, midnight, midnight + 999)),
+  EXPECT_THAT(applied(veto(Regime::pitch_manoeuvre, 90, 110), regimes, 999), SizeIs(3));
+  EXPECT_THAT(applied(veto(Regime::reverse_heading, 450, 460), regimes, 999),
               ElementsAre("pitch manoeuvre 0-100", "reverse heading 600-700"));
 }
 
 TEST(Applied, AdditionReplacesDetectedInterval) {
   const std::vector<Interval> regimes{found(Regime::level, 0, 100), found(Regime::climb, 100, 200),
                                       found(Regime::yaw_manoeuvre, 20, 40)};
-  const std::vector<Interval> yaw =
-      apply(add(Regime::yaw_manoeuvre, 10, 45), regimes, midnight, midnight + 199);
-  EXPECT_THAT(in_words(yaw), ElementsAre("level 0-100", "yaw manoeuvre 10-45", "climb 100-200"));
-  EXPECT_TRUE(yaw[1].by_user);
-  EXPECT_THAT(in_words(apply(add(Regime::descent, 90, 120), regimes, midnight, midnight + 199)),
+  EXPECT_THAT(applied(add(Regime::yaw_manoeuvre, 10, 45), regimes, 199),
+              ElementsAre("level 0-100", "yaw manoeuvre 10-45", "climb 100-200"));
+  EXPECT_THAT(applied(add(Regime::descent, 90, 120), regimes, 199),
               ElementsAre("level 0-90", "yaw manoeuvre 20-40", "descent 90-120", "climb 120-200"));
 }
 
 TEST(Applied, AdditionIsLimitedToTheFlight) {
   const std::vector<Interval> regimes{found(Regime::level, 0, 100)};
-  EXPECT_THAT(in_words(apply(add(Regime::climb, -50, 500), regimes, midnight, midnight + 99)),
-              ElementsAre("climb 0-100"));
-  EXPECT_THAT(in_words(apply(add(Regime::climb, 500, 600), regimes, midnight, midnight + 99)),
-              ElementsAre("level 0-100"));
+  EXPECT_THAT(applied(add(Regime::climb, -50, 500), regimes), ElementsAre("climb 0-100"));
+  EXPECT_THAT(applied(add(Regime::climb, 500, 600), regimes), ElementsAre("level 0-100"));
 }
 
 TEST(Applied, AddedPairsGetNewNumbers) {
@@ -276,8 +273,7 @@ TEST(Applied, VetoByTimeOfDayIsApplied) {
   UserIntervals user;
   user.veto.push_back({Regime::turn, 20.0, 30.0});
   const std::vector<Interval> regimes{found(Regime::turn, 0, 100)};
-  EXPECT_THAT(in_words(apply(user, regimes, midnight, midnight + 99)),
-              ElementsAre("turn 0-20", "turn 30-100"));
+  EXPECT_THAT(applied(user, regimes), ElementsAre("turn 0-20", "turn 30-100"));
 }
 
 }  // namespace

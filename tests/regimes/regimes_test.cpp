@@ -59,18 +59,22 @@ struct Weather {
   unsigned seed = 1;
 };
 
+struct Start {
+  double time = 1321560000.0;  // 2011-11-17 20:00:00 UTC
+  double heading = 355.0;
+  double airspeed = 125.0;
+  double altitude = 4000.0;
+};
+
+// Time range of a part of the flight, s.
+struct Flown {
+  double begin = 0.0, end = 0.0;
+};
+
 // Flies one manoeuvre after the other and records what the aircraft does.
 class Pilot {
  public:
-  struct Start {
-    double time = 1321560000.0;  // 2011-11-17 20:00:00 UTC
-    double heading = 355.0;
-    double airspeed = 125.0;
-    double altitude = 4000.0;
-  };
-
-  explicit Pilot(double rate = 1.0, Weather weather = {}) : Pilot(rate, weather, Start{}) {}
-  Pilot(double rate, Weather weather, Start start)
+  explicit Pilot(double rate = 1.0, Weather weather = {}, Start start = {})
       : step_(1.0 / rate),
         start_(start),
         airspeed_(start.airspeed),
@@ -84,38 +88,38 @@ class Pilot {
   double now() const { return start_.time + static_cast<double>(motion_.time.size()) * step_; }
   const FlightMotion& motion() const { return motion_; }
 
-  void level(double seconds) {
-    fly(seconds, [](double) { return Moment{}; });
+  Flown level(double seconds) {
+    return fly(seconds, [](double) { return Moment{}; });
   }
 
-  void climb(double rate, double seconds) {
-    fly(seconds, [&](double) { return Moment{0, rate}; });
+  Flown climb(double rate, double seconds) {
+    return fly(seconds, [&](double) { return Moment{0, rate}; });
   }
 
-  void turn(double change, double roll) {
+  Flown turn(double change, double roll) {
     const double rate = gravity * std::tan(roll / degrees) / airspeed_ * degrees;
-    fly(std::abs(change / rate), [&](double) {
+    return fly(std::abs(change / rate), [&](double) {
       return Moment{0, 0, std::copysign(roll, change), std::copysign(rate, change)};
     });
   }
 
-  void pitch_manoeuvre(int cycles, double period, double height) {
-    fly(cycles * period, [&](double t) {
+  Flown pitch_manoeuvre(int cycles, double period, double height) {
+    return fly(cycles * period, [&](double t) {
       return Moment{0, height * 2.0 * pi / period * std::sin(2.0 * pi * t / period)};
     });
   }
 
-  void yaw_manoeuvre(int cycles, double period, double amplitude) {
-    fly(cycles * period, [&](double t) {
+  Flown yaw_manoeuvre(int cycles, double period, double amplitude) {
+    return fly(cycles * period, [&](double t) {
       Moment moment;
       moment.yaw = amplitude * std::sin(2.0 * pi * t / period);
       return moment;
     });
   }
 
-  void accelerate(double to, double rate) {
+  Flown accelerate(double to, double rate) {
     const double sign = to > airspeed_ ? 1.0 : -1.0;
-    fly(std::abs(to - airspeed_) / rate, [&](double) { return Moment{sign * rate}; });
+    return fly(std::abs(to - airspeed_) / rate, [&](double) { return Moment{sign * rate}; });
   }
 
   void stand(double seconds) {
@@ -123,10 +127,11 @@ class Pilot {
     level(seconds);
   }
 
-  void cloud(double seconds) {
+  Flown cloud(double seconds) {
     water_ = 0.3;
-    level(seconds);
+    const Flown flown = level(seconds);
     water_ = 0.0;
+    return flown;
   }
 
  private:
@@ -135,7 +140,8 @@ class Pilot {
   };
 
   template <class Motion>
-  void fly(double seconds, Motion motion) {
+  Flown fly(double seconds, Motion motion) {
+    const double begin = now();
     const auto samples = static_cast<int>(std::lround(seconds / step_));
     for (int i = 0; i < samples; ++i) {
       const Moment moment = motion((i + 0.5) * step_);
@@ -144,6 +150,7 @@ class Pilot {
       heading_ += moment.heading_rate * step_;
       record(moment);
     }
+    return {begin, now()};
   }
 
   void record(const Moment& moment) {
@@ -187,12 +194,11 @@ std::vector<Interval> manoeuvres(const std::vector<Interval>& intervals) {
   return found;
 }
 
-void expect_one(Regime regime, const std::vector<Interval>& intervals, double begin, double end,
-                double tolerance) {
+void expect_one(Regime regime, const std::vector<Interval>& intervals, Flown flown, double tolerance) {
   const std::vector<Interval> found = of(regime, intervals);
   ASSERT_THAT(found, SizeIs(1)) << info_of(regime).name;
-  EXPECT_NEAR(found[0].begin, begin, tolerance) << info_of(regime).name << ": " << found[0].note;
-  EXPECT_NEAR(found[0].end, end, tolerance) << info_of(regime).name << ": " << found[0].note;
+  EXPECT_NEAR(found[0].begin, flown.begin, tolerance) << info_of(regime).name << ": " << found[0].note;
+  EXPECT_NEAR(found[0].end, flown.end, tolerance) << info_of(regime).name << ": " << found[0].note;
 }
 
 void expect_phases_cover(const FlightMotion& motion, const std::vector<Interval>& intervals) {
@@ -210,67 +216,43 @@ void expect_phases_cover(const FlightMotion& motion, const std::vector<Interval>
 // Flown regimes of one flight with several kinds of manoeuvres.
 struct Story {
   FlightMotion motion;
-  double roll, off, climb_end, pitch, pitch_end, yaw, yaw_end, run, run_end, first_leg_end, second_leg,
-      second_leg_end, circle, circle_end, cloud, cloud_end, descent, descent_end, landing;
+  Flown roll, climb, pitch, yaw, run, first_leg, second_leg, circle, cloud, descent;
+  double landing;
 };
 
 Story tell(double rate = 1.0, Weather weather = {}, double heading = 355.0, double shift = 0.0) {
-  Pilot::Start start;
-  start.heading = heading;
-  start.time += shift;
-  start.airspeed = 0.0;
-  start.altitude = 1500.0;
-  Pilot pilot(rate, weather, start);
+  Pilot pilot(rate, weather, {Start().time + shift, heading, 0.0, 1500.0});
   Story story;
   pilot.stand(300);
-  story.roll = pilot.now();
-  pilot.accelerate(70.0, 2.0);
-  story.off = pilot.now();
+  story.roll = pilot.accelerate(70.0, 2.0);
   pilot.climb(7.0, 30);
   pilot.accelerate(110.0, 1.0);
-  pilot.climb(7.0, 500);
-  story.climb_end = pilot.now();
+  story.climb = pilot.climb(7.0, 500);
   pilot.level(400);
-  story.pitch = pilot.now();
-  pilot.pitch_manoeuvre(6, 24.0, 40.0);
-  story.pitch_end = pilot.now();
+  story.pitch = pilot.pitch_manoeuvre(6, 24.0, 40.0);
   pilot.level(300);
-  story.yaw = pilot.now();
-  pilot.yaw_manoeuvre(15, 10.0, 3.0);
-  story.yaw_end = pilot.now();
+  story.yaw = pilot.yaw_manoeuvre(15, 10.0, 3.0);
   pilot.level(300);
-  story.run = pilot.now();
-  pilot.accelerate(100.0, 0.25);
+  story.run = pilot.accelerate(100.0, 0.25);
   pilot.level(30);
   pilot.accelerate(150.0, 0.25);
   pilot.level(30);
-  pilot.accelerate(110.0, 0.25);
-  story.run_end = pilot.now();
-  pilot.level(400);
-  story.first_leg_end = pilot.now();
+  story.run.end = pilot.accelerate(110.0, 0.25).end;
+  story.first_leg = pilot.level(400);
   pilot.turn(90.0, 25.0);
   pilot.turn(-270.0, 25.0);
-  story.second_leg = pilot.now();
-  pilot.level(240);
-  story.second_leg_end = pilot.now();
+  story.second_leg = pilot.level(240);
   pilot.turn(30.0, 20.0);
   pilot.level(200);
-  story.circle = pilot.now();
-  pilot.turn(360.0, 26.7);
-  story.circle_end = pilot.now();
+  story.circle = pilot.turn(360.0, 26.7);
   pilot.level(100);
-  story.cloud = pilot.now();
-  pilot.cloud(90);
-  story.cloud_end = pilot.now();
+  story.cloud = pilot.cloud(90);
   pilot.level(100);
-  story.descent = pilot.now();
-  pilot.climb(-5.0, 600);
-  story.descent_end = pilot.now();
+  story.descent = pilot.climb(-5.0, 600);
   pilot.level(120);
   pilot.accelerate(75.0, 1.0);
   pilot.climb(-3.0, 70);
-  pilot.accelerate(60.0, 1.0);
-  story.landing = pilot.now();
+  story.landing = pilot.accelerate(60.0, 1.0).end;
   pilot.accelerate(10.0, 2.0);
   pilot.stand(200);
   story.motion = pilot.motion();
@@ -278,38 +260,49 @@ Story tell(double rate = 1.0, Weather weather = {}, double heading = 355.0, doub
 }
 
 void expect_told(const Story& story, const std::vector<Interval>& found) {
-  expect_one(Regime::pitch_manoeuvre, found, story.pitch, story.pitch_end, 6.0);
-  expect_one(Regime::yaw_manoeuvre, found, story.yaw, story.yaw_end, 8.0);
-  expect_one(Regime::speed_run, found, story.run, story.run_end, 10.0);
-  expect_one(Regime::circle, found, story.circle, story.circle_end, 4.0);
-  expect_one(Regime::cloud, found, story.cloud, story.cloud_end, 1.0);
-  expect_one(Regime::take_off, found, story.roll + 7.5, story.off + 42.0, 14.0);
+  expect_one(Regime::pitch_manoeuvre, found, story.pitch, 6.0);
+  expect_one(Regime::yaw_manoeuvre, found, story.yaw, 8.0);
+  expect_one(Regime::speed_run, found, story.run, 10.0);
+  expect_one(Regime::circle, found, story.circle, 4.0);
+  expect_one(Regime::cloud, found, story.cloud, 1.0);
+  expect_one(Regime::take_off, found, {story.roll.begin + 7.5, story.roll.end + 42.0}, 14.0);
 
   const std::vector<Interval> legs = of(Regime::reverse_heading, found);
   ASSERT_THAT(legs, SizeIs(2));
   EXPECT_EQ(legs[0].pair, 1);
   EXPECT_EQ(legs[1].pair, 1);
-  EXPECT_NEAR(legs[0].end, story.first_leg_end, 6.0);
+  EXPECT_NEAR(legs[0].end, story.first_leg.end, 6.0);
   EXPECT_NEAR(legs[0].end - legs[0].begin, 300.0, 6.0);
-  EXPECT_NEAR(legs[1].begin, story.second_leg, 6.0);
-  EXPECT_NEAR(legs[1].end, story.second_leg_end, 6.0);
+  EXPECT_NEAR(legs[1].begin, story.second_leg.begin, 6.0);
+  EXPECT_NEAR(legs[1].end, story.second_leg.end, 6.0);
 
   const std::vector<Interval> ground = of(Regime::ground, found);
   ASSERT_THAT(ground, SizeIs(2));
-  EXPECT_NEAR(ground[0].end, story.roll + 7.5, 3.0);
+  EXPECT_NEAR(ground[0].end, story.roll.begin + 7.5, 3.0);
   EXPECT_NEAR(ground[1].begin, story.landing, 3.0);
 
   const std::vector<Interval> climbs = of(Regime::climb, found);
   ASSERT_THAT(climbs, SizeIs(1));
-  EXPECT_NEAR(climbs[0].end, story.climb_end, 3.0);
+  EXPECT_NEAR(climbs[0].end, story.climb.end, 3.0);
 
   const std::vector<Interval> descents = of(Regime::descent, found);
   ASSERT_FALSE(descents.empty());
-  EXPECT_NEAR(descents[0].begin, story.descent, 3.0);
-  EXPECT_NEAR(descents[0].end, story.descent_end, 3.0);
+  EXPECT_NEAR(descents[0].begin, story.descent.begin, 3.0);
+  EXPECT_NEAR(descents[0].end, story.descent.end, 3.0);
 
   EXPECT_THAT(of(Regime::turn, found), SizeIs(4));
   expect_phases_cover(story.motion, found);
+}
+
+// The same regimes, `shift` seconds later.
+void expect_shifted(const std::vector<Interval>& found, const std::vector<Interval>& reference,
+                    double shift) {
+  ASSERT_EQ(found.size(), reference.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].regime, reference[i].regime);
+    EXPECT_EQ(found[i].begin, reference[i].begin + shift);
+    EXPECT_EQ(found[i].end, reference[i].end + shift);
+  }
 }
 
 TEST(Regimes, HaveNames) {
@@ -376,25 +369,12 @@ TEST(Regimes, AreIndependentOfTheHeading) {
   const std::vector<Interval> reference = find_regimes(tell().motion);
   for (const double heading : {0.0, 90.0, 177.0, 359.9}) {
     SCOPED_TRACE(heading);
-    const std::vector<Interval> found = find_regimes(tell(1.0, {}, heading).motion);
-    ASSERT_EQ(found.size(), reference.size());
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      EXPECT_EQ(found[i].regime, reference[i].regime);
-      EXPECT_EQ(found[i].begin, reference[i].begin);
-      EXPECT_EQ(found[i].end, reference[i].end);
-    }
+    expect_shifted(find_regimes(tell(1.0, {}, heading).motion), reference, 0.0);
   }
 }
 
 TEST(Regimes, ShiftWithTheTimeAxis) {
-  const std::vector<Interval> reference = find_regimes(tell().motion);
-  const std::vector<Interval> found = find_regimes(tell(1.0, {}, 355.0, 4321.0).motion);
-  ASSERT_EQ(found.size(), reference.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_EQ(found[i].regime, reference[i].regime);
-    EXPECT_EQ(found[i].begin, reference[i].begin + 4321.0);
-    EXPECT_EQ(found[i].end, reference[i].end + 4321.0);
-  }
+  expect_shifted(find_regimes(tell(1.0, {}, 355.0, 4321.0).motion), find_regimes(tell().motion), 4321.0);
 }
 
 TEST(Regimes, AreFoundDespiteMissingValuesAndSamples) {
@@ -434,7 +414,7 @@ TEST(Regimes, RollIsNotRequired) {
   Story story = tell();
   story.motion.roll.clear();
   const std::vector<Interval> found = find_regimes(story.motion);
-  expect_one(Regime::circle, found, story.circle, story.circle_end, 5.0);
+  expect_one(Regime::circle, found, story.circle, 5.0);
   EXPECT_THAT(of(Regime::reverse_heading, found), SizeIs(2));
 }
 
@@ -561,12 +541,10 @@ TEST(Regimes, PitchManoeuvreReportsItsPeriod) {
   for (const double period : {20.0, 24.0, 30.0}) {
     Pilot pilot;
     pilot.level(300);
-    const double begin = pilot.now();
-    pilot.pitch_manoeuvre(7, period, 40.0);
-    const double end = pilot.now();
+    const Flown flown = pilot.pitch_manoeuvre(7, period, 40.0);
     pilot.level(300);
     const std::vector<Interval> found = find_regimes(pilot.motion());
-    expect_one(Regime::pitch_manoeuvre, found, begin, end, 6.0);
+    expect_one(Regime::pitch_manoeuvre, found, flown, 6.0);
     EXPECT_THAT(of(Regime::pitch_manoeuvre, found)[0].note,
                 HasSubstr("7 cycles of " + std::to_string(static_cast<int>(period)).substr(0, 1)));
     EXPECT_THAT(of(Regime::level, found), SizeIs(1)) << "not chopped into climbs and descents";
@@ -578,19 +556,14 @@ TEST(Regimes, YawManoeuvreIsFoundAtItsPeriods) {
     SCOPED_TRACE(period);
     Pilot pilot(25.0, {0.8, 5});
     pilot.level(300);
-    const double begin = pilot.now();
-    pilot.yaw_manoeuvre(static_cast<int>(150.0 / period), period, 3.0);
-    const double end = pilot.now();
+    const Flown flown = pilot.yaw_manoeuvre(static_cast<int>(150.0 / period), period, 3.0);
     pilot.level(300);
-    expect_one(Regime::yaw_manoeuvre, find_regimes(pilot.motion()), begin, end, 8.0);
+    expect_one(Regime::yaw_manoeuvre, find_regimes(pilot.motion()), flown, 8.0);
   }
 }
 
 TEST(Regimes, GvCriteriaRequireMoreAcceleration) {
-  Pilot::Start start;
-  start.airspeed = 200.0;
-  start.altitude = 12000.0;
-  Pilot pilot(1.0, {}, start);
+  Pilot pilot(1.0, {}, {Start().time, 355.0, 200.0, 12000.0});
   pilot.level(300);
   pilot.accelerate(250.0, 0.25);
   pilot.level(300);
@@ -660,7 +633,7 @@ TEST(Regimes, FlightOf2004HasPlausibleRegimes) {
   // Read off the series: 15 m/s at 44 s, VSPD above 1 m/s from 90 s, PALT 300 m higher at 137 s, wheels down
   // at 2990 s.
   const double first = motion.time.front();
-  expect_one(Regime::take_off, found, first + 45.0, first + 137.0, 10.0);
+  expect_one(Regime::take_off, found, {first + 45.0, first + 137.0}, 10.0);
   const std::vector<Interval> ground = of(Regime::ground, found);
   ASSERT_THAT(ground, SizeIs(2));
   EXPECT_NEAR(ground[1].begin, first + 2990.0, 10.0);

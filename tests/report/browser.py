@@ -3,12 +3,41 @@
 import base64
 import json
 import os
+import shutil
 import subprocess
+import sys
+import tempfile
 import time
+import unittest
+from pathlib import Path
 
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 # A page in the background, as every page without a window is to Chromium, gets less processor time and slow timers.
 FOREGROUND = ("--disable-renderer-backgrounding", "--disable-backgrounding-occluded-windows", "--disable-background-timer-throttling")
+
+
+def skip_without(browser, name):
+    """Without the browser, exits as a skipped test, or as a failed one if PCOR_REQUIRE_<NAME> is set."""
+    if browser is None:
+        print(f"{name} is not installed; reports were not looked at", file=sys.stderr)
+        sys.exit(1 if os.environ.get(f"PCOR_REQUIRE_{name.upper()}") else 77)
+
+
+class PageTest(unittest.TestCase):
+    """Tests of pages in one browser, with a folder for its profile and for files of the tests."""
+
+    @classmethod
+    def make_folder(cls):
+        directory = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
+        cls.addClassCleanup(directory.cleanup)
+        cls.folder = Path(directory.name)
+        return cls.folder
+
+    @classmethod
+    def start(cls, make, *arguments, **more):
+        cls.browser = make(*arguments, **more)
+        cls.addClassCleanup(cls.browser.close)
 
 
 class Browser:

@@ -12,13 +12,12 @@ fails if PCOR_REQUIRE_CHROMIUM is set; without axe-core its part of it is.
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
-from browser import Browser  # noqa: E402
-from reports import CHROMIUM, COMMANDS, LOOKED_AT, SOURCE, page, skip_without  # noqa: E402
+from browser import CHROMIUM, Browser, PageTest, skip_without  # noqa: E402
+from reports import COMMANDS, LOOKED_AT, SOURCE, page  # noqa: E402
 
 BUILD = Path(sys.argv[4]).resolve()
 AXE_VERSION = "4.14.1"
@@ -35,16 +34,10 @@ def axe_core():
     return script.read_text() if script.exists() else ""
 
 
-class EveryReport(unittest.TestCase):
+class EveryReport(PageTest):
     @classmethod
     def setUpClass(cls):
-        profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
-        cls.addClassCleanup(profile.cleanup)
-        cls.browser = Browser(CHROMIUM, profile.name, 1400)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
+        cls.start(Browser, CHROMIUM, cls.make_folder(), 1400)
 
     def test_every_panel_has_data_wide_and_narrow(self):
         for command in LOOKED_AT:

@@ -14,7 +14,8 @@ import time
 import unittest
 
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
-from reports import CHROMIUM, COMMANDS, FITTED, FOLDER, TOOL, run, skip_without  # noqa: E402
+from browser import CHROMIUM, skip_without  # noqa: E402
+from reports import COMMANDS, FITTED, FOLDER, TOOL, run  # noqa: E402
 
 
 class Figures(unittest.TestCase):

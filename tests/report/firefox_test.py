@@ -9,26 +9,20 @@ Without Firefox the test is skipped (status 77), or fails if PCOR_REQUIRE_FIREFO
 import json
 import shutil
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+from browser import PageTest, skip_without  # noqa: E402
 from firefox import Firefox  # noqa: E402
-from reports import LOOKED_AT, page, skip_without  # noqa: E402
+from reports import LOOKED_AT, page  # noqa: E402
 
 FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
 
 
-class InFirefox(unittest.TestCase):
+class InFirefox(PageTest):
     @classmethod
     def setUpClass(cls):
-        profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
-        cls.addClassCleanup(profile.cleanup)
-        cls.browser = Firefox(FIREFOX, profile.name, 1400)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
+        cls.start(Firefox, FIREFOX, cls.make_folder(), 1400)
 
     def test_every_panel_has_data(self):
         for command in LOOKED_AT:

@@ -18,11 +18,10 @@ import unittest
 from pathlib import Path
 
 sys.argv, ACCEPT = [word for word in sys.argv if word != "--accept"], "--accept" in sys.argv
-from browser import Browser  # noqa: E402
+from browser import CHROMIUM, Browser, PageTest  # noqa: E402
 
 SAMPLE_REPORT, SOURCE = (Path(word).resolve() for word in sys.argv[1:3])
 ACCEPTED = SOURCE / "tests/report/accepted"
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FONT = Path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf")
 # Name, width in pixels, fragment of the address after #, print mode, and scale of the stored picture.
 LOOKS = (("wide", 1400, "light", False, 0.25), ("narrow", 420, "light", False, 0.35), ("dark", 1400, "dark", False, 0.25),
@@ -50,11 +49,10 @@ def blocks(path):
         return picture.height, numpy.asarray(picture.convert("RGB").crop((0, 0, width, height)).reduce(BLOCK), int)
 
 
-class Looks(unittest.TestCase):
+class Looks(PageTest):
     @classmethod
     def setUpClass(cls):
-        cls.directory = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
-        folder = Path(cls.directory.name)
+        folder = cls.make_folder()
         fonts = folder / "fonts"
         fonts.mkdir()
         shutil.copy(FONT, fonts)
@@ -62,13 +60,8 @@ class Looks(unittest.TestCase):
         (folder / "fonts.conf").write_text(FONTS.format(folder=fonts, cache=folder / "cache"))
         cls.report = folder / "report.html"
         subprocess.run([SAMPLE_REPORT, cls.report], check=True)
-        cls.browser = Browser(CHROMIUM, folder / "profile", words=("--hide-scrollbars", "--font-render-hinting=none", "--disable-lcd-text", "--force-color-profile=srgb"),
-                              environment={**os.environ, "FONTCONFIG_FILE": str(folder / "fonts.conf")})
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        cls.directory.cleanup()
+        cls.start(Browser, CHROMIUM, folder / "profile", words=("--hide-scrollbars", "--font-render-hinting=none", "--disable-lcd-text", "--force-color-profile=srgb"),
+                  environment={**os.environ, "FONTCONFIG_FILE": str(folder / "fonts.conf")})
 
     def picture(self, width, wish, is_print, part):
         self.browser.resize(width)
@@ -86,7 +79,7 @@ class Looks(unittest.TestCase):
     def test_pages_match_the_accepted_pictures(self):
         for name, width, wish, is_print, part in LOOKS:
             with self.subTest(look=name):
-                found = Path(self.directory.name) / f"{name}.png"
+                found = self.folder / f"{name}.png"
                 found.write_bytes(self.picture(width, wish, is_print, part))
                 accepted = ACCEPTED / f"{name}.png"
                 if ACCEPT:

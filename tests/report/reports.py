@@ -24,7 +24,6 @@ COMMANDS = {
 # Slow checks run on the reports with most kinds of pictures, and on all of them in the long tests.
 LOOKED_AT = COMMANDS if os.environ.get("PCOR_EVERY_REPORT") else ("improve", "check")
 TOOL, SOURCE, FOLDER = (Path(word).resolve() for word in sys.argv[1:4])
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
 def run(*words, **more):
@@ -33,13 +32,6 @@ def run(*words, **more):
 
 def page(command):
     return (FOLDER / f"{command}.html").as_uri()
-
-
-def skip_without(browser, name):
-    """Without the browser, exits as a skipped test, or as a failed one if PCOR_REQUIRE_<NAME> is set."""
-    if browser is None:
-        print(f"{name} is not installed; reports were not looked at", file=sys.stderr)
-        sys.exit(1 if os.environ.get(f"PCOR_REQUIRE_{name.upper()}") else 77)
 
 
 def main():

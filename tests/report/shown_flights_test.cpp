@@ -51,13 +51,15 @@ TEST(ShownFlights, FlightsWithoutAResidualAreOmitted) {
 }
 
 TEST(ShownFlights, ChoiceIsEvenInTime) {
-  std::vector<double> begins;
-  for (int f = 0; f < 90; ++f) begins.push_back(static_cast<double>((f * 37) % 90));
-  std::vector<double> shown;
-  for (const std::size_t f : flights_over_time(begins, 9)) shown.push_back(begins[f]);
-  std::sort(shown.begin(), shown.end());
-  EXPECT_THAT(shown, ElementsAre(5, 15, 25, 35, 45, 55, 65, 75, 85));
-  EXPECT_THAT(flights_over_time({3.0, 1.0, 2.0}), ElementsAre(0, 1, 2));
+  Report report;
+  for (std::size_t f = 0; f < 90; ++f) {
+    report.flight_starts.push_back(f);
+    report.time.push_back(static_cast<double>((f * 37) % 90));
+  }
+  report.flight_names.resize(90);
+  show_flights_over_time(report, 9);
+  std::sort(report.time.begin(), report.time.end());
+  EXPECT_THAT(report.time, ElementsAre(5, 15, 25, 35, 45, 55, 65, 75, 85));
 }
 
 TEST(ShownFlights, ShownFlightsKeepTheirRecordsAndIntervals) {

@@ -1,4 +1,4 @@
-#include "residuals/bursts.hpp"
+#include "residuals/masks.hpp"
 
 #include <gmock/gmock.h>
 

@@ -26,39 +26,44 @@ using pcor::State;
 
 namespace {
 
-constexpr int maximum = 4;
-using Jet = ceres::Jet<double, maximum>;
+using Jet = ceres::Jet<double, 4>;
 
 // With a step of 1e-5 of the range of x, a central difference errs by 1e-10 of f''' x^3/6 and by 1e-11 of
 // rounding of f: 1e-6 of f/x covers both for powers up to the fourth.
-template <class Function>
-double difference(const Function& f, double x, double h) {
-  return (f(x + h) - f(x - h)) / (2 * h);
+template <class Function, class Point, class Index>
+double difference(const Function& f, Point at, Index index, double h) {
+  const double x = at[index];
+  at[index] = x + h;
+  const double above = f(at);
+  at[index] = x - h;
+  return (above - f(at)) / (2 * h);
 }
 
-class Draw {
- public:
-  double operator()(double from, double to) {
-    return std::uniform_real_distribution<double>(from, to)(engine_);
-  }
+std::vector<Jet> dual(const std::vector<double>& parameters) {
+  std::vector<Jet> result;
+  for (std::size_t i = 0; i < parameters.size(); ++i) result.emplace_back(parameters[i], static_cast<int>(i));
+  return result;
+}
 
- private:
-  std::mt19937_64 engine_{20120106};
-};
+using Engine = std::mt19937_64;
 
-State<double> draw_state(const EffectInfo& info, Draw& draw) {
+double draw(Engine& engine, double from, double to) {
+  return std::uniform_real_distribution<double>(from, to)(engine);
+}
+
+State<double> draw_state(const EffectInfo& info, Engine& engine) {
   State<double> state;
   for (std::size_t i = 0; i < info.need_count(); ++i) {
     const InputRange range = input_range(info.needs[i]);
-    state[info.needs[i]] = draw(range.lower, range.upper);
+    state[info.needs[i]] = draw(engine, range.lower, range.upper);
   }
   return state;
 }
 
-std::vector<double> draw_parameters(const EffectInfo& info, Draw& draw) {
+std::vector<double> draw_parameters(const EffectInfo& info, Engine& engine) {
   std::vector<double> result;
   for (std::size_t i = 0; i < info.parameter_count(); ++i)
-    result.push_back(draw(info.parameters[i].lower, info.parameters[i].upper));
+    result.push_back(draw(engine, info.parameters[i].lower, info.parameters[i].upper));
   return result;
 }
 
@@ -73,23 +78,17 @@ class EveryEffect : public testing::TestWithParam<std::size_t> {
 }  // namespace
 
 TEST_P(EveryEffect, DerivativeByEachParameterIsCorrect) {
-  Draw draw;
+  Engine engine(20120106);
   for (int n = 0; n < 20; ++n) {
-    const State<double> state = draw_state(info(), draw);
-    std::vector<double> parameters = draw_parameters(info(), draw);
-    std::vector<Jet> dual;
-    for (std::size_t i = 0; i < parameters.size(); ++i) dual.emplace_back(parameters[i], static_cast<int>(i));
-    const Jet result = effect_functions<double, Jet>[GetParam()](state, dual.data());
+    const State<double> state = draw_state(info(), engine);
+    const std::vector<double> parameters = draw_parameters(info(), engine);
+    const Jet result = effect_functions<double, Jet>[GetParam()](state, dual(parameters).data());
     const double plain = value(state, parameters);
     EXPECT_NEAR(result.a, plain, 1e-14 * std::abs(plain));
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-      const auto along = [&](double x) {
-        std::vector<double> moved = parameters;
-        moved[i] = x;
-        return value(state, moved);
-      };
       const double width = info().parameters[i].upper - info().parameters[i].lower;
-      const double expected = difference(along, parameters[i], 1e-3 * width);
+      const auto along = [&](const std::vector<double>& moved) { return value(state, moved); };
+      const double expected = difference(along, parameters, i, 1e-3 * width);
       EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)], expected, 1e-9 * (1 + std::abs(expected)))
           << info().parameters[i].name;
     }
@@ -97,10 +96,10 @@ TEST_P(EveryEffect, DerivativeByEachParameterIsCorrect) {
 }
 
 TEST_P(EveryEffect, DerivativeByEachInputIsCorrect) {
-  Draw draw;
+  Engine engine(20120106);
   for (int n = 0; n < 20; ++n) {
-    const State<double> state = draw_state(info(), draw);
-    const std::vector<double> parameters = draw_parameters(info(), draw);
+    const State<double> state = draw_state(info(), engine);
+    const std::vector<double> parameters = draw_parameters(info(), engine);
     State<Jet> dual;
     for (std::size_t i = 0; i < info().need_count(); ++i)
       dual[info().needs[i]] = Jet(state[info().needs[i]], static_cast<int>(i));
@@ -110,12 +109,8 @@ TEST_P(EveryEffect, DerivativeByEachInputIsCorrect) {
     for (std::size_t i = 0; i < info().need_count(); ++i) {
       const Quantity need = info().needs[i];
       const InputRange range = input_range(need);
-      const auto along = [&](double x) {
-        State<double> moved = state;
-        moved[need] = x;
-        return value(moved, parameters);
-      };
-      const double expected = difference(along, state[need], 1e-5 * (range.upper - range.lower));
+      const auto along = [&](const State<double>& moved) { return value(moved, parameters); };
+      const double expected = difference(along, state, need, 1e-5 * (range.upper - range.lower));
       EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)], expected, 1e-6 * (1 + std::abs(expected)))
           << info_of(need).name;
     }
@@ -206,12 +201,6 @@ State<S> run(const Chain& chain, const std::vector<S>& parameters) {
   return state;
 }
 
-std::vector<Jet> dual(const std::vector<double>& parameters) {
-  std::vector<Jet> result;
-  for (std::size_t i = 0; i < parameters.size(); ++i) result.emplace_back(parameters[i], static_cast<int>(i));
-  return result;
-}
-
 }  // namespace
 
 TEST(Chain, StaticDefectSeparatesStateFromParameters) {
@@ -258,12 +247,8 @@ TEST(Chain, EveryStageHasCorrectDerivatives) {
           Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::lams_dynamic_pressure}) {
       EXPECT_NEAR(state[quantity].a, plain[quantity], 1e-9) << info_of(quantity).name;
       for (std::size_t i = 0; i < chain.parameters().size(); ++i) {
-        const auto along = [&, quantity = quantity](double x) {
-          std::vector<double> parameters = chain.parameters();
-          parameters[i] = x;
-          return run(chain, parameters)[quantity];
-        };
-        const double expected = difference(along, chain.parameters()[i], 1e-5);
+        const auto along = [&](const std::vector<double>& moved) { return run(chain, moved)[quantity]; };
+        const double expected = difference(along, chain.parameters(), i, 1e-5);
         EXPECT_NEAR(state[quantity].v[static_cast<Eigen::Index>(i)], expected,
                     1e-6 * (1 + std::abs(expected)))
             << info_of(quantity).name << " by parameter " << i << (upstream ? ", upstream" : "");
@@ -311,13 +296,9 @@ TEST_P(EveryEffect, ResidualDerivativeIsCorrect) {
   const Jet result = residual(chain, parameters);
   EXPECT_NEAR(result.a, residual(chain, chain.parameters()), 1e-9);
   for (std::size_t i = 0; i < info().parameter_count(); ++i) {
-    const auto along = [&](double x) {
-      std::vector<double> moved = chain.parameters();
-      moved[i] = x;
-      return residual(chain, moved);
-    };
+    const auto along = [&](const std::vector<double>& moved) { return residual(chain, moved); };
     const double width = info().parameters[i].upper - info().parameters[i].lower;
-    const double expected = difference(along, chain.parameters()[i], 1e-4 * width);
+    const double expected = difference(along, chain.parameters(), i, 1e-4 * width);
     // 1e-7 hPa over the range of the coefficient, a thousandth of the resolution of a fit, and 1e-6 of the
     // derivative.
     EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)] * width, expected * width,

@@ -1,4 +1,4 @@
-#include "residuals/flaps_by_lift.hpp"
+#include "residuals/samples.hpp"
 #include "residuals/time_spans.hpp"
 
 #include <gmock/gmock.h>

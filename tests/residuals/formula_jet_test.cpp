@@ -34,27 +34,33 @@ const std::vector<std::string> names{"k", "m", "n"};
 constexpr double points[][2] = {{0.3, 0.7}, {0.9, 0.2}, {1.7, 2.5}, {0.05, 0.6}};
 constexpr double parameters[] = {0.8, 1.3, 0.4};
 
+// Derivatives of a function of `count` numbers against central differences.
+template <class Function>
+void expect_derivatives(const Function& f, const double* at, std::size_t count, double tolerance,
+                        const std::string& text) {
+  std::vector<Jet> dual;
+  for (std::size_t i = 0; i < count; ++i) dual.emplace_back(at[i], static_cast<int>(i));
+  const auto value = f(dual.data());
+  static_assert(std::is_same_v<decltype(value), const Jet>);
+  const double exact = f(at);
+  EXPECT_NEAR(value.a, exact, 1e-14 * (1.0 + std::abs(exact))) << text;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double step = 1e-5;
+    std::vector<double> above(at, at + count), below(at, at + count);
+    above[i] += step;
+    below[i] -= step;
+    const double slope = (f(above.data()) - f(below.data())) / (2.0 * step);
+    EXPECT_NEAR(value.v[static_cast<Eigen::Index>(i)], slope, tolerance * (1.0 + std::abs(slope)))
+        << text << " by number " << i;
+  }
+}
+
 TEST(FormulaJet, DifferentiatesByParameters) {
   for (const char* text : smooth) {
     const auto formula = Formula::parse(text, names);
     ASSERT_TRUE(formula) << text;
-    for (const auto& point : points) {
-      const Jet p[] = {Jet(parameters[0], 0), Jet(parameters[1], 1), Jet(parameters[2], 2)};
-      const auto value = formula->value(point, p);
-      static_assert(std::is_same_v<decltype(value), const Jet>);
-      const double exact = formula->value(point, parameters);
-      EXPECT_NEAR(value.a, exact, 1e-14 * (1.0 + std::abs(exact))) << text;
-      for (int i = 0; i < 3; ++i) {
-        const double step = 1e-5;
-        double above[] = {parameters[0], parameters[1], parameters[2]};
-        double below[] = {parameters[0], parameters[1], parameters[2]};
-        above[i] += step;
-        below[i] -= step;
-        const double slope = (formula->value(point, above) - formula->value(point, below)) / (2.0 * step);
-        EXPECT_NEAR(value.v[i], slope, 1e-7 * (1.0 + std::abs(slope)))
-            << text << " by " << names[static_cast<std::size_t>(i)];
-      }
-    }
+    for (const auto& point : points)
+      expect_derivatives([&](const auto* p) { return formula->value(point, p); }, parameters, 3, 1e-7, text);
   }
 }
 
@@ -62,23 +68,8 @@ TEST(FormulaJet, DifferentiatesByVariables) {
   for (const char* text : smooth) {
     const auto formula = Formula::parse(text, names);
     ASSERT_TRUE(formula) << text;
-    for (const auto& point : points) {
-      const Jet x[] = {Jet(point[0], 0), Jet(point[1], 1)};
-      const auto value = formula->value(x, parameters);
-      static_assert(std::is_same_v<decltype(value), const Jet>);
-      const double exact = formula->value(point, parameters);
-      EXPECT_NEAR(value.a, exact, 1e-14 * (1.0 + std::abs(exact))) << text;
-      for (int i = 0; i < 2; ++i) {
-        const double step = 1e-5;
-        double above[] = {point[0], point[1]};
-        double below[] = {point[0], point[1]};
-        above[i] += step;
-        below[i] -= step;
-        const double slope =
-            (formula->value(above, parameters) - formula->value(below, parameters)) / (2.0 * step);
-        EXPECT_NEAR(value.v[i], slope, 1e-6 * (1.0 + std::abs(slope))) << text << " by variable " << i;
-      }
-    }
+    for (const auto& point : points)
+      expect_derivatives([&](const auto* x) { return formula->value(x, parameters); }, point, 2, 1e-6, text);
   }
 }
 

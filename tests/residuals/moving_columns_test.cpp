@@ -31,12 +31,14 @@ std::shared_ptr<FlightSamples> samples_of(const std::filesystem::path& path, con
   return std::make_shared<FlightSamples>(pcor::read_samples(Flight(path), model, *pcor::lams_reference()));
 }
 
-std::vector<double> parameters_with(const ModelDefinition& model, double seconds) {
+/// Computes the columns again with another value of the last parameter.
+void move_columns(FlightSamples& samples, const ModelDefinition& model, double seconds) {
   std::vector<double> parameters;
   for (const pcor::ModelEffect& effect : model.model.effects)
     parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
   parameters.back() = seconds;
-  return parameters;
+  pcor::internal::find_moving_columns(model.model, parameters.data(), samples.time, samples.step,
+                                      samples.model);
 }
 
 /// The short flight with something more in its scenario, without noise or with it.
@@ -70,8 +72,7 @@ TEST(MovingColumns, SlopeEqualsTheFiniteDifference) {
   const std::vector<double> slope = samples->model.moving[0].slope;
   constexpr double step = 0.02;
   const double* const column = samples->model.find(Quantity::airspeed_rate)->data();
-  pcor::internal::find_moving_columns(model.model, parameters_with(model, 0.5 + step).data(), samples->time,
-                                      samples->step, samples->model);
+  move_columns(*samples, model, 0.5 + step);
   EXPECT_EQ(samples->model.find(Quantity::airspeed_rate)->data(), column) << "others point to it";
   double largest = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -88,8 +89,7 @@ TEST(MovingColumns, MissingSamplesAreIndependentOfTheDelay) {
   const auto samples = samples_of(pcor::test::short_flight(), model);
   const std::vector<double> at_zero = *samples->model.find(Quantity::airspeed_rate);
   for (const double seconds : {-5.0, 1.4, 30.0}) {
-    pcor::internal::find_moving_columns(model.model, parameters_with(model, seconds).data(), samples->time,
-                                        samples->step, samples->model);
+    move_columns(*samples, model, seconds);
     const std::vector<double>& now = *samples->model.find(Quantity::airspeed_rate);
     for (std::size_t i = 0; i < now.size(); ++i)
       EXPECT_EQ(std::isnan(now[i]), std::isnan(at_zero[i])) << seconds << ' ' << i;
@@ -135,8 +135,7 @@ TEST(MovingColumns, DependOnTheDryingTime) {
   ASSERT_EQ(samples->model.moving.size(), 1U);
   const std::vector<double> before = *samples->model.find(Quantity::wetness);
   const std::vector<double> slope = samples->model.moving[0].slope;
-  pcor::internal::find_moving_columns(model.model, parameters_with(model, 8.1).data(), samples->time,
-                                      samples->step, samples->model);
+  move_columns(*samples, model, 8.1);
   const std::vector<double>& now = *samples->model.find(Quantity::wetness);
   double largest = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {

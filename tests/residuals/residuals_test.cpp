@@ -1,11 +1,9 @@
 #include <gmock/gmock.h>
-#include <pcor/base/error.hpp>
 #include <pcor/residuals/residuals.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <string>
 #include <vector>
 
 #include "support/short_flight.hpp"
@@ -29,6 +27,11 @@ Residuals residuals(const ModelDefinition& model, const Reference& reference,
   const auto samples = std::make_shared<const pcor::FlightSamples>(
       pcor::read_samples(pcor::Flight(short_flight()), model, reference, options));
   return Residuals(samples, model, reference, options);
+}
+
+std::shared_ptr<pcor::FlightSamples> samples_with_laser(const ModelDefinition& model) {
+  return std::make_shared<pcor::FlightSamples>(
+      pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference()));
 }
 
 ModelDefinition other_system() { return pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"); }
@@ -142,17 +145,14 @@ TEST(Residuals, SensorResidualsEqualPressureResidualsToFirstOrder) {
       model.model.lams.approach = pcor::LamsApproach::with_temperature;
     }
     // The laser differs by 1 cm/s from the model's airspeed.
-    pcor::FlightSamples samples =
-        pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
-    const Residuals recorded(std::make_shared<const pcor::FlightSamples>(samples), model,
-                             *pcor::lams_reference());
+    const auto samples = samples_with_laser(model);
+    const Residuals recorded(samples, model, *pcor::lams_reference());
     const auto [sensor, predicted] = *recorded.predicted_sensor(recorded.parameters().data());
-    for (auto& [quantity, values] : samples.model.columns) {
-      if (quantity == sensor) values = predicted;
-      for (double& value : values) value += quantity == sensor ? 0.01 : 0.0;
-    }
-    const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model,
-                           *pcor::lams_reference());
+    const auto changed = std::make_shared<pcor::FlightSamples>(*samples);
+    std::vector<double>& speeds = *changed->model.find(sensor);
+    speeds = predicted;
+    for (double& speed : speeds) speed += 0.01;
+    const Residuals tested(changed, model, *pcor::lams_reference());
     const std::vector<std::size_t> indices = used(tested);
     ASSERT_GT(indices.size(), 500U);
     std::vector<double> pressure(indices.size());
@@ -186,16 +186,12 @@ TEST(Masks, EveryUnusedSampleHasAReason) {
 
 TEST(Masks, MissingOrWrongLaserIsExcluded) {
   const ModelDefinition model = laser_model();
-  pcor::FlightSamples samples =
-      pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
-  const std::vector<std::size_t> indices = used(residuals(model, *pcor::lams_reference()));
-  for (auto& [quantity, values] : samples.model.columns) {
-    if (quantity != Quantity::lams_airspeed) continue;
-    values[indices[100]] = std::nan("");
-    values[indices[101]] += 30.0;
-  }
-  const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model,
-                         *pcor::lams_reference());
+  const auto samples = samples_with_laser(model);
+  const std::vector<std::size_t> indices = used(Residuals(samples, model, *pcor::lams_reference()));
+  std::vector<double>& speeds = *samples->model.find(Quantity::lams_airspeed);
+  speeds[indices[100]] = std::nan("");
+  speeds[indices[101]] += 30.0;
+  const Residuals tested(samples, model, *pcor::lams_reference());
   EXPECT_EQ(tested.mask()[indices[100]], Mask::reference);
   EXPECT_EQ(tested.mask()[indices[101]], Mask::laser_unlocked);
   EXPECT_EQ(tested.mask()[indices[102]], Mask::none);
@@ -203,16 +199,12 @@ TEST(Masks, MissingOrWrongLaserIsExcluded) {
 
 TEST(Masks, MissingInputsAreMasked) {
   const ModelDefinition model = laser_model();
-  pcor::FlightSamples samples =
-      pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
-  const std::vector<std::size_t> indices = used(residuals(model, *pcor::lams_reference()));
-  for (auto& [quantity, values] : samples.model.columns) {
-    if (quantity == Quantity::static_pressure) values[indices[200]] = std::nan("");
-    if (quantity == Quantity::attack_differential_pressure) values[indices[201]] = std::nan("");
-    if (quantity == Quantity::recovery_temperature) values[indices[202]] = std::nan("");
-  }
-  const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model,
-                         *pcor::lams_reference());
+  const auto samples = samples_with_laser(model);
+  const std::vector<std::size_t> indices = used(Residuals(samples, model, *pcor::lams_reference()));
+  (*samples->model.find(Quantity::static_pressure))[indices[200]] = std::nan("");
+  (*samples->model.find(Quantity::attack_differential_pressure))[indices[201]] = std::nan("");
+  (*samples->model.find(Quantity::recovery_temperature))[indices[202]] = std::nan("");
+  const Residuals tested(samples, model, *pcor::lams_reference());
   EXPECT_EQ(tested.mask()[indices[200]], Mask::missing);
   EXPECT_EQ(tested.mask()[indices[201]], Mask::missing);
   EXPECT_EQ(tested.mask()[indices[202]], Mask::reference) << "the law needs no thermometer, the laser does";

@@ -91,9 +91,8 @@ TEST(Wind, GroundSamplesAreNotUsed) {
 TEST(Wind, FrozenSensorIsRejected) {
   for (const Quantity frozen : {Quantity::heading, Quantity::ground_speed, Quantity::ground_track}) {
     pcor::FlightSamples samples = flight(circles);
-    for (auto& [quantity, values] : samples.reference.columns) {
-      if (quantity == frozen) std::fill_n(values.begin() + 800, 60, values[800]);
-    }
+    std::vector<double>& values = *samples.reference.find(frozen);
+    std::fill_n(values.begin() + 800, 60, values[800]);
     samples.reference.frozen = {{frozen, 800, 60}};
     const pcor::ModelDefinition model = made::air_model();
     const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(samples), model,

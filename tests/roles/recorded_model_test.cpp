@@ -19,16 +19,8 @@ std::optional<ModelDefinition> model_with(const std::vector<Recorded>& variables
   const std::filesystem::path path = directory / "flight.nc";
   {
     test::NetcdfMaker file(path);
-    const int time = file.dimension("Time", 0);
-    const int clock = file.variable("Time", NC_DOUBLE, {time});
-    file.text(clock, "units", "seconds since 2011-11-17 20:00:00 +0000");
-    std::vector<int> numbers;
-    for (const auto& [name, unit] : variables) {
-      numbers.push_back(file.variable(name, NC_FLOAT, {time}));
-      file.text(numbers.back(), "units", unit);
-    }
-    file.values(clock, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
-    for (const int number : numbers) file.values(number, std::vector<double>(10, 20.0));
+    file.time(test::sequence(0, 10));
+    for (const auto& [name, unit] : variables) file.series(name, unit, std::vector<double>(10, 20.0));
   }
   return recorded_model(Flight(path));
 }

@@ -2,7 +2,6 @@
 #include <pcor/simulate/simulate.hpp>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +17,6 @@
 #include <pcor/flight/flight.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include "simulate/random.hpp"
-#include "simulate/turbulence.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/test_name.hpp"

@@ -4,12 +4,33 @@
 #include <pcor/simulate/simulate.hpp>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
 
 #include "support/temporary_directory.hpp"
 
 namespace pcor::test {
 
 inline const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
+
+inline std::string scenario_text(const std::string& scenario) {
+  std::ifstream file(scenarios / (scenario + ".toml"));
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A flight of a scenario with further lines, simulated once.
+inline std::filesystem::path simulated(const std::string& scenario, const std::string& more = "") {
+  static const TemporaryDirectory directory;
+  static std::map<std::string, std::filesystem::path> flights;
+  std::filesystem::path& path = flights[scenario + more];
+  if (path.empty()) {
+    path = directory / (std::to_string(flights.size()) + ".nc");
+    simulate_flight(parse_scenario(scenario_text(scenario) + more, scenario), path);
+  }
+  return path;
+}
 
 /// A quarter of an hour of the C-130 with the laser and a few minutes of everything, simulated once.
 inline const std::filesystem::path& short_flight() {

@@ -16,18 +16,10 @@ using namespace pcor::internal;
 
 namespace {
 
-using pcor::internal::HeightBlock;
-using pcor::internal::HeightEquations;
-using pcor::internal::HeightNoise;
-using pcor::internal::HeightPrior;
-using pcor::internal::HeightRecord;
+const Workers one_thread(pcor::serial_communicator(), 1);
+const Workers three_threads(pcor::serial_communicator(), 3);
 
-const pcor::internal::Workers one_thread(pcor::serial_communicator(), 1);
-const pcor::internal::Workers three_threads(pcor::serial_communicator(), 3);
-
-HeightRecord record_of(const made::AirPlan& plan) {
-  return pcor::internal::height_record(made::air(plan), {}, {});
-}
+HeightRecord record_of(const made::AirPlan& plan) { return height_record(made::air(plan), {}, {}); }
 
 HeightRecord short_record() {
   made::AirPlan plan;
@@ -35,6 +27,21 @@ HeightRecord short_record() {
   plan.gps = 0.5;
   plan.offset = 0.5;
   return record_of(plan);
+}
+
+/// Flights through noise of the GPS.
+std::vector<HeightRecord> noisy_records(std::size_t flights, std::size_t seconds, double memory = 60.0) {
+  std::vector<HeightRecord> records;
+  for (std::size_t flight = 0; flight < flights; ++flight) {
+    made::AirPlan plan;
+    plan.seed = static_cast<unsigned>(flight + 1);
+    plan.seconds = seconds;
+    plan.gps = 0.5;
+    plan.gps_memory = memory;
+    plan.offset = 0.4;
+    records.push_back(record_of(plan));
+  }
+  return records;
 }
 
 /// The covariance of the heights of a record written out: every kind of noise by its definition.
@@ -46,15 +53,6 @@ Eigen::MatrixXd dense_covariance(const HeightRecord& record, const HeightNoise& 
     return record.blocks[static_cast<std::size_t>(i)];
   };
   const double start = at(0).time;
-  // The drift is a sum over steps of slope times way; the slope is a start and a sum of changes.
-  Eigen::MatrixXd slope_to_height = Eigen::MatrixXd::Zero(n, n);  // changes at step k, to block i, east
-  Eigen::MatrixXd slope_to_height_north = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    for (Eigen::Index i = k + 1; i < n; ++i) {
-      slope_to_height(i, k) = at(i).east - at(k).east;
-      slope_to_height_north(i, k) = at(i).north - at(k).north;
-    }
-  }
   // Means over blocks: of exp(-t/memory) over both, and of the lesser of two times for a random walk.
   const auto part = [&](Eigen::Index i) {
     const double ratio = noise.wander_time / at(i).length;
@@ -71,12 +69,13 @@ Eigen::MatrixXd dense_covariance(const HeightRecord& record, const HeightNoise& 
       const double walked = std::min(at(i).time, at(j).time) - begin - (i == j ? at(i).length / 6.0 : 0.0);
       sum += noise.walk * noise.walk * walked;
       if (i == j) sum += noise.white * noise.white / static_cast<double>(at(i).samples);
+      // The drift is a sum over steps of slope times way; the slope is a start and a sum of changes.
       for (Eigen::Index k = 0; k < std::min(i, j); ++k) {
         const double across = k == 0 ? 0.0 : at(k).time - at(k - 1).time;
         const double variance =
             (k == 0 ? prior.slope * prior.slope : 0.0) + noise.slope_change * noise.slope_change * across;
-        sum += variance * (slope_to_height(i, k) * slope_to_height(j, k) +
-                           slope_to_height_north(i, k) * slope_to_height_north(j, k));
+        sum += variance * ((at(i).east - at(k).east) * (at(j).east - at(k).east) +
+                           (at(i).north - at(k).north) * (at(j).north - at(k).north));
       }
       covariance(i, j) = sum;
     }
@@ -97,12 +96,11 @@ TEST(HeightLikelihood, FilterEqualsDenseGeneralisedLeastSquares) {
 
   const Eigen::MatrixXd covariance = dense_covariance(record, noise, prior);
   const auto n = covariance.rows();
-  constexpr Eigen::Index unknowns = HeightEquations::unknowns;
+  constexpr Eigen::Index unknowns = height_unknowns;
   Eigen::MatrixXd rows(n, unknowns + 1);
   for (Eigen::Index i = 0; i < n; ++i) {
     const HeightBlock& block = record.blocks[static_cast<std::size_t>(i)];
-    rows.row(i) << block.columns[0], block.columns[1], block.columns[2], block.errors[0], block.errors[1],
-        block.errors[2], block.errors[3], block.errors[4], block.excess;
+    rows.row(i) << block.columns.transpose(), block.excess;
   }
   // The unknown height at the start: project a constant off.
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
@@ -155,25 +153,15 @@ TEST(HeightLikelihood, SumIsIndependentOfTheThreads) {
   const HeightEquations one = height_equations(records, HeightNoise{}, HeightPrior{}, one_thread);
   const HeightEquations three = height_equations(records, HeightNoise{}, HeightPrior{}, three_threads);
   EXPECT_EQ(one.squares, three.squares);
-  EXPECT_EQ(one.blocks, three.blocks);
+  EXPECT_EQ(one.information, three.information);
   HeightEquations sum;
   for (const HeightRecord& record : records) sum += height_equations(record, {}, {});
   EXPECT_NEAR(sum.deviance(2), one.deviance(2), 1e-6);
 }
 
 TEST(HeightLikelihood, EstimatesTheTrueNoise) {
-  std::vector<HeightRecord> records;
-  for (unsigned seed = 1; seed <= 4; ++seed) {
-    made::AirPlan plan;
-    plan.seed = seed;
-    plan.seconds = 7200;
-    plan.gps = 0.5;
-    plan.gps_memory = 80.0;
-    plan.offset = 0.4;
-    records.push_back(record_of(plan));
-  }
-  const pcor::internal::MostLikely found =
-      maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
+  const std::vector<HeightRecord> records = noisy_records(4, 7200, 80.0);
+  const MostLikely found = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
   // 8 hours hold 360 memories of the noise: its variance is known to 10 %, its memory to about as much.
   EXPECT_NEAR(found.noise.wander, 0.5, 0.05);
   EXPECT_NEAR(found.noise.wander_time, 80.0, 16.0);
@@ -184,7 +172,7 @@ TEST(HeightLikelihood, EstimatesTheTrueNoise) {
   double products = 0.0;
   double count = 0.0;
   for (const HeightRecord& record : records) {
-    const HeightEquations::Vector a = found.equations.best_unknowns(2);
+    const HeightUnknowns a = found.equations.best_unknowns(2);
     const std::vector<double> innovations = height_innovations(record, found.noise, HeightPrior{}, a);
     for (std::size_t i = 2; i < innovations.size(); ++i) {
       squares += innovations[i] * innovations[i];
@@ -196,25 +184,10 @@ TEST(HeightLikelihood, EstimatesTheTrueNoise) {
   EXPECT_NEAR(products / squares, 0.0, 0.08);
 }
 
-/// Flights through noise of the GPS.
-std::vector<HeightRecord> noisy_records(std::size_t flights, std::size_t seconds) {
-  std::vector<HeightRecord> records;
-  for (std::size_t flight = 0; flight < flights; ++flight) {
-    made::AirPlan plan;
-    plan.seed = static_cast<unsigned>(flight + 1);
-    plan.seconds = seconds;
-    plan.gps = 0.5;
-    plan.gps_memory = 60.0;
-    plan.offset = 0.4;
-    records.push_back(record_of(plan));
-  }
-  return records;
-}
-
 /// The covariance with the noise's uncertainty, by a random walk through the noise (Metropolis) instead of a
 /// few points; its logarithms are known to 1.5 beforehand.
 Eigen::MatrixXd sampled_covariance(const std::vector<HeightRecord>& records, Eigen::Index terms,
-                                   const pcor::internal::MostLikely& likely, int samples) {
+                                   const MostLikely& likely, int samples) {
   const std::array<double HeightNoise::*, 5> moved{&HeightNoise::white, &HeightNoise::wander,
                                                    &HeightNoise::wander_time, &HeightNoise::walk,
                                                    &HeightNoise::slope_change};
@@ -255,8 +228,7 @@ TEST(HeightLikelihood, ErrorsIncludeNoiseUncertainty) {
   std::array<double, 2> apart{};
   for (const HeightRecord& record : noisy_records(flights, 7200)) {
     const std::vector<HeightRecord> records{record};
-    const pcor::internal::MostLikely likely =
-        maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
+    const MostLikely likely = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
     const Eigen::MatrixXd stated = covariance_over_noise(records, 2, HeightPrior{}, likely, one_thread);
     const Eigen::MatrixXd sampled = sampled_covariance(records, 2, likely, 8000);
     for (Eigen::Index k = 0; k < 2; ++k) {
@@ -277,8 +249,7 @@ TEST(HeightLikelihood, NoiseUncertaintyDecreasesWithMoreFlights) {
   double before = std::numeric_limits<double>::infinity();
   for (const std::size_t flights : {1U, 4U, 16U}) {
     const std::vector<HeightRecord> records = noisy_records(flights, 3600);
-    const pcor::internal::MostLikely likely =
-        maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
+    const MostLikely likely = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
     const Eigen::MatrixXd stated = covariance_over_noise(records, 2, HeightPrior{}, likely, one_thread);
     const Eigen::MatrixXd more = stated - likely.equations.covariance(2);
     // No combination of coefficients becomes more certain, except for rounding.
@@ -304,8 +275,8 @@ TEST(HeightLikelihood, EstimatesAnUnknownIsobarSlope) {
   noise.wander = 0.3;
   noise.walk = 1e-4;
   noise.slope_change = 1e-9;
-  const HeightEquations fitted = height_equations(record_of(plan), noise, {1e-4, {}});
-  const HeightEquations level = height_equations(record_of(plan), noise, {0.0, {}});
+  const HeightEquations fitted = height_equations(record_of(plan), noise, {1e-4});
+  const HeightEquations level = height_equations(record_of(plan), noise, {0.0});
   EXPECT_NEAR(fitted.best(1)[0], -0.5, 3.0 * std::sqrt(fitted.covariance(1)(0, 0)));
   // If the isobars are assumed level, the slope changes the temperature, and by more than the noise.
   EXPECT_GT(std::abs(level.best(1)[0] + 0.5), 5.0 * std::sqrt(level.covariance(1)(0, 0)));
@@ -315,7 +286,7 @@ TEST(HeightLeastSquares, RecoversTheLineWithoutNoise) {
   made::AirPlan plan;
   plan.offset = 0.5;
   plan.gain = 0.01;
-  const pcor::TemperatureFit fit = pcor::internal::fit_height_by_least_squares({record_of(plan)}, 2);
+  const pcor::TemperatureFit fit = fit_height_by_least_squares({record_of(plan)}, 2);
   EXPECT_NEAR(fit.coefficients[0], -0.5 / 1.01, 1e-6);  // no noise: exact except for the trapezium rule
   EXPECT_NEAR(fit.coefficients[1], -0.01 / 1.01, 1e-7);
   EXPECT_LT(fit.sigma, 1e-3);
@@ -337,8 +308,8 @@ TEST(HeightLeastSquares, ErrorsAreTooSmallForCorrelatedNoise) {
     plan.gps = 1.0;
     plan.gps_memory = 120.0;
     const HeightRecord record = record_of(plan);
-    const pcor::TemperatureFit minimum = pcor::internal::fit_height_by_least_squares({record}, 1);
-    const HeightEquations likely = height_equations(record, noise, {0.0, {}});
+    const pcor::TemperatureFit minimum = fit_height_by_least_squares({record}, 1);
+    const HeightEquations likely = height_equations(record, noise, {0.0});
     squares_least += std::pow(minimum.coefficients[0] / minimum.standard_errors[0], 2);
     squares_likely += std::pow(likely.best(1)[0], 2) / likely.covariance(1)(0, 0);
   }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -20,11 +19,9 @@ HeightRecord climb_and_descent() {
     block.time = 10.0 * i;
     block.length = 10.0;
     block.samples = 10;
-    block.pressure = 700.0;
-    block.metres_per_hpa = 11.0;
     const double climbs = i < 100 ? i : 100.0;
     const double descents = i < 100 ? 0.0 : -0.5 * (i - 100.0);
-    block.columns = {climbs, descents, 0.0};
+    block.columns.head<2>() << climbs, descents;
     block.excess = 0.02 * climbs + std::sin(i);
     record.blocks.push_back(block);
   }
@@ -35,7 +32,8 @@ HeightRecord climb_and_descent() {
 template <class Columns>
 HeightRecord with_columns(const Columns& columns) {
   HeightRecord record = climb_and_descent();
-  for (HeightBlock& block : record.blocks) block.columns = columns(block.columns[0], block.columns[1]);
+  for (HeightBlock& block : record.blocks)
+    block.columns.head<2>() = columns(block.columns[0], block.columns[1]);
   return record;
 }
 
@@ -49,14 +47,14 @@ TEST(Parts, DifferenceOfClimbsAndDescentsHasTheErrorOfADifference) {
   prior.slope = 0.0;
   const Workers workers(pcor::serial_communicator(), 1);
   const auto integral = [](double climbs, double descents) {
-    return std::array<double, calibration_terms>{climbs + descents, 0.0, 0.0};
+    return Eigen::Vector2d(climbs + descents, 0.0);
   };
   const std::vector<pcor::PartCorrection> parts = corrections_of_climbs_and_descents(
-      {with_columns(integral)}, noise, prior, HeightEquations::Vector::Zero(), workers);
+      {with_columns(integral)}, noise, prior, HeightUnknowns::Zero(), workers);
   ASSERT_EQ(parts.size(), 2U);
   // Half of the difference as an unknown in addition to the mean.
   const auto half = [](double climbs, double descents) {
-    return std::array<double, calibration_terms>{climbs + descents, climbs - descents, 0.0};
+    return Eigen::Vector2d(climbs + descents, climbs - descents);
   };
   const HeightEquations equations = height_equations(with_columns(half), noise, prior);
   const double expected = equations.best(2)[1] * equations.best(2)[1] / equations.covariance(2)(1, 1);

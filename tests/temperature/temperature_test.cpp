@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <netcdf.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,14 +19,15 @@
 #include <vector>
 
 #include <pcor/base/error.hpp>
+#include <pcor/numerics/line_fit.hpp>
 #include <pcor/process/process.hpp>
-#include <pcor/simulate/simulate.hpp>
 #include "campaign/flight_air.hpp"
 #include "model_io/calibration.hpp"
+#include "numerics/missing.hpp"
 #include "support/error_of.hpp"
 #include "support/many_seeds.hpp"
 #include "support/says.hpp"
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 using namespace pcor::internal;
 
@@ -45,11 +45,9 @@ using testing::SizeIs;
 
 namespace fs = std::filesystem;
 
-const fs::path scenarios = fs::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
-
 /// Two and a half hours over a triangle: the thermometer reads 0.55 K and 1 % of the temperature in degC too
 /// high, and isobars rise by 10 m in 100 km.
-Scenario climbs() { return read_scenario(scenarios / "c130-climbs.toml"); }
+Scenario climbs() { return read_scenario(test::scenarios / "c130-climbs.toml"); }
 
 /// Its first climb and descent alone.
 Scenario one_climb() {
@@ -74,7 +72,7 @@ Scenario no_climb() {
 }
 
 /// The law that the scenario flies with, and the laser.
-ModelDefinition model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+ModelDefinition model() { return test::laser_model(); }
 
 /// Errors are those of the noise: the pressures of the simulator have no error that lasts.
 TemperatureOptions of_degree(int degree) {
@@ -92,16 +90,15 @@ std::array<double, 2> truth(const fs::path& path) {
   std::vector<double> true_temperature(flight.records());
   flight.read_at_rate(1, "TRUE_AT", {0, flight.records()}, flight.conversion("TRUE_AT", "K"),
                       true_temperature.data());
-  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  std::vector<double> celsius;
+  std::vector<double> correction;
   for (std::size_t i = 0; i < air.size(); ++i) {
-    if (!air.flying[i] || std::isnan(air.temperature[i])) continue;
-    const Eigen::Vector2d powers(1.0, air.temperature[i] - constants::ice_point);
-    information += powers * powers.transpose();
-    right += (true_temperature[i] - air.temperature[i]) * powers;
+    if (!air.flying[i]) continue;
+    celsius.push_back(air.temperature[i] - constants::ice_point);
+    correction.push_back(true_temperature[i] - air.temperature[i]);
   }
-  const Eigen::Vector2d found = information.ldlt().solve(right);
-  return {found[0], found[1]};
+  const LineFit line = ordinary_fit(celsius, correction);
+  return {line.offset, line.slope};
 }
 
 class Temperature : public testing::Test {
@@ -170,22 +167,17 @@ constexpr double search_stops = 0.1;
 const std::size_t seeds = test::number_of_seeds();
 
 /// Statistics of one coefficient over the fits of all seeds: its error, and its stated errors.
-struct WhitenedSystem {
+struct Scores {
   std::vector<double> errors;
   std::vector<double> stated;
 
-  static double mean(const std::vector<double>& values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value;
-    return sum / static_cast<double>(values.size());
-  }
-  double bias() const { return mean(errors); }
+  double bias() const { return mean_of(errors); }
   double spread() const {
     double squares = 0.0;
     for (const double error : errors) squares += (error - bias()) * (error - bias());
     return std::sqrt(squares / static_cast<double>(errors.size() - 1));
   }
-  double spread_over_stated() const { return spread() / mean(stated); }
+  double spread_over_stated() const { return spread() / mean_of(stated); }
   std::size_t within(double deviations) const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < errors.size(); ++i)
@@ -197,8 +189,8 @@ struct WhitenedSystem {
 class TemperatureRecovery : public Temperature {};
 
 TEST_F(TemperatureRecovery, RecoversOffsetAndSlopeOverSlopingIsobars) {
-  std::array<WhitenedSystem, 2> likelihood;
-  std::array<WhitenedSystem, 2> least_squares;
+  std::array<Scores, 2> likelihood;
+  std::array<Scores, 2> least_squares;
   for (std::uint64_t seed = 6000; seed < 6000 + seeds; ++seed) {
     const fs::path flight = fly(climbs(), seed);
     const std::array<double, 2> true_value = truth(flight);
@@ -242,16 +234,13 @@ TEST_F(TemperatureRecovery, RecoversOffsetAndSlopeOverSlopingIsobars) {
 }
 
 Scenario::Effect effect(const std::string& id, const std::map<std::string, double>& parameters) {
-  Scenario::Effect result;
-  result.id = id;
-  result.parameters = parameters;
-  return result;
+  return {id, "", parameters};
 }
 
 /// The default errors include the usual errors of pressures and humidity: flights on which each has an error
 /// drawn from its prior, the law by 0.3 hPa in each of its terms.
 TEST_F(TemperatureRecovery, StatedErrorsHoldWithUsualSensorErrors) {
-  WhitenedSystem scores;
+  Scores scores;
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
   for (std::uint64_t seed = 7000; seed < 7000 + seeds; ++seed) {

@@ -1,23 +1,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <memory>
 #include <string>
 
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/flight/flight.hpp>
-#include <pcor/improve/improve.hpp>
 #include <pcor/roles/add_effects.hpp>
 #include <pcor/units/units.hpp>
 #include "command.hpp"
 #include "comparison.hpp"
 #include "diagnosis.hpp"
 #include "model_selector.hpp"
-#include "shaped_effect.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -55,60 +51,6 @@ ModelEffect own_effect(const AddArguments& options, const std::vector<std::strin
   return effect;
 }
 
-std::vector<ModelEffect> requested_effects(const AddArguments& options, const FlightSet& flights,
-                                           const ModelDefinition& model) {
-  const Flight* const flight = flights.empty() ? nullptr : &flights[0];
-  if (!options.formula.empty())
-    return {own_effect(options, flight == nullptr ? std::vector<std::string>() : flight->variables())};
-  std::vector<ModelEffect> effects;
-  for (const std::string& id : options.effects) {
-    const std::optional<ModelEffect> surface = surface_argument(id, flight, model);
-    effects.push_back(surface ? *surface : shaped_effect(id));
-  }
-  return effects;
-}
-
-/// Roles that `extended` names and `model` does not.
-std::vector<Quantity> new_roles(const ModelDefinition& model, const ModelDefinition& extended) {
-  std::vector<Quantity> roles;
-  for (const Quantity role : extended.roles()) {
-    if (model.variables.count(role) == 0) roles.push_back(role);
-  }
-  return roles;
-}
-
-void print(const ModelDefinition& model, const ModelDefinition& extended, const AddArguments& options) {
-  say("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
-  for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i) {
-    const ModelEffect& effect = extended.model.effects[i];
-    const EffectInfo* info = effect.is_formula() ? nullptr : effect_named(effect.id);
-    const std::vector<std::string> names = parameter_names(effect);
-    std::vector<std::string> start;
-    if (effect.is_surface()) {
-      for (const SurfaceAxis& axis : effect.surface->axes)
-        start.push_back(
-            fmt::format("{} from {:.4g} to {:.4g}", info_of(axis.quantity).name, axis.lower, axis.upper));
-      say("{:<20} {:<15} {:<48} zero, {} x {} splines, {}\n", effect.id, info_of(effect.location).name,
-          effect.formula, effect.surface->axes[0].count, effect.surface->axes[1].count,
-          fmt::join(start, ", "));
-      continue;
-    }
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      start.push_back(fmt::format("{} = {}{}", names[k], effect.parameters[k],
-                                  extended.fit(i, k).fixed ? " (fixed)" : ""));
-    }
-    say("{:<20} {:<15} {:<48} {}\n", effect.id, info_of(info ? info->location : effect.location).name,
-        info ? std::string(info->formula) : effect.formula, fmt::join(start, ", "));
-  }
-  for (const Quantity role : new_roles(model, extended))
-    say("variable selected: {} = \"{}\"\n", info_of(role).name, extended.variables.at(role));
-  say("\n");
-  say_written({options.output, options.common.json});
-  say("To fit it: {} refit {} -m {} -o {}\n", program(),
-      options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output),
-      output_file("fitted.toml", {options.model, options.output}));
-}
-
 /// JSON result of the command.
 struct Extension {
   std::vector<ModelEffect> added{};
@@ -126,16 +68,35 @@ void describe(const Extension& self, Field& field) {
   field("model", self.model, "file of the extended model");
 }
 
-Extension extension_of(const ModelDefinition& model, const ModelDefinition& extended,
-                       const std::string& output) {
-  const std::vector<ModelEffect>& effects = extended.model.effects;
-  Extension result{
-      {std::next(effects.begin(), static_cast<std::ptrdiff_t>(model.model.effects.size())), effects.end()},
-      {},
-      output};
-  for (const Quantity role : new_roles(model, extended))
-    result.variables.emplace_back(info_of(role).name, extended.variables.at(role));
-  return result;
+void print(const ModelDefinition& extended, const Extension& extension, const AddArguments& options) {
+  say("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
+  const std::size_t count = extended.model.effects.size();
+  for (std::size_t i = count - extension.added.size(); i < count; ++i) {
+    const ModelEffect& effect = extended.model.effects[i];
+    const EffectInfo* info = effect.is_formula() ? nullptr : effect_named(effect.id);
+    std::vector<std::string> start;
+    if (effect.is_surface()) {
+      const auto& axes = effect.surface->axes;
+      start.push_back(fmt::format("zero, {} x {} splines", axes[0].count, axes[1].count));
+      for (const SurfaceAxis& axis : axes)
+        start.push_back(
+            fmt::format("{} from {:.4g} to {:.4g}", info_of(axis.quantity).name, axis.lower, axis.upper));
+    } else {
+      const std::vector<std::string> names = parameter_names(effect);
+      for (std::size_t k = 0; k < names.size(); ++k)
+        start.push_back(fmt::format("{} = {}{}", names[k], effect.parameters[k],
+                                    extended.fit(i, k).fixed ? " (fixed)" : ""));
+    }
+    say("{:<20} {:<15} {:<48} {}\n", effect.id, info_of(info ? info->location : effect.location).name,
+        info ? std::string(info->formula) : effect.formula, fmt::join(start, ", "));
+  }
+  for (const auto& [role, variable] : extension.variables)
+    say("variable selected: {} = \"{}\"\n", role, variable);
+  say("\n");
+  say_written({options.output, options.common.json});
+  say("To fit it: {} refit {} -m {} -o {}\n", program(),
+      options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output),
+      output_file("fitted.toml", {options.model, options.output}));
 }
 
 void run(const AddArguments& options) {
@@ -150,20 +111,31 @@ void run(const AddArguments& options) {
                 fmt::format("{}: the model leaves its variables to the flight; give one with --flight",
                             options.model));
   }
-  std::vector<std::string> variables;
-  if (!flights.empty()) variables = flights[0].variables();
-  const ModelDefinition extended = add_effects(model, requested_effects(options, flights, model), variables);
+  const Flight* const flight = flights.empty() ? nullptr : &flights[0];
+  const std::vector<std::string> variables =
+      flight == nullptr ? std::vector<std::string>() : flight->variables();
+  std::vector<ModelEffect> effects;
+  if (!options.formula.empty()) {
+    effects.push_back(own_effect(options, variables));
+  } else {
+    for (const std::string& id : options.effects) {
+      const std::optional<ModelEffect> surface = surface_argument(id, flight, model);
+      effects.push_back(surface ? *surface : shaped_effect(id));
+    }
+  }
+  const ModelDefinition extended = add_effects(model, effects, variables);
   OutputTransaction together;
   deliver(extended, options.output, inputs);
-  json.write(extension_of(model, extended, options.output));
+  const auto first_added = static_cast<std::ptrdiff_t>(model.model.effects.size());
+  Extension extension{
+      {extended.model.effects.begin() + first_added, extended.model.effects.end()}, {}, options.output};
+  for (const Quantity role : extended.roles()) {
+    if (model.variables.count(role) == 0)
+      extension.variables.emplace_back(info_of(role).name, extended.variables.at(role));
+  }
+  json.write(extension);
   together.appear();
-  if (wants_text(options.common, {options.output})) print(model, extended, options);
-}
-
-CLI::Validator is_place() {
-  std::vector<std::string> names;
-  for (const EffectLocationInfo& info : effect_location_info) names.emplace_back(info.name);
-  return CLI::IsMember(names);
+  if (wants_text(options.common, {options.output})) print(extended, extension, options);
 }
 
 }  // namespace
@@ -185,13 +157,15 @@ std::function<void()> add_add(CLI::App& program) {
   command->add_option("-o,--output", options->output, "output model (written atomically); - for stdout")
       ->required()
       ->type_name("NEW.toml");
+  std::vector<std::string> locations;
+  for (const EffectLocationInfo& info : effect_location_info) locations.emplace_back(info.name);
   CLI::Option* formula = command
                              ->add_option("--formula", options->formula,
                                           "formula of a user-defined effect, with a coefficient k and "
                                           "variables by netCDF name or by role: 'k * ENGTRQ / 100'")
                              ->type_name("FORMULA");
   command->add_option("--where", options->location, "the stage of the measurement at which the formula acts")
-      ->check(is_place())
+      ->check(CLI::IsMember(locations))
       ->needs(formula)
       ->capture_default_str();
   command->add_option("--unit", options->unit, "unit of the formula's value")

@@ -45,17 +45,7 @@ void print_header() {
       "noise", "ratio");
 }
 
-constexpr std::size_t listed_bands = 5;  // with --verbose
-
-/// The `listed_bands` bands with the largest errors.
-std::vector<PartStatistics> worst_bands(const ModelComparison& model) {
-  std::vector<PartStatistics> bands = model.bands;
-  std::stable_sort(bands.begin(), bands.end(), [](const PartStatistics& a, const PartStatistics& b) {
-    return fails_more(a.statistics, b.statistics);
-  });
-  if (bands.size() > listed_bands) bands.resize(listed_bands);
-  return bands;
-}
+constexpr std::size_t listed_bands = 5;  // those with the largest errors, with --verbose
 
 /// Parts that are printed, and the number of the others.
 struct ShownParts {
@@ -67,10 +57,14 @@ struct ShownParts {
 /// At most `max_regimes` regimes, those with most samples, the `max_bands` worst bands, and the part with the
 /// largest ratio.
 ShownParts shown_parts(const ModelComparison& model, std::size_t max_regimes, std::size_t max_bands) {
-  const std::vector<PartStatistics> bands = worst_bands(model);
+  std::vector<PartStatistics> bands = model.bands;
+  std::stable_sort(bands.begin(), bands.end(), [](const PartStatistics& a, const PartStatistics& b) {
+    return fails_more(a.statistics, b.statistics);
+  });
+  if (bands.size() > listed_bands) bands.resize(listed_bands);
   std::vector<std::size_t> samples;
   double largest = 0.0;
-  for (const auto* const parts : {&model.regimes, &bands}) {
+  for (const auto* const parts : {&model.regimes, &std::as_const(bands)}) {
     for (const PartStatistics& part : *parts)
       largest = std::max(largest, part.statistics.rms_over_noise());  // NaN is not larger
   }
@@ -156,14 +150,18 @@ void print_further(const Comparison& comparison, bool with_names) {
   }
 }
 
-/// Output file for the residual of flight `number`: the given file, or a file next to it with the flight's
-/// name.
-std::filesystem::path residual_file(const CompareArguments& options, std::size_t number) {
+/// Output files for the residuals of the flights, if requested: the given file, or for several flights files
+/// next to it with their names.
+std::vector<std::filesystem::path> residual_files(const CompareArguments& options) {
+  if (options.residuals.empty()) return {};
   const std::filesystem::path requested = options.residuals;
-  if (options.comparison.flights.size() == 1) return requested;
-  const std::filesystem::path flight = options.comparison.flights[number];
-  return requested.parent_path() /
-         (requested.stem().string() + "-" + flight.stem().string() + requested.extension().string());
+  if (options.comparison.flights.size() == 1) return {requested};
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& flight : flight_paths(options.comparison)) {
+    files.push_back(requested.parent_path() / (requested.stem().string() + "-" + flight.stem().string() +
+                                               requested.extension().string()));
+  }
+  return files;
 }
 
 void print_in_full(const Comparison& comparison, const ChosenReferences& references,
@@ -252,8 +250,7 @@ void print(const Comparison& comparison, const std::vector<ComparedModel>& model
     print_short(comparison);
   say_notes(comparison.notes);
   std::vector<std::string> written;
-  for (std::size_t i = 0; !options.residuals.empty() && i < options.comparison.flights.size(); ++i)
-    written.push_back(residual_file(options, i).string());
+  for (const std::filesystem::path& file : residual_files(options)) written.push_back(file.string());
   written.insert(written.end(),
                  {options.common.report, options.common.figures, options.table, options.common.json});
   say_written(written);
@@ -294,8 +291,6 @@ void write_flight_table(const Comparison& comparison, const std::string& path) {
   table.write(path);
 }
 
-using Levels = std::vector<std::optional<LevelByGps>>;
-
 /// JSON result of the command.
 struct ComparisonWithGps {
   Comparison comparison{};
@@ -315,28 +310,27 @@ void describe(const ComparisonWithGps& self, Field& field) {
 }
 
 /// Mean error of delta-p of each model by GPS, if requested.
-Levels levels_by_gps(const FlightSet& flights, const std::vector<ComparedModel>& models,
-                     const CompareArguments& options) {
-  Levels levels(models.size());
-  if (options.comparison.references.empty())
-    return levels;  // all available references are used: GPS takes seconds
+void add_levels(const FlightSet& flights, const std::vector<ComparedModel>& models,
+                const CompareArguments& options, ComparisonWithGps& result) {
+  // Without the option all available references are used: GPS takes seconds.
+  if (options.comparison.references.empty()) return;
   const MaskOptions mask = mask_options(options.comparison);
-  for (std::size_t i = 0; i < models.size(); ++i)
-    levels[i] = level_by_gps(flights, models[i].model, models[i].references, mask);
-  return levels;
+  for (const ComparedModel& each : models) {
+    if (const auto level = level_by_gps(flights, each.model, each.references, mask))
+      result.levels.emplace_back(each.name, *level);
+  }
 }
 
-void print(const Levels& levels, const std::vector<ComparedModel>& models) {
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    if (!levels[i]) continue;
+void print_levels(const ComparisonWithGps& result) {
+  for (const auto& [name, level] : result.levels) {
     constexpr double known = 1.0;  // hPa
-    if (levels[i]->standard_error < known)
-      say("{}: by GPS the mean delta-p error is {:+.2f} +- {:.2f} hPa\n", models[i].name, levels[i]->missing,
-          levels[i]->standard_error);
+    if (level.standard_error < known)
+      say("{}: by GPS the mean delta-p error is {:+.2f} +- {:.2f} hPa\n", name, level.missing,
+          level.standard_error);
     else
       say("{}: GPS does not determine the mean delta-p error on these flights; it requires circles or "
           "reverse headings with --reference wind\n",
-          models[i].name);
+          name);
   }
 }
 
@@ -347,11 +341,9 @@ std::string history_of(const CompareArguments& options) {
 }
 
 void run(const CompareArguments& options) {
+  const std::vector<std::filesystem::path> residuals = residual_files(options);
   std::vector<std::filesystem::path> outputs{options.table};
-  if (!options.residuals.empty()) {
-    for (std::size_t i = 0; i < options.comparison.flights.size(); ++i)
-      outputs.push_back(residual_file(options, i));
-  }
+  outputs.insert(outputs.end(), residuals.begin(), residuals.end());
   prepare_outputs(options.common, std::move(outputs), input_files(options.comparison, options.models));
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
@@ -367,7 +359,7 @@ void run(const CompareArguments& options) {
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
   compare_options.separates_atmosphere = !options.comparison.references.empty();
-  if (!options.residuals.empty())
+  if (!residuals.empty())
     compare_options.max_series = options.comparison.flights.size();
   else if (!wants_report(options.common))
     compare_options.max_series = 0;  // other results are numbers
@@ -378,7 +370,7 @@ void run(const CompareArguments& options) {
     compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     comparison = compare(flights, models, compare_options);
   }
-  const Levels levels = levels_by_gps(flights, models, options);
+  add_levels(flights, models, options, result);
   const bool has_wind = std::any_of(references.used.begin(), references.used.end(),
                                     [](const auto& reference) { return reference->name() == "wind"; });
   if (has_wind) {
@@ -398,24 +390,18 @@ void run(const CompareArguments& options) {
   }
   if (!is_speaker()) return;
   OutputTransaction together;
-  if (!options.residuals.empty()) {
-    for (std::size_t i = 0; i < comparison.flights.size(); ++i) {
-      write_residuals(comparison, i, flights[i], residual_file(options, i), history_of(options));
-    }
-  }
+  for (std::size_t i = 0; i < residuals.size(); ++i)
+    write_residuals(comparison, i, flights[i], residuals[i], history_of(options));
   if (wants_report(options.common))
     write_report_of_run(
         comparison_report(comparison),
         {options.models, options.comparison.flights, {}, next_step(comparison, models, options)},
         options.common);
   if (!options.table.empty()) write_flight_table(comparison, options.table);
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    if (levels[i]) result.levels.emplace_back(models[i].name, *levels[i]);
-  }
   json.write(result);
   together.appear();
   if (!wants_text(options.common)) return;
-  print(levels, models);
+  print_levels(result);
   print(comparison, models, references, options);
 }
 

@@ -47,14 +47,19 @@ namespace {
 
 /// Removes the flights that cannot be opened, and reports them. @throws Error if no flights remain.
 void leave_out_unreadable(std::vector<std::string>& flights) {
-  const ReadableFlights readable = readable_flights({flights.begin(), flights.end()}, comm());
-  for (const UnreadableFlight& unreadable : readable.unreadable)
-    tell_choices({Note(fmt::format("skipped: {}", unreadable.why))}, false);
-  if (readable.flights.empty())
+  const std::vector<std::string> reasons = reasons_unreadable({flights.begin(), flights.end()}, comm());
+  std::vector<std::string> readable;
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    if (reasons[i].empty()) {
+      readable.push_back(flights[i]);
+    } else {
+      tell_choices({Note(fmt::format("skipped: {}", reasons[i]))}, false);
+    }
+  }
+  if (readable.empty())
     throw Error(Error::Code::file,
                 fmt::format("all {} flights are unreadable; check the files", flights.size()));
-  flights.clear();
-  for (const std::filesystem::path& flight : readable.flights) flights.push_back(flight.string());
+  flights = std::move(readable);
 }
 
 }  // namespace

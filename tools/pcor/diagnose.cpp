@@ -18,7 +18,6 @@
 #include "model_selector.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
-#include "shaped_effect.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -38,18 +37,11 @@ std::vector<std::filesystem::path> inputs_of(const DiagnoseArguments& options) {
   return input_files(options.comparison, {options.model, options.candidates.file});
 }
 
-/// The first five items, and the number of the others.
-std::string shortened_list(std::vector<std::string> items) {
-  constexpr std::size_t max_items = 5;
+/// The first items, and the number of the others.
+std::string shortened_list(std::vector<std::string> items, std::size_t max_items = 5) {
   const std::size_t more = items.size() <= max_items ? 0 : items.size() - max_items;
   items.resize(items.size() - more);
   return fmt::format("{}{}", fmt::join(items, ", "), more == 0 ? "" : fmt::format(" and {} more", more));
-}
-
-void print_rms(const Diagnosis& diagnosis) {
-  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, "
-      "linearised\n",
-      diagnosis.rms_given, diagnosis.noise_rms, diagnosis.residual_rms);
 }
 
 void print_finding(const Finding& finding) {
@@ -111,7 +103,7 @@ void print_short(const Diagnosis& diagnosis) {
 
 void print_list(const std::string& title, const std::vector<std::string>& items, bool all) {
   if (!items.empty())
-    say("{}: {}\n", title, all ? fmt::format("{}", fmt::join(items, ", ")) : shortened_list(items));
+    say("{}: {}\n", title, all ? shortened_list(items, items.size()) : shortened_list(items));
 }
 
 void print_others(const Diagnosis& diagnosis, bool all) {
@@ -133,22 +125,14 @@ void print_others(const Diagnosis& diagnosis, bool all) {
   print_list("not testable", not_testable, all);
 }
 
-/// Lines of the table [variables] for recognised roles, each once: engine_torque = "ENGTRQ".
-std::string unnamed_roles_text(const Diagnosis& diagnosis) {
-  std::vector<std::string> lines;
-  for (const UnnamedRole& each : diagnosis.unnamed_roles) {
-    std::string line = fmt::format("{} = \"{}\"", each.role, each.variable);
-    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
-  }
-  return fmt::format("{}", fmt::join(lines, " and "));
-}
-
 /// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
 /// for findings that one command cannot add.
 std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diagnosed,
                          const DiagnoseArguments& options) {
   const std::string flights = advised_command_line(options.comparison) + command_line(options.fit);
   const std::string model = model_argument(options.model);
+  const std::string compare =
+      fmt::format("{} compare {} -m {}", program(), advised_command_line(options.comparison), model);
   if (diagnosis.verdict == Verdict::silent) {
     return "To apply the model: " + process_command(options.comparison.flights, diagnosed, options.model,
                                                     options.comparison.timestamp_alignment);
@@ -159,20 +143,13 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
       fmt::format(" -m {0} --flight {1} -o {2} && {3} refit {4} -m {2} -o {5}", model,
                   shell_path(options.comparison.flights.front()), output_file("extended.toml", inputs),
                   program(), flights, output_file("fitted.toml", inputs));
-  const auto add_formula = [&and_fit](const std::string& id, const std::string& formula,
-                                      const std::string& location) {
-    return fmt::format("{} add {} {} --where {}{}", program(), shell_quote(id),
-                       shell_option("--formula", formula), location, and_fit);
-  };
+  const std::vector<Finding>& findings = diagnosis.findings;
+  const auto of_reference = [](const Finding& finding) { return finding.of_reference; };
   const auto of_catalogue = [](const Finding& finding) {
     return !finding.effect.is_formula() && !finding.of_reference;
   };
-  const std::vector<Finding>& findings = diagnosis.findings;
-  const auto of_reference = [](const Finding& finding) { return finding.of_reference; };
   if (!findings.empty() && std::all_of(findings.begin(), findings.end(), of_reference)) {
-    return fmt::format(
-        "The effect belongs to the reference system; the model is unchanged. To see it: {} compare {} -m {}",
-        program(), advised_command_line(options.comparison), model);
+    return "The effect belongs to the reference system; the model is unchanged. To see it: " + compare;
   }
   const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
@@ -180,59 +157,61 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
     std::string add = program() + " add";
     for (const Finding& finding : findings) {
       add += " " + shell_quote(argument_of(finding.effect));
-      if (finding.shape_beyond_model.empty()) continue;
+      if (!finding.is_alike) continue;
       without += fmt::format(
           "{} was found {}, which a model file cannot represent: it is added without this part.\n",
-          finding.id(), finding.shape_beyond_model);
+          finding.id(), finding.shape);
     }
     return fmt::format("{}To add {} and fit: {}{}", without, findings.size() == 1 ? "it" : "them", add,
                        and_fit);
   }
   if (sure && findings.size() == 1 && findings[0].effect.parameter_names == std::vector<std::string>{"k"}) {
     const ModelEffect& effect = findings[0].effect;
-    return "To add it and fit: " +
-           add_formula(effect.id, effect.formula, std::string(info_of(effect.location).name));
+    return fmt::format("To add it and fit: {} add {} {} --where {}{}", program(), shell_quote(effect.id),
+                       shell_option("--formula", effect.formula), info_of(effect.location).name, and_fit);
   }
-  if (const std::string roles = unnamed_roles_text(diagnosis); !roles.empty()) {
-    return fmt::format(
-        "First write {} into [variables] of {}. Then test its effect: {} improve {} -m {}{} -o {}", roles,
-        options.model, program(), flights, model, command_line(options.candidates), best);
+  std::vector<std::string> roles;  // lines of the table [variables], each once: engine_torque = "ENGTRQ"
+  for (const UnnamedRole& each : diagnosis.unnamed_roles) {
+    std::string line = fmt::format("{} = \"{}\"", each.role, each.variable);
+    if (std::find(roles.begin(), roles.end(), line) == roles.end()) roles.push_back(std::move(line));
   }
-  if (!findings.empty()) {
-    return fmt::format("To add helpful effects one after another: {} improve {} -m {}{} -o {}", program(),
-                       flights, model, command_line(options.candidates), best);
+  const std::string improve =
+      fmt::format("{} improve {} -m {}{}", program(), flights, model, command_line(options.candidates));
+  if (!roles.empty()) {
+    return fmt::format("First write {} into [variables] of {}. Then test its effect: {} -o {}",
+                       fmt::join(roles, " and "), options.model, improve, best);
   }
+  if (!findings.empty())
+    return fmt::format("To add helpful effects one after another: {} -o {}", improve, best);
   for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty()) continue;
     return fmt::format(
         "To test a formula of {} on data outside the fit: {} improve {} -m {} --trace-variables -o {}",
         variable.name, program(), flights, model, best);
   }
-  return fmt::format("To see where the residual is largest: {} compare {} -m {}", program(),
-                     advised_command_line(options.comparison), model);
-}
-
-void print_in_full(const Diagnosis& diagnosis, const ChosenReferences& references,
-                   const DiagnoseArguments& options) {
-  say("\n");
-  print_references(references);
-  say("reference: {}\n", diagnosis.reference);
-  say("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
-  print_rms(diagnosis);
-  print_flaps_out(diagnosis.flaps_out, "the diagnosis");
-  print_findings(diagnosis.findings);
-  print_unexplained(diagnosis.unexplained);
-  print_others(diagnosis, options.full);
+  return "To see where the residual is largest: " + compare;
 }
 
 void print(const Diagnosis& diagnosis, const ModelDefinition& model, const ChosenReferences& references,
            const DiagnoseArguments& options) {
   say("{}: {}.\n", to_string(diagnosis.verdict), verdict_text(diagnosis));
-  if (is_verbose() || options.full) {
-    print_in_full(diagnosis, references, options);
+  const bool in_full = is_verbose() || options.full;
+  if (in_full) {
+    say("\n");
+    print_references(references);
+    say("reference: {}\n", diagnosis.reference);
+    say("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
   } else {
     print_short(diagnosis);
-    print_rms(diagnosis);
+  }
+  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, "
+      "linearised\n",
+      diagnosis.rms_given, diagnosis.noise_rms, diagnosis.residual_rms);
+  if (in_full) {
+    print_flaps_out(diagnosis.flaps_out, "the diagnosis");
+    print_findings(diagnosis.findings);
+    print_unexplained(diagnosis.unexplained);
+    print_others(diagnosis, options.full);
   }
   say_notes(diagnosis.notes);
   say_written({options.common.report, options.common.figures, options.common.json});

@@ -5,20 +5,25 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
+#include <set>
+#include <sstream>
+#include <string_view>
+#include <utility>
 
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
-#include <pcor/flight/flight.hpp>
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/effects/static_surface.hpp>
 #include <pcor/model/formula.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include "comparison.hpp"
 #include "model_name.hpp"
-#include "shaped_effect.hpp"
 
 namespace pcor::tool {
 namespace {
-
-std::string option(const char* name, const std::string& value) { return " " + shell_option(name, value); }
 
 /// Name of a model's file, reduced to characters without a meaning in a shell.
 std::string plain_stem(const std::string& model) {
@@ -31,7 +36,102 @@ std::string plain_stem(const std::string& model) {
   return stem.empty() || stem.front() == '-' ? "model" + stem : stem;
 }
 
+double number_in(const std::string& text, const std::string& argument) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, status] = std::from_chars(text.data(), end, value);
+  if (status != std::errc() || rest != end)
+    throw Error(Error::Code::usage,
+                fmt::format("{}: '{}' is not a number; write NAME=NUMBER", argument, text));
+  return value;
+}
+
+constexpr std::pair<std::string_view, int Scaling::*> powers[]{
+    {"static_pressure", &Scaling::static_pressure}, {"dynamic_pressure", &Scaling::dynamic_pressure}};
+
+void set_shape(ModelEffect& effect, const std::string& name, const std::string& value,
+               const std::string& argument) {
+  for (const auto& [pressure, power] : powers) {
+    if (name != pressure) continue;
+    const double number = number_in(value, argument);
+    if (number != std::floor(number) || std::abs(number) > max_power) {
+      throw Error(Error::Code::usage, fmt::format("{}: a power must be a whole number from {} to {}, not {}",
+                                                  argument, -max_power, max_power, value));
+    }
+    effect.scaling.*power = static_cast<int>(number);
+    return;
+  }
+  const EffectInfo& info = *effect_named(effect.id);
+  std::vector<std::string_view> shapes;
+  for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+    if (!info.parameters[i].shape) continue;
+    const ParameterInfo& shape = info.parameters[i];
+    if (shape.name == name) {
+      effect.parameters[i] = number_in(value, argument);
+      if (effect.parameters[i] >= shape.lower && effect.parameters[i] <= shape.upper) return;
+      throw Error(Error::Code::usage, fmt::format("{}: {} = {} is outside [{}, {}]; give a value inside",
+                                                  argument, name, value, shape.lower, shape.upper));
+    }
+    shapes.push_back(shape.name);
+  }
+  shapes.insert(shapes.end(), {"static_pressure", "dynamic_pressure"});
+  throw Error(Error::Code::usage, fmt::format("{}: '{}' is not a shape parameter of the effect {}; use {}",
+                                              argument, name, effect.id, fmt::join(shapes, ", ")));
+}
+
 }  // namespace
+
+std::string argument_of(const ModelEffect& effect) {
+  std::vector<std::string> shapes;
+  if (!effect.is_formula()) {
+    const EffectInfo& info = *effect_named(effect.id);
+    for (std::size_t i = 0; i < info.parameter_count(); ++i) {
+      const ParameterInfo& parameter = info.parameters[i];
+      if (parameter.shape && effect.parameters[i] != parameter.typical)
+        shapes.push_back(fmt::format("{}={}", parameter.name, effect.parameters[i]));
+    }
+  }
+  for (const auto& [pressure, power] : powers) {
+    if (effect.scaling.*power != 0) shapes.push_back(fmt::format("{}={}", pressure, effect.scaling.*power));
+  }
+  return effect.id + (shapes.empty() ? "" : ":") + fmt::format("{}", fmt::join(shapes, ","));
+}
+
+std::optional<ModelEffect> surface_argument(const std::string& argument, const Flight* flight,
+                                            const ModelDefinition& model) {
+  const std::size_t colon = argument.find(':');
+  const std::string id = argument.substr(0, colon);
+  if (surface_named(id) == nullptr) return std::nullopt;
+  if (flight == nullptr)
+    throw Error(Error::Code::usage,
+                fmt::format("{}: the knots of a surface are chosen from a flight; give --flight IN.nc", id));
+  const auto the_flight = [flight](std::size_t) -> const Flight& { return *flight; };
+  if (colon == std::string::npos) return surface_over(1, the_flight, model, id);
+  constexpr std::string_view requested = "splines=";
+  const std::string shape = argument.substr(colon + 1);
+  const double splines =
+      shape.rfind(requested, 0) == 0 ? number_in(shape.substr(requested.size()), argument) : 0.0;
+  if (!(splines >= SurfaceAxis::min_count && splines <= SurfaceAxis::max_count))
+    throw Error(Error::Code::usage,
+                fmt::format("{}: '{}' is not a key of a surface; give splines= and a number from {} to {}",
+                            argument, shape, SurfaceAxis::min_count, SurfaceAxis::max_count));
+  return surface_over(1, the_flight, model, id, static_cast<std::size_t>(splines));
+}
+
+ModelEffect shaped_effect(const std::string& argument) {
+  std::istringstream text(argument);
+  std::string id;
+  std::getline(text, id, ':');
+  ModelEffect effect = neutral_effect(id);
+  for (std::string shape; std::getline(text, shape, ',');) {
+    const std::size_t sign = shape.find('=');
+    if (sign == std::string::npos)
+      throw Error(Error::Code::usage,
+                  fmt::format("{}: '{}' is not a shape; write {}:NAME=NUMBER", argument, shape, id));
+    set_shape(effect, shape.substr(0, sign), shape.substr(sign + 1), argument);
+  }
+  return effect;
+}
 
 void add_candidate_options(CLI::App& command, CandidateOptions& options) {
   add_list_option(command, "--try", options.formulas,
@@ -91,11 +191,10 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
     }
   }
   if (options.formulas.empty()) return candidates;
-  std::vector<std::string> variables;
+  std::set<std::string> of_any;
   for (const std::vector<std::string>& of_one : flights.variables())
-    variables.insert(variables.end(), of_one.begin(), of_one.end());
-  std::sort(variables.begin(), variables.end());
-  variables.erase(std::unique(variables.begin(), variables.end()), variables.end());
+    of_any.insert(of_one.begin(), of_one.end());
+  const std::vector<std::string> variables(of_any.begin(), of_any.end());
   const std::string where = flights.size() == 1 ? flights.path(0).string() : "any of the flights";
   std::vector<std::string> formulas = options.formulas;
   std::sort(formulas.begin(), formulas.end());
@@ -111,8 +210,8 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
 
 std::string command_line(const CandidateOptions& options) {
   std::string line;
-  for (const std::string& formula : options.formulas) line += option("--try", formula);
-  if (!options.file.empty()) line += option("--candidates", options.file);
+  for (const std::string& formula : options.formulas) line += " " + shell_option("--try", formula);
+  if (!options.file.empty()) line += " " + shell_option("--candidates", options.file);
   return line;
 }
 
@@ -140,11 +239,6 @@ void add_commands(WhatIf& what_if, const std::string& model, const std::string& 
 
 std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p); }
 
-std::string slope_of(const EmpiricalPredictor& variable) {
-  return variable.slope_error > 0.0 ? fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error)
-                                    : "no linear trend";
-}
-
 void print_unexplained(const Unexplained& unexplained) {
   if (!unexplained.significant) return;
   say("\nunexplained residual: {:.3f} hPa rms (p {}), including {:.3f} hPa of slow drift{}{}\n",
@@ -153,14 +247,14 @@ void print_unexplained(const Unexplained& unexplained) {
   if (!unexplained.variables.empty()) {
     say("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "correlates with", "unit", "R2", "p", "hPa per unit",
         "formula", "description");
-  }
-  for (const EmpiricalPredictor& variable : unexplained.variables) {
-    say("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit, variable.r2,
-        probability(variable.p_value), slope_of(variable), variable.formula, variable.description);
-  }
-  if (!unexplained.variables.empty()) {
-    const EmpiricalPredictor& first = unexplained.variables.front();
-    say("{}\n", component_text(first));
+    for (const EmpiricalPredictor& variable : unexplained.variables) {
+      const std::string slope = variable.slope_error > 0.0
+                                    ? fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error)
+                                    : "no linear trend";
+      say("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit, variable.r2,
+          probability(variable.p_value), slope, variable.formula, variable.description);
+    }
+    say("{}\n", component_text(unexplained.variables.front()));
   }
   for (const FlightOffset& step : unexplained.steps) {
     say("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight, std::abs(step.size),

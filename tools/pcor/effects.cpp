@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -20,12 +21,6 @@ struct EffectsArguments {
   std::string id;
 };
 
-const EffectWithoutTrace* find_without_trace(const std::string& id) {
-  const auto found = std::find_if(effects_without_trace.begin(), effects_without_trace.end(),
-                                  [&id](const EffectWithoutTrace& effect) { return effect.id == id; });
-  return found == effects_without_trace.end() ? nullptr : &*found;
-}
-
 const EffectInfo& find(const std::string& id) {
   if (const EffectInfo* const effect = effect_named(id)) return *effect;
   if (const EffectInfo* const surface = surface_named(id)) return *surface;
@@ -40,13 +35,10 @@ const EffectInfo& find(const std::string& id) {
                           id, hint.empty() ? ";" : "; ", hint, program()));
 }
 
-std::string names_of_needs(const EffectInfo& info) {
-  std::string names;
-  for (std::size_t i = 0; i < info.need_count(); ++i) {
-    if (i > 0) names += ", ";
-    names += info_of(info.needs[i]).name;
-  }
-  return names.empty() ? "nothing" : names;
+std::vector<std::string_view> names_of_needs(const EffectInfo& info) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < info.need_count(); ++i) names.push_back(info_of(info.needs[i]).name);
+  return names;
 }
 
 /// Effect of the catalogue in JSON.
@@ -80,9 +72,7 @@ void describe(const CatalogueEntry& self, Field& field) {
                of_one("static_pressure", scaling.static_pressure, "power of p/700 hPa");
                of_one("dynamic_pressure", scaling.dynamic_pressure, "power of q/70 hPa");
              });
-  std::vector<std::string_view> needs;
-  for (std::size_t i = 0; i < info.need_count(); ++i) needs.push_back(info_of(info.needs[i]).name);
-  field("needs", needs, "roles and derived quantities that the effect reads");
+  field("needs", names_of_needs(info), "roles and derived quantities that the effect reads");
   field("size", info.size, "typical size");
   field("look_alikes", info.confounders, "confounded effects");
   field("manoeuvre", info.manoeuvre, "manoeuvre that separates the effect from them");
@@ -98,10 +88,6 @@ void describe(const Catalogue& /*self*/, Field& field) {
   field.list("effects", effect_info, "effects of the catalogue", entry);
   field.list("surfaces", surface_info, "surfaces", entry);
   field("without_trace", effects_without_trace, "known effects that no term of a model describes");
-}
-
-std::string_view text_of(GasConstants constants) {
-  return constants == GasConstants::dry ? "models with dry constants" : "models with moist constants";
 }
 
 void print_surface(const EffectInfo& info) {
@@ -129,8 +115,10 @@ void print_one(const EffectInfo& info) {
     say("  or scaled by (p/700 hPa)^{} (q/70 hPa)^{}\n", info.scalings[i].static_pressure,
         info.scalings[i].dynamic_pressure);
   }
-  if (info.constants != GasConstants::any) say("  only in      {}\n", text_of(info.constants));
-  say("  needs        {}\n", names_of_needs(info));
+  if (info.constants != GasConstants::any)
+    say("  only in      models with {} constants\n", info.constants == GasConstants::dry ? "dry" : "moist");
+  say("  needs        {}\n",
+      info.need_count() == 0 ? "nothing" : fmt::format("{}", fmt::join(names_of_needs(info), ", ")));
   say("  size         {}\n", info.size);
   say("  confounders  {}\n", info.confounders);
   say("  separated by {}\n", info.manoeuvre);
@@ -141,15 +129,14 @@ void print_one(const EffectInfo& info) {
     if (input.quantity == Quantity::count) break;
     say("{} = {}, ", info_of(input.quantity).name, input.value);
   }
-  std::string example;
-  std::string typical;
+  std::vector<std::string> example;
+  std::vector<std::string> typical;
   for (std::size_t i = 0; i < info.parameter_count(); ++i) {
-    const std::string_view separator = i == 0 ? "" : ", ";
-    example += fmt::format("{}{} = {}", separator, info.parameters[i].name, info.example.parameters[i]);
-    typical += fmt::format("{}{} = {}", separator, info.parameters[i].name, info.parameters[i].typical);
+    example.push_back(fmt::format("{} = {}", info.parameters[i].name, info.example.parameters[i]));
+    typical.push_back(fmt::format("{} = {}", info.parameters[i].name, info.parameters[i].typical));
   }
-  say("{} gives {} {}\n\nIn a model file:\n\n", example, info.example.value, location.unit);
-  say("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", info.id, typical);
+  say("{} gives {} {}\n\nIn a model file:\n\n", fmt::join(example, ", "), info.example.value, location.unit);
+  say("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", info.id, fmt::join(typical, ", "));
 }
 
 void print_all() {
@@ -168,28 +155,26 @@ void print_all() {
 void run(const EffectsArguments& options) {
   refuse_overwriting({options.common.json}, {});
   JsonResult json(options.common);
-  if (const EffectWithoutTrace* const effect = find_without_trace(options.id)) {
-    json.write(*effect);
-    if (wants_text(options.common)) {
-      say("{}: {}\n\nNo term of a model describes it: {}.\n", effect->id, effect->title, effect->reason);
-      say_written({options.common.json});
-    }
-    return;
-  }
-  if (!options.id.empty()) {
+  const bool says = wants_text(options.common);
+  const auto without_trace =
+      std::find_if(effects_without_trace.begin(), effects_without_trace.end(),
+                   [&options](const EffectWithoutTrace& effect) { return effect.id == options.id; });
+  if (without_trace != effects_without_trace.end()) {
+    json.write(*without_trace);
+    if (says)
+      say("{}: {}\n\nNo term of a model describes it: {}.\n", without_trace->id, without_trace->title,
+          without_trace->reason);
+  } else if (!options.id.empty()) {
     const EffectInfo& info = find(options.id);
     json.write(CatalogueEntry{info});
-    if (wants_text(options.common)) {
-      print_one(info);
-      say_written({options.common.json});
-    }
-    return;
+    if (says) print_one(info);
+  } else {
+    json.write(Catalogue());
+    if (says) print_all();
   }
-  json.write(Catalogue());
-  if (!wants_text(options.common)) return;
-  print_all();
+  if (!says) return;
   say_written({options.common.json});
-  say("For details: {} effects {}\n", program(), effect_info.front().id);
+  if (options.id.empty()) say("For details: {} effects {}\n", program(), effect_info.front().id);
 }
 
 }  // namespace

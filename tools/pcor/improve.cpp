@@ -86,19 +86,6 @@ void print(const Improvement& improvement, const ChosenReferences& references,
   say("{}\n", next_step(improvement, options));
 }
 
-ImproveOptions improve_options(const ImproveArguments& options, const ModelDefinition& model,
-                               const CommandFlights& of) {
-  ImproveOptions improve_with;
-  improve_with.refit.mask = mask_options(options.comparison);
-  improve_with.refit.loss = *loss_named(options.fit.loss);
-  improve_with.refit.training_share = options.fit.training_share;
-  improve_with.refit.holdout = of.holdout;
-  improve_with.refit.trust_reference = options.fit.trust_reference;
-  improve_with.formulas = candidate_formulas(options.candidates, model, of.flights);
-  improve_with.trace_variables = options.trace_variables;
-  return improve_with;
-}
-
 void run(const ImproveArguments& options) {
   std::vector<std::filesystem::path> inputs =
       input_files(options.comparison, {options.model, options.candidates.file});
@@ -109,7 +96,14 @@ void run(const ImproveArguments& options) {
   const ModelDefinition model =
       with_fit_options(read_model_for(options.model, of.flights, options.common), options.fit);
   const ChosenReferences references = references_to_fit(options.comparison, model, of.all());
-  ImproveOptions improve_with = improve_options(options, model, of);
+  ImproveOptions improve_with;
+  improve_with.refit.mask = mask_options(options.comparison);
+  improve_with.refit.loss = *loss_named(options.fit.loss);
+  improve_with.refit.training_share = options.fit.training_share;
+  improve_with.refit.holdout = of.holdout;
+  improve_with.refit.trust_reference = options.fit.trust_reference;
+  improve_with.formulas = candidate_formulas(options.candidates, model, of.flights);
+  improve_with.trace_variables = options.trace_variables;
   Improvement improvement;
   WhatIf tried;
   {

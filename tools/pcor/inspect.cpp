@@ -14,7 +14,6 @@
 #include <pcor/base/error.hpp>
 #include <pcor/base/message.hpp>
 #include <pcor/base/utc.hpp>
-#include <pcor/inspect/inspection_report.hpp>
 #include "command.hpp"
 #include "comparison.hpp"
 #include "model_name.hpp"
@@ -186,11 +185,6 @@ void print(const Problem& problem) {
       problem.action);
 }
 
-void print_problems(const Inspection& flight) {
-  if (!flight.problems.empty()) say("\nproblems\n");
-  for (const Problem& problem : flight.problems) print(problem);
-}
-
 void print_missing(const Inspection& flight) {
   bool any = false;
   for (const MissingRole& role : flight.missing) {
@@ -261,26 +255,23 @@ std::string validity_of(const LawInfo& law) {
   return fmt::format("valid from {} to {}", law.valid_from, law.valid_to);
 }
 
-/// Note of a law whose dates are in doubt.
-std::string doubtful_note(const LawInfo& law) {
-  return doubt_of_dates(law).empty() || law.note.empty() ? "" : "; note: " + law.note;
-}
-
 void print_in_full(const Inspection& flight) {
   print_roles(flight);
   print_candidates(flight);
   print_missing(flight);
-  print_problems(flight);
+  if (!flight.problems.empty()) say("\nproblems\n");
+  for (const Problem& problem : flight.problems) print(problem);
   print_flown(flight);
   if (flight.by_gps) print_by_gps(*flight.by_gps);
   if (!flight.laws.empty()) say("\nmodels for this aircraft\n");
   for (const ModelCandidate& law : flight.laws) {
+    const LawInfo& info = law.model.law;
+    const std::string note = doubt_of_dates(info).empty() || info.note.empty() ? "" : "; note: " + info.note;
     say("  {}: {}{}\n", law.path.stem().string(), law.model.model.name,
         !law.lacks.empty()     ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
-        : !law.is_in_time      ? "; not for the date of the flight, " + validity_of(law.model.law)
+        : !law.is_in_time      ? "; not for the date of the flight, " + validity_of(info)
         : !law.why_not.empty() ? "; " + law.why_not
-                               : "; matches the flight's pressures, " + validity_of(law.model.law) +
-                                     doubtful_note(law.model.law));
+                               : "; matches the flight's pressures, " + validity_of(info) + note);
   }
 }
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include <pcor/base/error.hpp>
 #include <pcor/campaign/resolve_model.hpp>
 #include <pcor/roles/model_candidates.hpp>

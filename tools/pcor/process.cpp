@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -37,29 +36,24 @@ struct ProcessArguments {
   std::string models;  ///< folder of models, one of which is selected for each flight
   std::string output;
   std::string correct_with = "model";
-  TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
   std::string uncertainty;
-  std::string suffix;
-  bool copy_all = false;
-  bool hydrostatic = false;
-  bool keep_frozen = false;
-  bool if_stale = false;
-  bool skip_unreadable = false;
+  ProcessFlightsOptions flights;  ///< the other options
 };
 
 /// Command that makes one output alone.
 std::string command_line(const ProcessTask& task, const ProcessArguments& options) {
+  const ProcessOptions& process = options.flights.process;
   std::string line =
       fmt::format("pcor " PCOR_VERSION " process {} {} {} -o {}", shell_path(task.input.string()),
                   options.models.empty() ? "-m" : "--models", shell_path(options.model + options.models),
                   shell_path(task.output.string()));
   if (options.correct_with != "model") line += " --correct-with " + options.correct_with;
-  if (options.timestamp_alignment == TimestampAlignment::middle) line += " --time-stamp middle";
+  if (process.timestamp_alignment == TimestampAlignment::middle) line += " --time-stamp middle";
   if (!options.uncertainty.empty()) line += " --uncertainty " + options.uncertainty;
-  if (!options.suffix.empty()) line += " " + shell_option("--suffix", options.suffix);
-  if (options.copy_all) line += " --all";
-  if (options.hydrostatic) line += " --hydrostatic";
-  if (options.keep_frozen) line += " --keep-frozen";
+  if (!process.suffix.empty()) line += " " + shell_option("--suffix", process.suffix);
+  if (process.copy_all) line += " --all";
+  if (process.hydrostatic) line += " --hydrostatic";
+  if (process.keep_frozen) line += " --keep-frozen";
   return line;
 }
 
@@ -176,15 +170,7 @@ class Table {
       for (std::size_t i = 0; i < flagged.size(); ++i) flagged[i] += flight.summary.flagged[i];
     }
     print_flags(flagged);
-    print_notes(flights);
-    say("\n{} flights: {} processed into {}, {} up to date, {} unreadable\n", flights.size(),
-        count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
-        count_of(flights, FlightState::unreadable));
-  }
-
- private:
-  /// Each note once, with its flight or the number of its flights.
-  static void print_notes(const std::vector<ProcessedFlight>& flights) {
+    // Each note once, with its flight or the number of its flights.
     constexpr std::size_t max_notes = 6;
     std::map<Note, std::vector<std::string>> names;
     for (const ProcessedFlight& flight : flights) {
@@ -197,8 +183,12 @@ class Table {
       notes.emplace_back(note.severity, fmt::format("{}: {}", whose, note.text));
     }
     say_notes(notes, max_notes);
+    say("\n{} flights: {} processed into {}, {} up to date, {} unreadable\n", flights.size(),
+        count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
+        count_of(flights, FlightState::unreadable));
   }
 
+ private:
   std::string model_of(const ProcessedFlight& flight) const {
     return with_models_ ? "  " + flight.model.model.name : std::string();
   }
@@ -272,18 +262,6 @@ class OutputFolder {
   bool is_new_ = false;
 };
 
-ProcessOptions process_options(const ProcessArguments& options) {
-  ProcessOptions process;
-  process.correct_with = options.correct_with == "lams" ? CorrectWith::lams : CorrectWith::model;
-  process.timestamp_alignment = options.timestamp_alignment;
-  process.copy_all = options.copy_all;
-  process.hydrostatic = options.hydrostatic;
-  process.keep_frozen = options.keep_frozen;
-  process.uncertainty = part_named(options.uncertainty);
-  process.suffix = options.suffix;
-  return process;
-}
-
 /// Like `process_flights`; an error that stops several flights adds how to process the others.
 std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, const ModelSelector& model_of,
                                          const ProcessFlightsOptions& options) {
@@ -319,10 +297,9 @@ void run(const ProcessArguments& options) {
   const ModelSelector model_of = models_of(options);
   std::optional<OutputFolder> output_folder;
   if (folder) output_folder.emplace(options.output);
-  ProcessFlightsOptions process;
-  process.process = process_options(options);
-  process.if_stale = options.if_stale;
-  process.skip_unreadable = options.skip_unreadable;
+  ProcessFlightsOptions process = options.flights;
+  if (options.correct_with == "lams") process.process.correct_with = CorrectWith::lams;
+  process.process.uncertainty = part_named(options.uncertainty);
   std::optional<Progress> bar;
   process.begins = [&](std::size_t task) {
     bar.emplace(many ? fmt::format("processing {} of {}", task + 1, tasks.size()) : "processing",
@@ -344,7 +321,7 @@ void run(const ProcessArguments& options) {
   const std::vector<ProcessedFlight>& flights = result.flights;
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
   if (wants_report(options.common) && !none) {
-    write_report_of_run(process_report(flights, options.suffix),
+    write_report_of_run(process_report(flights, process.process.suffix),
                         {{options.model + options.models}, options.inputs, {}, next_step(flights)},
                         options.common);
   }
@@ -394,10 +371,10 @@ std::function<void()> add_process(CLI::App& program) {
       ->required()
       ->check(is_file_name())
       ->type_name("OUT.nc");
-  command->add_flag("--if-stale", options->if_stale,
+  command->add_flag("--if-stale", options->flights.if_stale,
                     "skip an output that was made from the same flight, model and options by this version, "
                     "according to its hashes");
-  command->add_flag("--skip-unreadable", options->skip_unreadable,
+  command->add_flag("--skip-unreadable", options->flights.skip_unreadable,
                     "continue after a flight that cannot be read or lacks inputs of the model, and give the "
                     "reason in its row");
   command
@@ -406,18 +383,20 @@ std::function<void()> add_process(CLI::App& program) {
                    "(LAMS) where it is valid")
       ->check(CLI::IsMember({"model", "lams"}))
       ->capture_default_str();
-  add_time_stamp_option(*command, options->timestamp_alignment);
+  add_time_stamp_option(*command, options->flights.process.timestamp_alignment);
   command
       ->add_option("--uncertainty", options->uncertainty,
                    "write the standard uncertainties of results: total, only the systematic or only the "
                    "random part, or no uncertainty with none (default: total if the model states any)")
       ->check(CLI::IsMember({"total", "systematic", "random", "none"}));
-  command->add_option("--suffix", options->suffix, "add S to the names of the derived variables")
+  command
+      ->add_option("--suffix", options->flights.process.suffix, "add S to the names of the derived variables")
       ->type_name("S");
-  command->add_flag("--all", options->copy_all, "copy all non-text input variables; list those not copied");
-  command->add_flag("--hydrostatic", options->hydrostatic,
+  command->add_flag("--all", options->flights.process.copy_all,
+                    "copy all non-text input variables; list those not copied");
+  command->add_flag("--hydrostatic", options->flights.process.hydrostatic,
                     "write HYDSTEP, the change of hydrostatic height per kelvin from sample to sample");
-  command->add_flag("--keep-frozen", options->keep_frozen,
+  command->add_flag("--keep-frozen", options->flights.process.keep_frozen,
                     "correct the readings of frozen sensors as well (default: missing)");
   add_common_options<ProcessedFlight, ProcessedFlights>(*command, options->common);
   add_examples(*command, {"process third.nc -m best.toml -o corrected.nc",

@@ -19,7 +19,6 @@
 
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/base/error.hpp>
-#include <pcor/base/error_code.hpp>
 #include <pcor/base/message.hpp>
 #include <pcor/parallel/fork_communicator.hpp>
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -40,17 +39,15 @@ struct RefitArguments {
   bool force = false;
 };
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
+/// The parts between commas, without blanks around them.
 std::vector<std::string> parts_of(const std::string& text) {
   std::vector<std::string> parts;
   std::size_t from = 0;
   while (from <= text.size()) {
     const std::size_t to = std::min(text.find(',', from), text.size());
-    parts.push_back(trimmed(text.substr(from, to - from)));
+    const std::string part = text.substr(from, to - from);
+    const std::size_t first = std::min(part.find_first_not_of(' '), part.size());
+    parts.push_back(part.substr(first, part.find_last_not_of(' ') + 1 - first));
     from = to + 1;
   }
   return parts;
@@ -286,17 +283,12 @@ FlightTable flight_table(const RefitResult& all, const ModelDefinition& model, c
                                  cell(flight.after.rms),
                                  cell(flight.after.noise_rms)};
     for (const std::string& name : fitted) {
-      double value = std::numeric_limits<double>::quiet_NaN();
-      double error = value;
-      if (!flight.holdout) {
-        for (const FittedParameter& parameter : alone[flight.flight]) {
-          if (parameter.name != name) continue;
-          value = parameter.value;
-          error = parameter.standard_error;
-        }
-      }
-      row.push_back(cell(value));
-      row.push_back(cell(error));
+      const std::vector<FittedParameter>& own = alone[flight.flight];
+      const auto parameter = std::find_if(own.begin(), own.end(),
+                                          [&name](const FittedParameter& each) { return each.name == name; });
+      const bool is_known = !flight.holdout && parameter != own.end();
+      row.push_back(is_known ? cell(parameter->value) : "");
+      row.push_back(is_known ? cell(parameter->standard_error) : "");
     }
     table.add(std::move(row));
   }

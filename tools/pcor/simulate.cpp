@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include <pcor/base/utc.hpp>
 #include "command.hpp"

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include <pcor/base/error.hpp>
@@ -26,25 +24,16 @@ struct TemperatureArguments {
   std::string degree = "auto";
   std::string slope = "fitted";
   double slope_size = TemperatureOptions{}.slope_size * 1e5;  // m per 100 km
-  std::optional<double> pressure_error;
-  bool force = false;
-  double min_climb_rate = 0.0;
-  bool skip_returning = false;
-  bool archived = false;
+  TemperatureOptions temperature;
   bool iterate = false;
 };
 
 TemperatureOptions temperature_options(const TemperatureArguments& options) {
-  TemperatureOptions result;
+  TemperatureOptions result = options.temperature;
   result.mask = mask_options(options.comparison);
   if (options.degree != "auto") result.degree = std::stoi(options.degree);
   result.slope = *isobar_slope_named(options.slope);
   result.slope_size = options.slope_size * 1e-5;
-  result.pressure_error = options.pressure_error;
-  result.min_climb_rate = options.min_climb_rate;
-  result.skip_returning = options.skip_returning;
-  result.archived = options.archived;
-  result.dry_air = options.force;
   return result;
 }
 
@@ -170,7 +159,7 @@ std::string next_step(const TemperatureResult& result, const TemperatureArgument
 void run(const TemperatureArguments& options) {
   const std::vector<std::filesystem::path> inputs = input_files(options.comparison, {options.model});
   prepare_outputs(options.common, {options.output}, inputs);
-  if (options.iterate && options.archived)
+  if (options.iterate && options.temperature.archived)
     throw Error(Error::Code::usage,
                 "--iterate refits the pressures and requires flights as recorded; remove --archived");
   if (!options.iterate && !options.comparison.references.empty())
@@ -195,7 +184,7 @@ void run(const TemperatureArguments& options) {
     }
   }
   if (!is_speaker()) return;
-  const bool is_refused = !result.worse.empty() && !options.force;
+  const bool is_refused = !result.worse.empty() && !with.dry_air;
   OutputTransaction together;
   if (wants_report(options.common))
     write_report_of_run(
@@ -204,7 +193,7 @@ void run(const TemperatureArguments& options) {
         options.common);
   json.write(in_turn);
   if (!is_refused) {
-    refuse_worse(result.worse, options.force, result.model);
+    refuse_worse(result.worse, with.dry_air, result.model);
     deliver(result.model, options.output, inputs);
   }
   together.appear();
@@ -214,7 +203,7 @@ void run(const TemperatureArguments& options) {
     print(result);
     say_written({options.common.report, options.common.figures, options.common.json});
   }
-  if (is_refused) refuse_worse(result.worse, options.force, result.model);
+  if (is_refused) refuse_worse(result.worse, with.dry_air, result.model);
   if (!with_text) return;
   say_written({options.output});
   if (!result.worse.empty()) say("Not recommended: {}.\n", result.worse);
@@ -249,23 +238,24 @@ std::function<void()> add_temperature(CLI::App& program) {
       ->check(is_amount())
       ->capture_default_str();
   command
-      ->add_option("--pressure-error", options->pressure_error,
+      ->add_option("--pressure-error", options->temperature.pressure_error,
                    "standard deviation of constant errors of the static pressure, hPa, one the same at all "
                    "pressures and one proportional to the pressure; part of the standard errors (default: "
                    "0.1 for the transducer; for the model its stated value, otherwise 0.3)")
       ->check(is_amount());
   command
-      ->add_option("--min-climb-rate", options->min_climb_rate,
+      ->add_option("--min-climb-rate", options->temperature.min_climb_rate,
                    "exclude climbs and descents below this rate, m/s")
       ->check(is_amount())
       ->capture_default_str();
-  command->add_flag("--skip-returning", options->skip_returning, "skip flights that end where they began");
+  command->add_flag("--skip-returning", options->temperature.skip_returning,
+                    "skip flights that end where they began");
   command->add_flag(
-      "--archived", options->archived,
+      "--archived", options->temperature.archived,
       "the flights were written by 'pcor process --hydrostatic': start from their HYDSTEP and ATX");
   command->add_flag("--iterate", options->iterate,
                     "refit the pressures and calibrate the temperature alternately to convergence");
-  add_force_option(*command, options->force);
+  add_force_option(*command, options->temperature.dry_air);
   add_common_options<IterativeCalibration>(*command, options->common);
   add_examples(*command,
                {"temperature climbs.nc -m data/scenarios/models/c130-psfd-eq18.toml -o calibrated.toml"});

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace pcor {
 
@@ -33,5 +36,14 @@ class Error : public std::runtime_error {
  private:
   Code code_;
 };
+
+/// The name of the code, such as "file".
+constexpr std::string_view to_string(Error::Code code) {
+  constexpr std::array<std::string_view, 11> names{"file",    "variable",   "unit",  "time",
+                                                   "samples", "definition", "model", "fit",
+                                                   "usage",   "output",     "system"};
+  static_assert(names.size() == static_cast<std::size_t>(Error::Code::system) + 1);
+  return names[static_cast<std::size_t>(code)];
+}
 
 }  // namespace pcor

@@ -15,7 +15,9 @@ enum class Severity {
 };
 
 /// Text: "warning", "information".
-std::string_view to_string(Severity severity);
+inline std::string_view to_string(Severity severity) {
+  return severity == Severity::warning ? "warning" : "information";
+}
 
 /// Note about a result for the user. A text converts to a note with the severity information.
 struct Note {
@@ -51,9 +53,13 @@ inline bool operator<(const Note& a, const Note& b) {
 inline Note warning_note(std::string text) { return {Severity::warning, std::move(text)}; }
 
 /// Text for one line of output, with the prefix "warning: " for a warning.
-std::string format_note(const Note& note);
+inline std::string format_note(const Note& note) {
+  return note.severity == Severity::warning ? "warning: " + note.text : note.text;
+}
 
 /// "Warning" or "Note", the label of a note in reports and long output.
-std::string_view label_of(const Note& note);
+inline std::string_view label_of(const Note& note) {
+  return note.severity == Severity::warning ? "Warning" : "Note";
+}
 
 }  // namespace pcor

@@ -56,7 +56,9 @@ class Batch {
   /// be called by several threads concurrently.
   /// @throws Error if an input is missing, or an output is not found.
   void run(const std::vector<Input>& inputs, const std::vector<Output>& outputs, std::size_t samples,
-           const double* parameters = nullptr) const;
+           const double* parameters = nullptr) const {
+    compute(inputs, outputs, {}, samples, parameters);
+  }
 
   /// Derivatives of delta-p of the model, hPa per unit of the coefficient, with respect to coefficients in
   /// which it is linear, at the coefficients `parameters`. They include the taper, and are exact; NaN where
@@ -65,7 +67,9 @@ class Batch {
   /// @throws Error if an input is missing, or if delta-p is not linear in a coefficient or has no such
   /// coefficient.
   void differentiate(const std::vector<Input>& inputs, const std::vector<Derivative>& derivatives,
-                     std::size_t samples, const double* parameters = nullptr) const;
+                     std::size_t samples, const double* parameters = nullptr) const {
+    compute(inputs, {}, derivatives, samples, parameters);
+  }
 
  private:
   struct StageInfo {

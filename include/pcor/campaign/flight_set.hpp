@@ -71,7 +71,6 @@ class FlightSet {
   std::string name(std::size_t flight) const;
   /// Path of a flight; empty for samples in memory.
   const std::filesystem::path& path(std::size_t flight) const;
-  std::vector<std::filesystem::path> paths() const;
 
   Communicator& comm() const { return *comm_; }
   const internal::FlightPartition& share() const { return *share_; }

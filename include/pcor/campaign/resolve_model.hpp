@@ -4,9 +4,6 @@
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/model_io/model_definition.hpp>
 
-#include <string>
-#include <vector>
-
 namespace pcor {
 
 /// Model with its undefined variables resolved (`resolve_variables`) from the first readable flight that

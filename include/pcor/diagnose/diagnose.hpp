@@ -159,8 +159,9 @@ std::string id_on_other_system(const std::string& system, const std::string& nam
 
 /// Missing effect.
 struct Finding {
-  ModelEffect effect;         ///< effect with the estimated coefficients, ready for a model
-  bool is_alike = false;      ///< true: common mode, also present in the compared systems
+  ModelEffect effect;  ///< effect with the estimated coefficients, ready for a model
+  /// True: common mode, also present in the compared systems, which a model file cannot express.
+  bool is_alike = false;
   bool of_reference = false;  ///< true: acts on a compared system
   std::string system{};       ///< system, if several are compared: "PSFRD+QCFR"; otherwise empty
   std::string title;
@@ -185,8 +186,6 @@ struct Finding {
   std::vector<Alias> aliases{};      ///< sorted by decreasing probability
   std::string family{};              ///< family of its alternative shapes and locations, e.g. "lag"
   std::string shape{};               ///< detected shape; empty: the shape of the catalogue
-  /// Part of the shape that a model file cannot express, e.g. "alike on the other system"; otherwise empty.
-  std::string shape_beyond_model{};
   /// Equally good shapes; an empty string is the shape of the catalogue.
   std::vector<std::string> variants{};
   /// Possible locations, e.g. "port", "other-system"; location of `effect` first.

@@ -13,9 +13,14 @@ enum class Loss {
   none  ///< least squares
 };
 
-std::string_view to_string(Loss loss);
+inline std::string_view to_string(Loss loss) { return loss == Loss::huber ? "huber" : "none"; }
 
 /// Loss with the given name; nullopt if unknown.
-std::optional<Loss> loss_named(std::string_view name);
+inline std::optional<Loss> loss_named(std::string_view name) {
+  for (const Loss loss : {Loss::huber, Loss::none}) {
+    if (name == to_string(loss)) return loss;
+  }
+  return std::nullopt;
+}
 
 }  // namespace pcor

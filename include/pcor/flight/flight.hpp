@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,7 +37,6 @@ struct VariableInfo {
   std::string long_name;   ///< empty if absent
   bool is_series = false;  ///< numbers over (Time) or (Time, spsN): can be read as a time series
   int rate = 0;            ///< samples per record: 1, or N of (Time, spsN); 0 if not a time series
-  std::vector<std::string> dimensions;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< all of them as text, without trailing NUL
   std::vector<std::string> flags;  ///< flag variables that mark invalid samples, which become missing
   std::string ignored_range;       ///< valid range stated in the file as text that is not numeric
@@ -48,22 +46,13 @@ struct VariableInfo {
 /// Attribute Category of true values in a simulated flight.
 inline constexpr std::string_view truth_category = "Truth";
 
-/// Gap: interval between records more than 1.5 times the usual one.
-struct TimeGap {
-  std::size_t record = 0;  ///< the first record after the gap
-  double before = 0;       ///< time of the record before it, seconds since 1970 UTC
-  double after = 0;        ///< time of the first record after it
-};
-
 /// Time axis of a flight, strictly increasing. Times are seconds since 1970 UTC.
 struct TimeAxis {
-  std::string source;  ///< description of the time source
   double first = 0;
   double last = 0;
   double step = 1;            ///< the usual step between records, s: the median over the first block
   bool whole_seconds = true;  ///< every time is a whole second
-  std::size_t gap_count = 0;
-  std::vector<TimeGap> gaps;                ///< the first thousand of them
+  std::size_t gap_count = 0;  ///< intervals between records more than 1.5 times the usual one
   std::vector<std::size_t> midnight_wraps;  ///< records at which seconds of the day restart at zero
 };
 
@@ -185,8 +174,6 @@ class Flight {
   void read_sample_times(RecordBlock block, int rate, double* out) const;
 
  private:
-  std::string first_attribute(std::initializer_list<const char*> names) const;
-
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

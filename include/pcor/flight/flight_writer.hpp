@@ -34,8 +34,9 @@ struct OutputVariable {
 
 /// Global metadata of a new file.
 struct FileDescription {
-  std::string title;    ///< empty: from the input, otherwise composed of project, flight and aircraft
-  std::string summary;  ///< empty: from the input, otherwise the title
+  /// Empty: from the input, otherwise composed of project, flight and aircraft. A file without a summary gets
+  /// the title as its summary.
+  std::string title;
   /// Command that creates the file, e.g. the command line; dated and placed before the input's history.
   std::string history;
   std::string latitude, longitude, altitude;        ///< variables of the aircraft's position in the output
@@ -76,10 +77,11 @@ class FlightWriter {
   ///
   /// @throws Error if the output is the input's file (also by a link), exists but is not a regular file, or
   /// cannot be created.
-  FlightWriter(std::filesystem::path output, const Flight& input, const FileDescription& description);
+  FlightWriter(const std::filesystem::path& output, const Flight& input, const FileDescription& description);
 
   /// Creates a file without input; its times are written with `write_time_stamps`. @throws Error as above.
-  FlightWriter(std::filesystem::path output, const NewFlight& flight, const FileDescription& description);
+  FlightWriter(const std::filesystem::path& output, const NewFlight& flight,
+               const FileDescription& description);
 
   FlightWriter(FlightWriter&&) noexcept;
   FlightWriter& operator=(FlightWriter&&) noexcept;

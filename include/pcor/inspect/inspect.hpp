@@ -10,13 +10,36 @@
 
 #include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
-#include <pcor/inspect/gps_design.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/regimes/regimes.hpp>
+#include <pcor/report/report.hpp>
 #include <pcor/residuals/samples.hpp>
 #include <pcor/roles/model_candidates.hpp>
 
 namespace pcor {
+
+/// How well the manoeuvres of a flight determine delta-p by GPS: standard errors, hPa.
+struct GpsDesign {
+  double level = 0.0;   ///< mean over the flight
+  double slope = 0.0;   ///< change with the airspeed, rms over the flight
+  double attack = 0.0;  ///< change with the attack, rms over the flight; NaN without that term
+  bool by_wind = false;
+  bool by_height = false;
+};
+
+template <class Field>
+void describe(const GpsDesign& self, Field& field) {
+  field("level", self.level, "standard error of the mean of delta-p over the flight", "hPa");
+  field("slope", self.slope, "standard error of its change with the airspeed, rms over the flight", "hPa");
+  field("attack", self.attack, "standard error of its change with the attack, rms over the flight", "hPa");
+}
+
+/// Errors that a refit with `--reference wind --reference height` would state, from the manoeuvres and the
+/// gusts alone, before any fit, with usual sizes of the variations of the atmosphere. An error of several hPa
+/// is that of the prior: the flight does not determine this part.
+/// @param model with the roles, and terms that a refit finds
+/// @return empty without velocity over the ground and height
+std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition& model);
 
 /// Variable found for a role.
 struct InspectedRole {
@@ -121,7 +144,6 @@ struct Inspection {
   std::vector<std::string> references{};
   std::string why_no_model{};          ///< reason why the flight has no model; empty if it has one
   bool is_corrected = false;           ///< true: the pressures of the model are already corrected
-  std::string corrected_pressure{};    ///< static pressure corrected in the flight file; may be empty
   std::vector<FrozenSpan> frozen{};    ///< sensors with constant readings for longer than their noise permits
   std::vector<Interval> intervals{};   ///< regimes of the flight; empty without pressures
   std::vector<ModelCandidate> laws{};  ///< models for this aircraft, best match first
@@ -188,5 +210,9 @@ Inspection inspect_flight(const std::filesystem::path& path,
                           const std::vector<std::filesystem::path>& laws = {},
                           TimestampAlignment timestamp_alignment = TimestampAlignment::begin,
                           const std::string& roles = "");
+
+/// Page of `pcor inspect`: track, height, speed and regimes of the flights, and tables of roles and missing
+/// roles.
+Report inspection_report(const std::vector<Inspection>& flights);
 
 }  // namespace pcor

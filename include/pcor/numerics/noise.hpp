@@ -41,16 +41,10 @@ struct NoiseFloor {
 /// NaN for rms if the series has fewer than 30 differences.
 NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Segment>& segments, double step);
 
-/// Stationary process e(t) = a_1 e(t-1) + ... + a_p e(t-p) + innovation.
-struct Autoregression {
-  std::vector<double> coefficients{};
-  double innovation_rms = 0.0;  ///< rms innovation, in the unit of the series
-};
-
-/// Autoregression fitted to a series: Burg's method over all segments together, order 0 to 20 with the least
-/// Bayesian information criterion; the search stops after five orders without improvement. All orders are
-/// stationary. Values beyond `limit` robust standard deviations are set to that limit.
-Autoregression autoregression(const std::vector<double>& values, const std::vector<Segment>& segments,
-                              double limit = 4.5);
+/// Coefficients a_1 ... a_p of the stationary process e(t) = a_1 e(t-1) + ... + a_p e(t-p) + innovation
+/// fitted to a series: Burg's method over all segments together, order 0 to 20 with the least Bayesian
+/// information criterion; the search stops after five orders without improvement. All orders are stationary.
+/// Values beyond 4.5 robust standard deviations are set to that limit.
+std::vector<double> autoregression(const std::vector<double>& values, const std::vector<Segment>& segments);
 
 }  // namespace pcor

@@ -52,7 +52,10 @@ using ModelSelector = std::function<ModelDefinition(const std::filesystem::path&
 /// How several flights are processed.
 struct ProcessFlightsOptions {
   ProcessOptions process{};  ///< options of each flight; the history is replaced by that of the task
-  bool if_stale = false;     ///< true: skip outputs that satisfy `is_up_to_date`
+  /// True: skip an output that is up to date: it holds the SHA-256 of the bytes of the flight, of the model
+  /// and of the options with this version of the program, and all are equal. The flight is read completely,
+  /// unless the model or the options differ.
+  bool if_stale = false;
   /// True: continue after a flight that cannot be read or lacks a variable of the model.
   bool skip_unreadable = false;
   std::function<void(std::size_t task)> begins{};             ///< callback before each flight

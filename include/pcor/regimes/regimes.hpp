@@ -84,11 +84,10 @@ struct FlightMotion {
 /// Half-open time interval [begin, end) of a regime.
 struct Interval {
   Regime regime = Regime::count;
-  double begin = 0.0;    ///< s since 1970 UTC
-  double end = 0.0;      ///< s since 1970 UTC
-  int pair = 0;          ///< number of the reverse-heading pair, from 1; otherwise 0
-  std::string note{};    ///< description, e.g. "7 cycles of 24 s, +-2.1 deg"; may be empty
-  bool by_user = false;  ///< true: given by the user; false: detected
+  double begin = 0.0;  ///< s since 1970 UTC
+  double end = 0.0;    ///< s since 1970 UTC
+  int pair = 0;        ///< number of the reverse-heading pair, from 1; otherwise 0
+  std::string note{};  ///< description, e.g. "7 cycles of 24 s, +-2.1 deg"; may be empty
 };
 
 /// Thresholds of the search. The defaults are those of the NSF/NCAR C-130.
@@ -203,8 +202,8 @@ struct Exclusion {
 /// Times are seconds since 1970 UTC. Values before 1970-01-02 are times of the day, in seconds, of the flight
 /// to which they are applied; `placed` converts them.
 struct UserIntervals {
-  std::string flight;         ///< file name of the only flight to which this applies; empty: any
-  std::vector<Interval> add;  ///< all `by_user`
+  std::string flight;  ///< file name of the only flight to which this applies; empty: any
+  std::vector<Interval> add;
   std::vector<Veto> veto;
   std::vector<Exclusion> exclude;
 

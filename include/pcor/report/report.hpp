@@ -289,7 +289,7 @@ struct ReportTable {
   std::string title;
   std::string caption;
   std::vector<std::string> headers;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<std::string>> rows{};
   bool is_folded = false;  ///< true: folded with any number of rows
 };
 

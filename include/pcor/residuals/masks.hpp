@@ -50,10 +50,6 @@ struct MaskOptions {
   /// Percent, for flights that record flaps. Default: `flaps_in`; no limit if an effect of the model reads
   /// the flaps.
   std::optional<double> max_flaps{};
-  /// Limit of the difference between laser airspeed and pressure-derived airspeed, in robust standard
-  /// deviations of the flight and in addition to 3 % of the airspeed; larger differences count as loss of
-  /// lock.
-  double max_laser_departure = 6.0;
   std::vector<Regime> exclude{};  ///< excluded regimes, in addition to the ground
   std::optional<UserIntervals> intervals{};
 };

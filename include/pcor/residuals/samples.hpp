@@ -54,9 +54,9 @@ struct FlightSamples {
   std::vector<double> latitude{};   ///< deg, only for figures; empty: not recorded
   std::vector<double> longitude{};  ///< deg, only for figures; empty: not recorded
   FlightMotion motion{};
-  std::vector<double> flaps{};        ///< percent; empty: not recorded
+  /// Percent. Inferred from the lift if they are not recorded: 0 or 100; empty: unknown.
+  std::vector<double> flaps{};
   std::string flaps_variable{};       ///< name in the file
-  std::vector<bool> flaps_by_lift{};  ///< flaps extended, inferred from the lift; empty: recorded, or unknown
   std::vector<Interval> intervals{};  ///< regimes
   ModelSamples model{};
   ModelSamples reference{};  ///< inputs of the reference

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/model_io/model_definition.hpp>

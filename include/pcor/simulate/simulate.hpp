@@ -150,7 +150,6 @@ struct Scenario {
     std::string of{};        ///< variable that causes an "unknown" effect
     std::string location{};  ///< target of an "unknown" effect: static, total, lams or temperature
     std::string shape{};     ///< shape of an "unknown" effect: linear, quadratic, step or sine
-    std::string position{};  ///< position in the file, for messages
   };
 
   /// Spikes in a variable.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -58,19 +57,18 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
   }
 
   template <class S>
-  void find(const Span span, const std::vector<Parts<S>>& parts, const std::size_t* samples,
-            std::size_t count, S* out) const {
-    std::vector<S> risen(span.size(), S(0.0));  // height change, m, since the first sample
-    std::vector<std::size_t> missing_steps(span.size(), 0);
-    for (std::size_t k = 0; k < span.size(); ++k) {
+  void find(const Run span, const std::vector<Parts<S>>& parts, const std::size_t* samples, std::size_t count,
+            S* out) const {
+    std::vector<S> risen(span.length(), S(0.0));  // height change, m, since the first sample
+    std::vector<std::size_t> missing_steps(span.length(), 0);
+    for (std::size_t k = 1; k < span.length(); ++k) {
       const auto& [pressure, temperature, gas_constant] = parts[k];
-      if (k > 0) {
-        const S rise = S(0.5) * (parts[k - 1][1] + temperature) *
-                       hydrostatic_step(parts[k - 1][0], pressure, gas_constant);
-        const bool known = is_finite(rise) && is_next(span.first + k);
-        risen[k] = known ? S(risen[k - 1] + rise) : risen[k - 1];
-        missing_steps[k] = missing_steps[k - 1] + (known ? 0 : 1);
-      }
+      const S rise = S(0.5) * (parts[k - 1][1] + temperature) *
+                     hydrostatic_step(parts[k - 1][0], pressure, gas_constant);
+      const double since_last = time_[span.first + k] - time_[span.first + k - 1];
+      const bool known = is_finite(rise) && since_last < 1.5 * step_;
+      risen[k] = known ? S(risen[k - 1] + rise) : risen[k - 1];
+      missing_steps[k] = missing_steps[k - 1] + (known ? 0 : 1);
     }
     for (std::size_t i = 0; i < count; ++i) {
       out[i] = missing<S>();
@@ -86,8 +84,6 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
   std::vector<Batch::Input> columns() const override { return {{Quantity::altitude, height_.data()}}; }
 
  private:
-  bool is_next(std::size_t sample) const { return time_[sample] - time_[sample - 1] < 1.5 * step_; }
-
   const std::vector<double>& height_;  // geopotential height, m
   const std::vector<double>& time_;
   double step_;

@@ -8,7 +8,6 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/residuals/reference.hpp>
-#include "residuals/laser_lock.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/reference_on_samples.hpp"
 
@@ -16,7 +15,7 @@ namespace pcor::internal {
 
 /// Laser on the samples of a flight: it implies a delta-p for the pressures of the model (memo eq. 11). Its
 /// noise is added to the speed along the beam.
-class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
+class LamsOnSamples final : public ReferenceOnSamples {
  public:
   LamsOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
       : beam_(*samples.model.find(Quantity::lams_airspeed)), model_(model), samples_(samples.model) {}
@@ -35,7 +34,7 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
       out[i] = residual_at(samples[i], Jet(beam_[samples[i]]), parameters);
   }
 
-  const NoisySensor* sensor() const override { return this; }
+  const LamsOnSamples* laser() const override { return this; }
 
   Mask why_missing(std::size_t sample) const override {
     // The chain of the laser has more inputs than the model: a missing input of the model is reported for the
@@ -46,58 +45,17 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
     return std::isnan(state[Quantity::static_defect]) ? Mask::missing : Mask::reference;
   }
 
-  void mark_implausible(std::vector<Mask>& masks, const std::vector<double>& airspeed,
-                        const MaskOptions& options) const override {
+  void mark_implausible(std::vector<Mask>& masks, const std::vector<double>& airspeed) const override {
     if (airspeed.empty()) return;
     const std::vector<double>& p = *samples_.find(Quantity::static_pressure);
     std::vector<double> ratio = *samples_.find(Quantity::dynamic_pressure);
     for (std::size_t i = 0; i < ratio.size(); ++i) ratio[i] /= p[i];
-    for (const std::size_t sample :
-         find_unlocked(beam_, airspeed, ratio, used_samples(masks), options.max_laser_departure))
+    for (const std::size_t sample : find_unlocked(beam_, airspeed, ratio, used_samples(masks)))
       masks[sample] = Mask::laser_unlocked;
   }
 
- private:
-  Quantity quantity() const override { return Quantity::lams_airspeed; }
-
-  void predict(const std::size_t* samples, std::size_t count, const double* parameters,
-               double* out) const override {
-    for (std::size_t i = 0; i < count; ++i) out[i] = predicted_at(samples[i], parameters);
-  }
-
-  void predict(const std::size_t* samples, std::size_t count, const Jet* parameters,
-               Jet* out) const override {
-    for (std::size_t i = 0; i < count; ++i) out[i] = predicted_at(samples[i], parameters);
-  }
-
-  void differentiate_by_defect(const std::size_t* samples, std::size_t count, const double* parameters,
-                               double* out) const override {
-    const std::vector<Jet> constant(parameters, parameters + model_.parameters().size());
-    for (std::size_t i = 0; i < count; ++i)
-      out[i] = predicted_at(samples[i], constant.data(), Jet(0.0, 0)).v[0];
-  }
-
-  std::vector<double> sensitivity() const override {
-    // From columns at a distant delay the speed would be extrapolated.
-    const std::vector<double> parameters = model_.parameters_of_columns();
-    const std::vector<Jet> constant(parameters.begin(), parameters.end());
-    std::vector<double> result(beam_.size());
-    for (std::size_t i = 0; i < result.size(); ++i) {
-      const Jet beam(predicted_at(i, parameters.data()), 0);
-      result[i] = residual_at(i, beam, constant.data()).v[0];
-    }
-    return result;
-  }
-
-  Jet residual_at(std::size_t sample, const Jet& beam, const Jet* parameters) const {
-    State<Jet> state;
-    NoQualityFlags flags;
-    model_.corrected_static_pressure(sample, parameters, state);
-    state[Quantity::lams_airspeed] = beam;
-    return model_.chain().lams_static_defect(state, parameters, flags) - state[Quantity::static_defect];
-  }
-
-  /// Airspeed along the beam implied by pressures and temperature, m/s. @param more is added to delta-p, hPa
+  /// Noise-free speed along the beam, m/s, predicted from pressures and temperature. @param more is added to
+  /// delta-p, hPa
   template <class S>
   S predicted_at(std::size_t sample, const S* parameters, const S& more = S(0.0)) const {
     State<S> state;
@@ -110,6 +68,29 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
     const S along = state[Quantity::lams_airspeed] / chain.lams_airspeed(state, parameters);
     chain.air(state, parameters, flags);
     return along * state[Quantity::corrected_airspeed];
+  }
+
+  /// Derivative of the residual with respect to the speed along the beam, hPa per m/s, at the prediction with
+  /// the files' parameters, for every sample.
+  std::vector<double> sensitivity() const {
+    // From columns at a distant delay the speed would be extrapolated.
+    const std::vector<double> parameters = model_.parameters_of_columns();
+    const std::vector<Jet> constant(parameters.begin(), parameters.end());
+    std::vector<double> result(beam_.size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      const Jet beam(predicted_at(i, parameters.data()), 0);
+      result[i] = residual_at(i, beam, constant.data()).v[0];
+    }
+    return result;
+  }
+
+ private:
+  Jet residual_at(std::size_t sample, const Jet& beam, const Jet* parameters) const {
+    State<Jet> state;
+    NoQualityFlags flags;
+    model_.corrected_static_pressure(sample, parameters, state);
+    state[Quantity::lams_airspeed] = beam;
+    return model_.chain().lams_static_defect(state, parameters, flags) - state[Quantity::static_defect];
   }
 
   const std::vector<double>& beam_;

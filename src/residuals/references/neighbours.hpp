@@ -13,18 +13,12 @@
 #include <pcor/base/error.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/residuals.hpp>
+#include "regimes/series.hpp"
 #include "residuals/model_on_samples.hpp"
 #include "residuals/reference_on_samples.hpp"
-#include "residuals/samples_key.hpp"
+#include "residuals/samples.hpp"
 
 namespace pcor::internal {
-
-/// Part of a flight without a break.
-struct Span {
-  std::size_t first = 0;
-  std::size_t end = 0;  ///< one past the last sample
-  std::size_t size() const { return end - first; }
-};
 
 /// Reference whose residual at a sample depends on the neighbouring samples, in two steps: for each sample
 /// `part_count` numbers from the model at the sample alone, then the residuals from the numbers of all
@@ -36,10 +30,10 @@ struct Span {
 /// and, with the parts of all samples of `span`, in which `samples` lie with their neighbours,
 ///
 ///     template <class S>
-///     void find(Span span, const std::vector<std::array<S, part_count>>& parts, const std::size_t* samples,
+///     void find(Run span, const std::vector<std::array<S, part_count>>& parts, const std::size_t* samples,
 ///               std::size_t count, S* out) const
 template <class Derived, std::size_t part_count>
-class OfNeighbours : public ReferenceOnSamples, public Neighbours {
+class OfNeighbours : public ReferenceOnSamples {
  public:
   OfNeighbours(const ModelOnSamples& model, std::size_t size) : model_(model), size_(size) {}
 
@@ -52,12 +46,10 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
     find(samples, count, parameters, out);
   }
 
-  const Neighbours* neighbours() const override { return this; }
-
-  void differentiate(const std::size_t* samples, std::size_t count, const double* parameters,
-                     const std::vector<Direction>& directions, double* derivatives) const override {
+  void differentiate_along(const std::size_t* samples, std::size_t count, const double* parameters,
+                           const std::vector<Direction>& directions, double* derivatives) const override {
     if (count == 0) return;
-    const Span span = span_of(samples, count);
+    const Run span = span_of(samples, count);
     std::vector<std::size_t> requested;
     for (const Direction& direction : directions) requested.push_back(direction.parameter);
     std::sort(requested.begin(), requested.end());
@@ -67,8 +59,8 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
     std::vector<Jet> out(count);
     for (std::size_t first = 0; first < directions.size(); first += jet_width) {
       const std::size_t width = std::min<std::size_t>(jet_width, directions.size() - first);
-      std::vector<Parts<Jet>> moved(span.size());
-      for (std::size_t k = 0; k < span.size(); ++k)
+      std::vector<Parts<Jet>> moved(span.length());
+      for (std::size_t k = 0; k < span.length(); ++k)
         std::transform(values[k].begin(), values[k].end(), moved[k].begin(),
                        [](double value) { return Jet(value); });
       for (std::size_t d = 0; d < width; ++d) {
@@ -76,7 +68,7 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
         const auto position = std::lower_bound(requested.begin(), requested.end(), direction.parameter);
         const std::vector<Parts<double>>& slope =
             slopes[static_cast<std::size_t>(position - requested.begin())];
-        for (std::size_t k = 0; k < span.size(); ++k) {
+        for (std::size_t k = 0; k < span.length(); ++k) {
           const double rate = direction.rate[span.first + k];
           if (rate == 0.0) continue;  // the slope may be missing there
           for (std::size_t part = 0; part < part_count; ++part)
@@ -104,30 +96,31 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
  private:
   const Derived& derived() const { return static_cast<const Derived&>(*this); }
 
-  Span span_of(const std::size_t* samples, std::size_t count) const {
+  Run span_of(const std::size_t* samples, std::size_t count) const {
     const auto [minimum, maximum] = std::minmax_element(samples, samples + count);
     return {*minimum - std::min(*minimum, reach()), std::min(*maximum + reach() + 1, size_)};
   }
 
   template <class S>
-  std::vector<Parts<S>> parts(const Span span, const S* parameters) const {
+  std::vector<Parts<S>> parts(const Run span, const S* parameters) const {
     std::vector<Parts<S>> result;
-    result.reserve(span.size());
+    result.reserve(span.length());
     for (std::size_t k = span.first; k < span.end; ++k) result.push_back(derived().parts_of(k, parameters));
     return result;
   }
 
   /// Derivatives of the parts with respect to each of the requested parameters.
-  std::vector<std::vector<Parts<double>>> slopes_of_parts(const Span span, const double* parameters,
+  std::vector<std::vector<Parts<double>>> slopes_of_parts(const Run span, const double* parameters,
                                                           const std::vector<std::size_t>& requested) const {
-    std::vector<std::vector<Parts<double>>> slopes(requested.size(), std::vector<Parts<double>>(span.size()));
+    std::vector<std::vector<Parts<double>>> slopes(requested.size(),
+                                                   std::vector<Parts<double>>(span.length()));
     for (std::size_t first = 0; first < requested.size(); first += jet_width) {
       const std::size_t width = std::min<std::size_t>(jet_width, requested.size() - first);
       std::vector<Jet> dual(parameters, parameters + model_.parameters().size());
       for (std::size_t d = 0; d < width; ++d)
         dual[requested[first + d]].v[static_cast<Eigen::Index>(d)] = 1.0;
       const std::vector<Parts<Jet>> of_samples = parts(span, static_cast<const Jet*>(dual.data()));
-      for (std::size_t k = 0; k < span.size(); ++k) {
+      for (std::size_t k = 0; k < span.length(); ++k) {
         for (std::size_t part = 0; part < part_count; ++part) {
           for (std::size_t d = 0; d < width; ++d)
             slopes[first + d][k][part] = of_samples[k][part].v[static_cast<Eigen::Index>(d)];
@@ -140,7 +133,7 @@ class OfNeighbours : public ReferenceOnSamples, public Neighbours {
   template <class S>
   void find(const std::size_t* samples, std::size_t count, const S* parameters, S* out) const {
     if (count == 0) return;
-    const Span span = span_of(samples, count);
+    const Run span = span_of(samples, count);
     derived().find(span, parts(span, parameters), samples, count, out);
   }
 

@@ -22,7 +22,7 @@ class PressureOnSamples final : public ReferenceOnSamples {
       : pressure_(*samples.reference.find(Quantity::corrected_static_pressure)), model_(model) {}
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
-    model_.corrected_static_pressure(block.model, block.count, parameters, out);
+    model_.port_pressure_plus(Quantity::static_defect, block.model, block.count, parameters, out);
     const double* const pressure = block.reference.front().values;
     for (std::size_t i = 0; i < block.count; ++i) out[i] = pressure[i] - out[i];
   }

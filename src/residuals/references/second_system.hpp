@@ -10,24 +10,21 @@
 #include "residuals/model_on_samples.hpp"
 #include "residuals/reference_on_samples.hpp"
 #include "residuals/samples.hpp"
-#include "residuals/samples_key.hpp"
 
 namespace pcor::internal {
-
-/// Pressure that is compared with that of a second system.
-enum class ComparedPressure { static_pressure, total_pressure };
 
 /// Second system on the samples of a flight, with its inputs and its model.
 class SecondSystemOnSamples final : public ReferenceOnSamples {
  public:
-  SecondSystemOnSamples(const ModelDefinition& system, ComparedPressure compared,
-                        const FlightSamples& samples, const ModelOnSamples& model)
-      : own_(system, samples.reference), model_(model), compared_(compared) {}
+  SecondSystemOnSamples(const ModelDefinition& system, bool is_total, const FlightSamples& samples,
+                        const ModelOnSamples& model)
+      : own_(system, samples.reference), model_(model), is_total_(is_total) {}
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     std::vector<double> of_model(block.count);
-    find(model_, block.model, block.count, parameters, of_model.data());
-    find(own_, block.reference, block.count, own_of(parameters), out);
+    const Quantity added = is_total_ ? Quantity::port_dynamic_pressure : Quantity::static_defect;
+    model_.port_pressure_plus(added, block.model, block.count, parameters, of_model.data());
+    own_.port_pressure_plus(added, block.reference, block.count, own_of(parameters), out);
     for (std::size_t i = 0; i < block.count; ++i) out[i] -= of_model[i];
   }
 
@@ -53,41 +50,33 @@ class SecondSystemOnSamples final : public ReferenceOnSamples {
     return parameters + model_.parameters().size();
   }
 
-  void find(const ModelOnSamples& system, const std::vector<Batch::Input>& inputs, std::size_t count,
-            const double* parameters, double* out) const {
-    if (compared_ == ComparedPressure::total_pressure)
-      system.total_pressure(inputs, count, parameters, out);
-    else
-      system.corrected_static_pressure(inputs, count, parameters, out);
-  }
-
   Jet pressure_at(const ModelOnSamples& system, std::size_t sample, const Jet* parameters) const {
-    if (compared_ == ComparedPressure::total_pressure) return system.total_pressure(sample, parameters);
+    if (is_total_) return system.total_pressure(sample, parameters);
     State<Jet> state;
     return system.corrected_static_pressure(sample, parameters, state);
   }
 
   ModelOnSamples own_;
   const ModelOnSamples& model_;
-  ComparedPressure compared_;
+  bool is_total_;
 };
 
 /// Reference that is another pair of pressures of the aircraft, corrected by a separate model.
 class SecondSystem final : public Reference {
  public:
-  SecondSystem(ModelDefinition system, ComparedPressure compared)
-      : system_(std::move(system)), compared_(compared) {}
+  /// @param is_total compares total pressures; otherwise corrected static pressures
+  SecondSystem(ModelDefinition system, bool is_total) : system_(std::move(system)), is_total_(is_total) {}
 
   std::string description() const override {
-    return (is_total() ? "total pressure of '" : "static system '") + system_.model.name + "'";
+    return (is_total_ ? "total pressure of '" : "static system '") + system_.model.name + "'";
   }
-  std::string name() const override { return (is_total() ? "total:" : "static:") + system_.model.name; }
-  bool is_static_pressure() const override { return !is_total(); }
-  bool sees_static_defect() const override { return !is_total(); }
+  std::string name() const override { return (is_total_ ? "total:" : "static:") + system_.model.name; }
+  bool is_static_pressure() const override { return !is_total_; }
+  bool sees_static_defect() const override { return !is_total_; }
   const ModelDefinition* model() const override { return &system_; }
 
   std::shared_ptr<const Reference> with_model(const ModelDefinition& system) const override {
-    return std::make_shared<SecondSystem>(system, compared_);
+    return std::make_shared<SecondSystem>(system, is_total_);
   }
 
   std::vector<std::string> variables() const override {
@@ -104,14 +93,12 @@ class SecondSystem final : public Reference {
 
   std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
                                          const ModelOnSamples& model) const override {
-    return std::make_unique<SecondSystemOnSamples>(system_, compared_, samples, model);
+    return std::make_unique<SecondSystemOnSamples>(system_, is_total_, samples, model);
   }
 
  private:
-  bool is_total() const { return compared_ == ComparedPressure::total_pressure; }
-
   ModelDefinition system_;
-  ComparedPressure compared_;
+  bool is_total_;
 };
 
 }  // namespace pcor::internal

@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -65,10 +64,10 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
   }
 
   template <class S>
-  void find(const Span span, const std::vector<Parts<S>>& parts, const std::size_t* samples,
-            std::size_t count, S* out) const {
-    std::vector<Sums<S>> sums(span.size() + 1);  // sums over all previous samples
-    for (std::size_t k = 0; k < span.size(); ++k) {
+  void find(const Run span, const std::vector<Parts<S>>& parts, const std::size_t* samples, std::size_t count,
+            S* out) const {
+    std::vector<Sums<S>> sums(span.length() + 1);  // sums over all previous samples
+    for (std::size_t k = 0; k < span.length(); ++k) {
       sums[k + 1] = sums[k];
       const S& difference = parts[k][0];
       if (is_finite(difference)) sums[k + 1].add(heading_[span.first + k], difference);
@@ -78,7 +77,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
       if (!is_flying(samples[i])) continue;
       const std::size_t k = samples[i] - span.first;
       const Sums<S>& before = sums[k - std::min(k, reach())];
-      const Sums<S>& after = sums[std::min(k + reach() + 1, span.size())];
+      const Sums<S>& after = sums[std::min(k + reach() + 1, span.length())];
       const S left = parts[k][0] - after.wind_along(heading_[samples[i]], before);
       out[i] = left / S(speed_of_defect(samples[i]));
     }
@@ -89,13 +88,12 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
   template <class S>
   struct Sums {
     Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-    std::array<S, 3> products{S(0.0), S(0.0), S(0.0)};
+    Eigen::Matrix<S, 3, 1> products = Eigen::Matrix<S, 3, 1>::Constant(S(0.0));
 
     void add(double heading, const S& difference) {
       const Eigen::Vector3d columns = columns_at(heading, 1.0);
       moments += columns * columns.transpose();
-      for (std::size_t k = 0; k < 3; ++k)
-        products[k] = products[k] + S(columns[static_cast<Eigen::Index>(k)]) * difference;
+      products += columns.template cast<S>() * difference;
     }
 
     /// Component of the wind along a heading, m/s, from the samples since `before`.
@@ -107,8 +105,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
       matrix.diagonal() += prior;
       const Eigen::Vector3d weights = matrix.llt().solve(columns_at(heading, 0.0));
       S along(0.0);
-      for (std::size_t k = 0; k < 3; ++k)
-        along = along + S(weights[static_cast<Eigen::Index>(k)]) * (products[k] - before.products[k]);
+      for (Eigen::Index k = 0; k < 3; ++k) along = along + S(weights[k]) * (products[k] - before.products[k]);
       return along;
     }
 

@@ -14,4 +14,10 @@ namespace pcor::internal {
 std::optional<DotPanel> coefficient_picture(const std::vector<FittedParameter>& parameters,
                                             const std::string& before_is, const std::string& after_is);
 
+/// Adds a sentence to the summary of a report if a held-out part is biased.
+void summarise_held_out(Report& report, const std::vector<FlightFit>& flights);
+
+/// Adds the picture of the held-out parts to a report, if there are any.
+void add_held_out(Report& report, const std::vector<FlightFit>& flights);
+
 }  // namespace pcor::internal

@@ -1,12 +1,12 @@
-#include "fit/coefficient_picture.hpp"
+#include "fit/fit_pictures.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
+#include <utility>
 
+#include "base/phrasing.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -43,6 +43,34 @@ std::optional<DotPanel> coefficient_picture(const std::vector<FittedParameter>& 
                    [](const ReportDotRow& row) { return std::isfinite(row.dots.front().value); }))
     return std::nullopt;
   return panel;
+}
+
+void summarise_held_out(Report& report, const std::vector<FlightFit>& flights) {
+  const std::optional<HeldOutPart> worst = worst_held_out(flights);
+  if (worst && worst->is_off()) report.summary.push_back(sentence(worst->text()));
+}
+
+void add_held_out(Report& report, const std::vector<FlightFit>& flights) {
+  const std::optional<HeldOutPart> worst = worst_held_out(flights);
+  if (!worst) return;
+  DotPanel panel;
+  panel.title = "Held-out parts";
+  panel.caption =
+      "The mean residual of each part that was not used in the fit. The bar about zero is the standard "
+      "deviation that the fit expects: from the changes of the residual in the fit, the errors of the "
+      "coefficients, and the misfit of the law.";
+  panel.axis = "bias";
+  panel.unit = "hPa";
+  panel.series = {"held out", "expected"};
+  for (const FlightFit& flight : flights) {
+    if (!flight.holdout) continue;
+    const HeldOutPart part{flight.flight, flight.after, flight.expected_bias, worst->parts};
+    panel.rows.push_back({flight.flight,
+                          {{flight.after.bias, 0.0}, {0.0, flight.expected_bias}},
+                          fmt::format("{:+.3f} hPa, expected 0 ± {:.3f}{}", flight.after.bias,
+                                      flight.expected_bias, part.is_off() ? ": off" : "")});
+  }
+  report.items.emplace_back(std::move(panel));
 }
 
 }  // namespace pcor::internal
