@@ -143,10 +143,15 @@ void TomlReader::each(const toml::table& table, const std::string& title, const 
   }
 }
 
-Entry TomlReader::format_of(const toml::table& root, std::string_view is, std::string_view format) const {
-  if (const std::optional<Entry> entry = entry_of(root, "format")) return *entry;
-  fail(Position{1, 1},
-       fmt::format("is not declared to be {}; begin the file with format = \"{}\"", is, format));
+void TomlReader::require_format(const toml::table& root, std::string_view what,
+                                std::string_view format) const {
+  const std::optional<Entry> entry = entry_of(root, "format");
+  if (!entry)
+    fail(Position{1, 1},
+         fmt::format("the file does not declare that it is {}; begin it with format = \"{}\"", what, format));
+  if (const std::string given = text(*entry, quote(format)); given != format)
+    fail(*entry,
+         fmt::format("{} is not the format of {}; write format = \"{}\"", quote(given), what, format));
 }
 
 std::string TomlReader::wrong_kind(const Entry& entry, const std::string& requested) {

@@ -95,8 +95,8 @@ class TomlReader {
   /// Calls the action of each key; a key without an action is an error.
   void each(const toml::table& table, const std::string& title, const Actions& actions) const;
 
-  /// Entry `format` of a file, whose value must be the format `is`.
-  Entry format_of(const toml::table& root, std::string_view is, std::string_view format) const;
+  /// Requires the entry `format` of a file with this value. @param what the file is, with an article
+  void require_format(const toml::table& root, std::string_view what, std::string_view format) const;
 
   /// Content of a node: a table, an array, a text and the like. Any other kind is the error `otherwise`.
   template <class Value>

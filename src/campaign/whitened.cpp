@@ -233,8 +233,9 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
   });
   for (std::size_t f = 0; f < counts.size(); ++f) {
     for (Eigen::Index& block : scores.block[f]) block += scores.blocks;
-    scores.row_count += counts[f].first;
-    scores.blocks += counts[f].second;
+    const auto& [rows, blocks] = counts[f];
+    scores.row_count += rows;
+    scores.blocks += blocks;
   }
   sum_up(scores);
   scores.plain = scores.information;

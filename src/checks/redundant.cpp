@@ -49,7 +49,7 @@ std::vector<bool> comparable(const CheckedFlight& flight) {
   const MeasuredPair& pair = flight.measured.front();
   for (const std::vector<double>& pressure : {total_of(pair), pair.static_pressure}) {
     for (std::size_t i = 0; i < result.size(); ++i) {
-      result[i] = result[i] && i >= reach && i + reach < result.size() &&
+      result[i] = result[i] && i >= reach && i + reach < pressure.size() &&
                   std::abs(pressure[i + reach] - pressure[i - reach]) / (time[i + reach] - time[i - reach]) <=
                       fastest_of_avionics;
     }

@@ -18,8 +18,8 @@ CheckVerdict judge(const Estimate& number, double size);
 TestStatistic judged(const Estimate& number, double size, std::string unit, std::string what);
 
 /// Sets the verdict of a check that was run from several numbers: inconsistent if one is, otherwise
-/// inconclusive if one is. The deciding number, with the largest ratio
-/// to its tolerance, becomes the key number, and `decided` states the reason.
+/// inconclusive if one is. The deciding number, with the largest ratio to its tolerance, becomes the key
+/// number, and `decided` states the reason.
 void decide(std::vector<TestStatistic> numbers, CheckResult& result);
 
 /// Sets a verdict to inconclusive, for any number, with the given `reason`.

@@ -32,7 +32,7 @@ std::size_t held_out_part(const FlightSamples& samples, double time) {
 Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed,
                    const std::vector<Eigen::VectorXd>& added, Eigen::VectorXd prior)
     : share_(columns.share),
-      first_share_(columns.share),
+      first_share_(columns.share),  // replaced below, where the flights against the first reference are known
       groups_(std::move(groups)),
       seed_(seed),
       prior_(std::move(prior)) {

@@ -337,7 +337,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   }
   Eigen::Array2d sum = Eigen::Array2d::Zero();
   for (const auto& [id, weight] : weights) sum += weight;
-  const auto probability_of = [&](const std::string& id) { return (weights[id] / sum).mean(); };
+  const auto probability_of = [&](const std::string& id) { return (weights.at(id) / sum).mean(); };
   finding.probability = probability_of(winning.id);
   for (Alias& alias : finding.aliases) alias.probability = probability_of(alias.effect);
   for (const CoefficientEstimate& estimate : finding.estimates) {

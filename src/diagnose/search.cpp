@@ -143,7 +143,7 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
     std::vector<Eigen::Index>& identifiable = identifiable_.emplace_back();
     // Information after the base and the columns already found identifiable.
     Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
-    remaining_.push_back(std::clamp(left.diagonal().maxCoeff(), 0.0, 1.0));
+    remaining_.push_back(group.count == 0 ? 0.0 : std::clamp(left.diagonal().maxCoeff(), 0.0, 1.0));
     while (identifiable.size() < static_cast<std::size_t>(group.count)) {
       Eigen::Index next = 0;
       const double pivot = left.diagonal().maxCoeff(&next);
@@ -396,6 +396,7 @@ double Search::evidence(const std::vector<std::size_t>& set,
   if (columns.empty()) return 0.0;
   const std::vector<Eigen::Index> shapes = shapes_of(uncertain);
   columns.insert(columns.end(), shapes.begin(), shapes.end());
+  // The precision of the shapes; `choose` sets the precision of the effects.
   Eigen::VectorXd precision = scale_.tail(left_.cols())(columns).cwiseAbs2().cwiseMax(1e-300);
   const auto choose = [&](std::size_t i, const Tail& tail) {
     precision.segment(begin[i], as_index(identifiable_[set[i]].size())) =

@@ -131,7 +131,7 @@ double StructureTest::minus_likelihood(const Whitened& flights, double taken) co
 }
 
 std::optional<VariableValues> StructureTest::values_of(const std::vector<const double*>& values) const {
-  const VariableValues found(share_, [&](std::size_t f) {
+  VariableValues found(share_, [&](std::size_t f) {
     std::vector<double> of_flight;
     for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back(values[f][record]);
     return of_flight;

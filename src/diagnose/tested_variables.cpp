@@ -43,7 +43,7 @@ double turn_of(const VariableInfo& info) {
 
 /// Number of records between values if a variable has a lower rate; otherwise 1.
 std::size_t spacing_of(const std::vector<double>& values) {
-  std::vector<std::size_t> records;  // with a value
+  std::vector<std::size_t> records;  // records with a value
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i])) records.push_back(i);
   }
@@ -147,7 +147,7 @@ std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& fl
     variable.unit = std::string(info_of(quantity).unit);
     variable.fine = quantity == Quantity::corrected_mach;
     for (const FlightColumns& flight : flights)
-      variable.values.emplace_back(Values(), &flight.quantity(quantity));  // without a copy
+      variable.values.emplace_back(Values(), &flight.quantity(quantity));  // shares its values
   }
   TestedVariable& pressure = result.emplace_back();
   pressure.name = "corrected_static_pressure";

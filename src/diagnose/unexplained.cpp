@@ -30,8 +30,8 @@ constexpr double min_drift_gain = 30.0;
 /// Drift of transducers, hPa rms, not exceeded in 95 % of flights: 1.96 times the usual drift, 0.06 hPa.
 constexpr double max_usual_drift = 0.12;
 
-/// Variables that are not tested: those of the reference that the model does not read, times, the laser, and
-/// those of the options.
+/// Variables that are not tested: variables of the reference that the model does not read, times, the laser,
+/// and variables that the options exclude.
 std::set<std::string> excluded(const FlightSet& files, const ModelDefinition& model,
                                const Reference& reference, const DiagnoseOptions& options) {
   std::set<std::string> names;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/noise_covariance.hpp"

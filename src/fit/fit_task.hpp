@@ -78,24 +78,6 @@ struct FitTask {
 FitTask fit_task(const ModelDefinition& model, const References& references, const RefitOptions& options,
                  const FlightSet& flights);
 
-/// Covariance of all parameters from the standard errors and covariances in the files, in the order of
-/// `FitTask::parameters`; zero if not stated.
-Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference& reference);
-
-/// Rows W of the Gaussian prior of requested parameters around `centre`: the cost is |W (x - centre)|^2 / 2.
-struct PriorRows {
-  Eigen::MatrixXd rows{};
-  Eigen::VectorXd centre{};
-  /// Weight of each row relative to the prior itself (`SurfaceRoughness::inflation`).
-  Eigen::VectorXd inflation{};
-};
-
-/// If the fit uses a prior, it is centred on the values in the files, with the covariance stated in the
-/// files, otherwise with the typical size of the effect as the standard error. A parameter without either has
-/// no prior. Otherwise coefficients of the effects `RefitOptions::added` have the prior of a diagnosis about
-/// their neutral value. Coefficients of a surface always have the prior of its roughness.
-PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& requested);
-
 /// Current result of a fit.
 struct Solution {
   Eigen::VectorXd values{};      ///< one per parameter

@@ -1,4 +1,4 @@
-#include "fit/solver.hpp"
+#include "fit/global_search.hpp"
 
 #include <fmt/format.h>
 

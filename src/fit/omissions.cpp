@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/missing.hpp"
 

@@ -1,4 +1,4 @@
-#include "fit/fit_task.hpp"
+#include "fit/prior.hpp"
 
 #include <algorithm>
 #include <cmath>

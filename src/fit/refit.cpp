@@ -16,6 +16,7 @@
 #include "fit/fit_covariance.hpp"
 #include "fit/fitted_model.hpp"
 #include "fit/gps_fit.hpp"
+#include "fit/identifiability.hpp"
 #include "fit/omissions.hpp"
 #include "fit/solver.hpp"
 #include "fit/warnings.hpp"
@@ -36,8 +37,6 @@ void serialize(Archive& archive, FittedParameter& parameter) {
 }
 
 namespace {
-
-constexpr std::size_t passes_expected = 40;
 
 /// @throws Error if a second static system reads the static pressure under test, or one computed from it in
 /// the first flight: its noise and its errors cancel, and the fit would copy the law of the second system.
@@ -403,7 +402,8 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   task.tell();
   const FitSums& sums = compared.sums;
   result.samples = sums.after.samples;
-  result.rms_before = sums.rms_of(sums.before.squares);
+  // Unknown if samples have no residual with the coefficients of the file.
+  result.rms_before = sums.before.samples == sums.after.samples ? sums.rms_of(sums.before.squares) : nan;
   result.rms = sums.rms_of(sums.after.squares);
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
   result.bulk_rms = sums.rms_of(sums.bulk_squares);
@@ -450,29 +450,6 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
 }
 
 }  // namespace
-
-FitTask internal::fit_task(const ModelDefinition& model, const References& references,
-                           const RefitOptions& options, const FlightSet& flights) {
-  const Reference& reference = first_of(references);
-  FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
-  task.doubt = stated_covariance(model, reference);
-  task.surfaces = surfaces_of(model.model, reference.model());
-  task.start.resize(as_index(task.parameters.size()));
-  for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
-  task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
-    ++passes;
-    if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);
-  };
-  for (std::size_t i = 1; i < references.size(); ++i) {
-    FitTask with{model, *references[i], options, flights, task.parameters, task.start, task.doubt, [] {}};
-    const ModelDefinition* const own = reference.model();
-    const ModelDefinition* const other = references[i]->model();
-    with.shares_system = own != nullptr && other != nullptr && own->model.name == other->model.name &&
-                         own->variables == other->variables;
-    task.further.push_back(std::move(with));
-  }
-  return task;
-}
 
 ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const ModelDefinition& model,
                                               const References& references, const RefitOptions& options,

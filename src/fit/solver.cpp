@@ -16,6 +16,8 @@
 #include <vector>
 
 #include <pcor/base/error.hpp>
+#include "fit/global_search.hpp"
+#include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/missing.hpp"
 

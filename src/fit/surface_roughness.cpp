@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fit/fit_flights.hpp"
+#include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/noise_covariance.hpp"

@@ -254,8 +254,7 @@ struct Flight::Implementation {
     if (fitting.empty())
       file->refuse(Error::Code::variable,
                    ": {} ({} of the model) is not in this file; it has no time series in {} or a unit that "
-                   "converts to "
-                   "it, see ncdump -h {}; change [variables] of the model",
+                   "converts to it, see ncdump -h {}; change [variables] of the model",
                    shown, role, requested, shell_path(path()));
 
     constexpr std::size_t max_named = 6;

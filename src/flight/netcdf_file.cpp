@@ -200,8 +200,7 @@ std::string NetcdfFile::allowed(const std::string& name, const char* what) const
   if (name.size() <= NC_MAX_NAME) return name;
   refuse(Error::Code::file,
          ": {} is called {}, and netCDF allows {} bytes for a name; give it a shorter one, as h5py can, or "
-         "fetch the "
-         "file again from its source",
+         "fetch the file again from its source",
          what, quote(name), NC_MAX_NAME);
 }
 
@@ -334,8 +333,7 @@ void NetcdfFile::refuse_attribute(int variable, const std::string& name, const s
   const std::string of = is_global ? "global" : variable_name(variable);
   refuse(Error::Code::variable,
          ": the attribute {} of {} {}; correct it, or remove it with ncatted -a {} {} (with h5py if ncatted "
-         "cannot "
-         "write the file)",
+         "cannot write the file)",
          name, is_global ? "the file" : of, why, shell_quote(fmt::format("{},{},d,,", name, of)),
          shell_path(path_.string()));
 }

@@ -101,9 +101,11 @@ std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// Whether an effect of the other system may cause the finding; the model is then left unchanged. With
-/// `other` false: whether an effect of the system of the model may cause it.
-bool may_be_of_reference(const Finding& finding, bool other = true) {
+enum class System { own, other };
+
+/// Whether an effect of the own or of the other static system may cause the finding.
+bool may_be_of(System system, const Finding& finding) {
+  const bool other = system == System::other;
   return finding.of_reference == other ||
          std::any_of(finding.aliases.begin(), finding.aliases.end(), [other](const Alias& alias) {
            return alias.probability >= min_probability && (alias.effect.rfind("reference:", 0) == 0) == other;
@@ -167,13 +169,7 @@ class ForwardSelection {
     std::vector<AppliedRival> choices = first_of_each;
     for (std::size_t index = 0; index < alternatives_.size(); ++index) {
       if (alternatives_[index].size() < 2) continue;
-      ImproveStep& step = result_.steps[index + 1];
-      choices[index] = choice_of(index, step);
-      rival_squares_ += step.rival_error * step.rival_error;
-      for (const StepRival& rival : step.rivals)
-        rivals_.emplace_back(fmt::format("{} for {}: probability {:.3f}{}", rival.effect, step.added,
-                                         rival.probability,
-                                         rival.effect == step.delivered ? ", applied" : ""));
+      choices[index] = choice_of(index, result_.steps[index + 1]);
     }
     TrialModel delivered = top();
     if (choices != first_of_each) {
@@ -194,11 +190,20 @@ class ForwardSelection {
 
   /// States the expected error of the choice among rivals, and the rivals, in a model.
   void add_rival_error(ModelDefinition& model) const {
-    if (rival_squares_ > 0.0) {
-      double& stated = model.uncertainty.static_defect.emplace(model.uncertainty.static_defect.value_or(0.0));
-      stated = std::sqrt(stated * stated + rival_squares_);
+    double squares = 0.0;
+    ProvenanceList rivals;
+    for (const ImproveStep& step : result_.steps) {
+      squares += step.rival_error * step.rival_error;
+      for (const StepRival& rival : step.rivals)
+        rivals.emplace_back(fmt::format("{} for {}: probability {:.3f}{}", rival.effect, step.added,
+                                        rival.probability,
+                                        rival.effect == step.delivered ? ", applied" : ""));
     }
-    if (!rivals_.empty()) model.provenance.emplace_back("rivals", ProvenanceValue{rivals_});
+    if (squares > 0.0) {
+      double& stated = model.uncertainty.static_defect.emplace(model.uncertainty.static_defect.value_or(0.0));
+      stated = std::sqrt(stated * stated + squares);
+    }
+    if (!rivals.empty()) model.provenance.emplace_back("rivals", ProvenanceValue{rivals});
   }
 
   /// Measures the change of static pressure by the rivals of a step, with the other effects as after the
@@ -363,7 +368,7 @@ class ForwardSelection {
     std::vector<OfferedEffect> candidates;
     if (now.verdict == Verdict::silent) return candidates;
     for (const Finding& finding : now.findings) {
-      if (!may_be_of_reference(finding) && !has_effect(result_.fit.model, finding.effect.id))
+      if (!may_be_of(System::other, finding) && !has_effect(result_.fit.model, finding.effect.id))
         candidates.push_back(candidate_of(finding, now));
     }
     if (names_causes() || !loop_.trace_variables) return candidates;
@@ -391,11 +396,11 @@ class ForwardSelection {
               shown(now.noise_rms), off.empty() ? "" : "; but ", fmt::join(off, "; ")));
     }
     for (const Finding& finding : now.findings) {
-      if (may_be_of_reference(finding)) {
+      if (may_be_of(System::other, finding)) {
         return stop(StopReason::reference_system,
                     fmt::format("{} {} of the reference system, so the model is unchanged (--trust-reference "
                                 "assumes that this system is right){}{}",
-                                finding.id(), may_be_of_reference(finding, false) ? "may be an error" : "is",
+                                finding.id(), may_be_of(System::own, finding) ? "may be an error" : "is",
                                 finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence));
       }
     }
@@ -506,8 +511,6 @@ class ForwardSelection {
   TrialModel given_;
   std::vector<std::string> alike_{};  // `TrialModel::alike` of the model after the last step
   std::vector<std::string> delivered_alike_{};
-  double rival_squares_ = 0.0;  // sum of the squared expected errors of the choices among rivals, hPa^2
-  ProvenanceList rivals_{};
   // alternatives for each added effect, the effect itself first
   std::vector<std::vector<AddedEffect>> alternatives_{};
 };

@@ -69,8 +69,7 @@ class EffectReader final : TomlReader {
   ModelEffect surface(const std::string& id, const Given& given) const {
     const std::string requested =
         "axes = { attack_ratio = [lower, upper], mach = [lower, upper] } and coefficients = [[...], ...], "
-        "one "
-        "row for each spline of the first axis";
+        "one row for each spline of the first axis";
     const Entry* const axes_entry = find(given, "axes");
     const Entry* const coefficients = find(given, "coefficients");
     if (axes_entry == nullptr || coefficients == nullptr)

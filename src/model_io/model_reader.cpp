@@ -84,16 +84,13 @@ class Reader final : TomlReader {
   }
 
   void check_format(const toml::table& root) const {
-    const Entry entry = format_of(root, "is a model file", model_format);
-    const std::string format = text(entry, quote(model_format));
-    if (format == model_format) return;
-    const std::string requested = fmt::format("format = \"{}\"", model_format);
-    if (format.rfind("pcor-model/", 0) == 0) {
-      fail(entry, fmt::format("the file has the format {}, but this program reads {} only; use the pcor "
-                              "version that wrote it, or write {}",
-                              quote(format), quote(model_format), requested));
-    }
-    fail(entry, fmt::format("{} is not a format of model files; write {}", quote(format), requested));
+    const std::optional<Entry> entry = entry_of(root, "format");
+    const std::string format = entry ? entry->node->value_or(std::string()) : "";
+    if (format != model_format && format.rfind("pcor-model/", 0) == 0)
+      fail(*entry, fmt::format("the file has the format {0}, but this program reads {1} only; use the pcor "
+                               "version that wrote it, or write format = {1}",
+                               quote(format), quote(model_format)));
+    require_format(root, "a model file", model_format);
   }
 
   void read_root(const toml::table& root) {
@@ -122,7 +119,7 @@ class Reader final : TomlReader {
     each(root, "", actions);
     for (const auto& [key, read] : sections) {
       if (const auto found = given.find(key); found != given.end()) (this->*read)(found->second);
-      if (read == &Reader::read_lams) check_variables();
+      if (read == &Reader::read_lams) check_variables();  // needs [variables] to [lams]
     }
   }
 

@@ -298,8 +298,7 @@ class Processing {
       const std::string_view unit = info_of(info.location).unit;
       note(
           "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and remove an error "
-          "of "
-          "{:.2g} {}",
+          "of {:.2g} {}",
           effect.id, time, std::abs(time) * std::sqrt(band.rate_noise), unit,
           std::abs(time) * std::sqrt(std::max(0.0, signal)), unit);
       time = info.parameters[0].neutral;
@@ -636,7 +635,7 @@ class Processing {
   std::vector<bool> flaps_;                // records outside the law by extended flaps; empty: none
   std::vector<bool> outside_;              // records in flight outside the domain of the law; empty: none
   std::size_t noted_ = 0;                  // samples of which results are available
-  std::map<Quantity, std::string> names_;  // in the output: of the inputs and the results
+  std::map<Quantity, std::string> names_;  // names of inputs and results in the output
   ProcessSummary summary_;
 };
 

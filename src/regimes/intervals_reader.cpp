@@ -27,7 +27,7 @@ class Reader final : TomlReader {
 
   UserIntervals read(std::string_view text) const {
     const toml::table root = parse(text);
-    check_format(root);
+    require_format(root, "a file of intervals", intervals_format);
     refuse_unknown(root, "", {"format", "flight", "add", "veto", "exclude"});
     UserIntervals user;
     if (const toml::node* flight = root.get("flight")) user.flight = text_of(*flight, "'flight'");
@@ -52,12 +52,6 @@ class Reader final : TomlReader {
   }
 
  private:
-  void check_format(const toml::table& root) const {
-    const Entry format = format_of(root, "holds intervals", intervals_format);
-    if (format.node->value<std::string_view>() == intervals_format) return;
-    fail(format, fmt::format("unknown format of an interval file; write format = \"{}\"", intervals_format));
-  }
-
   // Refuses the first key, in the order of the text, that is not `known`.
   void refuse_unknown(const toml::table& table, const std::string& title, const Names& known) const {
     for (const Entry& entry : entries_of(table, title)) {

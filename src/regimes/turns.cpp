@@ -14,7 +14,7 @@ constexpr std::size_t straight_smoothing = 10;  // s
 struct Turn {
   Run run;
   const char* side;
-  double change;  // of the heading from the first known value to the last, deg, positive to that side
+  double change;  // turn of the heading from the first known value to the last, deg, positive to that side
 };
 
 double heading_change(const Cells& cells, Run run) {

@@ -229,7 +229,7 @@ function timeAxis(pen, box, x, samples, theme) {
   return `from ${clock(begin)} to ${clock(end)} UTC`;
 }
 
-// Names of several flights above a plot over time, where they fit.
+// Writes the names of several flights above a plot over time, if they fit.
 function nameFlights(pen, box, x, samples, above, theme) {
   if (samples.flights.length < 2) return;
   for (const {name, offset, duration} of samples.flights) {

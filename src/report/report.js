@@ -1,4 +1,4 @@
-// Starts the page. `window.pcorReport` is the report for other scripts and for the tests.
+// Starts the page. `window.pcorReport` is the report for the tests.
 //
 // Words after # in the address: "light" and "dark" choose the colours, "selftest" runs the test of the page,
 // "export" keeps only the pictures, for figures.cpp, and "for=slide" sets their purpose (see `uses`).

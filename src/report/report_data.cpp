@@ -92,7 +92,8 @@ json quantised(const ReportColumn& column, double steps = all_steps) {
           {"step", step},        {"values", packed(numbers)}};
 }
 
-// Names of the columns used only along the axes of pictures, where the resolution is a pixel.
+// Names of the columns used only along the axes of pictures, where the resolution is a pixel. A key of a new
+// panel that names columns belongs in one of the two lists.
 std::set<std::string> names_along_axes(const json& items) {
   std::set<std::string> along;
   std::set<std::string> up;
@@ -306,8 +307,9 @@ const char* kind_of(const ReportItem& item) {
   return kinds[item.index()];
 }
 
+// The page reads numbers as bytes of little-endian doubles.
 std::string base64(const void* bytes, std::size_t count) {
-  std::string text((count + 2) / 3 * 4 + 1, '\0');  // with the final zero of EVP_EncodeBlock
+  std::string text((count + 2) / 3 * 4 + 1, '\0');  // EVP_EncodeBlock adds a final zero
   EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), static_cast<const unsigned char*>(bytes),
                   static_cast<int>(count));
   text.pop_back();

@@ -54,7 +54,7 @@ struct Piece {
   double mach = 0.0;
   double angle = 0.0;     ///< recorded angle of attack
   double airspeed = 0.0;  ///< indicated airspeed from the mean dynamic pressure, m/s
-  double weight = 0.0;    ///< in the fit of the clean wing
+  double weight = 0.0;    ///< its weight in the fit of the clean wing
   Deficit deficit{};
   double out = 0.0;  ///< probability of flaps out
 };

@@ -98,7 +98,7 @@ const Reference& first_of(const References& references) {
 Pointer lams_reference() { return std::make_shared<LamsReference>(); }
 
 Pointer static_system_reference(ModelDefinition system) {
-  return std::make_shared<SecondSystem>(std::move(system), false);
+  return std::make_shared<SecondSystem>(std::move(system), ComparedPressure::static_pressure);
 }
 
 Pointer pressure_reference(std::string variable, std::string of_model) {
@@ -106,7 +106,7 @@ Pointer pressure_reference(std::string variable, std::string of_model) {
 }
 
 Pointer total_pressure_reference(ModelDefinition system) {
-  return std::make_shared<SecondSystem>(std::move(system), true);
+  return std::make_shared<SecondSystem>(std::move(system), ComparedPressure::total_pressure);
 }
 
 Pointer height_reference(const ModelDefinition& model) { return std::make_shared<HeightReference>(model); }

@@ -50,7 +50,7 @@ class ReferenceOnSamples {
   /// Number of samples on either side on which its residual depends.
   virtual std::size_t reach() const { return 0; }
 
-  /// `Residuals::differentiate_along`, if the residual depends on neighbouring samples.
+  /// `Residuals::differentiate_along`; called only if `reach()` is not 0.
   virtual void differentiate_along(const std::size_t*, std::size_t, const double*,
                                    const std::vector<Direction>&, double*) const {}
 

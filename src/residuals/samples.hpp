@@ -33,7 +33,7 @@ void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, doub
 ///
 /// The pairs are compared over 10 s in the air; they contradict each other if their correlation is below -0.5
 /// in at least ten minutes in which both moved. A missing series is not compared.
-/// @param min_airspeed m/s; slower samples are not used
+/// @param samples with static pressure and airspeed @param min_airspeed m/s; slower samples are not used
 Notes contradicting_signs(const FlightSamples& samples, double min_airspeed);
 
 /// Text that is identical for two models with the same inputs from a flight: variables and units, and the

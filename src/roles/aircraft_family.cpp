@@ -36,7 +36,7 @@ class Reader final : TomlReader {
 
   VariableNaming read(std::string_view text_of_file) {
     const toml::table root = parse(text_of_file);
-    format_of(root, "aircraft files", format);
+    require_format(root, "a naming convention", format);
     each(root, "",
          {{"format", [](const Entry&) {}},
           {"name", [&](const Entry& entry) { family_.name = text(entry); }},

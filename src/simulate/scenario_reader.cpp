@@ -115,6 +115,7 @@ constexpr std::array<NumberKey<Scenario::Gap>, 2> gap_keys{{
     {"duration", &Scenario::Gap::duration, {0.0, unlimited, "s"}},
 }};
 
+// The limits of altitude, speed, low and high depend on the leg and the aircraft (`leg_domain`).
 constexpr std::array<NumberKey<Scenario::Leg>, 12> leg_keys{{
     {"duration", &Scenario::Leg::duration, {1.0, 86400.0, "s"}},
     {"altitude", &Scenario::Leg::altitude, {-400.0, unlimited, "m"}},
@@ -130,7 +131,7 @@ constexpr std::array<NumberKey<Scenario::Leg>, 12> leg_keys{{
     {"flaps", &Scenario::Leg::flaps, {0.0, 100.0, "percent"}},
 }};
 
-/// Domain of a number of a leg: that of its key, unless it depends on the kind or the aircraft.
+/// Domain of a number of a leg: the domain of its key, unless it depends on the kind or the aircraft.
 Domain leg_domain(const NumberKey<Scenario::Leg>& number, Scenario::Leg::Kind kind,
                   const AircraftInfo& aircraft) {
   using Kind = Scenario::Leg::Kind;
@@ -198,13 +199,7 @@ class Reader final : TomlReader {
 
   Scenario read(std::string_view text) {
     const toml::table root = parse(text);
-    const Entry entry = format_of(root, "is a scenario", scenario_format);
-    const std::string format = TomlReader::text(entry);
-    if (format != scenario_format) {
-      fail(entry,
-           fmt::format("{} is not the format of a scenario that this program reads; write format = \"{}\"",
-                       quote(format), scenario_format));
-    }
+    require_format(root, "a scenario", scenario_format);
     read_root(root);
     return std::move(scenario_);
   }

@@ -27,8 +27,8 @@ struct HeightPrior {
   /// Prior standard deviation of the slope of the isobars, each direction; scaled in a flight by
   /// `HeightRecord::slope_left`. 0: level.
   double slope = 1e-4;
-  /// Prior standard deviation of each error, the same in all flights, in the units of `HeightError`. 0:
-  /// excluded; for the coefficients, which have no prior, too.
+  /// Prior standard deviation of each error, the same in all flights, in the units of `HeightError`; 0
+  /// excludes the error. The coefficients of the calibration have no prior: their entries are 0.
   HeightUnknowns sizes = HeightUnknowns::Zero();
 };
 
@@ -43,7 +43,7 @@ struct HeightEquations {
 
   Matrix information = Matrix::Zero();
   HeightUnknowns right = HeightUnknowns::Zero();
-  HeightUnknowns sizes = HeightUnknowns::Zero();  ///< of the prior
+  HeightUnknowns sizes = HeightUnknowns::Zero();  ///< standard deviations of the prior
   double squares = 0.0;
   double log_determinant = 0.0;
 

@@ -42,7 +42,7 @@ class Integration {
   std::vector<Point> run(HeightRecord& record) {
     const std::vector<RegimeSet> regimes = regimes_of_samples(air_.time(), air_.samples->intervals);
     std::vector<Point> points;
-    HeightUnknowns squares = HeightUnknowns::Zero();  // of the static pressure change for one unit, hPa2
+    HeightUnknowns squares = HeightUnknowns::Zero();  // squared change of static pressure for one unit, hPa2
     for (std::size_t i = 0; i < air_.size(); ++i) {
       // Without pressure it is not known to fly either: that is a gap, which `advance` may cross.
       const bool takes_part = air_.flying[i] && !regimes[i][static_cast<std::size_t>(Regime::take_off)];

@@ -119,8 +119,7 @@ void require_same_model(const Flight& flight, const ModelDefinition& model) {
       Error::Code::model,
       fmt::format(
           "{}: its pressures are not those of the model '{}' ({}); process the flight again with this model "
-          "and "
-          "--hydrostatic, give the model that it was processed with, or omit --archived for raw flights",
+          "and --hydrostatic, give the model that it was processed with, or omit --archived for raw flights",
           flight.path().string(), model.model.name, difference));
 }
 

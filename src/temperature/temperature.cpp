@@ -419,7 +419,7 @@ class TemperatureCalibration {
     return rms(heights);
   }
 
-  /// Reason for which the correction is no improvement; empty if it is one.
+  /// Reason why the correction does not improve the heights; empty if it improves them.
   std::string reason_against() const {
     if (!dry_.empty()) return dry_;
     const double gain = result_.degrees.front().deviance - result_.degrees[terms_].deviance;

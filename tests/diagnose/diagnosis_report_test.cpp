@@ -238,7 +238,7 @@ ModelDefinition model() {
   return file;
 }
 
-/// Item of a report by its title; an exception fails the test if there is none.
+/// Item of a report by its title; an exception fails the test if it is absent.
 template <class Item>
 const Item& item(const Report& report, const std::string& title) {
   for (const ReportItem& one : report.items) {

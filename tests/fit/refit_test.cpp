@@ -467,6 +467,24 @@ TEST(Refit, StartDoesNotDetermineWhichSamplesAreUsed) {
     EXPECT_NEAR(by_name(far).at(name).value, parameter.value, 0.02 * parameter.standard_error) << name;
 }
 
+TEST(Refit, RmsBeforeIsUnknownIfSamplesHaveNoResidualAtTheStart) {
+  FlightSamples samples = made::flight(plan_18(17));
+  samples.model.columns.emplace_back(Quantity::time, samples.time);
+  samples.model.roles.push_back(Quantity::time);
+  ModelDefinition model = made::model(equation_18);
+  pcor::ModelEffect root;
+  root.id = "root";
+  root.formula = "1 - sqrt(1 + k * sin(time / 50))";
+  root.parameter_names = {"k"};
+  root.parameters = {1.02};  // no real root at the least values of the sine
+  model.model.effects.push_back(root);
+  model.fits.resize(4);
+  model.fits[3].resize(1);
+  const RefitResult result = fit({std::make_shared<FlightSamples>(samples)}, model);
+  EXPECT_TRUE(std::isnan(result.rms_before));
+  EXPECT_TRUE(std::isfinite(result.rms));
+}
+
 TEST(Refit, BiasedHeldOutPartIsReported) {
   const RefitResult result = fit(with_biased_half(), made::model(equation_18), with_training_share(0.5));
   const std::optional<pcor::HeldOutPart> part = worst_held_out(result.flights);

@@ -39,6 +39,7 @@ class Error : public std::runtime_error {
 
 /// The name of the code, such as "file".
 constexpr std::string_view to_string(Error::Code code) {
+  // In the order of the codes.
   constexpr std::array<std::string_view, 11> names{"file",    "variable",   "unit",  "time",
                                                    "samples", "definition", "model", "fit",
                                                    "usage",   "output",     "system"};

@@ -93,10 +93,10 @@ void describe(const ImproveStep& self, Field& field) {
 
 /// Residuals of a flight with the first reference, all samples, hPa; NaN for samples not used.
 struct ImprovedFlight {
-  std::shared_ptr<const FlightSamples> samples{};
-  std::size_t fitted = 0;       ///< samples in the fit
-  std::size_t held_out = 0;     ///< held-out samples: the whole flight or its last part
-  std::vector<double> given{};  ///< residual of the input model
+  std::shared_ptr<const FlightSamples> samples{};  ///< never null
+  std::size_t fitted = 0;                          ///< samples in the fit
+  std::size_t held_out = 0;                        ///< held-out samples: the whole flight or its last part
+  std::vector<double> given{};                     ///< residual of the input model
   std::vector<double> refitted{};
   std::vector<double> best{};  ///< residual of the final model
 };

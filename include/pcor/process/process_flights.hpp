@@ -54,7 +54,7 @@ struct ProcessFlightsOptions {
   ProcessOptions process{};  ///< options of each flight; the history is replaced by that of the task
   /// True: skip an output that is up to date: it holds the SHA-256 of the bytes of the flight, of the model
   /// and of the options with this version of the program, and all are equal. The flight is read completely,
-  /// unless the model or the options differ.
+  /// unless the model or the options differ. If a file cannot be read, the output is not up to date.
   bool if_stale = false;
   /// True: continue after a flight that cannot be read or lacks a variable of the model.
   bool skip_unreadable = false;

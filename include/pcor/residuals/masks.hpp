@@ -14,18 +14,20 @@ namespace pcor {
 
 /// Reason why a sample is not used in a comparison. If several apply, the first one counts.
 enum class Mask : std::uint8_t {
-  none,            ///< the sample is used
-  excluded,        ///< time excluded by the user
-  missing,         ///< a variable of the model has no value
-  ground,          ///< the aircraft is parked, taxies or rolls
-  low_speed,       ///< airspeed below the limit
-  regime,          ///< regime excluded by the user
-  frozen,          ///< a sensor of the model or the reference is frozen
-  reference,       ///< a variable of the reference has no value; the laser is off
-  laser_unlocked,  ///< laser airspeed differs too much from the airspeed by the pressures
-  burst,           ///< a pressure is disturbed for a few seconds
-  impossible,      ///< values are present, but delta-p cannot be computed from them
-  flaps,           ///< flaps are extended, and no other reason applies
+  none,       ///< the sample is used
+  excluded,   ///< time excluded by the user
+  missing,    ///< a variable of the model has no value
+  ground,     ///< the aircraft is parked, taxies or rolls
+  low_speed,  ///< airspeed below the limit
+  regime,     ///< regime excluded by the user
+  frozen,     ///< a sensor of the model or the reference is frozen
+  reference,  ///< a variable of the reference has no value; the laser is off
+  /// Laser airspeed differs from the airspeed by the pressures by more than six robust standard deviations of
+  /// the flight plus 3 % of the airspeed.
+  laser_unlocked,
+  burst,       ///< a pressure is disturbed for a few seconds
+  impossible,  ///< values are present, but delta-p cannot be computed from them
+  flaps,       ///< flaps are extended, and no other reason applies
   count
 };
 
@@ -47,8 +49,8 @@ inline constexpr double flaps_in = 5.0;
 /// Selection of samples for a comparison.
 struct MaskOptions {
   double min_airspeed = 60.0;  ///< m/s; minimum airspeed in flight
-  /// Percent, for flights that record flaps. Default: `flaps_in`; no limit if an effect of the model reads
-  /// the flaps.
+  /// Percent; flaps that are inferred from the lift are 0 or 100. Default: `flaps_in`; no limit if an effect
+  /// of the model reads the flaps.
   std::optional<double> max_flaps{};
   std::vector<Regime> exclude{};  ///< excluded regimes, in addition to the ground
   std::optional<UserIntervals> intervals{};

@@ -56,7 +56,7 @@ struct FlightSamples {
   FlightMotion motion{};
   /// Percent. Inferred from the lift if they are not recorded: 0 or 100; empty: unknown.
   std::vector<double> flaps{};
-  std::string flaps_variable{};       ///< name in the file
+  std::string flaps_variable{};       ///< name in the file; empty: flaps are inferred or unknown
   std::vector<Interval> intervals{};  ///< regimes
   ModelSamples model{};
   ModelSamples reference{};  ///< inputs of the reference

@@ -13,16 +13,18 @@
 
 namespace pcor::internal {
 
+enum class ComparedPressure { static_pressure, total_pressure };
+
 /// Second system on the samples of a flight, with its inputs and its model.
 class SecondSystemOnSamples final : public ReferenceOnSamples {
  public:
-  SecondSystemOnSamples(const ModelDefinition& system, bool is_total, const FlightSamples& samples,
-                        const ModelOnSamples& model)
-      : own_(system, samples.reference), model_(model), is_total_(is_total) {}
+  SecondSystemOnSamples(const ModelDefinition& system, ComparedPressure compared,
+                        const FlightSamples& samples, const ModelOnSamples& model)
+      : own_(system, samples.reference), model_(model), compared_(compared) {}
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     std::vector<double> of_model(block.count);
-    const Quantity added = is_total_ ? Quantity::port_dynamic_pressure : Quantity::static_defect;
+    const Quantity added = is_total() ? Quantity::port_dynamic_pressure : Quantity::static_defect;
     model_.port_pressure_plus(added, block.model, block.count, parameters, of_model.data());
     own_.port_pressure_plus(added, block.reference, block.count, own_of(parameters), out);
     for (std::size_t i = 0; i < block.count; ++i) out[i] -= of_model[i];
@@ -51,32 +53,34 @@ class SecondSystemOnSamples final : public ReferenceOnSamples {
   }
 
   Jet pressure_at(const ModelOnSamples& system, std::size_t sample, const Jet* parameters) const {
-    if (is_total_) return system.total_pressure(sample, parameters);
+    if (is_total()) return system.total_pressure(sample, parameters);
     State<Jet> state;
     return system.corrected_static_pressure(sample, parameters, state);
   }
 
+  bool is_total() const { return compared_ == ComparedPressure::total_pressure; }
+
   ModelOnSamples own_;
   const ModelOnSamples& model_;
-  bool is_total_;
+  ComparedPressure compared_;
 };
 
 /// Reference that is another pair of pressures of the aircraft, corrected by a separate model.
 class SecondSystem final : public Reference {
  public:
-  /// @param is_total compares total pressures; otherwise corrected static pressures
-  SecondSystem(ModelDefinition system, bool is_total) : system_(std::move(system)), is_total_(is_total) {}
+  SecondSystem(ModelDefinition system, ComparedPressure compared)
+      : system_(std::move(system)), compared_(compared) {}
 
   std::string description() const override {
-    return (is_total_ ? "total pressure of '" : "static system '") + system_.model.name + "'";
+    return (is_total() ? "total pressure of '" : "static system '") + system_.model.name + "'";
   }
-  std::string name() const override { return (is_total_ ? "total:" : "static:") + system_.model.name; }
-  bool is_static_pressure() const override { return !is_total_; }
-  bool sees_static_defect() const override { return !is_total_; }
+  std::string name() const override { return (is_total() ? "total:" : "static:") + system_.model.name; }
+  bool is_static_pressure() const override { return !is_total(); }
+  bool sees_static_defect() const override { return !is_total(); }
   const ModelDefinition* model() const override { return &system_; }
 
   std::shared_ptr<const Reference> with_model(const ModelDefinition& system) const override {
-    return std::make_shared<SecondSystem>(system, is_total_);
+    return std::make_shared<SecondSystem>(system, compared_);
   }
 
   std::vector<std::string> variables() const override {
@@ -93,12 +97,14 @@ class SecondSystem final : public Reference {
 
   std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
                                          const ModelOnSamples& model) const override {
-    return std::make_unique<SecondSystemOnSamples>(system_, is_total_, samples, model);
+    return std::make_unique<SecondSystemOnSamples>(system_, compared_, samples, model);
   }
 
  private:
+  bool is_total() const { return compared_ == ComparedPressure::total_pressure; }
+
   ModelDefinition system_;
-  bool is_total_;
+  ComparedPressure compared_;
 };
 
 }  // namespace pcor::internal

@@ -10,6 +10,7 @@
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
+#include "fit/prior.hpp"
 #include "model_io/model_names.hpp"
 
 namespace pcor::internal {
@@ -80,6 +81,8 @@ std::vector<std::size_t> indices_of(const std::vector<FitParameter>& parameters,
                           meant.empty() ? fmt::format("it has {}", fmt::join(known, ", ")) : meant));
 }
 
+constexpr std::size_t passes_expected = 40;
+
 }  // namespace
 
 std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Reference& reference,
@@ -133,6 +136,29 @@ std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>
     if (left[p]) rest.push_back(p);
   }
   return result;
+}
+
+FitTask fit_task(const ModelDefinition& model, const References& references, const RefitOptions& options,
+                 const FlightSet& flights) {
+  const Reference& reference = first_of(references);
+  FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
+  task.doubt = stated_covariance(model, reference);
+  task.surfaces = surfaces_of(model.model, reference.model());
+  task.start.resize(as_index(task.parameters.size()));
+  for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
+  task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
+    ++passes;
+    if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);
+  };
+  for (std::size_t i = 1; i < references.size(); ++i) {
+    FitTask with{model, *references[i], options, flights, task.parameters, task.start, task.doubt, [] {}};
+    const ModelDefinition* const own = reference.model();
+    const ModelDefinition* const other = references[i]->model();
+    with.shares_system = own != nullptr && other != nullptr && own->model.name == other->model.name &&
+                         own->variables == other->variables;
+    task.further.push_back(std::move(with));
+  }
+  return task;
 }
 
 }  // namespace pcor::internal
