@@ -178,7 +178,7 @@ Report pictures_of(const CheckedFlights& flights) {
 }  // namespace
 
 std::string_view to_string(CheckVerdict verdict) {
-  constexpr std::array names{"consistent", "inconsistent", "cannot tell"};
+  constexpr std::array names{"consistent", "inconsistent", "inconclusive"};
   return names[static_cast<std::size_t>(verdict)];
 }
 

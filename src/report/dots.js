@@ -105,7 +105,7 @@ function drawDots(pen, width, height, item, samples, theme) {
     ({label, text, tone, dots: dots.map(({value, error}) => ({value: value ?? NaN, error: error ?? 0}))}));
   const axis = withUnit(item.axis, item.unit);
   const {box, points} = drawRows(pen, width, height, {...item, rows, axis}, theme);
-  const toneWords = {good: 'consistent', bad: 'inconsistent', open: 'cannot tell'};
+  const toneWords = {good: 'consistent', bad: 'inconsistent', open: 'inconclusive'};
   const judged = rows.some(({tone}) => tone), told = rows.some(({text}) => text);
   return {
     points,

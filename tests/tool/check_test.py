@@ -75,7 +75,7 @@ class Results(CheckTest):
                                   "cannot_see", "tables", "notes"}, set(each))
             self.assertEqual(each["ran"], each["reason"] == "")
             if each["ran"]:
-                self.assertIn(each["verdict"], ("consistent", "inconsistent", "cannot tell"))
+                self.assertIn(each["verdict"], ("consistent", "inconsistent", "inconclusive"))
                 self.assertTrue(each["cannot_see"])
                 self.assertTrue(each["numbers"])
         for name in NAMES[:7]:
@@ -94,7 +94,7 @@ class Results(CheckTest):
                     self.assertIn(number[name], check["numbers"].values(), check["name"])
                 size, error, limit = abs(number["value"]), number["stderr"], number["matters"]
                 expected = ("inconsistent" if size > limit and size > 3.0 * error else
-                            "consistent" if size + 2.0 * error <= limit else "cannot tell")
+                            "consistent" if size + 2.0 * error <= limit else "inconclusive")
                 self.assertEqual(number["verdict"], expected, check["name"])
             key = check["key"]
             self.assertIn(key, check["judged"])
@@ -102,7 +102,7 @@ class Results(CheckTest):
             self.assertTrue(check["decided"].startswith(sentence), check["decided"])
             self.assertIn(f"  {check['verdict']}: {check['decided']}.\n", text)
             # A check withholds a verdict that its data do not allow: an uncorrected system, turbulence.
-            self.assertIn(check["verdict"], (key["verdict"], "cannot tell"))
+            self.assertIn(check["verdict"], (key["verdict"], "inconclusive"))
 
     def test_several_flights(self):
         both = self.check("-m", self.model(), flights=(ONE, TWO))
@@ -111,7 +111,7 @@ class Results(CheckTest):
 
     def test_second_system_without_a_model_is_uncorrected(self):
         check = self.check("-m", self.model())["static-pressure"]
-        self.assertEqual(check["verdict"], "cannot tell")
+        self.assertEqual(check["verdict"], "inconclusive")
         self.assertIn("uncorrected", check["finding"])
         check = self.check("-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}")["static-pressure"]
         self.assertEqual(check["verdict"], "consistent")

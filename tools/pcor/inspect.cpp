@@ -220,7 +220,7 @@ void print_by_gps(const GpsDesign& gps) {
     return error < known ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
                          : fmt::format("undetermined; requires {}", manoeuvre);
   };
-  say("\nlower limits of the standard errors of delta-p by GPS ({}), from the manoeuvres alone\n",
+  say("\nexpected standard errors of delta-p by GPS ({}), from the manoeuvres alone\n",
       gps.by_wind && gps.by_height ? "wind and height"
       : gps.by_wind                ? "wind"
                                    : "height");

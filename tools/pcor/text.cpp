@@ -130,7 +130,7 @@ std::string coloured(std::string line) {
   constexpr std::string_view note = "Note";
   if (line.rfind("Note:", 0) == 0 || line.rfind("Note,", 0) == 0) paint(0, note.size(), "\033[1m");
   constexpr std::array<std::pair<std::string_view, std::string_view>, 3> verdicts{
-      {{"inconsistent", "\033[31m"}, {"consistent", "\033[32m"}, {"cannot tell", "\033[33m"}}};
+      {{"inconsistent", "\033[31m"}, {"consistent", "\033[32m"}, {"inconclusive", "\033[33m"}}};
   for (const auto& [verdict, colour] : verdicts) {
     const std::size_t at = line.find(fmt::format("  {}", verdict));
     if (at == none) continue;

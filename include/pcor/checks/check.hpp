@@ -19,10 +19,10 @@ namespace pcor {
 enum class CheckVerdict {
   consistent,    ///< |value| + 2 standard errors is within the tolerance
   inconsistent,  ///< |value| exceeds the tolerance and 3 standard errors
-  inconclusive   ///< neither; its text is "cannot tell"
+  inconclusive   ///< neither
 };
 
-/// Text: "consistent", "inconsistent", "cannot tell".
+/// Text: "consistent", "inconsistent", "inconclusive".
 std::string_view to_string(CheckVerdict verdict);
 
 /// Test statistic with expected value zero, and the verdict on it alone.
@@ -75,7 +75,7 @@ void describe(const CheckResult& self, Field& field) {
   field("name", self.name, "name of the check");
   field("ran", self.ran, "whether the flights permit the check");
   field("reason", self.reason, "reason for which the check did not run, and its requirements");
-  field("verdict", self.ran ? &self.verdict : nullptr, "consistent, inconsistent, cannot tell; null");
+  field("verdict", self.ran ? &self.verdict : nullptr, "consistent, inconsistent, inconclusive; null");
   field("key", self.ran ? &self.key : nullptr, "deciding test statistic; null if it did not run");
   field("judged", self.judged, "all test statistics");
   field("decided", self.decided, "explanation of the verdict: value, standard error and tolerance");
