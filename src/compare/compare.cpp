@@ -90,7 +90,7 @@ std::vector<Field> fields_of(const std::vector<ComparedModel>& models) {
     }
   }
   for (Field& field : fields) {
-    // In the order in which the references are given.
+    // In the order in which the models are given.
     std::sort(field.pairings.begin(), field.pairings.end(),
               [&order](const Pairing& a, const Pairing& b) { return order[a.rank] < order[b.rank]; });
   }

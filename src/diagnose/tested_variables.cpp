@@ -147,7 +147,8 @@ std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& fl
     variable.unit = std::string(info_of(quantity).unit);
     variable.fine = quantity == Quantity::corrected_mach;
     for (const FlightColumns& flight : flights)
-      variable.values.emplace_back(Values(), &flight.quantity(quantity));  // shares its values
+      variable.values.emplace_back(Values(),
+                                   &flight.quantity(quantity));  // points to the column of the flight
   }
   TestedVariable& pressure = result.emplace_back();
   pressure.name = "corrected_static_pressure";

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
@@ -12,6 +13,7 @@
 #include <pcor/model/formula.hpp>
 #include "fit/prior.hpp"
 #include "model_io/model_names.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {

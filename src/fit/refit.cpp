@@ -1,6 +1,7 @@
 #include <pcor/fit/refit.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,16 +1,13 @@
 #include "fit/warnings.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include <pcor/base/error.hpp>
 #include <pcor/base/utc.hpp>
 #include "fit/loss_function.hpp"
-#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {

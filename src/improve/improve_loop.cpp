@@ -103,7 +103,8 @@ std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
 
 enum class System { own, other };
 
-/// Whether an effect of the own or of the other static system may cause the finding.
+/// Whether an effect of the static system of the model, or of the other system, may cause the finding. If the
+/// other system may cause it, the model is left unchanged.
 bool may_be_of(System system, const Finding& finding) {
   const bool other = system == System::other;
   return finding.of_reference == other ||
@@ -167,6 +168,7 @@ class ForwardSelection {
   void choose_among_rivals() {
     const std::vector<AppliedRival> first_of_each(alternatives_.size(), 0);
     std::vector<AppliedRival> choices = first_of_each;
+    error_of_first_.assign(alternatives_.size(), 0.0);
     for (std::size_t index = 0; index < alternatives_.size(); ++index) {
       if (alternatives_[index].size() < 2) continue;
       choices[index] = choice_of(index, result_.steps[index + 1]);
@@ -176,7 +178,11 @@ class ForwardSelection {
       try {
         delivered = model_with(choices);
       } catch (const Error& error) {  // single choices may not be fittable together
-        for (ImproveStep& step : result_.steps) step.delivered = step.added;
+        for (std::size_t index = 0; index < alternatives_.size(); ++index) {
+          ImproveStep& step = result_.steps[index + 1];
+          step.delivered = step.added;
+          step.rival_error = error_of_first_[index];
+        }
         result_.fit.notes.push_back(fmt::format(
             "the rivals that were chosen cannot be fitted together, so the model has the effects that "
             "were added: {}",
@@ -208,7 +214,7 @@ class ForwardSelection {
 
   /// Measures the change of static pressure by the rivals of a step, with the other effects as after the
   /// last step. The first rival stays if all are alike.
-  AppliedRival choice_of(std::size_t index, ImproveStep& step) const {
+  AppliedRival choice_of(std::size_t index, ImproveStep& step) {
     std::vector<AppliedRival> choices(alternatives_.size(), 0);
     std::vector<TrialModel> models;
     std::vector<std::size_t> tested;
@@ -242,6 +248,7 @@ class ForwardSelection {
     const RivalChoice choice = choose_rival(changes, weights, matters);
     if (choice.rival == 0U && choice.error <= matters) return 0;
     step.rival_error = choice.error;
+    error_of_first_[index] = choice.error_of_first;
     step.delivered.clear();
     for (std::size_t i = 0; i < tested.size(); ++i)
       step.rivals.push_back(
@@ -513,6 +520,7 @@ class ForwardSelection {
   std::vector<std::string> delivered_alike_{};
   // alternatives for each added effect, the effect itself first
   std::vector<std::vector<AddedEffect>> alternatives_{};
+  std::vector<double> error_of_first_{};  // hPa, of each of them, if the first rival is applied
 };
 
 }  // namespace
@@ -532,11 +540,11 @@ RivalChoice choose_rival(const std::vector<std::vector<double>>& changes, const 
     });
   };
   const double error_of_first = expected_error(changes.front());
-  if (error_of_first <= tolerance) return {0, error_of_first};
-  RivalChoice best{std::nullopt, expected_error(none)};
+  if (error_of_first <= tolerance) return {0, error_of_first, error_of_first};
+  RivalChoice best{std::nullopt, expected_error(none), error_of_first};
   for (std::size_t k = 0; k < changes.size(); ++k) {
     const double error = expected_error(changes[k]);
-    if (error < best.error && is_harmless(changes[k])) best = {k, error};
+    if (error < best.error && is_harmless(changes[k])) best = {k, error, error_of_first};
   }
   return best;
 }

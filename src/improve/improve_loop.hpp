@@ -24,6 +24,7 @@ struct AddedEffect {
 struct RivalChoice {
   std::optional<std::size_t> rival{};  ///< index; empty if no rival is applied
   double error = 0.0;                  ///< expected, rms over samples and rivals, hPa
+  double error_of_first = 0.0;         ///< the same if the first rival is applied
 };
 
 /// Chooses the rival of the least expected squared error of the static pressure,

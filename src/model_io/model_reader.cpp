@@ -88,8 +88,8 @@ class Reader final : TomlReader {
     const std::string format = entry ? entry->node->value_or(std::string()) : "";
     if (format != model_format && format.rfind("pcor-model/", 0) == 0)
       fail(*entry, fmt::format("the file has the format {0}, but this program reads {1} only; use the pcor "
-                               "version that wrote it, or write format = {1}",
-                               quote(format), quote(model_format)));
+                               "version that wrote it, or write format = \"{2}\"",
+                               quote(format), quote(model_format), model_format));
     require_format(root, "a model file", model_format);
   }
 

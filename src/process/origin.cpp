@@ -57,7 +57,6 @@ std::string sha256_of_file(const std::filesystem::path& path) {
 }
 
 /// Names of `UncertaintyPart`, in its order.
-// In the order of the enumeration.
 constexpr std::array<const char*, 5> part_names{"total if stated", "total", "systematic", "random", "none"};
 
 const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }

@@ -37,11 +37,10 @@ std::vector<Interval> find_regimes(const FlightMotion& motion, const RegimeCrite
   std::vector<bool> flying;
   for (const Regime phase : phases) flying.push_back(phase != Regime::ground && phase != Regime::take_off);
   Search search{cells, criteria, flying, flying};
-  // Each takes cells that no earlier one has taken.
   find_pitch_manoeuvres(search);
   find_yaw_manoeuvres(search);
   find_speed_runs(search);
-  find_reverse_headings(search);
+  find_reverse_headings(search);  // only in cells outside the regimes found before
   find_circles(search);
   find_turns(search);
   find_clouds(search);

@@ -36,7 +36,7 @@ function decodeColumn({name, title, unit, least, step, values}) {
   return {name, title, values: numbers, label: withUnit(title, unit), unit};
 }
 
-// First whole number from `first` to `last` at which a condition holds that holds from there on; otherwise `last`.
+// First whole number in first ... last from which a condition holds; otherwise `last`.
 function firstWhere(first, last, holds) {
   while (first < last) {
     const middle = (first + last) >> 1;

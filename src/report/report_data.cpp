@@ -146,6 +146,7 @@ const char* to_string(ReportTone tone) {
   return names[static_cast<std::size_t>(tone)];
 }
 
+// The page reads the products as bytes of little-endian doubles.
 json sums_json(const WhatIfSums& sums) {
   return {{"products", base64(sums.products.data(), sums.products.size() * sizeof(double))},
           {"samples", sums.samples}};
@@ -307,7 +308,6 @@ const char* kind_of(const ReportItem& item) {
   return kinds[item.index()];
 }
 
-// The page reads numbers as bytes of little-endian doubles.
 std::string base64(const void* bytes, std::size_t count) {
   std::string text((count + 2) / 3 * 4 + 1, '\0');  // EVP_EncodeBlock adds a final zero
   EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), static_cast<const unsigned char*>(bytes),

@@ -115,7 +115,8 @@ constexpr std::array<NumberKey<Scenario::Gap>, 2> gap_keys{{
     {"duration", &Scenario::Gap::duration, {0.0, unlimited, "s"}},
 }};
 
-// The limits of altitude, speed, low and high depend on the leg and the aircraft (`leg_domain`).
+// The limits of altitude, speed, rate, low, high and amplitude depend on the leg and the aircraft
+// (`leg_domain`).
 constexpr std::array<NumberKey<Scenario::Leg>, 12> leg_keys{{
     {"duration", &Scenario::Leg::duration, {1.0, 86400.0, "s"}},
     {"altitude", &Scenario::Leg::altitude, {-400.0, unlimited, "m"}},

@@ -415,6 +415,7 @@ TEST(RivalChoice, MiddleRivalOfLeastErrorIsChosen) {
 
 TEST(RivalChoice, AppliesNoRivalIfAnotherMakesItHarmful) {
   const RivalChoice choice = choose_rival({Series(10, 0.8), Series(10, -0.6)}, {0.9, 0.1}, 0.01);
+  EXPECT_NEAR(choice.error_of_first, 1.4 * std::sqrt(0.1), 1e-12);
   EXPECT_FALSE(choice.rival.has_value());
   EXPECT_NEAR(choice.error, std::sqrt(0.9 * 0.64 + 0.1 * 0.36), 1e-12);  // rounding
 }

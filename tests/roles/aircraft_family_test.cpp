@@ -54,7 +54,7 @@ TEST(VariableNaming, DataAreComplete) {
 }
 
 TEST(VariableNaming, InvalidFilesAreRefused) {
-  EXPECT_THAT(refusal_of("name = \"mine\""), test::IsError(Error::Code::definition, "mine.toml:1"));
+  EXPECT_THAT(refusal_of("name = \"mine\""), test::IsError(Error::Code::definition, "pcor-aircraft/1"));
   EXPECT_THAT(refusal_of("format = \"pcor-aircraft/2\"\nname = \"mine\""),
               test::IsError(Error::Code::definition, "pcor-aircraft/1"));
   EXPECT_THAT(refusal_of("format = \"pcor-aircraft/1\"\nname = \"mine\""),

@@ -198,7 +198,8 @@ struct RefitResult {
   double between_flights = 0.0;
   double least_squares_rms = 0.0;  ///< plain least squares on the same samples, hPa; NaN if unknown
   double r_squared = 0.0;
-  double rms_before = 0.0;   ///< hPa, with the coefficients of the file
+  /// hPa, with the coefficients of the file; NaN if samples have no residual with them.
+  double rms_before = 0.0;
   std::size_t outliers = 0;  ///< samples that differ from their prediction by more than the noise permits
   /// Ratio of the largest to the smallest singular value of the derivatives, each column normalised.
   double condition_number = 0.0;
@@ -254,7 +255,7 @@ template <class Field>
 void describe(const RefitResult& self, Field& field) {
   field("effects", fitted_effects(self.parameters), "effects with their coefficients");
   field("rms_hpa", self.rms, "rms residual after the fit, all samples");
-  field("rms_before_hpa", self.rms_before, "rms residual before the fit");
+  field("rms_before_hpa", self.rms_before, "rms residual before the fit; null if samples have no residual");
   field("rms_over_pressure", self.rms_over_pressure, "rms of residual divided by static pressure");
   field("bulk_rms_hpa", self.bulk_rms, "robust standard deviation of the residual");
   field("noise_rms_hpa", self.noise_rms, "rms noise of the residual");

@@ -23,7 +23,7 @@ enum class Mask : std::uint8_t {
   frozen,     ///< a sensor of the model or the reference is frozen
   reference,  ///< a variable of the reference has no value; the laser is off
   /// Laser airspeed differs from the airspeed by the pressures by more than six robust standard deviations of
-  /// the flight plus 3 % of the airspeed.
+  /// the flight plus 3 % of the airspeed, or by 15 %, or most samples around it do.
   laser_unlocked,
   burst,       ///< a pressure is disturbed for a few seconds
   impossible,  ///< values are present, but delta-p cannot be computed from them

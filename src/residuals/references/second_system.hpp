@@ -13,6 +13,7 @@
 
 namespace pcor::internal {
 
+/// Corrected static pressures, or total pressures.
 enum class ComparedPressure { static_pressure, total_pressure };
 
 /// Second system on the samples of a flight, with its inputs and its model.
