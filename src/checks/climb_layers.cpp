@@ -269,7 +269,7 @@ Eigen::MatrixXd covariance_of(const std::vector<FlightLayers>& flights, Eigen::I
   enum class Kind { height, pressure, bias, change, east, north, climb_east, climb_north };
   // Sources of layer errors, one unknown with unit variance each: the error of each layer by each source.
   std::map<std::tuple<Kind, std::size_t, long>, Eigen::VectorXd> causes;
-  Eigen::Index number = 0;  // of the layer to which `add` adds
+  Eigen::Index number = 0;  // index of the layer to which `add` adds
   const auto add = [&](Kind kind, std::size_t flight, long position, double error) {
     causes.try_emplace({kind, flight, position}, Eigen::VectorXd::Zero(count)).first->second(number) += error;
   };

@@ -76,7 +76,7 @@ struct Layer {
 /// Layers of a flight, in the order of time.
 struct FlightLayers {
   std::string flight;
-  LayerOptions uncertainty{};  ///< with the estimates of this flight
+  LayerOptions uncertainty{};  ///< options, and the estimated errors of this flight
   std::vector<Layer> layers{};
   Notes notes{};  ///< notes for the user, one sentence each
 };

@@ -142,7 +142,7 @@ std::vector<MeanOffset> find_mean_offsets(const FlightPartition& share, const st
   }
   if (flights.size() < 2) return steps;
   const Means means = find_means(sums, static_cast<double>(rows));
-  // Of two flights the first differs as much as the second.
+  // With two flights, the first differs as much as the second.
   for (std::size_t k = flights.size() == 2 ? 1 : 0; k < flights.size(); ++k)
     steps[flights[k]] = step_of(as_index(k), means);
   return steps;

@@ -104,7 +104,7 @@ std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
 enum class System { own, other };
 
 /// Whether an effect of the static system of the model, or of the other system, may cause the finding. If the
-/// other system may cause it, the model is left unchanged.
+/// other system may cause it, the model stays unchanged.
 bool may_be_of(System system, const Finding& finding) {
   const bool other = system == System::other;
   return finding.of_reference == other ||
