@@ -117,13 +117,12 @@ void Batch::compute(const std::vector<Input>& inputs, const std::vector<Output>&
   for (const Derivative& each : derivatives) {
     const bool is_known =
         each.effect < chain_.effect_count() && each.parameter < chain_.parameter_count_of(each.effect);
-    if (!is_known || !chain_.is_defect_linear(each.effect, each.parameter)) {
+    if (!is_known || !chain_.is_static_sum_linear(each.effect, each.parameter)) {
       throw Error(
           Error::Code::usage,
           fmt::format(
               "the static defect is not linear in coefficient {} of effect {}: give a coefficient of an "
-              "effect at the static ports that is neither a shape nor of a formula, in a model without "
-              "a minimum",
+              "effect at the static ports that is neither a shape nor of a formula",
               each.parameter, each.effect));
     }
     BatchDerivative& column = columns.emplace_back();

@@ -49,8 +49,10 @@ std::vector<BatchKernel> batch_kernels();
 template <class Pack>
 void store_derivatives(const BatchJob& job, const State<Pack>& state, std::size_t at, std::size_t count) {
   const Chain& chain = *job.chain;
-  const Pack factor =
+  Pack factor =
       select(is_missing(state[Quantity::static_defect]), missing<Pack>(), chain.taper_fraction(state));
+  if (chain.has_minimum())
+    factor = select(chain.is_at_minimum(state, job.parameters), Pack(0.0) * factor, factor);
   const Surface* last_surface = nullptr;
   std::array<Pack, SurfaceAxis::max_count> by_x;
   std::array<Pack, SurfaceAxis::max_count> by_y;
@@ -66,7 +68,7 @@ void store_derivatives(const BatchJob& job, const State<Pack>& state, std::size_
                                                 by_y[each.parameter % surface->axes[1].count] *
                                                 state[Quantity::dynamic_pressure]
                                           : chain.effect_value(each.effect, state, each.coefficients);
-    // Where the taper is zero, the derivative is zero even if an input of the effect is missing.
+    // Where the factor is zero, the derivative is zero even if an input of the effect is missing.
     select(factor == Pack(0.0), Pack(0.0), factor * value).store(each.values + at, count);
   }
 }

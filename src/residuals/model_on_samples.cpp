@@ -65,11 +65,11 @@ std::vector<double> ModelOnSamples::parameters_of_columns() const {
   return values;
 }
 
-std::vector<bool> ModelOnSamples::linear() const {
+std::vector<bool> ModelOnSamples::linear_terms() const {
   std::vector<bool> linear;
   for (std::size_t effect = 0; effect < chain().effect_count(); ++effect) {
     for (std::size_t p = 0; p < chain().parameter_count_of(effect); ++p)
-      linear.push_back(chain().is_defect_linear(effect, p));
+      linear.push_back(chain().is_static_sum_linear(effect, p));
   }
   linear.resize(parameters().size(), false);
   return linear;

@@ -32,9 +32,10 @@ class ModelOnSamples {
   /// Parameters of the file.
   const std::vector<double>& parameters() const { return chain().parameters(); }
 
-  /// True for each parameter in which delta-p is exactly linear and which changes no other result: linear
-  /// coefficients of catalogue effects and of surfaces at the static ports, if delta-p has no minimum.
-  std::vector<bool> linear() const;
+  /// True for each parameter in which the sum of the effects at the static ports is exactly linear, and which
+  /// changes no other result (`Chain::is_static_sum_linear`): `derivative_by` has its derivatives. Delta-p is
+  /// linear in it if it has no minimum.
+  std::vector<bool> linear_terms() const;
 
   /// Evaluates the chain for one sample up to delta-p of the model.
   template <class S>
@@ -79,7 +80,7 @@ class ModelOnSamples {
   void port_pressure_plus(Quantity added, const std::vector<Batch::Input>& inputs, std::size_t count,
                           const double* parameters, double* out) const;
 
-  /// Destination of the derivatives of delta-p with respect to a parameter for which `linear()` is true.
+  /// Destination of the derivatives of delta-p with respect to a parameter of `linear_terms()`.
   Batch::Derivative derivative_by(std::size_t parameter, double* values) const;
 
   /// True if the columns that depend on coefficients were computed at these parameters.

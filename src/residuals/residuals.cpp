@@ -1,6 +1,7 @@
 #include <pcor/residuals/residuals.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <mutex>
 #include <numeric>
 #include <utility>
@@ -47,7 +48,8 @@ struct Residuals::Implementation {
   std::unique_ptr<ReferenceOnSamples> reference;
   std::vector<Batch::Input> reference_columns;
   std::vector<double> parameters;
-  std::vector<bool> linear;
+  std::vector<bool> terms;   ///< one per parameter: `ModelOnSamples::linear_terms`, if it is of delta-p alone
+  std::vector<bool> linear;  ///< one per parameter: linear term without a minimum of delta-p
   std::vector<Mask> mask;
 
   /// Derivative of the residual with respect to the speed along the beam; computed on first use.
@@ -63,13 +65,16 @@ struct Residuals::Implementation {
         reference(compared_with.on(*samples, model)),
         reference_columns(reference->columns()),
         parameters(model.parameters()),
-        linear(model.linear()) {
+        terms(model.linear_terms()),
+        linear(terms.size(), !model.chain().has_minimum()) {
     if (const ModelOnSamples* const other = reference->model()) {
       parameters.insert(parameters.end(), other->parameters().begin(), other->parameters().end());
-      const std::vector<bool> more = other->linear();
-      linear.insert(linear.end(), more.begin(), more.end());
+      const std::vector<bool> more = other->linear_terms();
+      terms.insert(terms.end(), more.begin(), more.end());
+      linear.resize(terms.size(), !other->chain().has_minimum());
     }
-    if (!compared_with.is_static_pressure()) linear.assign(linear.size(), false);
+    if (!compared_with.is_static_pressure()) terms.assign(terms.size(), false);
+    std::transform(terms.begin(), terms.end(), linear.begin(), linear.begin(), std::logical_and<>());
   }
 
  private:
@@ -143,7 +148,7 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
   std::vector<Batch::Derivative> by_reference;
   for (std::size_t k = 0; k < requested.size(); ++k) {
     double* const column = derivatives + k * count;
-    if (!impl.linear[requested[k]]) {
+    if (!impl.terms[requested[k]]) {
       curved.push_back(k);
     } else if (requested[k] < of_model) {
       by_model.push_back(impl.model.derivative_by(requested[k], column));
@@ -175,12 +180,12 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
     const double predicted = laser->predicted_at(samples[i], parameters);
     residual[i] = sensitivity[samples[i]] * (recorded[samples[i]] - predicted);
   }
-  // In some coefficients delta-p is linear, and the reading depends on them through delta-p alone.
-  const std::vector<bool> linear = impl.model.linear();
+  // The reading depends on the coefficients of linear terms through delta-p alone.
+  const std::vector<bool> terms = impl.model.linear_terms();
   std::vector<std::size_t> curved;  // indices in `requested`
   std::vector<Batch::Derivative> by_defect;
   for (std::size_t k = 0; k < requested.size(); ++k) {
-    if (requested[k] < linear.size() && linear[requested[k]])
+    if (requested[k] < terms.size() && terms[requested[k]])
       by_defect.push_back(impl.model.derivative_by(requested[k], derivatives + k * count));
     else
       curved.push_back(k);
@@ -189,7 +194,7 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
     std::vector<double> store;
     impl.model.batch().differentiate(impl.model.gathered(samples, count, parameters, store), by_defect, count,
                                      parameters);
-    const std::vector<Jet> constant(parameters, parameters + linear.size());
+    const std::vector<Jet> constant(parameters, parameters + terms.size());
     for (std::size_t i = 0; i < count; ++i) {
       const double slope = laser->predicted_at(samples[i], constant.data(), Jet(0.0, 0)).v[0];
       for (const Batch::Derivative& each : by_defect) each.values[i] *= slope;

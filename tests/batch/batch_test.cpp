@@ -326,7 +326,7 @@ std::vector<Quantity> quantities_of(const Arrays& arrays) {
   return quantities;
 }
 
-/// Runs a kernel for all derivatives of a model in which delta-p is linear, together with delta-p.
+/// Runs a kernel for all derivatives of delta-p by coefficients of linear terms, together with delta-p.
 std::vector<double> defect_and_derivatives(BatchKernel kernel, const Batch& batch, const Arrays& recorded,
                                            std::vector<std::vector<double>>& found) {
   const std::size_t count = recorded.begin()->second.size();
@@ -338,7 +338,7 @@ std::vector<double> defect_and_derivatives(BatchKernel kernel, const Batch& batc
   std::vector<BatchDerivative> derivatives;
   for (std::size_t effect = 0; effect < chain.effect_count(); ++effect) {
     for (std::size_t p = 0; p < chain.parameter_count_of(effect); ++p) {
-      if (!chain.is_defect_linear(effect, p)) continue;
+      if (!chain.is_static_sum_linear(effect, p)) continue;
       coefficients.push_back(chain.unit_coefficients(effect, p, chain.parameters().data()));
       derivatives.push_back({effect, p, nullptr, nullptr});
     }
@@ -364,8 +364,8 @@ std::vector<double> defect_and_derivatives(BatchKernel kernel, const Batch& batc
   return defect;
 }
 
-/// Compares derivatives of delta-p with differences, in every kernel: a step of any size of a coefficient in
-/// which delta-p is linear gives the derivative. @return derivatives that differ from zero
+/// Compares derivatives of delta-p with differences, in every kernel: a step of any size of a coefficient of
+/// a linear term gives the derivative. @return derivatives that differ from zero
 std::size_t expect_derivatives_of(const Model& model, const Arrays& recorded) {
   const Batch batch(model, quantities_of(recorded));
   const Chain& chain = batch.chain();
@@ -377,20 +377,26 @@ std::size_t expect_derivatives_of(const Model& model, const Arrays& recorded) {
     auto column = found.begin();
     for (std::size_t effect = 0; effect < chain.effect_count(); ++effect) {
       for (std::size_t p = 0; p < chain.parameter_count_of(effect); ++p) {
-        if (!chain.is_defect_linear(effect, p)) continue;
+        if (!chain.is_static_sum_linear(effect, p)) continue;
         std::vector<double> moved = chain.parameters();
         constexpr double step = 1e-4;
         moved[chain.first_parameter_of(effect) + p] += step;
         std::vector<double> stepped(count);
         batch.run(inputs_of(recorded), {{Quantity::static_defect, stepped.data()}}, count, moved.data());
+        moved[chain.first_parameter_of(effect) + p] -= 2.0 * step;
+        std::vector<double> back(count);
+        batch.run(inputs_of(recorded), {{Quantity::static_defect, back.data()}}, count, moved.data());
         double squares = 0.0;
         for (std::size_t i = 0; i < count; ++i) {
           EXPECT_EQ(std::isnan((*column)[i]), std::isnan(defect[i])) << i;
           // A step may make delta-p larger than the dynamic pressure.
-          if (std::isnan(stepped[i]) || std::isnan(defect[i])) continue;
+          if (std::isnan(stepped[i]) || std::isnan(defect[i]) || std::isnan(back[i])) continue;
           // The difference of two values of delta-p is rounded to 1e-13 hPa, over the step of 1e-4.
           const double difference = (stepped[i] - defect[i]) / step;
-          EXPECT_NEAR((*column)[i], difference, 1e-8 + 1e-8 * std::abs(difference))
+          const double tolerance = 1e-8 + 1e-8 * std::abs(difference);
+          // A step that reaches or leaves the minimum is not linear.
+          if (std::abs(difference - (defect[i] - back[i]) / step) > 2.0 * tolerance) continue;
+          EXPECT_NEAR((*column)[i], difference, tolerance)
               << model.effects[effect].id << " " << p << " of sample " << i;
           squares += difference * difference;
         }
@@ -428,6 +434,14 @@ TEST(Batch, DerivativesEqualDifferencesForEveryEffectAtTheStaticPorts) {
   EXPECT_GE(linear, 18U);
 }
 
+TEST(Batch, DerivativesWithMinimumAndTaper) {
+  const Arrays recorded = samples_of_all_inputs(300);
+  Model model = gv();
+  model.policy.taper_below = 60.0;
+  model.policy.minimum = 0.5;
+  EXPECT_EQ(expect_derivatives_of(model, recorded), gv().effects.size());
+}
+
 TEST(Batch, DerivativesOfSurfacesBesideOtherEffects) {
   const Arrays recorded = samples_of_all_inputs(300);
   Model model = gv();
@@ -449,6 +463,40 @@ TEST(Batch, DerivativesOfSurfacesBesideOtherEffects) {
     ++coefficients;
   }
   EXPECT_EQ(expect_derivatives_of(model, recorded), coefficients);
+}
+
+TEST(Batch, DerivativesAreZeroAtTheMinimumOfThePolicy) {
+  const Arrays recorded = samples_of_all_inputs(500);
+  Model model = gv();
+  model.policy = {};
+  std::vector<double> defect(500);
+  std::vector<double> column(500);
+  const auto run = [&] {
+    const Batch batch(model, quantities_of(recorded));
+    batch.run(inputs_of(recorded), {{Quantity::static_defect, defect.data()}}, 500);
+    batch.differentiate(inputs_of(recorded), {{0, 0, column.data()}}, 500);
+  };
+  run();
+  std::vector<double> finite;
+  std::copy_if(defect.begin(), defect.end(), std::back_inserter(finite),
+               [](double value) { return !std::isnan(value); });
+  ASSERT_GT(finite.size(), 100U);
+  std::nth_element(finite.begin(), finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2),
+                   finite.end());
+  const std::vector<double> unlimited = column;
+  // Half of the samples are at the minimum.
+  model.policy.minimum = finite[finite.size() / 2];
+  const std::vector<double> free_defect = defect;
+  run();
+  std::size_t limited = 0;
+  for (std::size_t i = 0; i < 500; ++i) {
+    if (std::isnan(free_defect[i])) continue;
+    const bool is_limited = free_defect[i] < model.policy.minimum;
+    limited += is_limited ? 1 : 0;
+    EXPECT_EQ(column[i], is_limited ? 0.0 : unlimited[i]) << i;
+  }
+  EXPECT_GT(limited, finite.size() / 3);
+  EXPECT_LT(limited, finite.size());
 }
 
 TEST(Batch, DerivativesUseTheGivenCoefficients) {
@@ -490,9 +538,6 @@ TEST(Batch, DerivativesThatDoNotExistAreRefused) {
   const std::size_t effects = gv().effects.size();
   expect_refused(gv(), effects, 0);
   expect_refused(gv(), 0, 1);
-  Model with_minimum = gv();
-  with_minimum.policy.minimum = 0.5;
-  expect_refused(with_minimum, 0, 0);
   Model with_others = gv();
   ModelEffect formula;
   formula.id = "fairing";

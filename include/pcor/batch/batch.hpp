@@ -36,8 +36,8 @@ class Batch {
   /// for each sample.
   struct Derivative {
     std::size_t effect = 0;     ///< index of the effect in the model
-    std::size_t parameter = 0;  ///< index of the coefficient in the effect; the defect must be linear in it
-                                ///< (`Chain::is_defect_linear`)
+    std::size_t parameter = 0;  ///< index of the coefficient in the effect; the effects at the static ports
+                                ///< must be linear in it (`Chain::is_static_sum_linear`)
     double* values = nullptr;
   };
 
@@ -61,10 +61,11 @@ class Batch {
   }
 
   /// Derivatives of delta-p of the model, hPa per unit of the coefficient, with respect to coefficients in
-  /// which it is linear, at the coefficients `parameters`. They include the taper, and are exact; NaN where
-  /// delta-p is. Inputs as for `run`; `values` must not overlap an input or those of another derivative. May
-  /// be called by several threads concurrently.
-  /// @throws Error if an input is missing, or if delta-p is not linear in a coefficient or has no such
+  /// which the effects at the static ports are linear, at the coefficients `parameters`. They include the
+  /// taper, and are exact; zero where delta-p is raised to its minimum; NaN where delta-p is. Inputs as for
+  /// `run`; `values` must not overlap an input or those of another derivative. May be called by several
+  /// threads concurrently.
+  /// @throws Error if an input is missing, or if the effects are not linear in a coefficient or have no such
   /// coefficient.
   void differentiate(const std::vector<Input>& inputs, const std::vector<Derivative>& derivatives,
                      std::size_t samples, const double* parameters = nullptr) const {

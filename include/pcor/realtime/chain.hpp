@@ -239,11 +239,16 @@ class Chain : public BoundModel {
         state, flags, Quality::lams_missing);
   }
 
-  /// True if delta-p of the model is exactly linear in a coefficient: one of an effect at the static ports
-  /// (`is_linear`), if the policy has no minimum of delta-p.
-  bool is_defect_linear(std::size_t effect, std::size_t parameter) const {
-    return location_of(effect) == EffectLocation::static_defect && is_linear(effect, parameter) &&
-           !has_minimum();
+  /// True if the sum of the effects at the static ports is exactly linear in a coefficient. Delta-p is then
+  /// linear in it, except for a change from or to the minimum of the policy.
+  bool is_static_sum_linear(std::size_t effect, std::size_t parameter) const {
+    return location_of(effect) == EffectLocation::static_defect && is_linear(effect, parameter);
+  }
+
+  /// Where the policy raises delta-p to its minimum.
+  template <class S, class P>
+  auto is_at_minimum(const State<S>& state, const P* parameters) const {
+    return sum<S>(EffectLocation::static_defect, state, parameters) < S(policy_.minimum);
   }
 
   /// Taper factor of the effects at the static ports: 1 without a taper.
@@ -256,6 +261,7 @@ class Chain : public BoundModel {
 
   /// Minimum of delta-p by the policy, hPa; minus infinity if the policy has no minimum.
   double minimum_defect() const { return policy_.minimum; }
+  bool has_minimum() const { return policy_.minimum > -std::numeric_limits<double>::infinity(); }
 
   /// The recovery factor at Mach number `mach`, with the effects that act on it.
   template <class S, class P>
@@ -389,8 +395,6 @@ class Chain : public BoundModel {
   static auto exceeds_dynamic_pressure(const S& defect, const S& q) {
     return defect > q || defect < -q;
   }
-
-  bool has_minimum() const { return policy_.minimum > -std::numeric_limits<double>::infinity(); }
 
   template <class R, class S>
   R taper(const R& defect, const S& q) const {
