@@ -11,6 +11,7 @@ namespace pcor {
 namespace {
 
 constexpr std::size_t max_name = 256;  // limit of netCDF
+constexpr std::size_t min_part = 4;    // minimum length of a part that suggests a name
 
 std::string lower(std::string_view text) {
   std::string result(text);
@@ -53,7 +54,8 @@ std::vector<std::string> suggest(std::string_view wrong, const std::vector<std::
     const std::size_t changes = changes_between(requested, candidate);
     const std::size_t prefix = shared_prefix(requested, candidate);
     const bool one_begins_the_other = prefix >= 2 && prefix == std::min(requested.size(), candidate.size());
-    if (2 * changes <= std::max(requested.size(), candidate.size()) || one_begins_the_other)
+    const bool is_part = requested.size() >= min_part && candidate.find(requested) != std::string::npos;
+    if (2 * changes <= std::max(requested.size(), candidate.size()) || one_begins_the_other || is_part)
       candidates.emplace_back(changes, -static_cast<std::ptrdiff_t>(prefix), name);
   }
   std::sort(candidates.begin(), candidates.end());

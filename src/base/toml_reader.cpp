@@ -44,6 +44,12 @@ std::optional<std::size_t> place_of_deep_key(std::string_view text) {
   return {};
 }
 
+// An empty text or list.
+bool is_empty(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get().empty();
+  return node.is_array() && node.as_array()->empty();
+}
+
 }  // namespace
 
 std::vector<Entry> entries_of(const toml::table& table, const std::string& title) {
@@ -56,10 +62,10 @@ std::vector<Entry> entries_of(const toml::table& table, const std::string& title
   return entries;
 }
 
-std::optional<Entry> entry_of(const toml::table& table, std::string_view key) {
+std::optional<Entry> entry_of(const toml::table& table, std::string_view key, const std::string& title) {
   const auto found = table.find(key);
   if (found == table.end()) return {};
-  return Entry{std::string(key), found->first.source().begin, &found->second, ""};
+  return Entry{std::string(key), found->first.source().begin, &found->second, title};
 }
 
 std::string_view kind_of(const toml::node& node) {
@@ -134,12 +140,21 @@ void TomlReader::refuse(const Entry& entry, const Names& known) const {
   fail(entry.position, fmt::format("there is no {}; {}", unknown(entry), suggestion_text(entry.key, known)));
 }
 
-void TomlReader::each(const toml::table& table, const std::string& title, const Actions& actions) const {
+void TomlReader::refuse_unknown(const toml::table& table, const std::string& title,
+                                const Names& known) const {
   for (const Entry& entry : entries_of(table, title)) {
-    const auto action = std::find_if(actions.begin(), actions.end(),
-                                     [&](const auto& candidate) { return candidate.first == entry.key; });
-    if (action == actions.end()) refuse(entry, names_of(actions, &Actions::value_type::first));
-    action->second(entry);
+    if (std::find(known.begin(), known.end(), entry.key) == known.end()) refuse(entry, known);
+  }
+}
+
+void TomlReader::each(const toml::table& table, const std::string& title, const Actions& actions,
+                      const std::map<std::string, std::string>& required) const {
+  refuse_unknown(table, title, names_of(actions, &Actions::value_type::first));
+  for (const auto& [key, action] : actions) {
+    const std::optional<Entry> entry = entry_of(table, key, title);
+    const auto missing = required.find(key);
+    if (missing != required.end() && (!entry || is_empty(*entry->node))) fail(table, missing->second);
+    if (entry) action(*entry);
   }
 }
 

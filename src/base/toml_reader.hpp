@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,7 +32,7 @@ struct Entry {
 std::vector<Entry> entries_of(const toml::table& table, const std::string& title = "");
 
 /// The entry of that key, if the table has it.
-std::optional<Entry> entry_of(const toml::table& table, std::string_view key);
+std::optional<Entry> entry_of(const toml::table& table, std::string_view key, const std::string& title = "");
 
 /// Kind of a node for messages: "a table", "a number".
 std::string_view kind_of(const toml::node& node);
@@ -92,8 +93,13 @@ class TomlReader {
   /// Name of the key for `refuse`.
   virtual std::string unknown(const Entry& entry) const { return "key " + called(entry); }
 
-  /// Calls the action of each key; a key without an action is an error.
-  void each(const toml::table& table, const std::string& title, const Actions& actions) const;
+  /// Refuses the first key, in the order of the text, that is not `known`.
+  void refuse_unknown(const toml::table& table, const std::string& title, const Names& known) const;
+
+  /// Refuses keys without an action, then calls the actions in their own order: of a section that depends on
+  /// another after that of the other. @param required error for each key that must be given, and not be empty
+  void each(const toml::table& table, const std::string& title, const Actions& actions,
+            const std::map<std::string, std::string>& required = {}) const;
 
   /// Requires the entry `format` of a file with this value. @param what the file is, with an article
   void require_format(const toml::table& root, std::string_view what, std::string_view format) const;

@@ -1,5 +1,7 @@
 #include "campaign/model_parameters.hpp"
 
+#include <cmath>
+
 #include <pcor/effects/catalogue.hpp>
 
 namespace pcor::internal {
@@ -28,6 +30,12 @@ std::vector<std::size_t> free_parameters(const ModelDefinition& model) {
     }
   }
   return free;
+}
+
+Eigen::MatrixXd stated_covariance(const ModelDefinition& model) {
+  const std::vector<double> stated = uncertainty_of(model).covariance;
+  const auto size = static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(stated.size()))));
+  return Eigen::Map<const Eigen::MatrixXd>(stated.data(), size, size);
 }
 
 EffectLocation location_of(const ModelEffect& effect) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <cstddef>
 #include <optional>
 #include <string_view>
@@ -19,6 +20,10 @@ std::optional<std::size_t> first_parameter_of(const ModelDefinition& model, std:
 /// Indices, among all parameters of a model, of those that a diagnosis fits: neither fixed nor coefficients
 /// of a surface, which are held.
 std::vector<std::size_t> free_parameters(const ModelDefinition& model);
+
+/// Covariance of the parameters of all effects from the standard errors and the covariance in the file, zero
+/// if not stated.
+Eigen::MatrixXd stated_covariance(const ModelDefinition& model);
 
 /// Location of an effect.
 EffectLocation location_of(const ModelEffect& effect);

@@ -68,14 +68,12 @@ std::size_t position_of(const ModelDefinition& model, const SensorDoubt& doubt) 
 /// Square root of the stated covariance of a law: a row for each parameter of its effects, a column for each
 /// parameter with an error.
 Eigen::MatrixXd root_of_law(const ModelDefinition& law) {
-  const std::vector<double> stated = uncertainty_of(law).covariance;
-  const auto size = static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(stated.size()))));
-  const Eigen::Map<const Eigen::MatrixXd> covariance(stated.data(), size, size);
+  const Eigen::MatrixXd covariance = stated_covariance(law);
   std::vector<Eigen::Index> known;
-  for (Eigen::Index k = 0; k < size; ++k) {
+  for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
     if (covariance(k, k) > 0.0) known.push_back(k);
   }
-  if (known.empty()) return Eigen::MatrixXd::Zero(size, 0);
+  if (known.empty()) return Eigen::MatrixXd::Zero(covariance.rows(), 0);
   return covariance_root(covariance)(Eigen::all, known);
 }
 

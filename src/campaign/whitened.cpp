@@ -11,7 +11,6 @@
 #include "numerics/noise_covariance.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "parallel/distributed_quantile.hpp"
-#include "parallel/symmetric_part.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -153,10 +152,8 @@ Eigen::VectorXd WhitenedSystem::by_minutes(const std::function<Eigen::VectorXd(s
 }
 
 void sum_up(WhitenedSystem& scores) {
-  scores.information = scores.share
-                           .sum_of_each_flight<SymmetricPart>(
-                               [&](std::size_t f) { return SymmetricPart(products_of(scores.rows[f])); })
-                           .matrix;
+  scores.information = scores.share.sum_of_each_flight<Eigen::MatrixXd>(
+      [&](std::size_t f) { return products_of(scores.rows[f]); });
 }
 
 void marginalize(WhitenedSystem& system, Eigen::Index count) {
@@ -240,16 +237,13 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
   sum_up(scores);
   scores.plain = scores.information;
   if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.drifts(); })) {
-    scores.plain = share
-                       .sum_of_each_flight<SymmetricPart>([&](std::size_t f) {
-                         NoiseModel still = noise[f];
-                         still.slow = {};
-                         return SymmetricPart(products_of(
-                             noise[f].drifts() && !is_white(f)
-                                 ? whitened(side_by_side(columns[f], residuals[f]), bins[f], still, 0)
-                                 : scores.rows[f]));
-                       })
-                       .matrix;
+    scores.plain = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+      NoiseModel still = noise[f];
+      still.slow = {};
+      return products_of(noise[f].drifts() && !is_white(f)
+                             ? whitened(side_by_side(columns[f], residuals[f]), bins[f], still, 0)
+                             : scores.rows[f]);
+    });
   }
   return scores;
 }

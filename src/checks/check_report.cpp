@@ -107,7 +107,7 @@ constexpr Figure figures[] = {
     {"spectrum", Figure::Kind::over_time, "Analysed series", "The series of the spectrum in time.", "", "",
      "series"}};
 
-/// Adds the pictures of a check that have values: a report refuses an empty one.
+/// Adds the pictures of a check that have values.
 void add_figures(const CheckResult& result, Report& report) {
   using Kind = Figure::Kind;
   for (const Figure& figure : figures) {
@@ -160,8 +160,9 @@ ReportTable verdicts(const Checks& checks) {
 DotPanel forest(const Checks& checks) {
   DotPanel panel{
       "Checks at a glance",
-      "Deciding number of each check divided by its tolerance, with its standard error. A square in the band "
-      "is consistent, a cross inconsistent, an open square inconclusive.",
+      "Deciding number of each check divided by its tolerance; the bar is one standard error, the verdict "
+      "uses two or three. A square in the band is consistent, a cross inconsistent, an open square "
+      "inconclusive.",
       {""},
       {},
       "number / tolerance"};
@@ -213,9 +214,11 @@ Report check_report(const Checks& checks) {
   const std::size_t consistent = names[CheckVerdict::consistent].size();
   const std::size_t inconclusive = names[CheckVerdict::inconclusive].size();
   const std::size_t ran = consistent + inconclusive + inconsistent.size();
-  report.title = inconsistent.empty() ? "No check is inconsistent"
-                                      : fmt::format("{} of {} checks inconsistent: {}", inconsistent.size(),
-                                                    ran, fmt::join(inconsistent, ", "));
+  report.title = !inconsistent.empty() ? fmt::format("{} of {} checks inconsistent: {}", inconsistent.size(),
+                                                     ran, fmt::join(inconsistent, ", "))
+                 : inconclusive > 0    ? fmt::format("{} of {} checks inconclusive", inconclusive, ran)
+                 : consistent > 0      ? "No check is inconsistent"
+                                       : "No check ran";
   report.subtitle = "Independent checks" + (checks.model.empty() ? "" : " of " + checks.model);
   report.summary.insert(
       report.summary.begin(),

@@ -59,7 +59,7 @@ void show_layers(const std::vector<FlightLayers>& flights, CheckResult& result) 
       errors.rows.push_back({flight.flight, utc_text(layer.begin), kelvin(layer.errors.height_noise),
                              kelvin(layer.errors.pressure_noise), kelvin(layer.errors.static_bias),
                              kelvin(layer.errors.static_change), kelvin(layer.errors.gradient)});
-      result.bars.push_back({fmt::format("{} {:.0f} to {:.0f} m", utc_text(layer.begin, "%H:%M"),
+      result.bars.push_back({fmt::format("{}, {:.0f} to {:.0f} m", utc_text(layer.begin, "%H:%M"),
                                          layer.height_begin, layer.height_end),
                              layer.difference(), layer.errors.total()});
     }

@@ -245,9 +245,9 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   decide(judged_of(fit, min_static_difference), result);
   result.finding = fmt::format(
       "The static pressure of {} minus static pressure of the model is {} on average, with slope {:.6f} +- "
-      "{:.6f} and rms {:.3f} hPa about the orthogonal line.",
-      first->second_name, with_error(fit.difference, "hPa", 3), fit.orthogonal.slope,
-      fit.orthogonal.slope_error, fit.orthogonal.rms);
+      "{:.6f} and rms {:.3f} hPa about the line.",
+      first->second_name, with_error(fit.difference, "hPa", 3), fit.ordinary.slope, fit.ordinary.slope_error,
+      fit.ordinary.rms);
   if (!first->second_corrected) {
     // The defect of the second system is unknown, so a difference does not contradict the model.
     withhold("the second system is uncorrected, so it does not test the model", result);

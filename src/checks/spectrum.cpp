@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include <pcor/numerics/line_fit.hpp>
 #include <pcor/numerics/noise.hpp>
@@ -10,7 +9,7 @@
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
 #include "numerics/missing.hpp"
-#include "numerics/windowed_transform.hpp"
+#include "numerics/spectrum.hpp"
 #include "roles/resolution.hpp"
 
 namespace pcor::internal {
@@ -58,14 +57,11 @@ struct Spectrum {
   double frequency(std::size_t k) const { return static_cast<double>(k + 1) / (segment_length * step); }
 };
 
-/// One-sided periodogram of a detrended segment with Hann's window. It sums to the variance.
-std::vector<double> periodogram(const double* values, double step) {
-  const auto [amplitudes, power] = windowed_transform(values, segment_length);
+/// One-sided power spectral density of a segment. It sums to the variance.
+std::vector<double> density_of(const double* values, double step) {
+  const auto [squares, window] = periodogram(values, segment_length);
   std::vector<double> density(segment_length / 2);
-  for (std::size_t k = 0; k < density.size(); ++k) {
-    const double sides = k + 1 == segment_length / 2 ? 1.0 : 2.0;
-    density[k] = sides * std::norm(amplitudes[k + 1]) * step / power;
-  }
+  for (std::size_t k = 0; k < density.size(); ++k) density[k] = squares[k + 1] * step / window;
   return density;
 }
 
@@ -75,10 +71,9 @@ Spectrum spectrum_of(const CheckedFlights& flights, const Source& source) {
   for (const CheckedFlight& flight : flights) {
     const std::vector<double> values = source.series(flight);
     if (values.empty() || !has_step(flight, spectrum.step)) continue;
-    for (const Segment& segment : contiguous_segments(values, flight.air.time(), flight.air.step())) {
-      for (std::size_t first = 0; first + segment_length <= segment.count; first += segment_length / 2)
-        spectrum.periodograms.push_back(periodogram(&values[segment.first + first], spectrum.step));
-    }
+    const auto segments = contiguous_segments(values, flight.air.time(), flight.air.step());
+    for (const std::size_t first : overlapping_parts(segments, segment_length))
+      spectrum.periodograms.push_back(density_of(&values[first], spectrum.step));
   }
   return spectrum;
 }

@@ -72,6 +72,7 @@ void decide(std::vector<TestStatistic> numbers, CheckResult& result) {
 void withhold(const std::string& reason, CheckResult& result) {
   result.verdict = CheckVerdict::inconclusive;
   result.decided += ", but " + reason;
+  result.withheld = reason;
 }
 
 void add_number(const std::string& name, const std::string& unit, const Estimate& number,

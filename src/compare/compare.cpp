@@ -319,6 +319,15 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   }
   result.notes = notes_of_flights(notes, flights.size());
   if (result.masks[0] == 0) return result;
+  for (const Pairing& each : pairings) {
+    const ModelDefinition* const other = each.reference->model();
+    const std::string own = each.compared->model.variable_of(Quantity::static_pressure);
+    if (other == nullptr || own.empty() || other->variable_of(Quantity::static_pressure) != own) continue;
+    result.notes.push_back(warning_note(
+        fmt::format("the reference {} has the static pressure {} of the model '{}': the residual is the "
+                    "difference of two laws and tests neither; give a system with another static pressure",
+                    each.reference->name(), own, each.compared->name)));
+  }
   for (std::size_t m = 0; m < pairings.size(); ++m) {
     add_variances(m, flights.share(), records, threads, parts);
     ModelSums sums;

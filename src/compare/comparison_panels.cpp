@@ -15,7 +15,7 @@
 #include "report/columns.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
-#include "residuals/wind.hpp"
+#include "residuals/report_flight.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -63,18 +63,7 @@ void ComparisonPanels::add(const std::string& name, const std::string& title, co
 ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(comparison) {
   for (const FlightResiduals& flight : comparison.flights) {
     const std::vector<std::size_t> records = used(flight);
-    if (records.empty()) continue;
-    report_.flight_starts.push_back(report_.time.size());
-    report_.flight_names.push_back(flight.samples->name);
-    for (const std::size_t i : records) report_.time.push_back(flight.samples->time[i]);
-    for (const Interval& interval : flight.samples->intervals) {
-      const bool met = std::any_of(records.begin(), records.end(), [&](std::size_t i) {
-        return flight.samples->time[i] >= interval.begin && flight.samples->time[i] < interval.end;
-      });
-      if (met)
-        report_.intervals.push_back(
-            {std::string(info_of(interval.regime).name), interval.begin, interval.end});
-    }
+    if (!records.empty()) add_flight(report_, *flight.samples, records);
   }
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
     add(residual_column(m), title_of("residual", comparison, comparison.models[m]),
@@ -120,36 +109,20 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
 
 void ComparisonPanels::add_panels() {
   const ModelComparison& last = comparison_.models.back();
-  TimePanel time;
-  time.title = "Residual in time";
-  time.caption = "Residual: reference minus model; regimes are shaded.";
-  time.columns = residuals_;
-  time.axis = "residual";
-  report_.items.emplace_back(std::move(time));
+  report_.items.emplace_back(TimePanel{
+      "Residual in time", "Residual: reference minus model; regimes are shaded.", residuals_, "residual"});
   add_strip(report_);
-  RegimeTable regimes;
-  regimes.title = "By regime";
-  regimes.caption = "Bias and rms of the residual in each regime.";
-  regimes.columns = residuals_;
-  report_.items.emplace_back(std::move(regimes));
+  report_.items.emplace_back(
+      RegimeTable{"By regime", "Bias and rms of the residual in each regime.", residuals_});
   add_regimes(report_, residuals_);
-  BinnedPanel binned;
-  binned.title = "Residual against a variable";
-  binned.caption =
-      "A slope or curvature larger than the error bars indicates a missing effect or a wrong coefficient.";
-  binned.y = residuals_;
-  binned.axis = "residual";
-  binned.x_choices = variables_;
-  binned.autocorrelation_time = std::max(1.0, last.autocorrelation_time);
-  report_.items.emplace_back(std::move(binned));
-  PlanePanel plane;
-  plane.title = title_of("Residual over Mach number and pressure", comparison_, last);
-  plane.caption = "Errors of the model over its envelope: a region of one colour has a bias.";
-  plane.x = "mach";
-  plane.y = "pressure";
-  plane.colour = residuals_.back();
-  plane.reverse_y = true;
-  report_.items.emplace_back(std::move(plane));
+  report_.items.emplace_back(BinnedPanel{
+      "Residual against a variable",
+      "A slope or curvature larger than the error bars indicates a missing effect or a wrong coefficient.",
+      residuals_, variables_, std::max(1.0, last.autocorrelation_time), "residual"});
+  report_.items.emplace_back(
+      PlanePanel{title_of("Residual over Mach number and pressure", comparison_, last),
+                 "Errors of the model over its envelope: a region of one colour has a bias.", "mach",
+                 "pressure", residuals_.back()});
   add_distributions(report_, residuals_);
   std::vector<ReportBarb> wind;
   for (const FlightResiduals& flight : comparison_.flights) {
@@ -161,39 +134,30 @@ void ComparisonPanels::add_panels() {
             "the direction.",
             residuals_.back(), std::move(wind));
   if (!comparison_.is_static_pressure) return;
-  TimePanel defect;
-  defect.title = comparison_.models.size() == 1 ? "Delta-p of the reference and of the model"
-                                                : "Delta-p of the reference and of the models";
-  defect.caption =
-      fmt::format("Delta-p implied by the reference ({}), and delta-p of the model.", comparison_.reference);
-  defect.columns = defects_;
-  defect.axis = "delta-p";
-  report_.items.emplace_back(std::move(defect));
-  PairPanel pair;
-  pair.title = title_of("Delta-p of the reference against that of the model", comparison_, last);
-  pair.caption = "A perfect model lies on the line.";
-  pair.x = defects_.back();
-  pair.y = "wanted";
-  pair.lines = {{1.0, 0.0, "equal"}};
-  report_.items.emplace_back(std::move(pair));
+  report_.items.emplace_back(TimePanel{
+      comparison_.models.size() == 1 ? "Delta-p of the reference and of the model"
+                                     : "Delta-p of the reference and of the models",
+      fmt::format("Delta-p implied by the reference ({}), and delta-p of the model.", comparison_.reference),
+      defects_, "delta-p"});
+  report_.items.emplace_back(
+      PairPanel{title_of("Delta-p of the reference against that of the model", comparison_, last),
+                "A perfect model lies on the line.",
+                defects_.back(),
+                "wanted",
+                {{1.0, 0.0, "equal"}}});
 }
 
 void ComparisonPanels::add_pairs() {
   const auto note = [](const LineFit& fit) {
     return fmt::format(
-        "Slope {:.5f} +- {:.5f}, offset {:.3f} hPa, rms {:.3f} hPa, mean difference {:+.3f} hPa over {} "
-        "samples; the errors assume independent samples.",
-        fit.slope, fit.slope_error, fit.offset, fit.rms, fit.mean_difference, fit.samples);
+        "Slope {:.5f}, offset {:.3f} hPa, rms {:.3f} hPa, mean difference {:+.3f} hPa over {} samples; the "
+        "report of check states their errors, which allow for autocorrelation.",
+        fit.slope, fit.offset, fit.rms, fit.mean_difference, fit.samples);
   };
   const auto pair = [&](const char* title, const std::string& caption, const char* x, const char* y,
                         const LineFit& fit) {
-    PairPanel panel;
-    panel.title = title;
-    panel.caption = caption + note(fit);
-    panel.x = x;
-    panel.y = y;
-    panel.lines = {{1.0, 0.0, "equal"}, {fit.slope, fit.offset, "fitted line"}};
-    report_.items.emplace_back(std::move(panel));
+    const std::vector<ReportLine> lines{{1.0, 0.0, "equal"}, {fit.slope, fit.offset, "fitted line"}};
+    report_.items.emplace_back(PairPanel{title, caption + note(fit), x, y, lines});
   };
   if (comparison_.total_pressure) {
     add("total", "total pressure of the model's system", &FlightResiduals::total_pressure);
@@ -212,15 +176,13 @@ void ComparisonPanels::add_pairs() {
   reference.title = "static pressure of the reference";
   const std::vector<double>& residual = report_.columns[comparison_.models.size() - 1].values;
   for (std::size_t i = 0; i < reference.values.size(); ++i) reference.values[i] += residual[i];
-  pair("Corrected static pressures", "The line is an orthogonal fit. ", "corrected", "reference_corrected",
-       comparison_.models.back().static_pressure);
+  pair("Corrected static pressures", "The line is an orthogonal fit, its rms that of the distances from it. ",
+       "corrected", "reference_corrected", comparison_.models.back().static_pressure);
 }
 
 void ComparisonPanels::add_tables() {
-  ReportTable masks;
-  masks.title = "Samples";
-  masks.caption = "Each sample is counted under the first reason that applies.";
-  masks.headers = {"samples", "why"};
+  ReportTable masks{
+      "Samples", "Each sample is counted under the first reason that applies.", {"samples", "why"}};
   for (std::size_t i = 0; i < mask_count; ++i) {
     if (comparison_.masks[i] > 0)
       masks.rows.push_back({std::to_string(comparison_.masks[i]),
@@ -228,20 +190,19 @@ void ComparisonPanels::add_tables() {
   }
   report_.items.emplace_back(std::move(masks));
   for (const ModelComparison& model : comparison_.models) {
-    ReportTable worst;
-    worst.title = title_of("The worst minutes", comparison_, model);
-    worst.caption = "The minutes with the largest rms residual, and their regimes.";
-    worst.headers = {"flight", "begin (UTC)", "end", "bias, hPa", "rms, hPa", "regimes"};
+    ReportTable worst{title_of("The worst minutes", comparison_, model),
+                      "The minutes with the largest rms residual, and their regimes.",
+                      {"flight", "begin (UTC)", "end", "bias, hPa", "rms, hPa", "regimes"}};
     for (const WorstInterval& interval : model.worst) {
       worst.rows.push_back({interval.flight, utc_text(interval.begin), utc_text(interval.end, "%H:%M:%S"),
                             fmt::format("{:.3f}", interval.statistics.bias),
                             fmt::format("{:.3f}", interval.statistics.rms), interval.regimes});
     }
     report_.items.emplace_back(std::move(worst));
-    ReportTable bands;
-    bands.title = title_of("By band", comparison_, model);
-    bands.caption = "Bands with fewer than 30 samples are omitted.";
-    bands.headers = {"band", "samples", "bias, hPa", "std. error", "rms, hPa", "rms / noise"};
+    ReportTable bands{title_of("By band", comparison_, model),
+                      "Bands with fewer than 30 samples are omitted.",
+                      {"band", "samples", model.is_by_gps() ? "GPS bias, hPa" : "bias, hPa", "std. error",
+                       "rms, hPa", model.is_by_gps() ? "rms / max noise" : "rms / noise"}};
     for (const PartStatistics& band : model.bands) {
       bands.rows.push_back(
           {band.name, std::to_string(band.statistics.samples), fmt::format("{:.3f}", band.statistics.bias),
@@ -252,16 +213,29 @@ void ComparisonPanels::add_tables() {
   }
 }
 
+namespace {
+
+/// Comparison of the rms with the noise; by GPS the noise contains errors of the model.
+std::string over_noise(const ModelComparison& model) {
+  if (model.is_by_gps()) return "";
+  return fmt::format(", {:.1f} times the noise of {:.3f} hPa", model.all.rms_over_noise(),
+                     model.all.noise_rms);
+}
+
+}  // namespace
+
 void ComparisonPanels::summarise() {
   for (const ModelComparison& model : comparison_.models) {
     // Differences over time have no R2.
     const std::string r_squared =
-        std::isfinite(model.r_squared) ? fmt::format("; R2 {:.4f}", model.r_squared) : "";
-    report_.summary.push_back(sentence(
-        fmt::format("{}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} times the noise of {:.3f} hPa{}, over {} "
-                    "samples",
-                    model.name, model.all.bias, model.all.rms, model.all.rms_over_noise(),
-                    model.all.noise_rms, r_squared, model.all.samples)));
+        std::isfinite(model.r_squared)
+            ? fmt::format("; R2 {:.2f} = 1 - (rms / standard deviation of the reference's delta-p)²",
+                          model.r_squared)
+            : "";
+    report_.summary.push_back(
+        sentence(fmt::format("{}: {}bias {:+.3f} hPa, rms {:.3f} hPa{}, over {} samples{}", model.name,
+                             model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms,
+                             over_noise(model), model.all.samples, r_squared)));
     if (const std::string text = flaps_out_text(model.flaps_out, "the comparison"); !text.empty())
       report_.summary.push_back(sentence(text));
   }
@@ -270,7 +244,8 @@ void ComparisonPanels::summarise() {
     report_.summary.push_back(std::move(text));
   const PartStatistics* worst = nullptr;
   for (const PartStatistics& part : last.regimes) {
-    if (part.statistics.samples < min_in_regime || !(part.statistics.rms_over_noise() > notable_failure))
+    if (last.is_by_gps() || part.statistics.samples < min_in_regime ||
+        !(part.statistics.rms_over_noise() > notable_failure))
       continue;
     if (worst == nullptr || fails_more(part.statistics, worst->statistics)) worst = &part;
   }
@@ -301,18 +276,20 @@ Report comparison_report(const Comparison& comparison) {
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
-  panels.report().title = fmt::format("{}{}: rms residual {:.3f} hPa, {:.1f} times the noise",
-                                      comparison.models.size() > 1 ? "Smallest error: " : "", best->name,
-                                      best->all.rms, best->all.rms_over_noise());
+  panels.report().title = best->is_by_gps()
+                              ? fmt::format("Residual by {}", best->reference)
+                              : fmt::format("{}{}: rms residual {:.3f} hPa, {:.1f} times the noise",
+                                            comparison.models.size() > 1 ? "Smallest error: " : "",
+                                            best->name, best->all.rms, best->all.rms_over_noise());
   panels.report().subtitle = "Comparison with " + comparison.reference;
   panels.summarise();
   // The further references follow the first sentence.
   std::vector<std::string> others;
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models)
-      others.push_back(fmt::format("{}{}: bias {:+.3f} hPa, rms {:.3f} hPa.",
+      others.push_back(fmt::format("{}{}: {}bias {:+.3f} hPa, rms {:.3f} hPa.",
                                    comparison.models.size() > 1 ? model.name + ", " : "", further.reference,
-                                   model.all.bias, model.all.rms));
+                                   model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms));
   }
   std::vector<std::string>& summary = panels.report().summary;
   summary.insert(summary.begin() + 1, others.begin(), others.end());

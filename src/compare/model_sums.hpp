@@ -27,11 +27,6 @@ void serialize(Archive& archive, pcor::WorstInterval& worst) {
   archive(worst.flight, worst.begin, worst.end, worst.statistics, worst.regimes);
 }
 
-template <class Archive>
-void serialize(Archive& archive, pcor::PairMoments& pairs) {
-  archive(pairs.samples, pairs.mean_x, pairs.mean_y, pairs.xx, pairs.xy, pairs.yy);
-}
-
 }  // namespace cereal
 
 namespace pcor::internal {

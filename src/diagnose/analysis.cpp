@@ -291,7 +291,7 @@ WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more, b
 }
 
 Competition Analysis::competition(const std::vector<std::size_t>& chosen,
-                                  const std::vector<Eigen::MatrixXd>& rivals, std::size_t width) const {
+                                  const std::vector<Eigen::MatrixXd>& rivals) const {
   std::vector<Eigen::Index> effects = indices_of(chosen);
   effects.erase(effects.begin(), effects.begin() + base_);
   std::vector<Eigen::MatrixXd> more;
@@ -307,12 +307,12 @@ Competition Analysis::competition(const std::vector<std::size_t>& chosen,
     effect.shape_first += more.front().cols() - before;
     first += effect.count;
   }
-  for (; first < more.front().cols(); first += as_index(width)) {
+  for (; first < more.front().cols(); first += as_index(reference_count())) {
     ColumnGroup& rival = result.groups.emplace_back();
     rival.first = first;
-    rival.count = as_index(width);
+    rival.count = as_index(reference_count());
     rival.effect = groups_.size() + result.groups.size();
-    rival.bounds.resize(width);
+    rival.bounds.resize(reference_count());
   }
   return result;
 }
@@ -404,22 +404,25 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     }
     return squares;
   });
-  result.rms = first_share_
-                   .sum_of_each_flight<SquareSum>([&](std::size_t f) {
-                     SquareSum sum;
-                     std::vector<std::vector<double>> predicted;
-                     for (const Eigen::VectorXd& estimate : least_squares)
-                       predicted.push_back(added(f, groups, estimate));
-                     for (const std::size_t record : binned_.bins[f].records()) {
-                       if (flights_[f].residual[record] != flights_[f].given[record]) continue;  // an outlier
-                       const std::size_t part =
-                           held_out_part(*flights_[f].samples, flights_[f].samples->time[record]);
-                       sum.add(flights_[f].given[record] - predicted[part][record]);
-                     }
-                     return sum;
-                   })
-                   .rms();
+  result.rms = rms_of_parts(groups, least_squares);
   return result;
+}
+
+double Analysis::rms_of_parts(const std::vector<std::size_t>& groups,
+                              const std::vector<Eigen::VectorXd>& estimates) const {
+  const auto sum = first_share_.sum_of_each_flight<SquareSum>([&](std::size_t f) {
+    SquareSum of_flight;
+    const FlightColumns& flight = flights_[f];
+    std::vector<std::vector<double>> predicted;
+    for (const Eigen::VectorXd& estimate : estimates) predicted.push_back(added(f, groups, estimate));
+    for (const std::size_t record : binned_.bins[f].records()) {
+      if (flight.residual[record] != flight.given[record]) continue;  // an outlier
+      const std::size_t part = held_out_part(*flight.samples, flight.samples->time[record]);
+      of_flight.add(flight.given[record] - predicted[part][record]);
+    }
+    return of_flight;
+  });
+  return sum.rms();
 }
 
 std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::size_t>& groups,

@@ -14,7 +14,7 @@
 
 namespace pcor::internal {
 
-/// Flights divided into blocks of five minutes; each fit omits one block in five.
+/// Number of fits of a cross-validation. Each omits one block of five minutes in five.
 inline constexpr std::size_t held_out_parts = 5;
 
 /// Part that contains a time of a flight.
@@ -74,9 +74,9 @@ class Analysis {
   /// columns
   WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more, bool keeps_shapes = false) const;
   /// Scores of the base, the chosen effects with their uncertain shapes, and rivals. @param rivals in bins,
-  /// of each flight against each reference @param width columns of a rival
-  Competition competition(const std::vector<std::size_t>& chosen, const std::vector<Eigen::MatrixXd>& rivals,
-                          std::size_t width) const;
+  /// of each flight against each reference: one column for each rival and reference
+  Competition competition(const std::vector<std::size_t>& chosen,
+                          const std::vector<Eigen::MatrixXd>& rivals) const;
   const std::vector<ColumnGroup>& groups() const { return groups_; }
   const SearchResult& result() const { return result_; }
   Eigen::Index base() const { return base_; }
@@ -141,6 +141,10 @@ class Analysis {
   /// @param rows number of rows in the products
   Eigen::VectorXd solution(const Eigen::MatrixXd& products, double rows,
                            const std::vector<std::size_t>& groups) const;
+  /// Rms against the first reference, without outliers, hPa. @param estimates coefficients of base and groups
+  /// for the records of each part
+  double rms_of_parts(const std::vector<std::size_t>& groups,
+                      const std::vector<Eigen::VectorXd>& estimates) const;
   /// Positions of the columns of base and groups.
   std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& groups) const;
 

@@ -223,6 +223,43 @@ void fix_all(ModelDefinition& model) {
   }
 }
 
+/// Adds the effects that another system may have, in all their shapes, to its model and to the set.
+/// @param chain of that model @param r number of its reference
+void add_twins(CandidateSet& set, const References& references, Chain chain, std::size_t r,
+               const std::string& system, const std::vector<double>& dates) {
+  std::vector<ModelEffect>& effects = set.others[r]->model.effects;
+  for (const EffectInfo& info : effect_info) {
+    if (!has_a_twin(info.location) || has_effect(*references[r]->model(), info.id)) continue;
+    Candidate usual = candidate_of(info);
+    if (reads_date(info)) {
+      if (dates.empty()) continue;
+      usual.effect.parameters[1] = dates.front();
+    }
+    usual.system = system;
+    usual.id = id_on_other_system(system, usual.effect.id);
+    usual.title += system.empty() ? ", of the other system" : ", of the system " + system;
+    std::vector<Candidate> shapes = variants_of(usual, dates);
+    shapes.insert(shapes.begin(), std::move(usual));
+    for (Candidate& twin : shapes) {
+      BindingError error;
+      std::optional<Chain> with = chain.with_effect(twin.effect, &error);
+      if (!with) continue;
+      chain = std::move(*with);
+      auto position =
+          std::find_if(set.candidates.begin(), set.candidates.end(), [&twin](const Candidate& each) {
+            return each.id == twin.id && each.effect.parameters == twin.effect.parameters &&
+                   each.effect.scaling == twin.effect.scaling;
+          });
+      if (position == set.candidates.end()) {
+        twin.numbers_in_others.resize(references.size());
+        position = set.candidates.insert(position, std::move(twin));
+      }
+      position->numbers_in_others[r] = effects.size();
+      effects.push_back(position->effect);
+    }
+  }
+}
+
 /// Every effect of this system may also occur in the reference system. One residual of both determines only
 /// the difference.
 void add_those_of_the_references(CandidateSet& set, const References& references, const FlightSet& flights,
@@ -256,36 +293,7 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     other = std::move(law);
     name_usual_variables(*other, flights);
     Chain chain = chain_of(other->model, roles_of(*other, false));
-    for (const EffectInfo& info : effect_info) {
-      if (trusted || !has_a_twin(info.location) || has_effect(*model, info.id)) continue;
-      Candidate usual = candidate_of(info);
-      if (reads_date(info)) {
-        if (dates.empty()) continue;
-        usual.effect.parameters[1] = dates.front();
-      }
-      usual.system = system;
-      usual.id = id_on_other_system(system, usual.effect.id);
-      usual.title += system.empty() ? ", of the other system" : ", of the system " + system;
-      std::vector<Candidate> shapes = variants_of(usual, dates);
-      shapes.insert(shapes.begin(), std::move(usual));
-      for (Candidate& twin : shapes) {
-        BindingError error;
-        std::optional<Chain> with = chain.with_effect(twin.effect, &error);
-        if (!with) continue;
-        chain = std::move(*with);
-        auto position =
-            std::find_if(set.candidates.begin(), set.candidates.end(), [&twin](const Candidate& each) {
-              return each.id == twin.id && each.effect.parameters == twin.effect.parameters &&
-                     each.effect.scaling == twin.effect.scaling;
-            });
-        if (position == set.candidates.end()) {
-          twin.numbers_in_others.resize(references.size());
-          position = set.candidates.insert(position, std::move(twin));
-        }
-        position->numbers_in_others[r] = other->model.effects.size();
-        other->model.effects.push_back(position->effect);
-      }
-    }
+    if (!trusted) add_twins(set, references, std::move(chain), r, system, dates);
     set.references.back() = references[r]->with_model(*other);
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "base/phrasing.hpp"
@@ -29,11 +30,9 @@ void add_inputs(const Inputs& inputs, std::set<std::string>& names) {
 std::set<std::string> computed_from(const Flight& flight, const std::set<std::string>& sensors) {
   Inputs inputs;
   for (const std::string& name : flight.variables()) {
-    for (const auto& [key, text] : flight.variable(name).attributes) {
-      if (key != "Dependencies") continue;
-      std::vector<std::string>& of_variable = inputs[name] = split_words(text);
-      if (!of_variable.empty()) of_variable.erase(of_variable.begin());  // number of inputs
-    }
+    std::vector<std::string> words = split_words(flight.variable(name).attribute("Dependencies"));
+    if (!words.empty()) words.erase(words.begin());  // number of inputs
+    inputs[name] = std::move(words);
   }
   std::set<std::string> measured = sensors;
   add_inputs(inputs, measured);

@@ -89,11 +89,21 @@ std::vector<double> residual_after(const Analysis& analysis, std::size_t flight,
   return residual;
 }
 
-/// Local flights; entries of the others are empty. @param refitted change of the base by least squares
-std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::VectorXd& refitted) {
+/// Changes of the coefficients of base and groups in pictures: by least squares; by GPS alone, where the
+/// atmosphere is in the residual, those by maximum likelihood less those of the base alone.
+Eigen::VectorXd changes(const Analysis& analysis, const std::vector<std::size_t>& groups, bool is_refitted) {
+  if (is_refitted) return analysis.least_squares(groups);
+  Eigen::VectorXd likely = analysis.search().fit(groups).estimate;
+  likely.head(analysis.base()) -= analysis.search().fit({}).estimate.head(analysis.base());
+  return likely;
+}
+
+/// Local flights; entries of the others are empty. @param before, @param corrected changes of the
+/// coefficients of the base, and of base and findings
+std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::VectorXd& before,
+                                        const Eigen::VectorXd& corrected) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const Eigen::VectorXd with = analysis.search().fit(chosen).estimate;
-  const Eigen::VectorXd corrected = analysis.least_squares(chosen);
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(analysis);
   std::vector<FlightDiagnosis> flights(analysis.flights().size());
   for (std::size_t f = 0; f < flights.size(); ++f) {
@@ -101,8 +111,7 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::V
     const FlightColumns& columns = analysis.flights()[f];
     FlightDiagnosis& flight = flights[f];
     flight.samples = columns.samples;
-    flight.mask = columns.mask;
-    flight.before = residual_after(analysis, f, {}, refitted);
+    flight.before = residual_after(analysis, f, {}, before);
     flight.after = residual_after(analysis, f, chosen, corrected);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       flight.added.push_back(analysis.added_by(f, chosen, k, with));
@@ -144,6 +153,13 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
     flight = std::move(outline);
   }
   for (std::size_t k = 0; k < kept.size(); ++k) flights[kept[k]] = std::move(series[k]);
+}
+
+/// Rms over all flights of one of their series. @param flights local ones
+double rms_of_flights(const Analysis& analysis, const std::vector<FlightDiagnosis>& flights,
+                      std::vector<double> FlightDiagnosis::*series) {
+  return rms_of(
+      analysis.share(), [&](std::size_t f) -> const auto& { return flights[f].*series; });
 }
 
 /// Model coefficients of least squares, as a refit has them, with the errors by the noise.
@@ -267,9 +283,9 @@ void doubt_by_atmosphere(Diagnosis& diagnosis) {
     if (finding.gain > clear * finding.gain_error) continue;
     finding.rival = "the atmosphere";
     diagnosis.notes.push_back(warning_note(fmt::format(
-        "variations of the atmosphere may be the cause instead of {}: it changes chi2 of held-out "
-        "parts by {:+.0f} +- {:.0f}; give a laser or a second system as a further reference",
-        finding.id(), -finding.gain, finding.gain_error)));
+        "variations of the atmosphere may be the cause instead of {}: it decreases chi2 of held-out parts "
+        "by {:.0f} +- {:.0f}; give a laser or a second system as a further reference",
+        finding.id(), finding.gain, finding.gain_error)));
   }
 }
 
@@ -343,6 +359,39 @@ Eigen::VectorXd prior_of(const References& references, const std::vector<BaseCoe
   return precision;
 }
 
+/// Adds structure that no effect explains to a diagnosis with its flights, and withdraws the findings if a
+/// line in a variable overrules them. @param extended model with all roles that the flights record
+/// @return chi2 of the best variable in addition to the findings
+double add_unexplained(const Analysis& analysis, const FlightSet& files, const ModelDefinition& model,
+                       const ModelDefinition& extended, const References& references,
+                       const DiagnoseOptions& options, Diagnosis& diagnosis) {
+  if (gps_kind(*references.front())) {
+    doubt_by_atmosphere(diagnosis);
+    diagnosis.notes.emplace_back(
+        "unnamed structure was not tested, because atmospheric variations in a comparison with GPS look the "
+        "same; give a laser or a second system as a further reference");
+    return 0.0;
+  }
+  UnexplainedStructure structure = find_unexplained(
+      analysis, files, model, references, effect_inputs(diagnosis.findings, extended), options,
+      rms_of_flights(analysis, diagnosis.flights, &FlightDiagnosis::after), diagnosis.noise_rms_with_findings,
+      rms_of_flights(analysis, diagnosis.flights, &FlightDiagnosis::drift));
+  diagnosis.unexplained = std::move(structure.found);
+  note_unnamed_inputs(files, extended, diagnosis);
+  for (std::size_t f = 0; f < structure.traced.size(); ++f)
+    diagnosis.flights[f].traced = std::move(structure.traced[f]);
+  if (structure.overrules) {
+    overrule(diagnosis, structure.rival);
+  } else if (!structure.rival.empty()) {
+    diagnosis.rival = structure.rival;
+    diagnosis.notes.push_back(
+        fmt::format("a straight line in {} may be the cause instead of the effects: its "
+                    "probability is between 5 and 95 %",
+                    diagnosis.rival));
+  }
+  return structure.left;
+}
+
 /// @param dates on which a step is tried
 /// @param found receives the findings of the search, even if a variable of the files overrules them
 Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
@@ -365,9 +414,10 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   if (diagnosis.samples < min_samples) {
     throw Error(
         Error::Code::samples,
-        fmt::format("{} usable samples, at least {} required: {}; add flights or relax --min-airspeed, "
-                    "--max-flaps, --exclude",
-                    diagnosis.samples, min_samples, mask_text(diagnosis.masks)));
+        fmt::format(
+            "{} usable samples, at least {} required: {}; add flights, give another --reference, or relax "
+            "--min-airspeed, --max-flaps, --exclude",
+            diagnosis.samples, min_samples, mask_text(diagnosis.masks)));
   }
   const FlapsCandidates flaps = find_flaps_candidates(set, columns);
   drop_untestable(set, columns);
@@ -384,46 +434,21 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
   diagnosis.not_testable = std::move(set.not_testable);
-  const Eigen::VectorXd refitted = analysis.least_squares({});
-  diagnosis.own = own_of(analysis, set.base, refitted);
-  diagnosis.flights = flights_of(analysis, refitted);
-  const auto rms = [&](std::vector<double> FlightDiagnosis::*series) {
-    return rms_of(
-        analysis.share(), [&](std::size_t f) -> const auto& { return diagnosis.flights[f].*series; });
-  };
-  diagnosis.residual_rms = rms(&FlightDiagnosis::before);
+  diagnosis.is_refitted = !gps_kind(first_of(references));
+  const Eigen::VectorXd base = changes(analysis, {}, diagnosis.is_refitted);
+  diagnosis.own = own_of(analysis, set.base, base);
+  diagnosis.flights =
+      flights_of(analysis, base, changes(analysis, analysis.result().chosen, diagnosis.is_refitted));
+  diagnosis.residual_rms = rms_of_flights(analysis, diagnosis.flights, &FlightDiagnosis::before);
   diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
   diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
-  UnexplainedStructure structure;
-  if (gps_kind(*references.front())) {
-    doubt_by_atmosphere(diagnosis);
-    diagnosis.notes.emplace_back(
-        "unnamed structure was not tested, because atmospheric variations in a comparison with GPS look the "
-        "same; give a laser or a second system as a further reference");
-  } else {
-    structure = find_unexplained(
-        analysis, files, model, references, effect_inputs(diagnosis.findings, set.extended), options,
-        rms(&FlightDiagnosis::after), diagnosis.noise_rms_with_findings, rms(&FlightDiagnosis::drift));
-  }
-  diagnosis.unexplained = std::move(structure.found);
-  note_unnamed_inputs(files, set.extended, diagnosis);
-  for (std::size_t f = 0; f < structure.traced.size(); ++f)
-    diagnosis.flights[f].traced = std::move(structure.traced[f]);
-  if (structure.overrules) {
-    overrule(diagnosis, structure.rival);
-  } else if (!structure.rival.empty()) {
-    diagnosis.rival = structure.rival;
-    diagnosis.notes.push_back(
-        fmt::format("a straight line in {} may be the cause instead of the effects: its "
-                    "probability is between 5 and 95 %",
-                    diagnosis.rival));
-  }
+  const double left = add_unexplained(analysis, files, model, set.extended, references, options, diagnosis);
   if (!flaps.empty())
     diagnose_flaps(analysis, flaps, groups_of(set, flaps.candidates), options.seed, diagnosis);
   keep_series(analysis, options.series_of, diagnosis.flights);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
-  diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);
+  diagnosis.verdict = verdict_of(diagnosis, explained, left);
   judge_held_out(diagnosis);
   std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
   diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());

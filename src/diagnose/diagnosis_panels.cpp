@@ -12,11 +12,10 @@
 #include <pcor/model/formula.hpp>
 
 #include "diagnose/finding_page.hpp"
-#include "numerics/cross_spectrum.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "residuals/wind.hpp"
+#include "residuals/report_flight.hpp"
 
 namespace pcor::internal::report {
 namespace {
@@ -97,6 +96,7 @@ std::vector<std::string> inputs_of(const ModelEffect& effect) {
 }
 
 std::string refitted_text(const Diagnosis& diagnosis) {
+  if (!diagnosis.is_refitted) return "the coefficients as given";
   const bool with_reference =
       std::any_of(diagnosis.own.begin(), diagnosis.own.end(),
                   [](const CoefficientEstimate& each) { return is_of_reference(each.name); });
@@ -117,17 +117,7 @@ DiagnosisPanels::DiagnosisPanels(const Flights& flights) {
       if (std::isfinite(flight.before[i])) used.records.push_back(i);
     }
     if (used.records.empty()) continue;
-    report_.flight_starts.push_back(report_.time.size());
-    report_.flight_names.push_back(used.samples->name);
-    for (const std::size_t i : used.records) report_.time.push_back(used.samples->time[i]);
-    for (const Interval& interval : used.samples->intervals) {
-      const bool met = std::any_of(used.records.begin(), used.records.end(), [&](std::size_t i) {
-        return used.samples->time[i] >= interval.begin && used.samples->time[i] < interval.end;
-      });
-      if (met)
-        report_.intervals.push_back(
-            {std::string(info_of(interval.regime).name), interval.begin, interval.end});
-    }
+    add_flight(report_, *used.samples, used.records);
     used_.push_back(std::move(used));
   }
   add_variables(flights);
@@ -148,7 +138,7 @@ void DiagnosisPanels::add_finding_columns(const Flights& flights, std::size_t fi
 void DiagnosisPanels::add_binned(std::string title, std::string caption, std::vector<std::string> y,
                                  const std::vector<std::string>& first) {
   BinnedPanel panel{std::move(title), std::move(caption), present(report_, std::move(y)), {}};
-  panel.x_choices = choices(panel.y, first);
+  panel.x_choices = choices(panel.columns, first);
   if (panel.x_choices.empty()) return;
   panel.axis = "residual";
   panel.autocorrelation_time = memory_;
@@ -209,71 +199,9 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
   add(std::move(panel));
 }
 
-void DiagnosisPanels::add_responses(const Diagnosis& diagnosis, const std::vector<std::string>& residuals) {
-  const ReportColumn* const p = column_named(report_.columns, pressure);
-  const ReportColumn* const m = column_named(report_.columns, mach);
-  if (p == nullptr || m == nullptr || used_.empty()) return;
-  CurvePanel coherence{
-      "Coherence of model and reference",
-      "Coherence of model and reference by period; 1 is perfect agreement. Low values indicate noise.",
-      {},
-      "period",
-      "coherence",
-      "s",
-      "",
-      true};
-  CurvePanel delay{"Delay of the model behind the reference",
-                   "Delay of waves of each period, with standard errors. Positive if the model lags. An "
-                   "equal delay at all periods indicates a clock error; a smaller delay at short periods "
-                   "indicates a pressure line or a filter.",
-                   {},
-                   "period",
-                   "delay",
-                   "s",
-                   "s",
-                   true};
-  CurvePanel step{"Step response",
-                  "Response of the model if the reference steps from 0 to 1 at time zero: a shifted step is "
-                  "a delay, a gradual step a lag.",
-                  {},
-                  "time",
-                  "response",
-                  "s"};
-  const double sample = used_.front().samples->step;
-  const bool by_laser =
-      std::any_of(diagnosis.flights.begin(), diagnosis.flights.end(), [](const auto& flight) {
-        return flight.samples != nullptr && flight.samples->model.find(Quantity::lams_airspeed) != nullptr;
-      });
-  for (const std::string& name : residuals) {
-    const ReportColumn* const residual = column_named(report_.columns, name);
-    if (residual == nullptr) continue;
-    std::vector<double> of_model = p->values;
-    std::vector<double> of_reference = p->values;
-    for (std::size_t i = 0; i < of_model.size(); ++i) {
-      if (by_laser) of_model[i] *= std::pow(1.0 + 0.2 * m->values[i] * m->values[i], 3.5) - 1.0;
-      of_reference[i] = of_model[i] + (by_laser ? -1.0 : 1.0) * residual->values[i];
-    }
-    const std::string label = residual->title.substr(residual->title.find_first_of(' ') + 1);
-    CrossSpectrum found = cross_spectrum(of_model, of_reference, report_.time, sample);
-    if (found.period.empty()) continue;
-    coherence.curves.push_back({label, found.period, std::move(found.coherence)});
-    delay.curves.push_back(
-        {residual->title, found.period, std::move(found.delay), std::move(found.delay_error)});
-    step.curves.push_back({label, std::move(found.time), std::move(found.step)});
-  }
-  if (coherence.curves.empty()) return;
-  for (CurvePanel* const panel : {&coherence, &delay, &step}) {
-    // A delay cannot be estimated without coherence.
-    const bool shows = std::any_of(panel->curves.begin(), panel->curves.end(), [](const ReportCurve& curve) {
-      return std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return std::isfinite(y); });
-    });
-    if (shows) add(std::move(*panel));
-  }
-}
-
 void DiagnosisPanels::add_plane(std::string title, std::string caption, const std::string& colour) {
   if (meet(report_.columns, {mach, pressure, colour}))
-    add(PlanePanel{std::move(title), std::move(caption), mach, pressure, colour, true});
+    add(PlanePanel{std::move(title), std::move(caption), mach, pressure, colour});
 }
 
 void DiagnosisPanels::add_table(ReportTable table) {
@@ -418,7 +346,6 @@ void DiagnosisPanels::add_last_panels(const Diagnosis& diagnosis, const std::vec
             "The track over the ground: one colour over a leg or a heading indicates an error that depends "
             "on place or direction.",
             left, std::move(wind));
-  add_responses(diagnosis, residuals);
   add_unexplained(diagnosis, left);
   ReportTable limits{
       "Upper limits of effects that were not found",

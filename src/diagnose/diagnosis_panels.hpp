@@ -104,8 +104,8 @@ class DiagnosisPanels {
   /// Flight profile with its regimes, and the residuals in each regime.
   void add_residual_by_regime(const Diagnosis& diagnosis, const std::vector<std::string>& residuals);
 
-  /// Last panels of a report: periods, locations, distribution and response of the residuals, the unexplained
-  /// part of the last one, and the tables of effects that were not found.
+  /// Last panels of a report: periods, locations and distribution of the residuals, the unexplained part of
+  /// the last one, and the tables of effects that were not found.
   void add_last_panels(const Diagnosis& diagnosis, const std::vector<std::string>& residuals);
 
  private:
@@ -127,9 +127,6 @@ class DiagnosisPanels {
   /// Variables that have values in samples of one of the columns, `first` first.
   std::vector<std::string> choices(const std::vector<std::string>& y,
                                    const std::vector<std::string>& first) const;
-  /// Response of the model's pressure to the reference's: coherence, delay and step response of each residual
-  /// column.
-  void add_responses(const Diagnosis& diagnosis, const std::vector<std::string>& residuals);
   /// Unexplained structure, and the variable that it varies with.
   /// @param left column of the remaining residual
   void add_unexplained(const Diagnosis& diagnosis, const std::string& left);

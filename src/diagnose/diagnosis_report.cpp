@@ -40,10 +40,13 @@ std::string either(const Finding& finding, const std::string& rival) {
 
 void summarise(Report& report, const Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) report.summary.push_back(finding_summary(finding));
+  const std::string refit =
+      diagnosis.is_refitted
+          ? fmt::format(", and {} hPa with {}", hpa(diagnosis.residual_rms), refitted_text(diagnosis))
+          : "";
   report.summary.push_back(
-      fmt::format("The residual is {} hPa rms, and {} hPa with {}, as in the pictures; the noise is {} hPa.",
-                  hpa(diagnosis.rms_given), hpa(diagnosis.residual_rms), refitted_text(diagnosis),
-                  hpa(diagnosis.noise_rms)));
+      fmt::format("The residual is {} hPa rms{}, as in the pictures; the noise is {} hPa.",
+                  hpa(diagnosis.rms_given), refit, hpa(diagnosis.noise_rms)));
   if (const std::string text = flaps_out_text(diagnosis.flaps_out, "the diagnosis"); !text.empty())
     report.summary.push_back(sentence(text));
   if (diagnosis.findings.empty()) {
@@ -72,10 +75,11 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
 Info numbers_of(const Diagnosis& diagnosis) {
   Info numbers{{"Verdict", std::string(to_string(diagnosis.verdict))},
                {"Noise", hpa(diagnosis.noise_rms) + " hPa rms"},
-               {"Residual, coefficients as given", hpa(diagnosis.rms_given) + " hPa rms"},
-               {"Residual, " + refitted_text(diagnosis), hpa(diagnosis.residual_rms) + " hPa rms"},
-               {"Residual on five-minute parts that each of five fits excludes, without outliers",
-                hpa(diagnosis.residual_rms_held_out) + " hPa rms"}};
+               {"Residual, coefficients as given", hpa(diagnosis.rms_given) + " hPa rms"}};
+  if (diagnosis.is_refitted)
+    numbers.emplace_back("Residual, " + refitted_text(diagnosis), hpa(diagnosis.residual_rms) + " hPa rms");
+  numbers.emplace_back("Residual on five-minute parts that each of five fits excludes, without outliers",
+                       hpa(diagnosis.residual_rms_held_out) + " hPa rms");
   if (!diagnosis.findings.empty())
     numbers.emplace_back("Noise with all findings", hpa(diagnosis.noise_rms_with_findings) + " hPa rms");
   numbers.emplace_back("Effects tested", std::to_string(diagnosis.candidates));
@@ -200,7 +204,26 @@ std::string verdict_text(const Diagnosis& diagnosis) {
     case Verdict::silent:
       break;
   }
-  return "No missing effect is detectable on these flights";
+  const auto [detectable, all] = detectable_at_usual_size(diagnosis);
+  if (all > 0 && detectable == 0) {
+    return fmt::format(
+        "These flights cannot test the model: they would detect 0 of {} missing effects at their usual size",
+        all);
+  }
+  const std::string none = "No missing effect is detectable on these flights";
+  return 2 * detectable >= all
+             ? none
+             : fmt::format("{}; {} of {} would be detected at their usual size", none, detectable, all);
+}
+
+std::pair<std::size_t, std::size_t> detectable_at_usual_size(const Diagnosis& diagnosis) {
+  std::pair<std::size_t, std::size_t> counts;
+  for (const UpperLimit& limit : diagnosis.limits) {
+    if (std::isnan(limit.chi2_at_usual_size)) continue;
+    ++counts.second;
+    if (limit.chi2_at_usual_size > diagnosis.threshold) ++counts.first;
+  }
+  return counts;
 }
 
 std::string estimates_text(const std::vector<CoefficientEstimate>& estimates) {

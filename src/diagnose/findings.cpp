@@ -209,15 +209,17 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
 
 std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                               std::size_t winner, const std::vector<std::size_t>& chosen,
-                              const std::vector<Rival>& rivals) {
+                              std::vector<Rival> rivals) {
   const Search& search = analysis.search();
   const GroupScore best = search.score(winner, chosen);
   const std::vector<std::size_t> others = set_without(chosen, winner);
   const double noisier = search.variance(others) / search.variance(chosen);
+  std::sort(rivals.begin(), rivals.end(), [](const Rival& a, const Rival& b) { return a.less < b.less; });
   std::vector<Alias> aliases;
+  std::set<std::string> seen{candidates[winner].id};
   for (const Rival& rival : rivals) {
     const std::size_t g = rival.group;
-    if (candidates[g].id == candidates[winner].id) continue;
+    if (!seen.insert(candidates[g].id).second) continue;  // the best shape represents an effect
     const GroupScore score = search.score(g, others);
     Alias alias;
     alias.candidate = g;
@@ -229,7 +231,6 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     alias.correlation = search.correlation(winner, g, others);
     // Each direction explains one unit of noise.
     alias.chi2_less = (best.chi2 - score.chi2) * noisier - (best.freedom - score.freedom);
-    alias.log_likelihood_less = rival.less;
     alias.estimates =
         estimates_of(candidates[g], search.identifiable(g), score.estimate,
                      score.covariance * (search.variance(set_with(others, g)) / search.variance(others)));
@@ -237,13 +238,6 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     if (first.typical != 0.0) alias.size_to_usual = first.value / first.typical;
     aliases.push_back(std::move(alias));
   }
-  std::sort(aliases.begin(), aliases.end(),
-            [](const Alias& a, const Alias& b) { return a.log_likelihood_less < b.log_likelihood_less; });
-  // The best shape represents an effect with several shapes.
-  std::set<std::string> seen;
-  aliases.erase(std::remove_if(aliases.begin(), aliases.end(),
-                               [&seen](const Alias& alias) { return !seen.insert(alias.effect).second; }),
-                aliases.end());
   return aliases;
 }
 
@@ -491,6 +485,10 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
       const double statistical = std::abs(estimate.value) + two_sided_95 * estimate.standard_error;
       limit.limits.push_back(std::min(statistical, largest));
       seen = seen || statistical < largest;
+      const auto number = static_cast<std::size_t>(column);
+      if (const double usual = number < group.usual.size() ? group.usual[number] : 0.0; usual != 0.0)
+        limit.chi2_at_usual_size =
+            std::fmax(limit.chi2_at_usual_size, std::pow(usual / estimate.standard_error, 2));
       // The part of the coefficient at its limit that the base does not absorb.
       const double remaining = search.remaining(g, Eigen::VectorXd::Unit(group.count, column));
       const double rms = rms_of_column(analysis, candidates[g], group.first + column, limit.limits.back());

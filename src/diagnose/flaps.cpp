@@ -42,7 +42,6 @@ TeamColumns flights_of(const Analysis& analysis, const FlapsCandidates& flaps) {
     FlightColumns& flight = flights.emplace_back();
     flight.file = from.file;
     flight.samples = from.samples;
-    flight.mask = from.mask;
     flight.given = all_given(from);
     flight.residual = flight.given;
     flight.base = from.base;

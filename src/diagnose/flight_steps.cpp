@@ -87,7 +87,7 @@ double normal_square(double student_square, double freedom) {
 }
 
 /// The step of one flight against the others.
-MeanOffset step_of(Eigen::Index one, const Means& all) {
+FlightOffset step_of(Eigen::Index one, const Means& all) {
   const Eigen::VectorXd& value = all.value;
   const auto count = static_cast<double>(value.size() - 1);  // number of other flights
   const double mean = (value.sum() - value[one]) / count;    // mean of the others
@@ -102,25 +102,25 @@ MeanOffset step_of(Eigen::Index one, const Means& all) {
     const double by_drift = all.variance.sum() - all.variance[one] - count * variance;
     scatter = std::max(0.0, squares - by_drift) / (count - 1.0) * (1.0 + 1.0 / count);
   }
-  MeanOffset step;
+  FlightOffset step;
   step.size = value[one] - mean;
-  step.error = std::sqrt(known + scatter);
+  step.standard_error = std::sqrt(known + scatter);
   double square = step.size * step.size / (known + scatter);
   if (scatter > 0.0) {
     const double whole = known + scatter;
     square = normal_square(square, whole * whole * (count - 1.0) / (scatter * scatter));
   }
-  step.chance = std::min(1.0, (count + 1.0) * chi_squared_tail(square, 1.0));
+  step.p_value = std::min(1.0, (count + 1.0) * chi_squared_tail(square, 1.0));
   return step;
 }
 
 }  // namespace
 
-std::vector<MeanOffset> find_mean_offsets(const FlightPartition& share, const std::vector<Binning>& bins,
-                                          const std::vector<Eigen::MatrixXd>& columns,
-                                          const std::vector<Eigen::VectorXd>& residuals,
-                                          const NoiseModel& noise) {
-  std::vector<MeanOffset> steps(bins.size());
+std::vector<FlightOffset> find_mean_offsets(const FlightPartition& share, const std::vector<Binning>& bins,
+                                            const std::vector<Eigen::MatrixXd>& columns,
+                                            const std::vector<Eigen::VectorXd>& residuals,
+                                            const NoiseModel& noise) {
+  std::vector<FlightOffset> steps(bins.size());
   const auto found = share.of_each_flight<FlightSums>([&](std::size_t f) {
     // A model without a column is one with a column of zeros.
     const Eigen::Index model = std::max<Eigen::Index>(columns[f].cols(), 1);

@@ -4,22 +4,22 @@
 #include <utility>
 
 #include "numerics/triangular_factor.hpp"
-#include "parallel/symmetric_part.hpp"
+#include "parallel/packed.hpp"
 
 namespace pcor::internal {
 namespace {
 
 /// All intervals of a regime.
 struct RegimeSum {
-  SymmetricPart information{};
+  Eigen::MatrixXd information{};
   double intervals = 0.0;
   double duration = 0.0;  ///< s
   std::string flight{};
   double longest = 0.0;  ///< duration on that flight, s
 
   RegimeSum& operator+=(const RegimeSum& other) {
-    if (other.information.matrix.size() == 0) return *this;
-    if (information.matrix.size() == 0) return *this = other;
+    if (other.information.size() == 0) return *this;
+    if (information.size() == 0) return *this = other;
     information += other.information;
     intervals += other.intervals;
     duration += other.duration;
@@ -73,7 +73,7 @@ RegimeSums sums_of(const WhitenedSystem& scores, std::size_t number, const Fligh
     }
     if (own.empty()) continue;
     const Eigen::MatrixXd columns = rows(own, Eigen::seqN(0, rows.cols() - 1));
-    RegimeSum part{SymmetricPart(columns.transpose() * columns)};
+    RegimeSum part{columns.transpose() * columns};
     if (flight.columns.reference == 0) {  // an interval counts once for all references
       part.intervals = 1.0;
       part.duration = (interval.end - interval.begin) * static_cast<double>(own.size()) / within;
@@ -97,8 +97,8 @@ std::vector<FlownRegime> flown_regimes(const WhitenedSystem& scores,
   for (std::size_t r = 0; r < regime_count; ++r) {
     RegimeSum& sum = sums.of[r];
     if (sum.intervals == 0.0) continue;
-    regimes.push_back({static_cast<Regime>(r), sum.duration / sum.intervals,
-                       sum.information.matrix / sum.intervals, std::move(sum.flight)});
+    regimes.push_back({static_cast<Regime>(r), sum.duration / sum.intervals, sum.information / sum.intervals,
+                       std::move(sum.flight)});
   }
   return regimes;
 }

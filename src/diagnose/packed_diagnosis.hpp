@@ -13,7 +13,7 @@ void serialize(Archive& archive, pcor::Evidence& evidence) {
 
 template <class Archive>
 void serialize(Archive& archive, pcor::FlightDiagnosis& flight) {
-  archive(flight.number, flight.name, flight.samples, flight.mask, flight.before, flight.after, flight.added,
+  archive(flight.number, flight.name, flight.samples, flight.before, flight.after, flight.added,
           flight.evidence, flight.drift, flight.traced, flight.static_pressure, flight.mach, flight.attack,
           flight.sideslip);
 }

@@ -75,6 +75,22 @@ std::vector<double> maxima_of(const Eigen::MatrixXd& scores, const std::vector<E
   return result;
 }
 
+/// Columns of a group that the base and its other columns do not imitate, ascending.
+/// @param left products of its columns, of unit length, after the base
+std::vector<Eigen::Index> identifiable_of(Eigen::MatrixXd left) {
+  std::vector<Eigen::Index> identifiable;
+  while (identifiable.size() < static_cast<std::size_t>(left.cols())) {
+    Eigen::Index next = 0;
+    const double pivot = left.diagonal().maxCoeff(&next);
+    if (!(pivot > min_left)) break;
+    identifiable.push_back(next);
+    left -= Eigen::MatrixXd(left.col(next) * left.row(next) / pivot);
+    for (const Eigen::Index column : identifiable) left(column, column) = 0.0;
+  }
+  std::sort(identifiable.begin(), identifiable.end());
+  return identifiable;
+}
+
 bool is_in(std::size_t value, const std::vector<std::size_t>& set) {
   return std::find(set.begin(), set.end(), value) != set.end();
 }
@@ -140,19 +156,9 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
   Eigen::Index width = 0;
   for (const ColumnGroup& group : groups) {
     const Eigen::MatrixXd own = left_.block(group.first, group.first, group.count, group.count);
-    std::vector<Eigen::Index>& identifiable = identifiable_.emplace_back();
-    // Information after the base and the columns already found identifiable.
-    Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
+    const Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
     remaining_.push_back(group.count == 0 ? 0.0 : std::clamp(left.diagonal().maxCoeff(), 0.0, 1.0));
-    while (identifiable.size() < static_cast<std::size_t>(group.count)) {
-      Eigen::Index next = 0;
-      const double pivot = left.diagonal().maxCoeff(&next);
-      if (!(pivot > min_left)) break;
-      identifiable.push_back(next);
-      left -= Eigen::MatrixXd(left.col(next) * left.row(next) / pivot);
-      for (const Eigen::Index column : identifiable) left(column, column) = 0.0;
-    }
-    std::sort(identifiable.begin(), identifiable.end());
+    const std::vector<Eigen::Index>& identifiable = identifiable_.emplace_back(identifiable_of(left));
     const Eigen::Index kept = as_index(identifiable.size());
     Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(group.count, kept);
     if (kept > 0) {

@@ -24,8 +24,8 @@ struct ColumnGroup {
   /// effect was chosen.
   Eigen::Index shape_first = 0;
   Eigen::Index shape_count = 0;
-  bool has_uncertain_shape =
-      false;  ///< true for effects of the flow; effects of instruments have exact shapes
+  /// True for effects of the flow; effects of instruments have exact shapes.
+  bool has_uncertain_shape = false;
 
   /// Standard deviation of the size of a coefficient in nature; 0 if unknown.
   double deviation(std::size_t column) const {
@@ -73,7 +73,7 @@ struct SearchResult {
   std::vector<double> p_values{};  ///< one per chosen group
 };
 
-/// Estimates and covariance of base and chosen columns together, in the order of `places_of`.
+/// Estimates and covariance of base and chosen columns together, in the order of `indices_of`.
 struct SearchFit {
   Eigen::VectorXd estimate{};
   Eigen::MatrixXd covariance{};

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double factor_sd = 0.3;  // exponent; half the difference of the slopes on either side of zero
 constexpr double delay_sd = 0.15;  // s
-constexpr double min_ratio =
-    0.01;  // ratio of an effect to its rms: smaller values use the logarithm of this one
+// Ratio of an effect to its rms: smaller values use the logarithm of this one.
+constexpr double min_ratio = 0.01;
 constexpr Eigen::Index factors = 4;
 
 /// Factors on the effect, one row for each bin: logarithms of dynamic pressure, static pressure and the

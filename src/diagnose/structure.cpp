@@ -250,13 +250,13 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
     structure.freedom = std::max(structure.freedom, static_cast<double>(taken.freedom));
     if (const double value = minus_likelihood(flights, taken.all); value < with_all) {
       with_all = value;
-      structure.share =
+      structure.r2 =
           std::max(0.0, taken.all / flights.squares - static_cast<double>(taken.freedom) / freedom);
     }
     if (const double value = minus_likelihood(flights, taken.line);
         smooth.has_line() && taken.line > 0.0 && value < with_line) {
       with_line = value;
-      structure.line_share = std::max(0.0, taken.line / flights.squares - 1.0 / freedom);
+      structure.linear_r2 = std::max(0.0, taken.line / flights.squares - 1.0 / freedom);
       structure.slope = taken.line_score / taken.line_information / smooth.deviation();
       structure.slope_error = std::sqrt(variance / taken.line_information) / smooth.deviation();
     }

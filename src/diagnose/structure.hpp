@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/diagnose/diagnose.hpp>
 #include "diagnose/smooth.hpp"
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
@@ -14,18 +15,12 @@
 
 namespace pcor::internal {
 
-/// Part of a model's residuals explained by functions of a variable.
-struct Structure {
-  std::string name;
+/// Part of a model's residuals explained by functions of a variable, of which it has the name.
+struct Structure : EmpiricalPredictor {
   double gain = 0.0;        ///< twice the gain in log-likelihood over drift alone, with the most likely drift
   double freedom = 0.0;     ///< number of functions
   double equivalent = 0.0;  ///< gain as chi2 of one degree of freedom, in units of the gain by chance
-  double share = 0.0;       ///< fraction of the residual's squares beyond the noise, 0 to 1
   double line_gain = 0.0;   ///< `gain` of the straight line alone
-  double line_share = 0.0;  ///< `share` of the straight line alone
-  double slope = 0.0;       ///< straight line, hPa per unit of the variable
-  double slope_error = 0.0;
-  double centre = 0.0;  ///< mean of the variable
 };
 
 /// Residuals of a flight without dependence on any variable: first shifted in time, then with random signs

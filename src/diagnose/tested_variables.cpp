@@ -29,11 +29,7 @@ TestedVariable product(std::string name, const std::vector<FlightColumns>& fligh
 }
 
 /// Whether the variable is a simulation's true value in addition to the records.
-bool is_truth(const VariableInfo& variable) {
-  return std::any_of(variable.attributes.begin(), variable.attributes.end(), [](const auto& attribute) {
-    return attribute.first == "Category" && attribute.second == truth_category;
-  });
-}
+bool is_truth(const VariableInfo& variable) { return variable.attribute("Category") == truth_category; }
 
 double turn_of(const VariableInfo& info) {
   if (info.modulus_range) return (*info.modulus_range)[1] - (*info.modulus_range)[0];

@@ -19,8 +19,8 @@ struct TestedVariable {
   bool in_file = false;
   /// Whether a line in it may be a cause alone: recorded variables, and the excess power of the aircraft.
   bool may_be_cause = false;
-  double turn =
-      0.0;  ///< full turn of an angle that covers all directions, in its unit; 0 for other variables
+  /// Full turn of an angle that covers all directions, in its unit; 0 for other variables.
+  double turn = 0.0;
   /// Whether a curve against the variable may have many bends, as with heights and speeds. With a variable
   /// that is rarely far from its mean, such a curve would describe the noise of a few samples.
   bool fine = false;

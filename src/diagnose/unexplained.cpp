@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include <pcor/numerics/line_fit.hpp>
 #include "diagnose/dependencies.hpp"
 #include "diagnose/flight_steps.hpp"
 #include "diagnose/rms.hpp"
@@ -53,24 +54,18 @@ std::set<std::string> sensors_of(const ModelDefinition& model, const Reference& 
   return sensors;
 }
 
-EmpiricalPredictor traced_of(const Structure& structure, const TestedVariable& tested, double p_value) {
-  EmpiricalPredictor variable;
-  variable.name = tested.name;
+EmpiricalPredictor predictor_of(const Structure& structure, const TestedVariable& tested, double p_value) {
+  EmpiricalPredictor variable = structure;
   variable.unit = tested.unit;
   variable.description = tested.description;
   variable.sampling = tested.sampling;
-  variable.r2 = structure.share;
   variable.p_value = p_value;
-  variable.linear_r2 = structure.line_share;
-  variable.slope = structure.slope;
-  variable.slope_error = structure.slope_error;
-  variable.centre = structure.centre;
   // Only a straight line gets a formula.
-  const bool straight = std::abs(structure.slope) > 3.0 * structure.slope_error && structure.slope != 0.0 &&
+  const bool straight = std::abs(variable.slope) > 3.0 * variable.slope_error && variable.slope != 0.0 &&
                         variable.linear_r2 > 0.5 * variable.r2;
   if (tested.in_file && straight)
-    variable.formula = fmt::format("k * ({} {} {:.4g})", tested.name, structure.centre < 0.0 ? '+' : '-',
-                                   std::abs(structure.centre));
+    variable.formula = fmt::format("k * ({} {} {:.4g})", variable.name, variable.centre < 0.0 ? '+' : '-',
+                                   std::abs(variable.centre));
   return variable;
 }
 
@@ -123,8 +118,13 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
 /// Test of structure in addition to some effects. @param aside see `StructureTest`
 StructureTest test_beside(const Analysis& analysis, const std::vector<std::size_t>& chosen,
                           std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {}) {
-  return StructureTest(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
-                       analysis.noise(), seed, aside);
+  return {analysis.share(),
+          analysis.bins(),
+          analysis.columns_of(chosen),
+          analysis.residuals(),
+          analysis.noise(),
+          seed,
+          aside};
 }
 
 /// Moves variables whose changes are correlated with those of the residual to `variables` if they may be its
@@ -228,7 +228,8 @@ Eigen::VectorXd line_in(const std::vector<double>& values, double middle) {
 /// Lines in variables, in bins, for each local flight against each reference: one column per variable and
 /// reference. @param variables their indices
 std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& tested,
-                                      const std::vector<std::size_t>& variables, Eigen::Index references) {
+                                      const std::vector<std::size_t>& variables) {
+  const Eigen::Index references = as_index(analysis.reference_count());
   const std::vector<FlightColumns>& flights = analysis.flights();
   std::vector<Eigen::MatrixXd> lines;
   for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
@@ -266,7 +267,7 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
     groups[k].count = 1;
     groups[k].bounds.resize(1);
   }
-  const WhitenedSystem scores = analysis.scores_with(lines_in(analysis, tested, numbers, as_index(count)));
+  const WhitenedSystem scores = analysis.scores_with(lines_in(analysis, tested, numbers));
   const Search search(scores, analysis.base(), groups);
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     EmpiricalPredictor& variable = variables[k];
@@ -288,9 +289,8 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
 /// Whether a variable is another record of a quantity: the two have a correlation above 0.95.
 bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity quantity) {
   constexpr double image = 0.95;
-  using Sums = Eigen::Matrix<double, 6, 1>;
-  const Sums sums = analysis.share().sum_of_each_flight<Sums>([&](std::size_t f) {
-    Sums own = Sums::Zero();
+  const auto of_flights = analysis.share().of_each_flight<PairMoments>([&](std::size_t f) {
+    PairMoments own;
     const FlightColumns& flight = analysis.flights()[f];
     const std::vector<double>* known = &flight.quantity(quantity);
     if (known->empty()) known = flight.samples->model.find(quantity);
@@ -298,13 +298,13 @@ bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity
     for (const std::size_t record : analysis.bins(f).records()) {
       const double x = (*variable.values[f])[record];
       const double y = (*known)[record];
-      if (std::isfinite(x) && std::isfinite(y)) own += (Sums() << 1.0, x, y, x * x, y * y, x * y).finished();
+      if (std::isfinite(x) && std::isfinite(y)) own.add(x, y);
     }
     return own;
   });
-  const double covariance = sums[5] * sums[0] - sums[1] * sums[2];
-  const double variances = (sums[3] * sums[0] - sums[1] * sums[1]) * (sums[4] * sums[0] - sums[2] * sums[2]);
-  return covariance * covariance > image * image * variances;
+  PairMoments all;
+  for (const PairMoments& own : of_flights) all.add(own);
+  return std::abs(all.correlation()) > image;
 }
 
 /// Most likely line in a variable.
@@ -333,9 +333,7 @@ LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& ch
   }
   LineRival best;
   if (causes.empty()) return best;
-  const std::size_t references = analysis.reference_count();
-  const std::vector<Eigen::MatrixXd> lines = lines_in(analysis, tested, causes, as_index(references));
-  const Competition competition = analysis.competition(chosen, lines, references);
+  const Competition competition = analysis.competition(chosen, lines_in(analysis, tested, causes));
   const Search search(competition.system, analysis.base(), competition.groups);
   std::vector<std::size_t> effects(chosen.size());
   std::iota(effects.begin(), effects.end(), std::size_t{0});
@@ -374,7 +372,7 @@ std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& 
     if (result.found.variables.size() == max_variables) break;
     if (!named.insert(structures[i].name).second) continue;
     result.found.variables.push_back(
-        traced_of(structures[i], *tested.variables[i], tested.test.chance_of(structures[i].equivalent)));
+        predictor_of(structures[i], *tested.variables[i], tested.test.chance_of(structures[i].equivalent)));
     numbers.push_back(i);
     if (!result.traced.empty()) continue;
     for (const auto& values : tested.variables[i]->values) result.traced.push_back(*values);
@@ -385,13 +383,12 @@ std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& 
 std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
   std::vector<FlightOffset> steps;
   if (analysis.flights().size() < 2) return steps;
-  const std::vector<MeanOffset> found =
-      find_mean_offsets(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
-                        analysis.noise_beside_offsets());
-  for (std::size_t f = 0; f < found.size(); ++f) {
-    if (found[f].chance < chance)
-      steps.push_back({analysis.flights()[f].samples->name, found[f].size, found[f].error, found[f].chance});
-  }
+  steps = find_mean_offsets(analysis.share(), analysis.bins(), analysis.columns_of(chosen),
+                            analysis.residuals(), analysis.noise_beside_offsets());
+  for (std::size_t f = 0; f < steps.size(); ++f) steps[f].flight = analysis.flights()[f].samples->name;
+  steps.erase(std::remove_if(steps.begin(), steps.end(),
+                             [](const FlightOffset& step) { return !(step.p_value < chance); }),
+              steps.end());
   std::sort(steps.begin(), steps.end(),
             [](const FlightOffset& a, const FlightOffset& b) { return std::abs(a.size) > std::abs(b.size); });
   return steps;

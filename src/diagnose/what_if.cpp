@@ -275,6 +275,57 @@ bool is_fitted_to(const ModelDefinition& model, const FlightSet& flights) {
   return false;
 }
 
+/// Formulas of the user, and those of the requested effects.
+std::vector<ModelEffect> formulas_with(std::vector<ModelEffect> formulas,
+                                       const std::vector<WhatIfCandidate>& requested) {
+  for (const WhatIfCandidate& each : requested) {
+    const auto same = [&each](const ModelEffect& formula) { return formula.id == each.id; };
+    if (each.effect && each.effect->is_formula() && std::none_of(formulas.begin(), formulas.end(), same))
+      formulas.push_back(*each.effect);
+  }
+  return formulas;
+}
+
+/// Effects and coefficients of a panel. @param found effects of the candidates of the set
+/// @param own start values of the model's coefficients, if they differ from those of the model
+WhatIfPanel panel_of(const CandidateSet& set, const std::vector<WhatIfCandidate>& found,
+                     const std::vector<CoefficientEstimate>& own, const std::string& flaps_variable) {
+  WhatIfPanel panel;
+  panel.own = set.base.size();
+  for (const BaseCoefficient& coefficient : set.base) {
+    const auto start = std::find_if(own.begin(), own.end(), [&](const CoefficientEstimate& each) {
+      return each.name == coefficient.name;
+    });
+    panel.coefficients.push_back({coefficient.name, coefficient.unit, coefficient.value,
+                                  start == own.end() ? coefficient.value : start->value,
+                                  coefficient.bounds.lower, coefficient.bounds.upper,
+                                  coefficient.of_reference});
+  }
+  for (std::size_t e = 0; e < found.size(); ++e) {
+    const Candidate& candidate = set.candidates[e];
+    const auto stands_for = std::find_if(found.begin(), found.end(), [&](const WhatIfCandidate& each) {
+      return each.id == found[e].stands_for;
+    });
+    panel.effects.push_back({found[e].id,
+                             candidate.title,
+                             found[e].why,
+                             {},
+                             panel.coefficients.size(),
+                             candidate.tested.size(),
+                             "",
+                             candidate.effect.is_formula(),
+                             note_of(candidate, flaps_variable)});
+    if (stands_for != found.end())
+      panel.effects.back().stands_for = static_cast<std::size_t>(stands_for - found.begin());
+    for (const CandidateParameter& tested : candidate.tested) {
+      const double neutral = candidate.effect.parameters[tested.index];
+      panel.coefficients.push_back({tested.name, tested.unit, neutral, neutral, neutral + tested.bounds.lower,
+                                    neutral + tested.bounds.upper});
+    }
+  }
+  return panel;
+}
+
 }  // namespace
 
 std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
@@ -328,14 +379,9 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
                    references.end());
   if (references.empty()) return {};
   Notes notes;  // reported by the diagnosis
-  std::vector<ModelEffect> formulas = options.diagnose.formulas;
-  for (const WhatIfCandidate& each : requested) {
-    const auto same = [&each](const ModelEffect& formula) { return formula.id == each.id; };
-    if (each.effect && each.effect->is_formula() && std::none_of(formulas.begin(), formulas.end(), same))
-      formulas.push_back(*each.effect);
-  }
-  CandidateSet set = find_candidates(model, formulas, files, references, dates_for(requested, files),
-                                     options.diagnose.trust_reference);
+  CandidateSet set =
+      find_candidates(model, formulas_with(options.diagnose.formulas, requested), files, references,
+                      dates_for(requested, files), options.diagnose.trust_reference);
   keep(set, requested);
   TeamColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);
@@ -348,41 +394,11 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   WhatIf result;
   if (found.empty()) return result;
   WhatIfPanel& panel = result.panel;
+  panel = panel_of(set, found, options.own, columns.flights.front().samples->flaps_variable);
   panel.is_start_fitted = is_fitted_to(model, files);
-  panel.own = set.base.size();
-  for (const BaseCoefficient& coefficient : set.base) {
-    const auto start =
-        std::find_if(options.own.begin(), options.own.end(),
-                     [&](const CoefficientEstimate& each) { return each.name == coefficient.name; });
-    panel.coefficients.push_back({coefficient.name, coefficient.unit, coefficient.value,
-                                  start == options.own.end() ? coefficient.value : start->value,
-                                  coefficient.bounds.lower, coefficient.bounds.upper,
-                                  coefficient.of_reference});
-  }
   std::vector<std::size_t> are_found;
-  const std::string flaps_variable = columns.flights.front().samples->flaps_variable;
   for (std::size_t e = 0; e < found.size(); ++e) {
-    const Candidate& candidate = set.candidates[e];
-    result.effects.push_back(candidate.effect);
-    const auto stands_for = std::find_if(found.begin(), found.end(), [&](const WhatIfCandidate& each) {
-      return each.id == found[e].stands_for;
-    });
-    panel.effects.push_back({found[e].id,
-                             candidate.title,
-                             found[e].why,
-                             {},
-                             panel.coefficients.size(),
-                             candidate.tested.size(),
-                             "",
-                             candidate.effect.is_formula(),
-                             note_of(candidate, flaps_variable)});
-    if (stands_for != found.end())
-      panel.effects.back().stands_for = static_cast<std::size_t>(stands_for - found.begin());
-    for (const CandidateParameter& tested : candidate.tested) {
-      const double neutral = candidate.effect.parameters[tested.index];
-      panel.coefficients.push_back({tested.name, tested.unit, neutral, neutral, neutral + tested.bounds.lower,
-                                    neutral + tested.bounds.upper});
-    }
+    result.effects.push_back(set.candidates[e].effect);
     if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }
   const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,

@@ -112,15 +112,8 @@ struct Reduction {
   Eigen::VectorXd lengths() const;
 
   template <class Archive>
-  void save(Archive& archive) const {
-    archive(upper_triangle(factor), absorbed, cost);
-  }
-
-  template <class Archive>
-  void load(Archive& archive) {
-    std::vector<double> triangle;
-    archive(triangle, absorbed, cost);
-    factor = from_upper_triangle(triangle);
+  void serialize(Archive& archive) {
+    archive(factor, absorbed, cost);
   }
 };
 

@@ -39,9 +39,14 @@ std::optional<DotPanel> coefficient_picture(const std::vector<FittedParameter>& 
          fmt::format("{} → {:.4g}{}{}{}", std::isfinite(p.start) ? fmt::format("{:.4g}", p.start) : "new",
                      p.value, error, unit, is_known ? "" : ", error unknown")});
   }
-  if (std::none_of(panel.rows.begin(), panel.rows.end(),
-                   [](const ReportDotRow& row) { return std::isfinite(row.dots.front().value); }))
-    return std::nullopt;
+  const auto shown = std::count_if(panel.rows.begin(), panel.rows.end(), [](const ReportDotRow& row) {
+    return std::isfinite(row.dots.front().value);
+  });
+  if (shown == 0) return std::nullopt;
+  if (shown < static_cast<std::ptrdiff_t>(panel.rows.size()))
+    panel.caption +=
+        " A row has no marker if the old value is absent, zero or smaller than the error; see the numbers at "
+        "the right.";
   return panel;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -19,16 +20,13 @@ namespace pcor::internal {
 namespace {
 
 /// Unit of a coefficient of a formula: the unit of the value, if the formula is a sum of this coefficient
-/// times pure numbers and of a part without it; otherwise empty, because units of formulas are not computed.
+/// times pure numbers and of a part without it; divided by the unit of a quantity, if this coefficient is
+/// also multiplied by it; otherwise empty, because units of formulas are not computed.
 std::string unit_in_formula(const ModelEffect& effect, std::size_t number) {
   const auto formula = Formula::parse(effect.formula, effect.parameter_names);
   if (!formula) return "";
   const std::vector<std::string>& names = formula->variables();
-  const bool are_numbers = std::all_of(names.begin(), names.end(), [](const std::string& name) {
-    const Quantity quantity = quantity_named(name);
-    return quantity != Quantity::count && info_of(quantity).unit == "1";
-  });
-  const std::vector<double> variables(names.size(), 0.3);
+  std::vector<double> variables(names.size(), 0.3);
   std::vector<double> coefficients(effect.parameter_names.size(), 1.0);
   const auto value = [&](double coefficient) {
     coefficients[number] = coefficient;
@@ -38,8 +36,31 @@ std::string unit_in_formula(const ModelEffect& effect, std::size_t number) {
   const double curvature = value(2.0) - value(1.0) - slope;
   std::fill(coefficients.begin(), coefficients.end(), 2.0);
   const double change = value(1.0) - value(0.0) - slope;  // caused by the other coefficients
-  const bool is_linear = std::abs(curvature) + std::abs(change) <= 1e-9 * std::abs(slope);
-  return are_numbers && is_linear ? std::string(info_of(effect.location).unit) : "";
+  const double rounding = 1e-9 * std::abs(slope);
+  if (!(slope != 0.0 && std::abs(curvature) + std::abs(change) <= rounding)) return "";
+  std::string unit(info_of(effect.location).unit);
+  bool is_divided = false;
+  for (std::size_t v = 0; v < names.size(); ++v) {
+    const Quantity quantity = quantity_named(names[v]);
+    if (quantity != Quantity::count && info_of(quantity).unit == "1") continue;
+    constexpr double usual = 0.3;
+    constexpr std::array<double, 2> factors{2.0, 3000.0};  // small and large values: limits are seen
+    std::size_t constant = 0;
+    std::size_t proportional = 0;
+    for (const double factor : factors) {
+      variables[v] = factor * usual;
+      const double ratio = (value(1.0) - value(0.0)) / slope;
+      if (std::abs(ratio - 1.0) < 1e-9) ++constant;
+      if (std::abs(ratio - factor) < 1e-9 * factor) ++proportional;
+    }
+    variables[v] = usual;
+    if (constant == factors.size()) continue;
+    if (quantity == Quantity::count || is_divided || proportional != factors.size()) return "";
+    const std::string divisor(info_of(quantity).unit);
+    unit += divisor.find('/') == std::string::npos ? "/" + divisor : "/(" + divisor + ")";
+    is_divided = true;
+  }
+  return unit;
 }
 
 void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition& file,

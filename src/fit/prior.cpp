@@ -4,24 +4,20 @@
 #include <cmath>
 
 #include "campaign/candidate.hpp"
+#include "campaign/model_parameters.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 
 Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference& reference) {
-  const std::vector<double> own = uncertainty_of(model).covariance;
-  std::vector<double> other;
-  if (reference.model() != nullptr) other = uncertainty_of(*reference.model()).covariance;
-  const auto size_of = [](const std::vector<double>& matrix) {
-    return static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(matrix.size()))));
-  };
-  const Eigen::Index first = size_of(own);
-  const Eigen::Index second = size_of(other);
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(first + second, first + second);
-  covariance.topLeftCorner(first, first) = Eigen::Map<const Eigen::MatrixXd>(own.data(), first, first);
-  covariance.bottomRightCorner(second, second) =
-      Eigen::Map<const Eigen::MatrixXd>(other.data(), second, second);
+  const Eigen::MatrixXd own = stated_covariance(model);
+  Eigen::MatrixXd other;
+  if (reference.model() != nullptr) other = stated_covariance(*reference.model());
+  const Eigen::Index size = own.rows() + other.rows();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  covariance.topLeftCorner(own.rows(), own.rows()) = own;
+  covariance.bottomRightCorner(other.rows(), other.rows()) = other;
   return covariance;
 }
 

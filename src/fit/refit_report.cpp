@@ -17,12 +17,23 @@ using namespace internal;
 
 namespace {
 
+/// Sentence on a held-out flight, without the values before the fit if these are unknown.
+std::string held_out_text(const FlightFit& flight) {
+  const auto before = [&flight](double value, const char* word) {
+    return std::isnan(flight.before.rms) ? "" : fmt::format("{:.3f} {} ", value, word);
+  };
+  return fmt::format("Held out, {}: rms {}{:.3f} hPa after the fit, scatter {}{:.3f} hPa.", flight.flight,
+                     before(flight.before.rms, "before and"), flight.after.rms,
+                     before(flight.before.scatter(), "and"), flight.after.scatter());
+}
+
 ReportTable coefficient_table(const RefitResult& fit) {
   ReportTable table;
   table.title = "Coefficients";
   table.caption =
       "Standard errors allow for the autocorrelation of the residuals; jackknife errors come from leaving "
-      "out one flight or one part of a flight at a time (inf: one alone determines the coefficient).";
+      "out one flight or one part of a flight at a time (inf: one alone determines the coefficient). Unit 1: "
+      "a ratio, such as hPa/hPa.";
   table.headers = {"coefficient", "before", "after", "std. error", "jackknife", "unit", "stage"};
   if (fit.is_by_gps()) {
     table.headers[3] = "stated error";
@@ -35,7 +46,7 @@ ReportTable coefficient_table(const RefitResult& fit) {
                                  : p.at_bound ? "bound"
                                               : fmt::format("{:.3g}", p.standard_error)};
     if (fit.is_by_gps()) row.push_back(number(p.noise_error));
-    row.insert(row.end(), {number(p.jackknife_error), p.unit.empty() ? "formula unit" : p.unit,
+    row.insert(row.end(), {number(p.jackknife_error), p.unit.empty() ? "not stated" : p.unit,
                            p.fitted ? std::to_string(p.stage) : ""});
     table.rows.push_back(std::move(row));
   }
@@ -86,18 +97,17 @@ ReportTable flight_table(const RefitResult& fit) {
 Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   ComparisonPanels panels(comparison);
   Report& report = panels.report();
-  report.title = fmt::format("The refit changes the rms residual from {:.3f} to {:.3f} hPa; noise {:.3f} hPa",
-                             fit.rms_before, fit.rms, fit.noise_rms);
+  const std::string change = std::isnan(fit.rms_before)
+                                 ? "gives an rms residual of"
+                                 : fmt::format("changes the rms residual from {:.3f} to", fit.rms_before);
+  report.title = fmt::format("The refit {} {:.3f} hPa; noise {:.3f} hPa", change, fit.rms, fit.noise_rms);
   report.subtitle = fmt::format("Refit of {} to {}", unfitted_name(fit.model), fit.reference_text);
   summarise_held_out(report, fit.flights);
   for (const std::string& warning : fit.warnings) report.summary.push_back(sentence(warning));
   if (const std::string text = flaps_out_text(fit.flaps_out, "the fit"); !text.empty())
     report.summary.push_back(sentence(text));
   for (const FlightFit& flight : fit.flights) {
-    if (!flight.holdout) continue;
-    report.summary.push_back(fmt::format(
-        "Held out, {}: rms {:.3f} before and {:.3f} hPa after the fit, scatter {:.3f} and {:.3f} hPa.",
-        flight.flight, flight.before.rms, flight.after.rms, flight.before.scatter(), flight.after.scatter()));
+    if (flight.holdout) report.summary.push_back(held_out_text(flight));
   }
   for (const Note& note : fit.notes) {
     const bool is_reported =

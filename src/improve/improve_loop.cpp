@@ -133,8 +133,9 @@ class ForwardSelection {
           Error::Code::samples,
           "no held-out sample is usable, so no step can be tested; give another flight with --holdout");
     }
-    first.learnt = fmt::format("the coefficients fitted again: rms {} before, {} after",
-                               shown(fit.rms_before), shown(fit.rms));
+    const std::string before =
+        std::isnan(fit.rms_before) ? "" : fmt::format("{} before, ", shown(fit.rms_before));
+    first.learnt = fmt::format("the coefficients fitted again: rms {}{} after", before, shown(fit.rms));
     take(std::move(first), std::move(fit), {}, {});
   }
 
@@ -143,6 +144,7 @@ class ForwardSelection {
     choose_among_rivals();
     add_surface();
     compare_with_the_given();
+    result_.fit.notes.insert(result_.fit.notes.end(), notes_.begin(), notes_.end());
     return std::move(result_);
   }
 
@@ -183,7 +185,7 @@ class ForwardSelection {
           step.delivered = step.added;
           step.rival_error = error_of_first_[index];
         }
-        result_.fit.notes.push_back(fmt::format(
+        notes_.push_back(fmt::format(
             "the rivals that were chosen cannot be fitted together, so the model has the effects that "
             "were added: {}",
             error.what()));
@@ -314,7 +316,10 @@ class ForwardSelection {
     result_.rms_holdout = holdout.rms_after;
     // Without an applied rival the model explains less than with the best one, which shows whether the loop
     // did harm.
-    result_.worse = why_worse(comparison_of(tried, 0, 3, loop_.has_holdout));
+    const TrialComparison given = comparison_of(tried, 0, 3, loop_.has_holdout);
+    result_.worse = std::isnan(given.rms_before)  // the given model has no residual on these samples
+                        ? why_worse(comparison_of(tried, 1, 3, loop_.has_holdout), "refitted")
+                        : why_worse(given, "given");
     for (TrialFlight& flight : tried) {
       if (!flight.first_reference) continue;
       std::vector<std::size_t> used = flight.fitted;
@@ -325,18 +330,19 @@ class ForwardSelection {
     }
   }
 
-  /// Whether all steps together increased the residual, by a large or significant amount.
-  std::string why_worse(const TrialComparison& whole) const {
+  /// Whether all steps together increased the residual, by a large or significant amount. @param before name
+  /// of the model without the steps
+  std::string why_worse(const TrialComparison& whole, const char* before) const {
     // Gusts are in the residual of GPS: a better law need not make it smaller in the fit.
     if (loop_.is_by_gps && !loop_.has_holdout) return "";
     constexpr double much = 1.02;
     const double growth = whole.rms_after / whole.rms_before;
     if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";
     return fmt::format(
-        "{}: the rms of the best model is {:.4f} times the rms of the given model (chi2 changes by {:+.0f} "
-        "+- "
+        "{}: the rms of the best model is {:.4f} times the rms of the {} model (chi2 changes by {:+.0f} +- "
         "{:.0f})",
-        loop_.has_holdout ? "held-out samples" : "these flights", growth, -whole.gain, whole.gain_error);
+        loop_.has_holdout ? "held-out samples" : "these flights", growth, before, -whole.gain,
+        whole.gain_error);
   }
 
   void next_step() {
@@ -426,7 +432,7 @@ class ForwardSelection {
     stop(StopReason::unexplained, std::move(what));
   }
 
-  /// Adds the candidate and keeps it if it helps; otherwise records the reason.
+  /// Adds the candidate and keeps it if it helps. @return the reason if it does not; empty if it is kept
   std::string refusal_of(OfferedEffect candidate) {
     const std::string id = candidate.choices.front().effect.id;
     ImproveStep& step = candidate.step;
@@ -521,6 +527,7 @@ class ForwardSelection {
   // alternatives for each added effect, the effect itself first
   std::vector<std::vector<AddedEffect>> alternatives_{};
   std::vector<double> error_of_first_{};  // hPa, of each of them, if the first rival is applied
+  Notes notes_{};                         // notes of the selection, after the notes of the last fit
 };
 
 }  // namespace

@@ -60,9 +60,8 @@ std::vector<std::string> held_out_names(const Improvement& improvement) {
 /// Sentence on the samples that are not in the fit; empty with held-out flights or parts of them.
 std::string held_out_text(const Improvement& improvement) {
   if (improvement.holdout_is_flights) return "";
-  return fmt::format(
-      "Not in the fit: every fifth five minutes in turn, without outliers, with {} to the rest.",
-      refitted_text(improvement.steps.back().diagnosis));
+  return "Not in the fit: every fifth five minutes in turn, without outliers; coefficients are fitted to "
+         "the rest.";
 }
 
 /// Label of a step: "refitted", "+ static-lag".

@@ -41,8 +41,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 14> costs{{
     {"roll", "turns, circles and reverse headings are not found"},
     {"heading",
      "circles, reverse headings and yaw manoeuvres are found by the ground track, if that is recorded"},
-    {"ground_speed", "winds cannot be compared, unless the ground speed is recorded by components"},
-    {"ground_track", "winds cannot be compared, unless the ground speed is recorded by components"},
+    {"ground_speed", "winds cannot be compared"},
+    {"ground_track", "winds cannot be compared"},
     {"flaps", "samples with flaps out are found by the lift alone"},
     {"liquid_water", "clouds are not found"},
     {"latitude", "standard gravity is used, and the slope of isobars is unknown"},
@@ -90,10 +90,8 @@ std::vector<std::string> effects_that_need(Quantity role) {
 bool says_geometric(const VariableInfo& variable) {
   std::vector<std::string> words = plain_words(variable.name);
   for (const std::string& word : plain_words(variable.long_name)) words.push_back(word);
-  for (const auto& [name, value] : variable.attributes) {
-    if (name == "standard_name" && (value == "altitude" || value == "height_above_reference_ellipsoid"))
-      return true;
-  }
+  const std::string standard_name = variable.attribute("standard_name");
+  if (standard_name == "altitude" || standard_name == "height_above_reference_ellipsoid") return true;
   constexpr std::array<std::string_view, 7> geometric{"gps",   "gnss",      "wgs", "geometric",
                                                       "geoid", "ellipsoid", "msl"};
   return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
@@ -116,6 +114,7 @@ class Look {
     find_candidates();
     find_model();
     find_roles();
+    mark_replaced();
     find_unused();
     look_at_samples();
     if (result_.model) {
@@ -557,9 +556,38 @@ class Look {
     MissingRole missing{std::string(info.name), std::string(info.description), names, cost_of(info.name), {}};
     const Quantity role = quantity_named(info.name);
     if (role == Quantity::mach || role == Quantity::date) return;  // pressures and times give these
+    // The components give these.
+    if ((role == Quantity::ground_speed || role == Quantity::ground_track) && has_ground_components()) return;
     if (role != Quantity::count) missing.effects = effects_that_need(role);
     if (!missing.cost.empty() || !missing.effects.empty() || !names.empty())
       result_.missing.push_back(std::move(missing));
+  }
+
+  bool has_ground_components() const {
+    const auto has = [this](const std::string& component) {
+      const std::vector<std::string> names = names_of(component);
+      return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+        return has_values(flight_, name, "m/s", family_.unit_of(name));
+      });
+    };
+    return has("ground_speed_east") && has("ground_speed_north");
+  }
+
+  /// States a role of the table that the model does not read, because another role replaces it.
+  void mark_replaced() {
+    if (!result_.model) return;
+    const std::map<Quantity, std::string>& variables = result_.model->variables;
+    for (const auto& [role, other] :
+         {std::pair(Quantity::ambient_temperature, Quantity::recovery_temperature),
+          std::pair(Quantity::dew_point, Quantity::vapor_pressure)}) {
+      const auto reads = variables.find(other);
+      if (variables.count(role) != 0 || reads == variables.end()) continue;
+      for (InspectedRole& each : result_.roles) {
+        if (each.role != info_of(role).name) continue;
+        each.trap += fmt::format("{}not in the model, which reads {} = {} instead",
+                                 each.trap.empty() ? "" : "; ", info_of(other).name, reads->second);
+      }
+    }
   }
 
   void look_at_samples() {

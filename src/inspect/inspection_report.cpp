@@ -8,9 +8,10 @@
 #include <utility>
 
 #include <pcor/base/utc.hpp>
+#include "base/phrasing.hpp"
 #include "report/columns.hpp"
 #include "report/residual_pictures.hpp"
-#include "residuals/wind.hpp"
+#include "residuals/report_flight.hpp"
 
 namespace pcor {
 
@@ -20,7 +21,7 @@ namespace {
 
 ReportTable roles_of(const Inspection& flight) {
   ReportTable table{"Roles of " + std::filesystem::path(flight.path).filename().string(),
-                    "Variable of each role, by the names of " + flight.family_title + ".",
+                    "Check that these variables are the right ones: names of " + flight.family_title + ".",
                     {"role", "variable", "unit", "sign", "samples in a record", "present", "remarks"}};
   for (const InspectedRole& role : flight.roles) {
     std::string remarks = role.trap;
@@ -64,7 +65,12 @@ Report inspection_report(const std::vector<Inspection>& flights) {
     report.info.emplace_back("Names of", flight.family_title);
     if (const std::string models = applicable_text(flight.laws); !models.empty())
       report.info.emplace_back("Models for this flight", models);
-    for (const Note& note : flight.notes) report.info.emplace_back(label_of(note), note.text);
+    for (const Note& note : flight.notes) {
+      if (note.severity == Severity::warning)
+        report.summary.push_back(sentence(note.text));
+      else
+        report.info.emplace_back(label_of(note), note.text);
+    }
     if (!flight.samples) continue;
     report.flight_starts.push_back(report.time.size());
     report.flight_names.push_back(flight.samples->name);
@@ -94,6 +100,12 @@ Report inspection_report(const std::vector<Inspection>& flights) {
     add("latitude", "latitude", "deg", [](const FlightSamples& flight) { return flight.latitude; });
     add("longitude", "longitude", "deg", [](const FlightSamples& flight) { return flight.longitude; });
     add_strip(report);
+  }
+  for (const Inspection& flight : flights) {
+    if (!flight.roles.empty()) report.items.emplace_back(roles_of(flight));
+    if (!flight.missing.empty()) report.items.emplace_back(missing_of(flight));
+  }
+  if (!report.time.empty()) {
     add_if_present(report, TimePanel{"Height", "Altitude in time; regimes are shaded.", {"altitude"}});
     add_if_present(
         report, TimePanel{"Speed", "True airspeed and speed over the ground.", {"airspeed", "ground_speed"}});
@@ -105,10 +117,6 @@ Report inspection_report(const std::vector<Inspection>& flights) {
       wind.insert(wind.end(), part.begin(), part.end());
     }
     add_track(report, "Track", "Ground track, coloured by altitude.", "altitude", std::move(wind), false);
-  }
-  for (const Inspection& flight : flights) {
-    if (!flight.roles.empty()) report.items.emplace_back(roles_of(flight));
-    if (!flight.missing.empty()) report.items.emplace_back(missing_of(flight));
   }
   return report;
 }

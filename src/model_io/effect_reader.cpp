@@ -36,12 +36,11 @@ class EffectReader final : TomlReader {
   }
 
   void read_effect(const toml::table& table) {
+    refuse_unknown(table, "[[effect]]",
+                   {"id", "where", "formula", "scaling", "parameters", "unit", "source", "stderr", "fixed",
+                    "bounds", "axes", "coefficients"});
     Given given;
-    Actions actions;
-    for (const char* const key : {"id", "where", "formula", "scaling", "parameters", "unit", "source",
-                                  "stderr", "fixed", "bounds", "axes", "coefficients"})
-      actions.emplace_back(key, [&given](const Entry& entry) { given.emplace(entry.key, entry); });
-    each(table, "[[effect]]", actions);
+    for (const Entry& entry : entries_of(table, "[[effect]]")) given.emplace(entry.key, entry);
     const Entry* const id_entry = find(given, "id");
     if (id_entry == nullptr) fail(table, "an effect has no id; give id = \"...\"");
     const std::string id = text(*id_entry);

@@ -93,34 +93,29 @@ class Reader final : TomlReader {
     require_format(root, "a model file", model_format);
   }
 
+  // [variables] depends on the approach of [lams], most sections on [variables], and [covariance] on
+  // [[effect]].
   void read_root(const toml::table& root) {
-    const std::pair<const char*, void (Reader::*)(const Entry&)> sections[] = {
-        {"variables", &Reader::read_variables},
-        {"units", &Reader::read_units},
-        {"output", &Reader::read_output},
-        {"lams", &Reader::read_lams},
-        {"temperature", &Reader::read_temperature},
-        {"humidity", &Reader::read_humidity},
-        {"radome", &Reader::read_radome},
-        {"policy", &Reader::read_policy},
-        {"domain", &Reader::read_domain},
-        {"effect", &Reader::read_list_of_effects},
-        {"law", &Reader::read_law},
-        {"covariance", &Reader::read_covariance},
-        {"uncertainty", &Reader::read_uncertainty},
-        {"provenance", &Reader::read_provenance}};
-    std::map<std::string, Entry> given;
-    Actions actions{{"format", [](const Entry&) {}},
-                    {"name", [&](const Entry& entry) { file_.model.name = text(entry); }},
-                    {"aircraft", [&](const Entry& entry) { file_.model.aircraft = text(entry); }},
-                    {"roles", [&](const Entry& entry) { file_.roles_from = text(entry); }}};
-    for (const auto& [key, read] : sections)
-      actions.emplace_back(key, [&given](const Entry& entry) { given.emplace(entry.key, entry); });
-    each(root, "", actions);
-    for (const auto& [key, read] : sections) {
-      if (const auto found = given.find(key); found != given.end()) (this->*read)(found->second);
-      if (read == &Reader::read_lams) check_variables();  // needs [variables] to [lams]
-    }
+    each(root, "",
+         {{"format", [](const Entry&) {}},
+          {"name", [&](const Entry& entry) { file_.model.name = text(entry); }},
+          {"aircraft", [&](const Entry& entry) { file_.model.aircraft = text(entry); }},
+          {"roles", [&](const Entry& entry) { file_.roles_from = text(entry); }},
+          {"lams", [&](const Entry& section) { read_lams(section); }},
+          {"variables", [&](const Entry& section) { read_variables(section); }},
+          {"units", [&](const Entry& section) { read_units(section); }},
+          {"output", [&](const Entry& section) { read_output(section); }},
+          {"temperature", [&](const Entry& section) { read_temperature(section); }},
+          {"humidity", [&](const Entry& section) { read_humidity(section); }},
+          {"radome", [&](const Entry& section) { read_radome(section); }},
+          {"policy", [&](const Entry& section) { read_policy(section); }},
+          {"domain", [&](const Entry& section) { read_domain(section); }},
+          {"effect", [&](const Entry& section) { read_effects(section, name(), file_); }},
+          {"law", [&](const Entry& section) { read_law(section); }},
+          {"covariance", [&](const Entry& section) { read_covariance(section); }},
+          {"uncertainty", [&](const Entry& section) { read_uncertainty(section); }},
+          {"provenance",
+           [&](const Entry& section) { file_.provenance = provenance(table(section), "[provenance]"); }}});
   }
 
   void read_variables(const Entry& section_entry) {
@@ -129,12 +124,16 @@ class Reader final : TomlReader {
       file_.variables[quantity] = variable_name(entry);
       variable_positions_[quantity] = entry.position;
     }
-    // A model without pressure variables uses the variables of the flight's aircraft.
-    if (!names_pressures()) return;
+    if (names_pressures()) require_pressures(section_entry.position);
+    check_variables();
+  }
+
+  // A model without pressure variables uses the variables of the flight's aircraft.
+  void require_pressures(Position position) const {
     for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
       if (file_.variables.count(quantity) != 0) continue;
       const std::string_view name = info_of(quantity).name;
-      fail(section_entry.position,
+      fail(position,
            fmt::format("the role '{}' has no variable; add {} = \"...\" to [variables]", name, name));
     }
   }
@@ -328,8 +327,6 @@ class Reader final : TomlReader {
     }
   }
 
-  void read_list_of_effects(const Entry& effects) { read_effects(effects, name(), file_); }
-
   void read_law(const Entry& section_entry) {
     LawInfo& law = file_.law;
     const toml::node* last = nullptr;
@@ -476,10 +473,6 @@ class Reader final : TomlReader {
     if (!is_covariance(rows, size)) {
       fail(entry, "the matrix is not positive semidefinite; refit the model");
     }
-  }
-
-  void read_provenance(const Entry& section_entry) {
-    file_.provenance = provenance(table(section_entry), "[provenance]");
   }
 
   Provenance provenance(const toml::table& table, const std::string& title) const {

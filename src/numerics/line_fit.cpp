@@ -64,6 +64,8 @@ void PairMoments::add(const PairMoments& other) {
   samples += other.samples;
 }
 
+double PairMoments::correlation() const { return xy / std::sqrt(xx * yy); }
+
 LineFit ordinary_fit(const std::vector<double>& x, const std::vector<double>& y) {
   return ordinary_fit(moments_of(x, y));
 }

@@ -42,15 +42,4 @@ std::vector<double> upper_triangle(const Eigen::MatrixXd& matrix) {
   return elements;
 }
 
-Eigen::MatrixXd from_upper_triangle(const std::vector<double>& elements) {
-  Eigen::Index size = 0;
-  while (size * (size + 1) / 2 < as_index(elements.size())) ++size;
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
-  auto next = elements.begin();
-  for (Eigen::Index column = 0; column < size; ++column) {
-    for (Eigen::Index row = 0; row <= column; ++row) matrix(row, column) = *next++;
-  }
-  return matrix;
-}
-
 }  // namespace pcor::internal

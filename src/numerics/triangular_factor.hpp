@@ -37,6 +37,5 @@ class TriangularFactor {
 
 /// The elements of an upper triangular square matrix that may differ from zero, column by column.
 std::vector<double> upper_triangle(const Eigen::MatrixXd& matrix);
-Eigen::MatrixXd from_upper_triangle(const std::vector<double>& elements);
 
 }  // namespace pcor::internal

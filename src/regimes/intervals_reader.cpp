@@ -52,13 +52,6 @@ class Reader final : TomlReader {
   }
 
  private:
-  // Refuses the first key, in the order of the text, that is not `known`.
-  void refuse_unknown(const toml::table& table, const std::string& title, const Names& known) const {
-    for (const Entry& entry : entries_of(table, title)) {
-      if (std::find(known.begin(), known.end(), entry.key) == known.end()) refuse(entry, known);
-    }
-  }
-
   // Calls `read_one` with each table of a list, and with its begin and end.
   template <class ReadOne>
   void each(const toml::table& root, const std::string& key, const Names& known,

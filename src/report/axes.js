@@ -142,10 +142,12 @@ const smallSize = 10.7;  // 8 points in print, the smallest character size
 
 const margin = 68;  // left margin for the numbers and the axis label
 
+const rightMargin = 14;  // smallest right margin of a plot
+
 const small = (theme, align = 'start') => ({fill: theme.quiet, size: fontSize, align});
 
 // Plot area of a picture: margins for the axes, and for a legend of `lines`.
-function plotBox(width, height, {left = margin, right = 14, top = 12, bottom = 44} = {}) {
+function plotBox(width, height, {left = margin, right = rightMargin, top = 12, bottom = 44} = {}) {
   return {x: left, y: top, width: width - left - right, height: height - top - bottom};
 }
 
@@ -168,11 +170,11 @@ function verticalAxis(pen, box, y, {from, to}, label, theme, distance = 30, beyo
 }
 
 function horizontalTicks(pen, box, placed, label, theme) {
-  const base = box.y + box.height;
+  const base = box.y + box.height, end = box.x + box.width + rightMargin;
   for (const {at, label: words} of placed) {
     const x = Math.round(at) + 0.5;
     pen.lines([[x, box.y, x, base]], theme.grid);
-    pen.text(x, base + 17, words, small(theme, 'middle'));
+    pen.text(Math.min(x, end - textWidth(words, fontSize) / 2), base + 17, words, small(theme, 'middle'));
   }
   pen.text(box.x + box.width / 2, base + 36, label, small(theme, 'middle'));
 }

@@ -129,8 +129,8 @@ function bandPaths(samples, {values}, {values: errors}, x, y) {
 
 function drawTime(pen, width, height, item, samples, theme) {
   const recorded = curvesOf(samples, item, theme);
-  const columns = item.averagingTime
-    ? recorded.map((column) => ({...column, values: periodMeans(samples, column.values, item.averagingTime)})) : recorded;
+  const columns = item.averaging_time
+    ? recorded.map((column) => ({...column, values: periodMeans(samples, column.values, item.averaging_time)})) : recorded;
   const error = samples.columns.get(item.uncertainty);
   const entries = columns.map(({title, colour}) => ({label: title, colour}));
   const key = item.columns.length > 1;
@@ -172,7 +172,8 @@ function drawTime(pen, width, height, item, samples, theme) {
 }
 
 // Mean of y in bins of x, with its standard error.
-function binned(xs, ys, indices, {from, to}, bins, samplesPerIndependent) {
+function binned(xs, ys, indices, {from, to}, autocorrelationTime) {
+  const bins = 12;
   const all = Array.from({length: bins}, (_, b) =>
     ({middle: from + (b + 0.5) * (to - from) / bins, count: 0, sum: 0, squares: 0}));
   for (const i of indices) {
@@ -185,7 +186,7 @@ function binned(xs, ys, indices, {from, to}, bins, samplesPerIndependent) {
   return all.map(({middle, count, sum, squares}) => {
     const mean = sum / count;
     const variance = Math.max(squares / count - mean * mean, 0) * count / Math.max(count - 1, 1);
-    return {middle, count, mean, error: Math.sqrt(variance / Math.max(count / samplesPerIndependent, 1))};
+    return {middle, count, mean, error: Math.sqrt(variance / Math.max(count / autocorrelationTime, 1))};
   });
 }
 
@@ -203,14 +204,14 @@ function neighbours(bins) {
 
 function drawBinned(pen, width, height, item, samples, theme) {
   const columns = curvesOf(samples, item, theme);
-  const abscissa = samples.columns.get(item.choice ?? item.choices[0]);
+  const abscissa = samples.columns.get(item.choice ?? item.x_choices[0]);
   const found = columns.map((column) => samples.indices([abscissa, column]));
   const whole = columns.map((column) => samples.indices([abscissa, column], samples.every));
   const entries = columns.map(({title, colour}) => ({label: title, colour}));
   const box = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, theme)});
   const across = limits(whole.flatMap((indices) => indices.map((i) => abscissa.values[i])));
   const bins = columns.map(({values}, c) =>
-    binned(abscissa.values, values, found[c], across, item.bins, item.samplesPerIndependent));
+    binned(abscissa.values, values, found[c], across, item.autocorrelation_time));
   const shown = bins.map((all) => all.filter(({count}) => count >= fewest));
   const steadily = (of) => steady(columns).flatMap((column) => of(column, columns.indexOf(column)));
   const up = limits(steadily(({values}, c) => whole[c].map((i) => values[i])),
@@ -269,7 +270,7 @@ function colourBar(pen, box, colours, {from, to}, label, theme) {
 
 // Colours of a column over its range among the samples `whole`: centred on zero if diverging. `paint` draws
 // dots of some size at places of samples, the strongest colours of either sign last, on top.
-function shading({diverging}, {values}, whole, theme) {
+function shading(diverging, {values}, whole, theme) {
   const sorted = Float64Array.from(whole, (i) => diverging ? Math.abs(values[i]) : values[i]).sort();
   const greatest = sorted[Math.floor(0.99 * (sorted.length - 1))] || 1;
   const range = diverging ? {from: -greatest, to: greatest} : limits(sorted);
@@ -291,10 +292,9 @@ function drawPlane(pen, width, height, item, samples, theme) {
   const whole = samples.indices([across, up, shade], samples.every);
   const box = plotBox(width, height, {right: 84});
   const xs = limits(whole.map((i) => across.values[i])), ys = limits(whole.map((i) => up.values[i]));
-  const {range, colours, paint} = shading(item, shade, whole, theme);
+  const {range, colours, paint} = shading(true, shade, whole, theme);
   const x = scale(xs.from, xs.to, box.x, box.x + box.width);
-  const [bottom, top] = item.reverseY ? [box.y, box.y + box.height] : [box.y + box.height, box.y];
-  const y = scale(ys.from, ys.to, bottom, top);
+  const y = scale(ys.from, ys.to, box.y, box.y + box.height);
   verticalAxis(pen, box, y, ys, up.label, theme);
   horizontalAxis(pen, box, x, xs, across.label, theme);
   frame(pen, box, theme, NaN);
@@ -313,7 +313,7 @@ function drawPlane(pen, width, height, item, samples, theme) {
 function drawPair(pen, width, height, item, samples, theme) {
   const [across, up] = columnsOf(samples, [item.x, item.y]);
   const found = samples.indices([across, up]);
-  const lines = item.lines.length ? item.lines : [{slope: 1, offset: 0, label: 'y = x'}];
+  const {lines} = item;
   const entries = lines.map(({label}, i) =>
     ({label, colour: theme.series[(i + 1) % theme.series.length], dash: i ? [6, 4] : []}));
   const both = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, {...theme, named: false})});
@@ -402,13 +402,11 @@ function drawCurves(pen, width, height, item, samples, theme) {
   const box = plotBox(width, height, {top: legend(pen, curves, margin, width - 14, {...theme, named: false})});
   const across = {from: Math.min(...shown.map((point) => point.x)), to: Math.max(...shown.map((point) => point.x))};
   const up = limits(shown.flatMap(({y, error}) => [y - error, y + error]));
-  const along = item.logX ? Math.log : (value) => value;
-  const place = scale(along(across.from), along(across.to), box.x, box.x + box.width);
-  const x = (value) => place(along(value));
+  const place = scale(Math.log(across.from), Math.log(across.to), box.x, box.x + box.width);
+  const x = (value) => place(Math.log(value));
   const y = scale(up.from, up.to, box.y + box.height, box.y);
   verticalAxis(pen, box, y, up, withUnit(item.axis, item.unit), theme);
-  const axis = item.logX ? logarithmicAxis : horizontalAxis;
-  axis(pen, box, place, across, withUnit(item.xAxis, item.xUnit), theme);
+  logarithmicAxis(pen, box, place, across, withUnit(item.x_axis, item.x_unit), theme);
   frame(pen, box, theme, y(0));
   pen.clip(box, () => curves.forEach(({points, colour}) => {
     pen.lines(points.filter(({error}) => error > 0).map((point) =>
@@ -420,9 +418,9 @@ function drawCurves(pen, width, height, item, samples, theme) {
   return {
     points: shown.length,
     plot: box,
-    alternative: `${item.axis} against ${item.xAxis}: ${listText(curves.map(({label}) => label))}`,
+    alternative: `${item.axis} against ${item.x_axis}: ${listText(curves.map(({label}) => label))}`,
     table: {
-      headers: ['Curve', withUnit(item.xAxis, item.xUnit), withUnit(item.axis, item.unit)],
+      headers: ['Curve', withUnit(item.x_axis, item.x_unit), withUnit(item.axis, item.unit)],
       rows: curves.flatMap(({label, points}) =>
         points.map((point) => [label, brief(point.x), point.error ? withError(point.y, point.error) : brief(point.y)])),
     },

@@ -43,13 +43,13 @@ function endsOfRows(rows, always) {
 }
 
 // Rows {label, dots: [{value, error}, ...], text, tone, mark}: an axis below that covers `reach`, or
-// otherwise the dots with their bars, a band of small values, and lines. Arrows mark dots beyond the axis.
-function drawRows(pen, width, height, {rows, series, lines = [], band = null, axis, reach}, theme) {
+// otherwise the dots with their bars, a band from -1 to 1, and lines. Arrows mark dots beyond the axis.
+function drawRows(pen, width, height, {rows, series, lines = [], band = '', axis, reach}, theme) {
   const colours = series.map((label, s) => theme.series[s % theme.series.length]);
   const keys = [
     ...(series.length > 1 ? series.map((label, s) => ({label, colour: colours[s], mark: marks[s % marks.length]})) : []),
-    ...lines.map(({label}) => ({label, colour: theme.ink, dash: [5, 3], thickness: 1.5})),
-    ...(band ? [{label: band.label, colour: theme.frame, wide: true}] : [])];
+    ...lines.map(([label]) => ({label, colour: theme.ink, dash: [5, 3], thickness: 1.5})),
+    ...(band ? [{label: band, colour: theme.frame, wide: true}] : [])];
   const top = keys.length ? legend(pen, keys, 8, width - 14, theme) : 8;
   const swatch = rows.some(({mark}) => mark) ? 22 : 0;
   const words = Math.max(0, ...rows.map(({text}) => textWidth(text ?? '', fontSize)));
@@ -60,16 +60,16 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
   const right = below ? 14 : words + 20;
   const box = plotBox(width, height, {left, right, top});
   const finite = rows.flatMap(({dots}) => dots.filter(({value}) => Number.isFinite(value)));
-  const always = [...lines.map(({value}) => value), ...(band ? [band.from, band.to] : [])];
+  const always = [...lines.map(([, value]) => value), ...(band ? [-1, 1] : [])];
   const range = limits([], [...(reach ?? endsOfRows(rows, always)), ...always].filter(Number.isFinite));
   if (range.from > 0 && range.from < 0.5 * range.to) range.from = 0;
   const x = scale(range.from, range.to, box.x, box.x + box.width);
-  if (band) pen.rect(x(band.from), box.y, x(band.to) - x(band.from), box.height, theme.frame, 0.22);
+  if (band) pen.rect(x(-1), box.y, x(1) - x(-1), box.height, theme.frame, 0.22);
   horizontalAxis(pen, box, x, range, axis, theme, 52);
   const room = box.height / rows.length;
   pen.clip(box, () => {
-    for (const {value} of lines) pen.lines([[x(value), box.y, x(value), box.y + box.height]], theme.ink, 1.25, [5, 3]);
-    if (range.from < 0 && range.to > 0 && !lines.some(({value}) => value === 0)) pen.lines([[x(0), box.y, x(0), box.y + box.height]], theme.frame);
+    for (const [, value] of lines) pen.lines([[x(value), box.y, x(value), box.y + box.height]], theme.ink, 1.25, [5, 3]);
+    if (range.from < 0 && range.to > 0 && !lines.some(([, value]) => value === 0)) pen.lines([[x(0), box.y, x(0), box.y + box.height]], theme.frame);
   });
   rows.forEach(({label, dots, text, tone, mark}, r) => {
     const middle = box.y + (r + 0.5) * room;

@@ -78,8 +78,8 @@ class Panel {
   }
 
   choice() {
-    if (!(this.item.choices?.length > 1)) return '';
-    const options = this.item.choices.map((name) =>
+    if (!(this.item.x_choices?.length > 1)) return '';
+    const options = this.item.x_choices.map((name) =>
       make('option', {value: name}, this.report.samples.columns.get(name).title));
     this.select = make('select', {onchange: () => {
       this.item.choice = this.select.value;
@@ -158,7 +158,7 @@ class Panel {
 
   // Columns of the readout.
   get told() {
-    const {kind, columns, choice, choices, x, y, latitude, longitude, colour} = this.item;
+    const {kind, columns, choice, x_choices: choices, x, y, latitude, longitude, colour} = this.item;
     if (overTime(this.item)) return this.item.uncertainty ? [...columns, this.item.uncertainty] : columns;
     if (kind === 'binned') return [choice ?? choices[0], ...columns];
     return [x, y, latitude, longitude, colour].filter((name) => name);

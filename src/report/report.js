@@ -1,16 +1,13 @@
 // Starts the page. `window.pcorReport` is the report for the tests.
 //
-// Words after # in the address: "light" and "dark" choose the colours, "selftest" runs the test of the page,
-// "export" keeps only the pictures, for figures.cpp, and "for=slide" sets their purpose (see `uses`).
+// Words after # in the address: "light" and "dark" choose the colours, "export" keeps only the pictures, for
+// figures.cpp, and "for=slide" sets their purpose (see `uses`).
 
 const wishes = location.hash.slice(1).split('+');
 
 class ReportPage {
   constructor(data) {
     this.ready = false;
-    this.errors = [];
-    window.addEventListener('error', ({message}) => this.errors.push(message));
-    window.addEventListener('unhandledrejection', ({reason}) => this.errors.push(String(reason)));
     this.printing = false;
     // Purpose of saved pictures.
     this.use = Object.keys(uses).find((use) => wishes.includes(`for=${use}`)) ?? 'page';
@@ -37,7 +34,6 @@ class ReportPage {
     this.addGuide();
     this.recall();
     this.watch();
-    this.firstFrame = performance.now();  // ms after the page began to load
     this.ready = true;
   }
 
@@ -115,7 +111,7 @@ class ReportPage {
     if (names.size) view.names = [...names];
     this.panels.forEach(({item: {choice, hidden, vertical}}, i) => {
       const own = {};
-      if (choice && choice !== this.panels[i].item.choices[0]) own.choice = choice;
+      if (choice && choice !== this.panels[i].item.x_choices[0]) own.choice = choice;
       if (hidden?.size) own.hidden = [...hidden];
       if (vertical) own.vertical = [vertical.from, vertical.to];
       if (Object.keys(own).length) (view.panels ??= {})[i] = own;
@@ -150,7 +146,7 @@ class ReportPage {
     this.panels.forEach((panel, i) => {
       const {item, select} = panel;
       const {choice, hidden, vertical} = view.panels?.[i] ?? {};
-      if (select) select.value = item.choice = item.choices.includes(choice) ? choice : item.choices[0];
+      if (select) select.value = item.choice = item.x_choices.includes(choice) ? choice : item.x_choices[0];
       if (item.hidden) {
         const off = item.columns.filter((name) => Array.isArray(hidden) && hidden.includes(name));
         item.hidden = new Set(off.length < item.columns.length ? off : []);
@@ -194,9 +190,6 @@ class ReportPage {
     return {from, to, names: [...names], count: selectedCount};
   }
 
-  // Picture of a panel, counted from 0, as the text of an SVG file.
-  svg(panel) { return this.panels[panel].svg(); }
-
   // Pictures that do not depend on interactive changes.
   get figures() { return this.panels.filter(({item}) => !item.isLive); }
 
@@ -223,6 +216,5 @@ class ReportPage {
 
 for (const theme of ['light', 'dark']) if (wishes.includes(theme)) document.documentElement.dataset.theme = theme;
 window.pcorReport = new ReportPage(JSON.parse(document.getElementById('data').textContent));
-const leave = (id, text) => make('pre', {id}, text);
-if (wishes.includes('selftest')) document.body.append(leave('selftest', JSON.stringify(selfTest(window.pcorReport))));
-if (wishes.includes('export')) document.body.replaceChildren(leave('export', `\n${window.pcorReport.exportText()}\n`));
+if (wishes.includes('export'))
+  document.body.replaceChildren(make('pre', {id: 'export'}, `\n${window.pcorReport.exportText()}\n`));

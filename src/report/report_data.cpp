@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <openssl/evp.h>
 #include <pcor/base/error.hpp>
 #include <pcor/base/message.hpp>
@@ -9,6 +10,7 @@
 #include <initializer_list>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -26,13 +28,25 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportLine, slope, offset, label)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportBar, label, value, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportCurve, label, x, y, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportDot, value, error)
+NLOHMANN_JSON_SERIALIZE_ENUM(ReportTone, {{ReportTone::none, ""},
+                                          {ReportTone::good, "good"},
+                                          {ReportTone::bad, "bad"},
+                                          {ReportTone::open, "open"}})
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportDotRow, label, dots, text, tone)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportInterval, name, begin, end)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TimePanel, columns, axis, uncertainty, averaging_time)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BinnedPanel, columns, x_choices, autocorrelation_time, axis)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PlanePanel, x, y, colour)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PairPanel, x, y, lines)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegimeTable, columns)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BarPanel, bars, axis, unit)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CurvePanel, curves, x_axis, axis, x_unit, unit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StripPanel, columns)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegimePanel, columns, axis)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QuantilePanel, columns, axis)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DotPanel, series, rows, lines, axis, unit, band)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfCoefficient, name, unit, given, start, minimum, maximum, fixed,
+                                   argument)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfSeparation, effect, rival, text)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfCommands, add, model, with, refit, stem)
 
@@ -92,26 +106,40 @@ json quantised(const ReportColumn& column, double steps = all_steps) {
           {"step", step},        {"values", packed(numbers)}};
 }
 
-// Names of the columns used only along the axes of pictures, where the resolution is a pixel. A key of a new
-// panel that names columns belongs in one of the two lists.
-std::set<std::string> names_along_axes(const json& items) {
-  std::set<std::string> along;
-  std::set<std::string> up;
+// Columns that items show, each with whether it needs the full resolution; along an axis the resolution is a
+// pixel. A key of a new panel that names columns belongs in one of the two lists.
+std::map<std::string, bool> shown_columns(const json& items) {
+  std::map<std::string, bool> shown;
   for (const json& item : items) {
-    const auto insert = [&item](std::initializer_list<const char*> keys, std::set<std::string>& names) {
+    const auto insert = [&](std::initializer_list<const char*> keys, bool is_full) {
       for (const char* const key : keys) {
         const json found = item.value(key, json::array());
         for (const json& name : found.is_array() ? found : json::array({found})) {
-          if (name.is_string()) names.insert(name);
+          if (!name.is_string() || name == "") continue;
+          bool& full = shown[name];
+          full = full || is_full;
         }
       }
     };
-    insert({"choices", "latitude", "longitude", "x", "y"}, along);
-    insert({"columns", "uncertainty", "colour", "residual"}, up);
-    if (item["kind"] == "pair") insert({"x", "y"}, up);
+    insert({"x_choices", "latitude", "longitude", "x", "y"}, item["kind"] == "pair");
+    insert({"columns", "uncertainty", "colour", "residual"}, true);
   }
-  for (const std::string& name : up) along.erase(name);
-  return along;
+  return shown;
+}
+
+void check_columns(const Report& report, const std::map<std::string, bool>& shown) {
+  std::set<std::string> names;
+  for (const ReportColumn& column : report.columns) {
+    if (!names.insert(column.name).second || column.values.size() != report.time.size())
+      throw Error(Error::Code::usage,
+                  fmt::format("report: column '{}' occurs twice or has {} values for {} samples; correct it",
+                              column.name, column.values.size(), report.time.size()));
+  }
+  for (const auto& [name, full] : shown) {
+    if (names.count(name) == 0)
+      throw Error(Error::Code::usage,
+                  fmt::format("report: a picture shows column '{}', which is absent; add it", name));
+  }
 }
 
 // Flights with the time of their samples: `start` in seconds since 1970, and the milliseconds between
@@ -123,27 +151,26 @@ json flights(const Report& report) {
   bounds.push_back(report.time.size());
   json all = json::array();
   for (std::size_t flight = 0; flight + 1 < bounds.size(); ++flight) {
+    if (bounds[flight] == bounds[flight + 1]) continue;
     const double start = report.time[bounds[flight]];
     std::vector<std::uint32_t> steps;
     double before = 0.0;
     for (std::size_t i = bounds[flight]; i < bounds[flight + 1]; ++i) {
       const double milliseconds = std::round((report.time[i] - start) * 1000.0);
-      if (milliseconds > max_time)
-        throw Error(Error::Code::usage, "report: flight " + std::to_string(flight + 1) +
-                                            " lasts over 49 days; begin a new flight in flight_starts");
+      if (!(milliseconds >= before && milliseconds <= max_time))
+        throw Error(
+            Error::Code::usage,
+            fmt::format("report: times of flight {} do not increase or span over 49 days; begin a new "
+                        "flight in flight_starts",
+                        flight + 1));
       steps.push_back(static_cast<std::uint32_t>(milliseconds - before));
       before = milliseconds;
     }
-    all.push_back({{"name", report.flight_names.empty() ? "" : report.flight_names[flight]},
+    all.push_back({{"name", report.flight_names.empty() ? "" : report.flight_names.at(flight)},
                    {"start", start},
                    {"milliseconds", packed(steps)}});
   }
   return all;
-}
-
-const char* to_string(ReportTone tone) {
-  constexpr const char* names[] = {"", "good", "bad", "open"};
-  return names[static_cast<std::size_t>(tone)];
 }
 
 // The page reads the products as bytes of little-endian doubles.
@@ -186,30 +213,6 @@ struct ItemJson {
   json operator()(const Panel& panel) const {
     return panel;
   }
-  json operator()(const TimePanel& panel) const {
-    return {{"columns", panel.columns},
-            {"axis", panel.axis},
-            {"uncertainty", panel.uncertainty},
-            {"averagingTime", panel.averaging_time}};
-  }
-  json operator()(const BinnedPanel& panel) const {
-    return {{"columns", panel.y},
-            {"choices", panel.x_choices},
-            {"bins", panel.bins},
-            {"samplesPerIndependent", panel.autocorrelation_time},
-            {"axis", panel.axis}};
-  }
-  json operator()(const PlanePanel& panel) const {
-    return {{"x", panel.x},
-            {"y", panel.y},
-            {"colour", panel.colour},
-            {"reverseY", panel.reverse_y},
-            {"diverging", panel.diverging}};
-  }
-  json operator()(const CurvePanel& panel) const {
-    return {{"curves", panel.curves}, {"xAxis", panel.x_axis}, {"axis", panel.axis},
-            {"xUnit", panel.x_unit},  {"unit", panel.unit},    {"logX", panel.log_x}};
-  }
   json operator()(const TrackPanel& panel) const {
     const auto rounded = [](double speed) {
       return std::round(10.0 * speed) / 10.0;
@@ -223,33 +226,7 @@ struct ItemJson {
             {"diverging", panel.diverging},
             {"wind", wind}};
   }
-  json operator()(const DotPanel& panel) const {
-    json rows = json::array();
-    for (const ReportDotRow& row : panel.rows)
-      rows.push_back(
-          {{"label", row.label}, {"dots", row.dots}, {"text", row.text}, {"tone", to_string(row.tone)}});
-    json lines = json::array();
-    for (const auto& [label, value] : panel.lines) lines.push_back({{"label", label}, {"value", value}});
-    json all{{"series", panel.series},
-             {"rows", rows},
-             {"lines", lines},
-             {"axis", panel.axis},
-             {"unit", panel.unit}};
-    if (!panel.band.empty()) all["band"] = {{"label", panel.band}, {"from", -1.0}, {"to", 1.0}};
-    return all;
-  }
-
   json operator()(const WhatIfPanel& panel) const {
-    json coefficients = json::array();
-    for (const WhatIfCoefficient& each : panel.coefficients)
-      coefficients.push_back({{"name", each.name},
-                              {"unit", each.unit},
-                              {"given", each.given},
-                              {"start", each.start},
-                              {"least", each.minimum},
-                              {"greatest", each.maximum},
-                              {"fixed", each.fixed},
-                              {"argument", each.argument}});
     json effects = json::array();
     for (const WhatIfEffect& each : panel.effects)
       effects.push_back({{"id", each.id},
@@ -269,11 +246,11 @@ struct ItemJson {
     json item{{"residual", panel.residual},
               {"start", panel.start},
               {"isStartFitted", panel.is_start_fitted},
-              {"coefficients", std::move(coefficients)},
+              {"coefficients", panel.coefficients},
               {"own", panel.own},
               {"effects", std::move(effects)},
-              {"choices", panel.x_choices},
-              {"samplesPerIndependent", panel.autocorrelation_time},
+              {"x_choices", panel.x_choices},
+              {"autocorrelation_time", panel.autocorrelation_time},
               {"weights", std::move(weights)},
               {"alike", sums_json(panel.alike)},
               {"outliers", sums_json(panel.outliers)},
@@ -324,10 +301,13 @@ std::string data_json(const Report& report) {
     one["kind"] = kind_of(item);
     items.push_back(std::move(one));
   }
-  const std::set<std::string> along = names_along_axes(items);
+  const std::map<std::string, bool> shown = shown_columns(items);
+  check_columns(report, shown);
   json columns = json::array();
-  for (const ReportColumn& column : report.columns)
-    columns.push_back(quantised(column, along.count(column.name) > 0 ? steps_along : all_steps));
+  for (const ReportColumn& column : report.columns) {
+    const auto found = shown.find(column.name);
+    columns.push_back(quantised(column, found == shown.end() || found->second ? all_steps : steps_along));
+  }
   json data{{"flights", flights(report)},
             {"columns", std::move(columns)},
             {"intervals", report.intervals},

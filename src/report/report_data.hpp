@@ -7,10 +7,8 @@
 
 namespace pcor::internal::report {
 
-// Throws Error if the report cannot be drawn: see report_html.
-void check(const Report& report);
-
 // Input of the browser: samples, intervals and panels, as JSON without the character '<'.
+// @throws Error: see report_html
 std::string data_json(const Report& report);
 
 std::string base64(const void* bytes, std::size_t count);

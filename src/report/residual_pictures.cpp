@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "numerics/median.hpp"
-#include "numerics/octave_spectrum.hpp"
+#include "numerics/spectrum.hpp"
 #include "report/columns.hpp"
 
 namespace pcor::internal {
@@ -43,8 +43,7 @@ void add_distributions(Report& report, const std::vector<std::string>& residuals
       "period",
       "rms per octave",
       "s",
-      "hPa",
-      true};
+      "hPa"};
   const double step = step_of(report);
   for (const std::string& name : shown) {
     const ReportColumn& column = *column_named(report.columns, name);

@@ -114,7 +114,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
   frame(pen, box, theme, NaN);
 
   const placeOf = (i) => [x(at.get(i)), y(at.get(i))];
-  const {range, colours, paint} = shading(item, shade, samples.indices([lat, lon, shade], samples.every), theme);
+  const {range, colours, paint} = shading(item.diverging, shade, samples.indices([lat, lon, shade], samples.every), theme);
   const longest = box.width * perPixel / 4, power = 10 ** Math.floor(Math.log10(longest));
   const bar = power * [5, 2, 1].find((factor) => factor * power <= longest);  // km
   pen.clip(box, () => {

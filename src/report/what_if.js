@@ -56,7 +56,7 @@ class WhatIf {
       }
     }
     this.residual = samples.columns.get(item.residual);
-    this.again = this.addColumn('what-if-again', 'residual, fitted again', false);
+    this.again = this.addColumn('what-if-again', 'residual, fit on this page', false);
     this.live = this.addColumn('what-if', 'residual, what if', true);
     this.sides = ['what-if-first', 'what-if-second'].map((name) => this.addColumn(name, name, false));
   }
@@ -139,16 +139,16 @@ class WhatIf {
 
   // Slider and number for coefficient `c` of effect `e`; their range stays fixed.
   slider(c, e) {
-    const {name, unit, given, start, least, greatest} = this.item.coefficients[c];
+    const {name, unit, given, start, minimum, maximum} = this.item.coefficients[c];
     const {values, errors} = this.fit.fit([e], new Map(), true, this.fit.weightsOf([e]), false);
     const estimate = start + values[c], reach = 0.75 * Math.max(Math.abs(values[c]), 4 * errors[c]);
-    const from = Math.max(Math.min(given, estimate) - reach, least ?? -Infinity);
-    const to = Math.min(Math.max(given, estimate) + reach, greatest ?? Infinity);
+    const from = Math.max(Math.min(given, estimate) - reach, minimum ?? -Infinity);
+    const to = Math.min(Math.max(given, estimate) + reach, maximum ?? Infinity);
     const step = 10 ** Math.floor(Math.log10(Math.max((to - from) / sliderSteps, 1e-300)));
     const label = `${this.item.effects[e].id} ${name}`;
     const range = make('input', {type: 'range', min: 0, max: sliderSteps, step: 1, 'aria-label': label});
     const number = make('input', {type: 'number', step: 'any', 'aria-label': `${label}, value`,
-                                  min: least ?? null, max: greatest ?? null});
+                                  min: minimum ?? null, max: maximum ?? null});
     const band = make('span', {class: 'band'}), zero = make('span', {class: 'zero'});
     const told = make('span', {class: 'told'});
     const fitted = make('button', {type: 'button', title: 'Fit this coefficient again', 'aria-label': `Fit ${label} again`,
@@ -164,7 +164,7 @@ class WhatIf {
     zero.style.left = this.place(given, from, to);
     const element = make('div', {class: 'coefficient'},
       make('div', {class: 'words-of'}, make('span', {class: 'name'}, name), told, fitted),
-      make('span', {class: 'slider-track'}, band, zero, range), number, make('span', {class: 'unit'}, unit === '1' ? '' : unit));
+      make('span', {class: 'slider-track'}, band, zero, range), number, make('span', {class: 'unit'}, unit));
     return {c, element, range, number, band, told, fitted, from, to, step, unit};
   }
 
@@ -202,9 +202,9 @@ class WhatIf {
     const regimes = {title: 'Bias and rms by regime, what if', columns};
     this.regimes = new Regimes(regimes, part('regimes', 'What if: by regime', 'Bias and rms of the residual of the selected samples.'), report);
     report.tables.push(this.regimes);
-    if (item.choices.length)
-      this.panels.push(add({kind: 'binned', title: 'What if: residual against a variable', columns, choices: item.choices, bins: 12,
-        samplesPerIndependent: item.samplesPerIndependent, axis: 'residual'}, 'A slope or a bend larger than the error bars indicates a missing effect.'));
+    if (item.x_choices.length)
+      this.panels.push(add({kind: 'binned', title: 'What if: residual against a variable', columns, x_choices: item.x_choices,
+        autocorrelation_time: item.autocorrelation_time, axis: 'residual'}, 'A slope or a bend larger than the error bars indicates a missing effect.'));
     if (item.effects.length > 1) this.makePair(add, part);
   }
 
@@ -238,7 +238,7 @@ class WhatIf {
     const bars = [{label: item.start, value: this.heldOutRms(fit.fit([], new Map(), false), false)}];
     const on = [...this.on];
     for (let count = this.own ? 0 : 1; count <= on.length; ++count)
-      bars.push({label: count ? `+ ${item.effects[on[count - 1]].id}` : 'fitted again',
+      bars.push({label: count ? `+ ${item.effects[on[count - 1]].id}` : 'fit on this page',
                  value: this.heldOutRms(fit.fit(on.slice(0, count), this.byHand, this.own), this.own)});
     bars.push({label: item.noiseLabel, value: item.noise});
     return bars.filter(({value}) => Number.isFinite(value));
@@ -309,7 +309,7 @@ class WhatIf {
     const given = fit.fit([], new Map(), false);
     const row = (words, values) => [words, ...values.map((value, i) => i === 2 && !this.isChanged ? '–' : number(value, 1e-4))];
     fillTable(this.figures, {
-      headers: ['hPa', item.start, 'fitted again', 'what if'],
+      headers: ['hPa', item.start, 'fit on this page', 'what if'],
       rows: [row('rms', [given.rms, nothing.rms, now.rms]),
              row(this.heldOutWords, [this.heldOutRms(given, false), this.heldOutRms(nothing, true), this.heldOutRms(now, this.own)]),
              [item.noiseLabel, '', '', number(item.noise, 1e-4)],
@@ -359,7 +359,7 @@ class WhatIf {
       .filter(({c}) => c < item.own || this.on.has(item.effects.indexOf(this.effectOf(c))))
       .map(({c, name, unit, given}) => [`${c < item.own ? '' : `${this.effectOf(c).id}.`}${name}`, brief(given),
                                         c < item.own ? shown(nothing, c) : '–', this.isChanged ? shown(now, c) : '–', unit]);
-    fillTable(this.coefficients, {headers: ['Coefficient', 'given', 'fitted again', 'what if', 'unit'], rows});
+    fillTable(this.coefficients, {headers: ['Coefficient', 'given', 'fit on this page', 'what if', 'unit'], rows});
   }
 
   // Command that adds the active effects: one for all of the catalogue, one for each formula.

@@ -138,16 +138,16 @@ class WhatIfFit {
     return values.reduce((sum, value, j) => sum + row[j] * value, -row[values.length]);
   }
 
-  least(c) { return (this.coefficients[c].least ?? -Infinity) - this.coefficients[c].start; }
+  least(c) { return (this.coefficients[c].minimum ?? -Infinity) - this.coefficients[c].start; }
 
-  greatest(c) { return (this.coefficients[c].greatest ?? Infinity) - this.coefficients[c].start; }
+  greatest(c) { return (this.coefficients[c].maximum ?? Infinity) - this.coefficients[c].start; }
 
   isAtBound(c, values) { return values[c] <= this.least(c) || values[c] >= this.greatest(c); }
 
   // Value of a coefficient, limited to its physical bounds.
   possible(c, value) {
-    const {least, greatest} = this.coefficients[c];
-    return Math.min(Math.max(value, least ?? -Infinity), greatest ?? Infinity);
+    const {minimum, maximum} = this.coefficients[c];
+    return Math.min(Math.max(value, minimum ?? -Infinity), maximum ?? Infinity);
   }
 
   told(values, free, factor, weights) {

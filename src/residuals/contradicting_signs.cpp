@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include <pcor/base/note.hpp>
+#include <pcor/numerics/line_fit.hpp>
 #include <pcor/physics/constants.hpp>
 #include "numerics/missing.hpp"
 #include "residuals/samples.hpp"
@@ -76,25 +77,15 @@ std::vector<SignPair> pairs_of(const FlightSamples& samples) {
 /// Correlation between -1 and 1; NaN if too little moved, or one was not recorded.
 double correlation_of(const SignPair& pair, const FlightSamples& samples, double min_airspeed) {
   if (pair.first.size() != pair.second.size()) return nan;
-  double count = 0.0;
-  double a = 0.0;
-  double b = 0.0;
-  double aa = 0.0;
-  double bb = 0.0;
-  double ab = 0.0;
+  PairMoments pairs;
   for (std::size_t i = 0; i < pair.first.size(); ++i) {
-    const double x = pair.first[i];
-    const double y = pair.second[i];
-    if (!std::isfinite(x + y) || !(samples.motion.airspeed[i] >= min_airspeed)) continue;
-    count += 1.0;
-    a += x;
-    b += y;
-    aa += x * x;
-    bb += y * y;
-    ab += x * y;
+    if (std::isfinite(pair.first[i] + pair.second[i]) && samples.motion.airspeed[i] >= min_airspeed)
+      pairs.add(pair.first[i], pair.second[i]);
   }
-  if (count * samples.step < min_time || bb < count * pair.min_rms * pair.min_rms) return nan;
-  return (ab - a * b / count) / std::sqrt((aa - a * a / count) * (bb - b * b / count));
+  const auto count = static_cast<double>(pairs.samples);
+  const double squares = pairs.yy + count * pairs.mean_y * pairs.mean_y;
+  if (count * samples.step < min_time || squares < count * pair.min_rms * pair.min_rms) return nan;
+  return pairs.correlation();
 }
 
 }  // namespace

@@ -48,11 +48,9 @@ class Reader final : TomlReader {
           {"series", [&](const Entry& entry) { read_series(entry); }},
           {"thermometer", [&](const Entry& entry) { read_thermometers(entry); }},
           {"units", [&](const Entry& entry) { family_.units = texts_by_name(entry); }},
-          {"traps", [&](const Entry& entry) { family_.traps = texts_by_name(entry); }}});
-    for (const auto& [what, value] : {std::pair("name", &family_.name), {"title", &family_.title}}) {
-      if (value->empty())
-        fail(Position{1, 1}, fmt::format("the aircraft has no {}; add {} = \"...\"", what, what));
-    }
+          {"traps", [&](const Entry& entry) { family_.traps = texts_by_name(entry); }}},
+         {{"name", "the aircraft has no name; add name = \"...\""},
+          {"title", "the aircraft has no title; add title = \"...\""}});
     return std::move(family_);
   }
 

@@ -1,6 +1,8 @@
 #include "roles/computed_from.hpp"
 
-#include <sstream>
+#include <algorithm>
+
+#include "base/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -8,14 +10,10 @@ namespace {
 bool leads_to(const Flight& flight, const std::string& variable, const std::string& source, int steps) {
   if (variable == source) return true;
   if (steps == 0 || !flight.has(variable)) return false;
-  for (const auto& [name, value] : flight.variable(variable).attributes) {
-    if (name != "Dependencies") continue;
-    std::istringstream words(value);
-    for (std::string word; words >> word;) {
-      if (word != variable && leads_to(flight, word, source, steps - 1)) return true;
-    }
-  }
-  return false;
+  const std::vector<std::string> inputs = split_words(flight.variable(variable).attribute("Dependencies"));
+  return std::any_of(inputs.begin(), inputs.end(), [&](const std::string& input) {
+    return input != variable && leads_to(flight, input, source, steps - 1);
+  });
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -25,21 +24,13 @@ std::string stated_unit(const Flight& flight, const VariableNaming& family, cons
   return stated.empty() ? flight.variable(variable).units : stated;
 }
 
-/// A few thousand values from the beginning, the middle and the end, in the unit of the role; empty if the
-/// variable cannot be read.
-std::vector<double> some_values(const Flight& flight, const VariableNaming& family,
-                                const std::string& variable, Quantity role, const std::string& stated = {}) {
-  std::vector<double> values;
+/// Some values in the unit of the role; empty if the variable cannot be read.
+std::vector<double> values_as(Quantity role, const Flight& flight, const VariableNaming& family,
+                              const std::string& variable, const std::string& stated = {}) {
   const std::string unit = stated.empty() ? family.unit_of(variable) : stated;
-  if (!has_values(flight, variable, std::string(info_of(role).unit), unit)) return values;
-  const UnitConversion conversion = flight.conversion(variable, std::string(info_of(role).unit), "", unit);
-  const std::vector<RecordBlock> blocks = flight.blocks();
-  for (const std::size_t k : std::set<std::size_t>{0, blocks.size() / 2, blocks.size() - 1}) {
-    values.resize(values.size() + blocks[k].count);
-    flight.read_at_rate(1, variable, blocks[k], conversion,
-                        values.data() + (values.size() - blocks[k].count));
-  }
-  return values;
+  const std::string requested(info_of(role).unit);
+  if (!has_values(flight, variable, requested, unit)) return {};
+  return some_values(flight, variable, flight.conversion(variable, requested, "", unit));
 }
 
 /// Median ratio of recorded to expected values; NaN if there are too few values, or if the ratio varies, so
@@ -103,7 +94,7 @@ class PressureCheck {
     double max_of_height = 0.1;
     const std::string height = height_of(flight_, model_, family_);
     if (!height.empty() && model_.units.count(Quantity::altitude) == 0) {
-      std::vector<double> expected = some_values(flight_, family_, height, Quantity::altitude);
+      std::vector<double> expected = values_as(Quantity::altitude, flight_, family_, height);
       if (const double middle = median(expected); middle > 11000.0)
         max_of_height += 1e-5 * (middle - 11000.0);
       if (!are_feet(static_pressure_, expected)) {
@@ -115,7 +106,7 @@ class PressureCheck {
     std::optional<ImpossiblePressure> contradicted;
     const auto compare = [&](const PressurePair& pair, bool is_measured) {
       const double ratio = ratio_of(
-          static_pressure_, some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure));
+          static_pressure_, values_as(Quantity::static_pressure, flight_, family_, pair.static_pressure));
       is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_other);
       const bool other_is_wrong =
           std::abs(of_height - 1.0) <= max_of_height && std::abs(of_height / ratio - 1.0) > max_of_height;
@@ -139,9 +130,9 @@ class PressureCheck {
     std::optional<ImpossiblePressure> contradicted;
     const auto compare = [&](const PressurePair& pair, bool is_measured) {
       const std::vector<double> other =
-          some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure);
+          values_as(Quantity::static_pressure, flight_, family_, pair.static_pressure);
       std::vector<double> expected =
-          some_values(flight_, family_, pair.dynamic_pressure, Quantity::dynamic_pressure);
+          values_as(Quantity::dynamic_pressure, flight_, family_, pair.dynamic_pressure);
       if (!(std::abs(ratio_of(static_pressure_, other) - 1.0) <= max_of_other)) return;
       for (std::size_t i = 0; i < expected.size(); ++i)
         expected[i] = expected[i] > flown ? other[i] + expected[i] - static_pressure_[i] : nan;
@@ -168,7 +159,7 @@ class PressureCheck {
     const std::string variable = model_.variable_of(role);
     const auto unit = model_.units.find(role);
     if (variable.empty()) return {};
-    return some_values(flight_, family_, variable, role, unit == model_.units.end() ? "" : unit->second);
+    return values_as(role, flight_, family_, variable, unit == model_.units.end() ? "" : unit->second);
   }
 
   ImpossiblePressure finding(Quantity role, double ratio, const std::string& against) const {

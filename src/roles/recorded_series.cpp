@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <pcor/base/error.hpp>
@@ -42,6 +43,18 @@ ReadValues read_values(const Flight& flight, const std::string& variable, const 
         flight.read_at_rate(rate, variable, block, conversion, read.values.data() + block.first * in_record);
   }
   return read;
+}
+
+std::vector<double> some_values(const Flight& flight, const std::string& variable,
+                                const UnitConversion& conversion) {
+  std::vector<double> values;
+  const std::vector<RecordBlock> blocks = flight.blocks();
+  for (const std::size_t k : std::set<std::size_t>{0, blocks.size() / 2, blocks.size() - 1}) {
+    values.resize(values.size() + blocks[k].count);
+    flight.read_at_rate(1, variable, blocks[k], conversion,
+                        values.data() + (values.size() - blocks[k].count));
+  }
+  return values;
 }
 
 std::vector<double> record_times(const Flight& flight) {

@@ -33,6 +33,10 @@ struct ReadValues {
 ReadValues read_values(const Flight& flight, const std::string& variable, const UnitConversion& conversion,
                        int rate = 1);
 
+/// The values of a few thousand records from the beginning, the middle and the end, converted.
+std::vector<double> some_values(const Flight& flight, const std::string& variable,
+                                const UnitConversion& conversion);
+
 /// The middles of all records, s since 1970 UTC.
 std::vector<double> record_times(const Flight& flight);
 

@@ -12,7 +12,7 @@
 
 #include <pcor/base/error.hpp>
 #include "numerics/median.hpp"
-#include "numerics/missing.hpp"
+#include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
 
 namespace pcor::internal {
@@ -148,20 +148,6 @@ double likeness(const std::vector<std::string>& words, std::string_view phrases)
   return best;
 }
 
-/// The values of a few thousand records from the beginning, the middle and the end.
-std::vector<double> some_values(const Flight& flight, const std::string& variable,
-                                const UnitConversion& conversion) {
-  std::vector<double> values;
-  const std::vector<RecordBlock> blocks = flight.blocks();
-  for (const std::size_t k : {std::size_t{0}, blocks.size() / 2, blocks.size() - 1}) {
-    std::vector<double> part(blocks[k].count);
-    flight.read_at_rate(1, variable, blocks[k], conversion, part.data());
-    std::copy_if(part.begin(), part.end(), std::back_inserter(values),
-                 [](double x) { return std::isfinite(x); });
-  }
-  return values;
-}
-
 /// Evidence in the file for a variable, as text.
 struct Described {
   const VariableInfo& info;
@@ -169,13 +155,6 @@ struct Described {
   std::vector<std::string> long_name{};
   std::string standard_name{};
 };
-
-std::string attribute_of(const VariableInfo& info, std::string_view name) {
-  for (const auto& [key, value] : info.attributes) {
-    if (key == name) return value;
-  }
-  return {};
-}
 
 std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described& variable,
                                           const Signs& sign) {
@@ -200,6 +179,9 @@ std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described&
     const UnitConversion conversion =
         states_unit ? flight.conversion(variable.info.name, unit) : UnitConversion();
     std::vector<double> values = some_values(flight, variable.info.name, conversion);
+    values.erase(
+        std::remove_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); }),
+        values.end());
     if (values.empty()) return std::nullopt;
     const auto [minimum, maximum] = std::minmax_element(values.begin(), values.end());
     const std::string range = fmt::format("{:.5g} to {:.5g} {}", *minimum, *maximum, unit);
@@ -223,10 +205,10 @@ std::map<std::string, std::vector<RoleCandidate>> candidates_of(const Flight& fl
   for (const std::string& name : flight.variables()) {
     const VariableInfo& info = flight.variable(name);
     // The truth of a simulated flight was not recorded.
-    if (!info.is_series || name == flight.time_variable() || attribute_of(info, "Category") == truth_category)
+    if (!info.is_series || name == flight.time_variable() || info.attribute("Category") == truth_category)
       continue;
     const Described described{info, plain_words(info.name), plain_words(info.long_name),
-                              attribute_of(info, "standard_name")};
+                              info.attribute("standard_name")};
     for (const Signs& sign : signs) {
       if (!series.empty() && sign.series != series) continue;
       if (std::optional<RoleCandidate> candidate = candidate_of(flight, described, sign))

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <pcor/base/error.hpp>
 #include <pcor/simulate/simulate.hpp>
-#include <sstream>
 #include <utility>
 
+#include "base/phrasing.hpp"
 #include "base/quoting.hpp"
 #include "base/text_file.hpp"
 #include "base/toml_reader.hpp"
@@ -154,11 +153,6 @@ Domain parameter_domain(std::string_view key) {
   return {-1e6, 1e6, ""};
 }
 
-Names split_words(std::string_view text) {
-  std::istringstream stream{std::string(text)};
-  return {std::istream_iterator<std::string>(stream), {}};
-}
-
 /// The usual noise of every variable that the scenario's instruments record, by name.
 ///
 /// Rms of 1-s means and resolutions, no biases: Cooper et al., wind uncertainty of the GV (NCAR technical
@@ -246,49 +240,36 @@ class Reader final : TomlReader {
     return actions;
   }
 
+  // [noise] and [[leg]] depend on the sections before them, [[effect]] to [[gap]] on [noise].
   void read_root(const toml::table& root) {
-    const std::pair<const char*, void (Reader::*)(const Entry&)> sections[] = {
-        {"atmosphere", &Reader::read_atmosphere},
-        {"system", &Reader::read_systems},
-        {"lams", &Reader::read_lams},
-        {"avionics", &Reader::read_avionics},
-        {"noise", &Reader::read_noise},
-        {"leg", &Reader::read_legs},
-        {"effect", &Reader::read_effects},
-        {"outliers", &Reader::read_outliers},
-        {"gap", &Reader::read_gaps}};
-    bool has_aircraft = false;
-    std::map<std::string, Entry> given;
     Actions actions = numbers(scenario_, scenario_keys);
     actions.insert(actions.end(),
                    {{"format", [](const Entry&) {}},
-                    {"name", [&](const Entry& entry) { scenario_.name = text(entry); }},
-                    {"aircraft",
-                     [&](const Entry& entry) {
-                       const bool is_gv = one_of(entry, {"C-130", "GV"}) == "GV";
-                       scenario_.aircraft = is_gv ? Scenario::Aircraft::gv : Scenario::Aircraft::c130;
-                       has_aircraft = true;
-                     }},
                     {"seed", [&](const Entry& entry) { read_seed(entry); }},
                     {"start", [&](const Entry& entry) { read_start(entry); }},
                     {"rate", [&](const Entry& entry) { read_rate(entry); }},
-                    {"noiseless", [&](const Entry& entry) { scenario_.noise_on = !boolean(entry); }}});
-    for (const auto& [key, read] : sections)
-      actions.emplace_back(key, [&given](const Entry& entry) { given.emplace(entry.key, entry); });
-    each(root, "a scenario", actions);
-    if (scenario_.name.empty()) fail(Position{1, 1}, "the scenario has no name; add name = \"...\"");
-    if (!has_aircraft)
-      fail(Position{1, 1}, R"(the scenario has no aircraft; add aircraft = "C-130" or "GV")");
-    for (const auto& [key, read] : sections) {
-      if (const auto found = given.find(key); found != given.end()) (this->*read)(found->second);
-      if (read == &Reader::read_systems) {
-        if (scenario_.systems.empty())
-          fail(Position{1, 1}, "there is no pair of pressures; add a [[system]]");
-        scenario_.noise = usual_noise(scenario_);
-      }
-      if (read == &Reader::read_legs && scenario_.legs.empty())
-        fail(Position{1, 1}, "the scenario has no leg; add a [[leg]]");
-    }
+                    {"noiseless", [&](const Entry& entry) { scenario_.noise_on = !boolean(entry); }},
+                    {"name", [&](const Entry& entry) { scenario_.name = text(entry); }},
+                    {"aircraft", [&](const Entry& entry) { read_aircraft(entry); }},
+                    {"atmosphere", [&](const Entry& section) { read_atmosphere(section); }},
+                    {"system", [&](const Entry& section) { read_systems(section); }},
+                    {"lams", [&](const Entry& section) { read_lams(section); }},
+                    {"avionics", [&](const Entry& section) { read_avionics(section); }},
+                    {"noise", [&](const Entry& section) { read_noise(section); }},
+                    {"leg", [&](const Entry& section) { read_legs(section); }},
+                    {"effect", [&](const Entry& section) { read_effects(section); }},
+                    {"outliers", [&](const Entry& section) { read_outliers(section); }},
+                    {"gap", [&](const Entry& section) { read_gaps(section); }}});
+    each(root, "a scenario", actions,
+         {{"name", "the scenario has no name; add name = \"...\""},
+          {"aircraft", R"(the scenario has no aircraft; add aircraft = "C-130" or "GV")"},
+          {"system", "there is no pair of pressures; add a [[system]]"},
+          {"leg", "the scenario has no leg; add a [[leg]]"}});
+  }
+
+  void read_aircraft(const Entry& entry) {
+    const bool is_gv = one_of(entry, {"C-130", "GV"}) == "GV";
+    scenario_.aircraft = is_gv ? Scenario::Aircraft::gv : Scenario::Aircraft::c130;
   }
 
   void read_seed(const Entry& entry) {
@@ -354,6 +335,7 @@ class Reader final : TomlReader {
         fail(position, "static and dynamic are one variable; give each its own");
       scenario_.systems.push_back(system);
     });
+    scenario_.noise = usual_noise(scenario_);
   }
 
   void read_law(const Entry& section, Scenario::Law& law) const {
@@ -407,7 +389,7 @@ class Reader final : TomlReader {
       const LegInfo& info = leg_kind(items, position);
       leg.kind = info.kind;
       Actions actions{{"kind", [](const Entry&) {}}};
-      for (const std::string& key : split_words(info.keys)) {
+      for (const std::string& key : split_words(std::string(info.keys))) {
         actions.emplace_back(key, [&](const Entry& entry) {
           const auto which = std::find_if(leg_keys.begin(), leg_keys.end(),
                                           [&](const auto& each) { return each.key == entry.key; });

@@ -54,13 +54,12 @@ std::string remedy(const ModelDefinition& model, const Flight& flight) {
 }
 
 /// One standard deviation of the coefficients along each principal axis of their covariance, scaled alike.
-std::vector<Eigen::VectorXd> standard_deviations(const std::vector<double>& covariance, Eigen::Index count) {
-  const Eigen::Map<const Eigen::MatrixXd> matrix(covariance.data(), count, count);
-  const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt();
+std::vector<Eigen::VectorXd> standard_deviations(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
-  const SymmetricEigen axes = symmetric_eigen(inverse.asDiagonal() * matrix * inverse.asDiagonal());
+  const SymmetricEigen axes = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
   std::vector<Eigen::VectorXd> changes;
-  for (Eigen::Index k = 0; k < count; ++k) {
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
     if (axes.eigenvalues()[k] > 0.0)
       changes.emplace_back(std::sqrt(axes.eigenvalues()[k]) * scale.cwiseProduct(axes.eigenvectors().col(k)));
   }
@@ -68,13 +67,11 @@ std::vector<Eigen::VectorXd> standard_deviations(const std::vector<double>& cova
 }
 
 /// True if an uncertainty is stated of a coefficient of the law itself, not of a sensor.
-bool states_law(const ModelDefinition& model, const ModelUncertainty& stated) {
-  std::size_t position = 0;
-  const auto count = static_cast<std::size_t>(std::lround(std::sqrt(stated.covariance.size())));
+bool states_law(const ModelDefinition& model, const Eigen::MatrixXd& covariance) {
+  Eigen::Index position = 0;
   for (const ModelEffect& effect : model.model.effects) {
     for (std::size_t p = 0; p < effect.parameters.size(); ++p, ++position) {
-      if (location_of(effect) == EffectLocation::static_defect &&
-          stated.covariance[position * count + position] > 0.0)
+      if (location_of(effect) == EffectLocation::static_defect && covariance(position, position) > 0.0)
         return true;
     }
   }
@@ -95,23 +92,16 @@ using Coefficients = std::array<double, 3>;
           flight.path().string(), steps_variable, what, attribute));
 }
 
-std::string attribute_of(const Flight& flight, const std::string& requested) {
-  for (const auto& [name, text] : flight.variable(steps_variable).attributes) {
-    if (name == requested) return text;
-  }
-  return "";
-}
-
 Coefficients calibration_in(const Flight& flight) {
   Coefficients a{};
-  std::istringstream text(attribute_of(flight, calibration_attribute));
+  std::istringstream text(flight.variable(steps_variable).attribute(calibration_attribute));
   if (!(text >> a[0] >> a[1] >> a[2]))
     refuse_without(flight, "the temperature correction in ATX", calibration_attribute);
   return a;
 }
 
 void require_same_model(const Flight& flight, const ModelDefinition& model) {
-  const std::string archived = attribute_of(flight, model_attribute);
+  const std::string archived = flight.variable(steps_variable).attribute(model_attribute);
   if (archived.empty()) refuse_without(flight, "its model", model_attribute);
   const std::string difference = archived_difference(archived, archived_model(model, CorrectWith::model));
   if (difference.empty()) return;
@@ -226,7 +216,8 @@ std::string trouble_with_dry_air(const HeightRecord& record, const ModelDefiniti
 std::optional<double> stated_law_variance(const ModelDefinition& model, const FlightAir& air) {
   const ModelUncertainty stated = uncertainty_of(model);
   const bool has_rest = stated.static_defect > 0.0 || stated.static_defect_ratio > 0.0;
-  if (!has_rest && !states_law(model, stated)) return std::nullopt;
+  const Eigen::MatrixXd covariance = stated_covariance(model);
+  if (!has_rest && !states_law(model, covariance)) return std::nullopt;
   double sum = 0.0;
   const auto add_mean_square = [&](const auto& value) {
     double count = 0.0;
@@ -248,7 +239,7 @@ std::optional<double> stated_law_variance(const ModelDefinition& model, const Fl
     Eigen::Map<Eigen::VectorXd> moved(parameters.data(), as_index(parameters.size()));
     const Eigen::VectorXd start = moved;
     std::vector<double> defect(air.size());
-    for (const Eigen::VectorXd& change : standard_deviations(stated.covariance, start.size())) {
+    for (const Eigen::VectorXd& change : standard_deviations(covariance)) {
       moved = start + change;
       law.batch().run(law.columns(), {{Quantity::static_defect, defect.data()}}, defect.size(),
                       parameters.data());

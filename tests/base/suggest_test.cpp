@@ -21,6 +21,11 @@ TEST(Suggest, PrefixSuggestsTheLongName) {
   EXPECT_THAT(suggest("temp", {"simulate", "temperature"}), ElementsAre("temperature"));
 }
 
+TEST(Suggest, PartSuggestsTheLongName) {
+  EXPECT_THAT(suggest("psfrd", {"c130-psfd-2014", "c130-psfrd-2003", "gv-psf-2014"}),
+              ElementsAre("c130-psfrd-2003"));
+}
+
 TEST(Suggest, EquallyCloseNamesPreferCommonPrefix) {
   EXPECT_THAT(suggest("static-mach4", {"xtatic-mach4", "static-mach3"}),
               ElementsAre("static-mach3", "xtatic-mach4"));

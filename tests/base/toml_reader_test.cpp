@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include <pcor/base/error.hpp>
 
@@ -33,6 +35,14 @@ TEST(MomentIn, AcceptsOnlyAnIsoTime) {
 struct AnyReader final : TomlReader {
   AnyReader() : TomlReader("some.toml") {}
   using TomlReader::parse;
+
+  // The values of a = ..., b = ... and c = ..., of which b is required.
+  std::vector<std::int64_t> values(const std::string& text) const {
+    std::vector<std::int64_t> all;
+    const Action read = [&](const Entry& entry) { all.push_back(whole_number(entry)); };
+    each(parse(text), "", {{"a", read}, {"b", read}, {"c", read}}, {{"b", "there is no b"}});
+    return all;
+  }
 };
 
 std::string repeated(const std::string& text, std::size_t times) {
@@ -76,6 +86,22 @@ TEST(TomlReader, RefusesTooManyEntries) {
               test::IsError(Error::Code::definition, "some.toml:2:6", "10001", "10000"));
   EXPECT_THAT(test::error_of([&] { AnyReader().parse(repeated("[[leg]]\n", 10001)); }),
               test::IsError(Error::Code::definition, "10001"));
+}
+
+TEST(TomlReader, KeysAreReadInTheirOrder) {
+  EXPECT_EQ(AnyReader().values("c = 3\nb = 2\na = 1\n"), (std::vector<std::int64_t>{1, 2, 3}));
+  EXPECT_EQ(AnyReader().values("b = 2\n"), std::vector<std::int64_t>{2});
+}
+
+TEST(TomlReader, FirstErrorIsUnknownKeyThenInOrder) {
+  const auto error = [](const std::string& text) {
+    return test::error_of([&] { AnyReader().values(text); });
+  };
+  const auto code = Error::Code::definition;
+  EXPECT_THAT(error("c = 'c'\nb = 'b'\nd = 1\ne = 1\n"), test::IsError(code, "some.toml:3:1"));
+  EXPECT_THAT(error("c = 'c'\nb = 'b'\n"), test::IsError(code, "some.toml:2:5"));
+  for (const char* text : {"c = 'c'\n", "c = 'c'\nb = ''\n", "c = 'c'\nb = []\n"})
+    EXPECT_THAT(error(text), test::IsError(code, "some.toml:1:1"));
 }
 
 TEST(Seconds, AreContinuousAcrossDays) {

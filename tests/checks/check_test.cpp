@@ -1,6 +1,7 @@
 // The checks on simulated flights whose faults are known: what they find, and what they do not fall for.
 #include <pcor/checks/check.hpp>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -411,6 +412,17 @@ TEST_F(CheckTest, ReportStatesThatChecksWereNotRun) {
   EXPECT_THAT(report_html(check_report(check({fly(head + aloft, 1)}, first_model()))), HasSubstr("not run"));
 }
 
+TEST_F(CheckTest, ReportTitleCountsInconclusiveChecks) {
+  Checks checks;
+  for (const CheckVerdict verdict : {CheckVerdict::consistent, CheckVerdict::inconclusive}) {
+    CheckResult& result = checks.results.emplace_back();
+    result.name = "layers";
+    result.ran = true;
+    result.verdict = verdict;
+  }
+  EXPECT_THAT(check_report(checks).title, HasSubstr("1 of 2"));
+}
+
 // The difference includes the defect of the second pair, a few hPa.
 TEST_F(CheckTest, UncorrectedPairDoesNotTestTheStaticPressure) {
   CheckOptions options;
@@ -421,6 +433,8 @@ TEST_F(CheckTest, UncorrectedPairDoesNotTestTheStaticPressure) {
       check({fly(head + aloft + repeated(manoeuvres, 3), 1)}, first_model(), options), "static-pressure");
   ASSERT_TRUE(result.ran) << result.reason;
   EXPECT_NE(result.verdict, CheckVerdict::inconsistent);
+  EXPECT_FALSE(result.withheld.empty());
+  EXPECT_THAT(result.finding, HasSubstr(fmt::format("rms {:.3f} hPa", result.number("rms_hpa"))));
 }
 
 // A real flight

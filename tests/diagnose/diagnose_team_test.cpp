@@ -37,7 +37,7 @@ void serialize(Archive& archive, pcor::CoefficientEstimate& estimate) {
 template <class Archive>
 void serialize(Archive& archive, pcor::Alias& alias) {
   archive(alias.effect, alias.title, alias.correlation, alias.chi2_less, alias.size_to_usual, alias.estimates,
-          alias.log_likelihood_less, alias.probability, alias.correction, alias.held, alias.is_alike);
+          alias.probability, alias.correction, alias.held, alias.is_alike);
 }
 
 template <class Archive>

@@ -58,7 +58,6 @@ FlightDiagnosis flight(const std::string& name, unsigned seed) {
     const bool used = i >= 100;
     samples->time.push_back(begin + t);
     samples->motion.vertical_speed.push_back(climb);
-    made.mask.push_back(used ? Mask::none : Mask::ground);
     made.static_pressure.push_back(900.0 - (i < 1200   ? t / 4.0
                                             : i < 2700 ? 300.0
                                                        : 300.0 - (t - 2700.0) / 5.0));
@@ -311,14 +310,14 @@ TEST(DiagnosisReport, FirstPictureShowsFindingAgainstItsInputs) {
   const auto& sideslip =
       item<BinnedPanel>(report, "Residual before and after, against the inputs of static-beta-odd");
   EXPECT_EQ(std::get_if<BinnedPanel>(&report.items.front()), &sideslip);  // the first picture
-  EXPECT_THAT(sideslip.y, ElementsAre("before", "after"));
+  EXPECT_THAT(sideslip.columns, ElementsAre("before", "after"));
   EXPECT_EQ(sideslip.x_choices.front(), "sideslip");
   EXPECT_THAT(sideslip.x_choices, Not(Contains("attack")));  // it has no value
   EXPECT_GT(sideslip.autocorrelation_time, 2.0);
   const auto& lag = item<BinnedPanel>(report, "Residual before and after, against the inputs of static-lag");
   EXPECT_EQ(lag.x_choices.front(), "vertical_speed");
   const auto& map = item<PlanePanel>(report, "Evidence for static-beta-odd, over Mach number and pressure");
-  EXPECT_TRUE(map.reverse_y);
+  EXPECT_EQ(map.y, "static_pressure");
 }
 
 TEST(DiagnosisReport, RanksFindingsAndRivals) {
@@ -408,6 +407,29 @@ TEST(DiagnosisReport, SilentDiagnosisListsUpperLimits) {
   const auto& limits = item<ReportTable>(report, "Upper limits of effects that were not found");
   EXPECT_EQ(limits.rows[1][3], "");
   split_words(report);
+}
+
+TEST(DiagnosisReport, FlightsThatDetectNoUsualSizeCannotTestTheModel) {
+  Diagnosis silent;
+  silent.threshold = 14.3;
+  silent.limits.resize(4);  // the last one has no usual size
+  const auto set = [&silent](double first, double second, double third) {
+    silent.limits[0].chi2_at_usual_size = first;
+    silent.limits[1].chi2_at_usual_size = second;
+    silent.limits[2].chi2_at_usual_size = third;
+  };
+  set(14.4, 500.0, 2.0);
+  EXPECT_EQ(detectable_at_usual_size(silent), (std::pair<std::size_t, std::size_t>(2, 3)));
+  const std::string most = verdict_text(silent);
+  set(14.2, 14.4, 2.0);
+  EXPECT_EQ(detectable_at_usual_size(silent), (std::pair<std::size_t, std::size_t>(1, 3)));
+  const std::string few = verdict_text(silent);
+  EXPECT_THAT(few, HasSubstr("1 of 3"));
+  set(14.2, 0.0, 2.0);
+  EXPECT_EQ(detectable_at_usual_size(silent), (std::pair<std::size_t, std::size_t>(0, 3)));
+  const std::string none = verdict_text(silent);
+  EXPECT_NE(most, few);
+  EXPECT_EQ(none.find(most), std::string::npos);
 }
 
 TEST(DiagnosisReport, AcceptsEmptyFields) {
@@ -536,7 +558,7 @@ TEST(ImprovementReport, EachStepHasAPageAndPictures) {
   EXPECT_EQ(page.paragraphs.back(), "In the best model b1 = -0.00169 ± 0.00011.");
   const auto& binned =
       item<BinnedPanel>(report, "Residual without and with static-beta-odd, against its inputs");
-  EXPECT_THAT(binned.y, ElementsAre("step1", "step2"));
+  EXPECT_THAT(binned.columns, ElementsAre("step1", "step2"));
   EXPECT_EQ(binned.x_choices.front(), "sideslip");
   item<PlanePanel>(report, "Evidence for static-beta-odd, over Mach number and pressure");
   const auto& formula =

@@ -34,27 +34,27 @@ struct Flights {
     noise.coefficients = {0.0};
   }
 
-  std::vector<MeanOffset> steps() const {
+  std::vector<FlightOffset> steps() const {
     return find_mean_offsets(FlightPartition(bins.size()), bins, columns, residuals, noise);
   }
 };
 
 TEST(MeanSteps, DifferingFlightIsFoundWithItsStep) {
-  const std::vector<MeanOffset> steps = Flights({0.0, 0.0, 0.15, 0.0}, 1).steps();
+  const std::vector<FlightOffset> steps = Flights({0.0, 0.0, 0.15, 0.0}, 1).steps();
   ASSERT_EQ(steps.size(), 4U);
   // The error of a mean of 300 values of 0.2 against that of 900.
-  EXPECT_NEAR(steps[2].error, 0.2 * std::sqrt(1.0 / 300.0 + 1.0 / 900.0), 0.002);
-  EXPECT_NEAR(steps[2].size, 0.15, 3.0 * steps[2].error);
-  EXPECT_LT(steps[2].chance, 1e-6);
+  EXPECT_NEAR(steps[2].standard_error, 0.2 * std::sqrt(1.0 / 300.0 + 1.0 / 900.0), 0.002);
+  EXPECT_NEAR(steps[2].size, 0.15, 3.0 * steps[2].standard_error);
+  EXPECT_LT(steps[2].p_value, 1e-6);
   // The differing flight increases the scatter of the others, so the others are not significant.
-  for (const std::size_t other : {0U, 1U, 3U}) EXPECT_GT(steps[other].chance, 0.05);
+  for (const std::size_t other : {0U, 1U, 3U}) EXPECT_GT(steps[other].p_value, 0.05);
 }
 
 TEST(MeanSteps, TwoFlightsGiveOneStep) {
-  const std::vector<MeanOffset> steps = Flights({0.1, -0.1}, 2).steps();
-  EXPECT_NEAR(steps[1].size, -0.2, 4.0 * steps[1].error);
-  EXPECT_LT(steps[1].chance, 1e-6);
-  EXPECT_EQ(steps[0].chance, 1.0) << "the first above the second is the same difference";
+  const std::vector<FlightOffset> steps = Flights({0.1, -0.1}, 2).steps();
+  EXPECT_NEAR(steps[1].size, -0.2, 4.0 * steps[1].standard_error);
+  EXPECT_LT(steps[1].p_value, 1e-6);
+  EXPECT_EQ(steps[0].p_value, 1.0) << "the first above the second is the same difference";
 }
 
 // A model with a column that is 1 in the second flight and those after it, as that of a step on a date is.
@@ -65,7 +65,7 @@ TEST(MeanSteps, ModelledStepIsNotReported) {
       flights.columns[f].conservativeResize(Eigen::NoChange, 2);
       flights.columns[f].col(1).setConstant(f == 0 ? 0.0 : 1.0);
     }
-    for (const MeanOffset& each : flights.steps()) EXPECT_GT(each.chance, 0.05);
+    for (const FlightOffset& each : flights.steps()) EXPECT_GT(each.p_value, 0.05);
   }
 }
 
@@ -87,7 +87,7 @@ TEST(MeanSteps, MatchLeastSquaresWithFlightConstants) {
     right.segment(f * rows, rows) = flights.residuals[flight];
   }
   const Eigen::VectorXd means = all.colPivHouseholderQr().solve(right).tail(count);
-  const std::vector<MeanOffset> steps = flights.steps();
+  const std::vector<FlightOffset> steps = flights.steps();
   for (Eigen::Index f = 0; f < count; ++f) {
     const double others = (means.sum() - means[f]) / static_cast<double>(count - 1);
     EXPECT_NEAR(steps[static_cast<std::size_t>(f)].size, means[f] - others, 1e-10);
@@ -100,13 +100,13 @@ TEST(MeanSteps, WithoutCoefficientsStepsAreDifferencesOfMeans) {
   EXPECT_NEAR(flights.steps()[1].size, flights.residuals[1].mean() - flights.residuals[0].mean(), 1e-12);
 }
 
-TEST(MeanSteps, OneFlightGivesNoSteps) { EXPECT_EQ(Flights({0.3}, 3).steps().front().chance, 1.0); }
+TEST(MeanSteps, OneFlightGivesNoSteps) { EXPECT_EQ(Flights({0.3}, 3).steps().front().p_value, 1.0); }
 
 // A drift of that size makes means differ as much.
 TEST(MeanSteps, DriftExplainsAllSteps) {
   Flights flights({0.1, -0.1}, 4);
   flights.noise.slow = {0.0, 0.0, 0.0, 0.2};
-  EXPECT_GT(flights.steps()[1].chance, 0.05);
+  EXPECT_GT(flights.steps()[1].p_value, 0.05);
 }
 
 // Flights differ from each other by 0.1 hPa at random: of 200 campaigns of six, one flight is expected to be
@@ -118,9 +118,9 @@ TEST(MeanSteps, RandomScatterIsNotSignificant) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::vector<double> means(6);
     for (double& mean : means) mean = 0.1 * normal(engine);
-    const std::vector<MeanOffset> steps = Flights(means, 100 + seed).steps();
+    const std::vector<FlightOffset> steps = Flights(means, 100 + seed).steps();
     claims +=
-        std::any_of(steps.begin(), steps.end(), [](const MeanOffset& each) { return each.chance < 0.01; });
+        std::any_of(steps.begin(), steps.end(), [](const FlightOffset& each) { return each.p_value < 0.01; });
   }
   EXPECT_LE(claims, 7);
 }

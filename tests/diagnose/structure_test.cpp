@@ -212,8 +212,8 @@ TEST(StructureTest, FindsASineInOneOfFiftyVariables) {
   const StructureTest test = flight.test();
   EXPECT_EQ(strongest(test).name, "v31");
   EXPECT_LT(test.chance_of(strongest(test).equivalent), 1e-3);
-  EXPECT_GT(strongest(test).share, 0.05);
-  EXPECT_LT(strongest(test).share, 1.0);
+  EXPECT_GT(strongest(test).r2, 0.05);
+  EXPECT_LT(strongest(test).r2, 1.0);
 }
 
 TEST(StructureTest, EstimatesTheSlopeOfALine) {

@@ -248,6 +248,20 @@ TEST(Refit, NamesInseparableCoefficients) {
   EXPECT_THAT(error, testing::Not(IsError(Error::Code::fit, "static-alpha.a1")));
 }
 
+TEST(Refit, CoefficientOfAFormulaHasAUnit) {
+  ModelDefinition model = made::model(equation_18);
+  pcor::ModelEffect cone;
+  cone.id = "cone";
+  cone.formula = "c + k * dynamic_pressure + m * dynamic_pressure^2";
+  cone.parameter_names = {"c", "k", "m"};
+  cone.parameters = {0.0, 0.0, 0.0};
+  model.model.effects = {cone};
+  const RefitResult result = fit({made::shared(plan_18(10))}, model);
+  EXPECT_EQ(by_name(result).at("cone.c").unit, "hPa");
+  EXPECT_EQ(by_name(result).at("cone.k").unit, "hPa/hPa");
+  EXPECT_EQ(by_name(result).at("cone.m").unit, "") << "units of powers are not computed";
+}
+
 TEST(Refit, ReportsTheValueOfEachEffect) {
   const auto samples = made::shared(plan_18(11));
   const RefitResult all = fit({samples}, made::model(equation_18));

@@ -258,6 +258,44 @@ TEST_F(Improve, AppliesNoRivalIfAnotherMakesItHarmful) {
   EXPECT_NEAR(improvement.steps[1].rival_error, std::sqrt(0.75 * 0.64 + 0.25 * 0.36), 1e-9);
 }
 
+/// A surface that reduces the residual outside its fit and belongs to a fit of the given rms, hPa.
+SurfaceOffer helpful_surface(const TrialModel& model, double rms) {
+  SurfaceOffer offer;
+  offer.fit.model = model.file;
+  offer.fit.model.law.rms_hpa = rms;
+  offer.out_of_fit.rms_before = 1.0;
+  offer.out_of_fit.rms_after = 0.5;
+  offer.out_of_fit.gain = 100.0;
+  return offer;
+}
+
+TEST_F(Improve, RivalsThatCannotBeFittedTogetherAreNotApplied) {
+  changes_ = {{"static-lag", 0.8}, {"total-lag", 1.2}, {"static-mach", 0.8}, {"static-mach2", 1.2}};
+  loop_.refit = [this](const TrialModel& trial) {
+    if (has_effect(trial.file, "total-lag") && has_effect(trial.file, "static-mach2"))
+      throw Error(Error::Code::fit, "these cannot be free together");
+    return fitted(trial.file);
+  };
+  for (const bool is_surface_offered : {false, true}) {
+    if (is_surface_offered)
+      loop_.offer_surface = [](const TrialModel& model) { return helpful_surface(model, 0.5); };
+    const Improvement improvement =
+        run({two_rivals("static-lag", "total-lag", 0.25), two_rivals("static-mach", "static-mach2", 0.25),
+             diagnosis(Verdict::unexplained)},
+            {1.0, 0.7, 0.5});
+    EXPECT_EQ(improvement.steps.size(), is_surface_offered ? 4U : 3U);
+    EXPECT_THAT(effects(improvement.model),
+                ElementsAre("static-constant", "static-qp", "static-lag", "static-mach"));
+    for (const std::size_t step : {1U, 2U}) {
+      EXPECT_EQ(improvement.steps[step].delivered, improvement.steps[step].added);
+      // The first of the rivals differs from the other, of probability 0.75, by 0.4 hPa.
+      EXPECT_NEAR(improvement.steps[step].rival_error, 0.4 * std::sqrt(0.75), 1e-9);  // rounding
+    }
+    ASSERT_EQ(improvement.fit.notes.size(), 1U);
+    EXPECT_THAT(improvement.fit.notes[0].text, HasSubstr("these cannot be free together"));
+  }
+}
+
 TEST_F(Improve, KeepsTheModelIfTheReferenceMayBeWrong) {
   const Improvement improvement = run({two_rivals("psfd-bias", "reference:psfd-bias", 0.6)});
   EXPECT_THAT(added(improvement), ElementsAre(""));
@@ -371,6 +409,25 @@ TEST_F(Improve, DegradedModelIsReportedAsWorse) {
   const Improvement improvement = run({diagnosis(Verdict::silent)});
   EXPECT_EQ(improvement.worse, "");
   EXPECT_DOUBLE_EQ(improvement.given_rms_holdout, 1.25);
+}
+
+TEST_F(Improve, GivenModelWithoutResidualIsComparedByItsRefit) {
+  given_rms_ = std::nan("");
+  EXPECT_EQ(run({diagnosis(Verdict::silent)}).worse, "");
+  loop_.offer_surface = [](const TrialModel& model) { return helpful_surface(model, 1.5); };
+  const Improvement improvement = run({diagnosis(Verdict::unexplained)});
+  EXPECT_TRUE(std::isnan(improvement.given_rms_holdout));
+  EXPECT_THAT(improvement.worse, HasSubstr("1.5000"));
+}
+
+TEST_F(Improve, UnknownRmsOfTheGivenModelIsOmitted) {
+  loop_.refit = [this](const TrialModel& model) {
+    RefitResult fit = fitted(model.file);
+    fit.rms_before = std::nan("");
+    return fit;
+  };
+  EXPECT_THAT(run({diagnosis(Verdict::silent)}).steps[0].learnt,
+              AllOf(HasSubstr("0.9900"), testing::Not(HasSubstr("nan"))));
 }
 
 TEST_F(Improve, HeldOutBiasPreventsSilentVerdict) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "support/netcdf_file.hpp"
@@ -74,6 +75,40 @@ TEST(Inspect, MissingRoleStatesSearchedNamesAndConsequence) {
   }
   EXPECT_THAT(inspection.missing, Not(Contains(is("static_pressure"))));
   EXPECT_THAT(inspection.missing, Not(Contains(is("date")))) << "it is that of the records";
+}
+
+TEST(Inspect, ComponentsReplaceTheGroundSpeed) {
+  const pcor::test::TemporaryDirectory folder;
+  const auto is = [](const char* name) { return Field(&MissingRole::role, name); };
+  EXPECT_THAT(pcor::inspect_flight(flight_with(folder, {{"PSFD", "hPa"}, {"QCF", "hPa"}})).missing,
+              Contains(is("ground_speed")));
+  const auto path =
+      flight_with(folder, {{"PSFD", "hPa"}, {"QCF", "hPa"}, {"GGVEW", "m/s"}, {"GGVNS", "m/s"}});
+  EXPECT_THAT(pcor::inspect_flight(path).missing, Not(Contains(is("ground_speed"))));
+}
+
+TEST(Inspect, RoleThatTheModelDoesNotReadHasARemark) {
+  const pcor::test::TemporaryDirectory folder;
+  const Inspection inspection = pcor::inspect_flight(
+      flight_with(folder, {{"PSFD", "hPa"}, {"QCF", "hPa"}, {"TTX", "degC"}, {"ATX", "degC"}}));
+  ASSERT_TRUE(inspection.model.has_value());
+  EXPECT_EQ(inspection.model->variables.count(pcor::Quantity::ambient_temperature), 0U);
+  EXPECT_THAT(inspection.roles, Contains(AllOf(role("ambient_temperature", "ATX"),
+                                               Field(&InspectedRole::trap, testing::HasSubstr("TTX")))));
+}
+
+TEST(Inspect, ReportBeginsWithWarningsAndRoles) {
+  const pcor::test::TemporaryDirectory folder;
+  pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-short.toml"), folder / "flight.nc");
+  Inspection inspection = pcor::inspect_flight(folder / "flight.nc");
+  inspection.notes = {pcor::warning_note("7 samples are wrong"), "another note"};
+  const pcor::Report report = pcor::inspection_report({inspection});
+  EXPECT_THAT(report.summary, ElementsAre(testing::HasSubstr("7 samples")));
+  const auto first = [&report](auto is) {
+    return std::find_if(report.items.begin(), report.items.end(), is) - report.items.begin();
+  };
+  EXPECT_LT(first([](const auto& item) { return std::holds_alternative<pcor::ReportTable>(item); }),
+            first([](const auto& item) { return std::holds_alternative<pcor::TimePanel>(item); }));
 }
 
 TEST(Inspect, FlightWithoutPressuresHasNoModelAndTheReason) {

@@ -722,6 +722,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"UnknownTable", "[lamps]\n", "5:2", {"lamps", "lams"}},
         BadInput{"UnknownTopKey", "\nformat = \"pcor-model/1\"\nnmae = \"x\"", "3:1", {"nmae", "name"}},
         BadInput{"TableThatIsNone", "[temperature]\n[lams]\n[variables.units]\n", "7:12", {"units"}},
+        BadInput{"UnknownTableBeforeBadValue", "[lams]\nelevation = nan\n[lamps]\n", "7:2", {"lamps"}},
+        BadInput{"VariablesBeforeUnits",
+                 "format = \"pcor-model/1\"\n[units]\nflaps = \"percent\"\n[variables]\n"
+                 "static_pressure = \"PSFD\"\n",
+                 "4:2",
+                 {"dynamic_pressure"}},
+        BadInput{"EffectsBeforeCovariance",
+                 "[covariance]\nparameters = [\"static-constant.a0\"]\nmatrix = [[1, 2]]\n"
+                 "[[effect]]\nid = \"static-constnt\"\n",
+                 "9:6",
+                 {"static-constnt"}},
         BadInput{"NoDynamicPressure",
                  "format = \"pcor-model/1\"\n[variables]\nstatic_pressure = \"PSFD\"\n",
                  "2:2",

@@ -85,6 +85,18 @@ TEST(LineFit, IgnoresMissingValues) {
   EXPECT_TRUE(std::isnan(pcor::ordinary_fit({1.0, 1.0, 1.0}, {1.0, 2.0, 3.0}).slope));
 }
 
+TEST(PairMoments, CorrelationNeedsVariationOfBoth) {
+  pcor::PairMoments pairs;
+  pcor::PairMoments constant;
+  const std::vector<double> swapped{2.0, 1.0, 4.0, 3.0};
+  for (std::size_t i = 0; i < swapped.size(); ++i) {
+    pairs.add(static_cast<double>(i), swapped[i]);
+    constant.add(static_cast<double>(i), 1.0);
+  }
+  EXPECT_NEAR(pairs.correlation(), 0.6, 1e-15);  // rounding
+  EXPECT_TRUE(std::isnan(constant.correlation()));
+}
+
 TEST(LineFit, FitOfPartsEqualsFitOfTheWhole) {
   const Pairs pairs = noisy(1000, 0.1, 0.1, 5);
   pcor::PairMoments parts[3];

@@ -156,9 +156,9 @@ TEST(IntervalsFile, FileIsReadFromDisk) {
 }
 
 TEST(IntervalsFile, ErrorStatesPositionAndRemedy) {
-  EXPECT_THAT(refusal_of_whole("[[add]]\n"), IsRefusal("1:1"));
-  EXPECT_THAT(refusal_of_whole("format = \"pcor-model/1\"\n"), IsRefusal("1:10"));
-  EXPECT_THAT(refusal_of_whole("format = 1\n"), IsRefusal("1:10"));
+  EXPECT_THAT(refusal_of_whole("[[add]]\n"), IsRefusal("1:1", "pcor-intervals/1"));
+  EXPECT_THAT(refusal_of_whole("format = \"pcor-model/1\"\n"), IsRefusal("1:10", "pcor-intervals/1"));
+  EXPECT_THAT(refusal_of_whole("format = 1\n"), IsRefusal("1:10", "pcor-intervals/1"));
   EXPECT_THAT(refusal("[[add]\n"), IsRefusal("2"));
   EXPECT_THAT(refusal("[ = \"x"), IsRefusal("2"));
   EXPECT_THAT(refusal("[[veta]]\n"), IsRefusal("2:3", "veta", "veto"));

@@ -4,7 +4,7 @@
     every_report_test.py TOOL SOURCE_DIRECTORY FOLDER BUILD_DIRECTORY      FOLDER: where reports.py made them
 
 Each picture has a text alternative and numbers. The pages of improve and check, or of all commands where
-PCOR_EVERY_REPORT is set, test themselves, wide and narrow, and axe-core, which is fetched from npm into the build
+PCOR_EVERY_REPORT is set, pass self_test.js, wide and narrow, and axe-core, which is fetched from npm into the build
 directory, finds no violation in them. Without Chromium the test is skipped (status 77), or
 fails if PCOR_REQUIRE_CHROMIUM is set; without axe-core its part of it is.
 """
@@ -90,9 +90,18 @@ class EveryReport(PageTest):
         for fault in ("page: .* overlap", "page: .* is clipped", "picture 'Residual on the map': .* is clipped"):
             self.assertRegex(faults, fault)
 
+    def test_a_time_at_the_end_of_the_axis_is_not_clipped(self):
+        """A label with seconds is wider than the margin at the right of the axis."""
+        faults_of = (SOURCE / "tests/report/text_boxes.js").read_text()
+        self.browser.resize(1400)
+        self.browser.open(page("inspect"))
+        self.browser.value("""const [{start, offset}] = pcorReport.samples.flights;
+          pcorReport.choose([offset, offset + 60 * Math.ceil(start / 60 + 1) - start], new Set(), false); 1""")
+        self.assertEqual(self.browser.value(f"({faults_of})(false)"), [])
+
     def test_uncertainty_is_drawn_as_a_band(self):
         self.browser.open(page("process"))
-        self.assertIn('stroke-opacity="0.25"', self.browser.value("pcorReport.svg(0)"))
+        self.assertIn('stroke-opacity="0.25"', self.browser.value("pcorReport.panels[0].svg()"))
 
     def test_a_row_far_from_the_others_does_not_set_the_axis(self):
         self.browser.open(page("check"))

@@ -6,13 +6,12 @@
 Without Firefox the test is skipped (status 77), or fails if PCOR_REQUIRE_FIREFOX is set.
 """
 
-import json
 import shutil
 import sys
 import unittest
 
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
-from browser import PageTest, skip_without  # noqa: E402
+from browser import SELF_TEST, PageTest, skip_without  # noqa: E402
 from firefox import Firefox  # noqa: E402
 from reports import LOOKED_AT, page  # noqa: E402
 
@@ -27,9 +26,8 @@ class InFirefox(PageTest):
     def test_every_panel_has_data(self):
         for command in LOOKED_AT:
             with self.subTest(command=command):
-                self.browser.open(page(command) + "#selftest")
-                result = json.loads(self.browser.value("document.getElementById('selftest').textContent"))
-                self.assertEqual(result["wrong"], [])
+                self.browser.open(page(command))
+                self.assertEqual(self.browser.value(SELF_TEST)["wrong"], [])
 
     def test_drag_selects_a_range(self):
         self.browser.open(page("compare"))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reports in a browser, headless chromium: each page tests itself, is looked at, printed and exported.
+"""Reports in a browser, headless chromium: each page passes self_test.js, is looked at, printed and exported.
 
     report_browser_test.py SAMPLE_REPORT SOURCE_DIRECTORY
 
@@ -351,6 +351,18 @@ class ReportUnderTheHand(PageTest):
         self.assertNotIn("has no samples in this time range", self.value("document.querySelector('.selected').textContent"))
         self.browser.click(*self.button("Show all"))
         self.assertEqual(self.selection["count"], self.count)
+
+    def test_pictures_without_any_value_state_so(self):
+        self.value("""pcorReport.samples.columns.forEach(({values}) => values.fill(NaN));
+          for (const {item} of pcorReport.panels) {
+            item.places = undefined;
+            for (const {dots} of item.rows ?? []) dots.forEach((dot) => { dot.value = null; });
+            for (const bar of item.bars ?? []) bar.value = null;
+            for (const {y} of item.curves ?? []) y.fill(null);
+          }
+          pcorReport.draw()""")
+        stated = self.value("pcorReport.panels.map(({empty}) => empty.hidden ? '' : empty.textContent)")
+        self.assertEqual(stated, ["No selected sample has a value here"] * PANELS)
 
     def test_address_restores_the_view(self):
         panel = self.panels("time")[0]

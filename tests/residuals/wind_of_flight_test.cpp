@@ -1,4 +1,4 @@
-#include "residuals/wind.hpp"
+#include "residuals/report_flight.hpp"
 
 #include <gtest/gtest.h>
 

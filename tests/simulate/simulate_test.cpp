@@ -766,7 +766,18 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{head + systems + aloft +
                     "[[effect]]\nid = \"unknown\"\nstrength = 1\nof = \"ENGTRK\"\nwhere = \"static\"\n",
                 {"ENGTRK", "ENGTRQ"}},
-        Refusal{head + systems + aloft + "[noise]\nQFC = 0.1\n", {"QFC", "QCF"}}),
+        Refusal{head + systems + aloft + "[noise]\nQFC = 0.1\n", {"QFC", "QCF"}},
+        // The first of two errors.
+        Refusal{"\nformat = \"pcor-scenario/1\"\nnmae = \"x\"\n", {"test.toml:3:1", "nmae"}},
+        Refusal{"\nformat = \"pcor-scenario/1\"\naircraft = \"GV\"\nsystem = 3\n",
+                {"test.toml:1:1", "name ="}},
+        Refusal{"\nformat = \"pcor-scenario/1\"\nname = \"\"\naircraft = \"GV\"\n",
+                {"test.toml:1:1", "name ="}},
+        Refusal{"\nformat = \"pcor-scenario/1\"\nname = \"x\"\nsystem = 3\n",
+                {"test.toml:1:1", "aircraft ="}},
+        Refusal{head + "[noise]\nQFC = 0.1\n", {"test.toml:1:1", "[[system]]"}},
+        Refusal{head + "system = []\nleg = []\n", {"test.toml:1:1", "[[system]]"}},
+        Refusal{head + systems + "[[effect]]\nid = \"static-lagg\"\n", {"test.toml:1:1", "[[leg]]"}}),
     // The last lines, which describe the case.
     [](const auto& refusal) {
       const std::string& text = refusal.param.text;

@@ -8,6 +8,7 @@ Random numbers are fixed, so a test that passes does so on every run.
 
 import csv
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -113,6 +114,8 @@ class Results(CheckTest):
         check = self.check("-m", self.model())["static-pressure"]
         self.assertEqual(check["verdict"], "inconclusive")
         self.assertIn("uncorrected", check["finding"])
+        text = self.run_tool("check", ONE, "-m", self.model()).stdout
+        self.assertRegex(text, r"(?m)^static-pressure .*uncorrected")
         check = self.check("-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}")["static-pressure"]
         self.assertEqual(check["verdict"], "consistent")
 
@@ -140,6 +143,8 @@ class Results(CheckTest):
         text = self.done("check", ONE, "-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}").stdout
         for name in NAMES:
             self.assertRegex(text, rf"(?m)^{name} ")
+        counts = sum(int(count) for count in re.findall(r"(\d+) [a-z]", text.splitlines()[0].split(": ")[-1]))
+        self.assertEqual(counts, len(NAMES), text.splitlines()[0])
         self.assertNotIn("nan", text)
 
     def test_command_to_copy(self):
@@ -157,6 +162,8 @@ class Results(CheckTest):
     def test_report(self):
         report = self.path / "check.html"
         self.done("check", ONE, TWO, "-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}", "--report", report)
+        text = self.run_tool("check", GV, "--report", self.path / "gv.html").stdout
+        self.assertNotIn("--report", text, "the pictures are in the report that was written")
         html = report.read_text()
         self.assertEqual(addresses_in(html), set())
         for word in ("Verdicts", "Reverse heading", "Limitations"):
@@ -230,7 +237,7 @@ class BadInput(CheckTest):
                 self.refused("check", *arguments, words=words, output=self.path / "nothing")
 
     def test_wrong_usage_has_status_2(self):
-        for arguments in ((), (ONE, "--secnd", OTHER_SYSTEM)):
+        for arguments in ((), (ONE, "--secnd", OTHER_SYSTEM), (ONE, "--reference", "wind")):
             result = self.run_tool("check", *arguments)
             self.assertEqual(result.returncode, 2)
 

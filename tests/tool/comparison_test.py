@@ -272,6 +272,27 @@ class Compare(ComparisonTest):
         text = self.done("compare", ONE, "-m", worse, "-m", self.model()).stdout
         self.assertIn("C-130 PSFD/QCF, equation 18 has the smallest rms.", text)
 
+    def test_gps_does_not_rank_models_or_apply_a_wrong_one(self):
+        """A model of zeros corrects nothing. The noise by GPS contains gusts and errors of the model, so the rms is not
+        compared with it."""
+        zeros = self.model(lambda toml: replace(r" = [\d.]+ \}$", " = 0 }")(toml).replace("equation 18\"", "zeros\""), "zeros.toml")
+        for models in ((zeros,), (zeros, self.model())):
+            names = [word for model in models for word in ("-m", model)]
+            run = self.run_tool("compare", ONE, *names, "--reference", "wind", "--reference", "height")
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertNotIn("smallest rms", run.stdout)
+            self.assertNotIn("close to the noise", run.stdout)
+            self.assertRegex(run.stdout, r"(?m)^residual by height, hPa .* GPS bias .* max noise")
+            if len(models) == 1:
+                self.assertRegex(run.stdout.rstrip().splitlines()[-1], "pcor refit .* --reference height --reference wind ")
+
+    def test_a_comparison_of_laws_of_one_system_is_no_test(self):
+        result = self.compare("--reference", f"static:{PUBLISHED}", model=PUBLISHED)
+        self.assertEqual(result["models"][0]["rms_hpa"], 0.0)
+        self.assertTrue(any("PSFD" in note["text"] and note["severity"] == "warning" for note in result["notes"]))
+        text = self.done("compare", ONE, "-m", PUBLISHED, "--reference", f"static:{PUBLISHED}").stdout
+        self.assertNotIn("refit", text.rstrip().splitlines()[-1])
+
     def test_an_excluded_regime_is_counted(self):
         everything, without = self.compare(), self.compare("--exclude", "turn")
         turn = next(regime for regime in everything["models"][0]["regimes"] if regime["name"] == "turn")
@@ -482,6 +503,18 @@ class Refit(ComparisonTest):
         self.assertLessEqual({"effects", "rms_hpa", "r2", "samples", "condition_number"}, set(result))
         for effect in result["effects"]:
             self.assertLessEqual({"id", "parameters", "stderr"}, set(effect))
+
+    def test_unknown_rms_before_is_omitted(self):
+        """At the start the root is not real at some angles of attack."""
+        formula = 'formula = "1 - sqrt(1 + k * sin(60 * attack))"\nparameters = { k = 1.02 }\n'
+        effect = f'\n[[effect]]\nid = "root"\nwhere = "static"\nunit = "hPa"\nsource = "test"\n{formula}'
+        model, output = self.model(lambda toml: toml + effect), self.path / "out.toml"
+        for details in ((), ("--verbose",)):
+            result = self.run_tool("refit", ONE, "-m", model, "-o", output, "--json", self.path / "out.json", *details)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIsNone(json.loads((self.path / "out.json").read_text())["rms_before_hpa"])
+            rms = next(line for line in result.stdout.splitlines() if line.startswith("rms "))
+            self.assertNotIn("nan", rms)
 
     def test_the_table_equals_single_fits(self):
         table = self.path / "flights.csv"

@@ -154,6 +154,10 @@ class Usage(ToolTest):
     def test_missing_option(self):
         self.assert_refused(self.run_tool("process", "flight.nc", "-o", "out.nc"), "--model", status=2)
 
+    def test_no_flight(self):
+        for command in ("inspect", "process"):
+            self.assert_refused(self.run_tool(command), "FLIGHT.nc", status=2)
+
     def test_wrong_choice(self):
         result = self.process(self.flight(), None, None, "--correct-with", "radar")
         self.assert_refused(result, "radar", status=2)
@@ -177,6 +181,11 @@ class Usage(ToolTest):
 
 
 class Notes(ToolTest):
+    def test_a_long_note_keeps_its_action(self):
+        model = self.model(lambda toml: toml.replace("[[effect]]", "[uncertainty]\nstatic_defect = 0.1\n\n[[effect]]", 1))
+        note = next(line for line in self.process(self.flight(), model).stdout.splitlines() if "transducers" in line)
+        self.assertIn("[uncertainty]", note)
+
     def test_law_for_another_time_and_aircraft_is_reported(self):
         model = self.model(
             lambda toml: re.sub(r'^valid_from.*$', 'valid_from = "2010-01-01"', toml, flags=re.MULTILINE)

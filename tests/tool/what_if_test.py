@@ -9,7 +9,6 @@ Without chromium it is skipped (status 77), or fails if PCOR_REQUIRE_CHROMIUM is
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 import tomllib
@@ -21,9 +20,7 @@ from comparison_test import FLIGHTS, ComparisonTest, with_effect  # noqa: E402
 from tool_test import SOURCE, TOOL  # noqa: E402
 
 sys.path.insert(0, str(SOURCE / "tests/report"))
-from browser import Browser  # noqa: E402
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+from browser import CHROMIUM, Browser  # noqa: E402
 
 LAG = with_effect('id = "static-lag"\ntau = 1.0\n')(comparison_test.SCENARIO)
 SIDESLIP = with_effect('id = "static-beta-even"\non = "PSFD"\nb2 = 0.0002\n')(LAG)
@@ -280,8 +277,7 @@ class OneEffect(WhatIfTest):
 
     def test_self_test_of_the_page(self):
         self.diagnosed(FIRST, SECOND)
-        self.browser.open(self.report.as_uri() + "#selftest")
-        self.assertEqual(json.loads(self.value("document.getElementById('selftest').textContent"))["wrong"], [])
+        self.assertEqual(self.browser.self_test(self.report.as_uri())["wrong"], [])
         self.open("#view=%7B%22whatIf%22%3A%7B%22on%22%3A%5B%22static-lag%22%2C%22absent%22%2C7%5D%2C%22by%22%3A3%2C%22pair%22%3A%22x%22%7D%7D")
         self.assertEqual(self.value("[...pcorReport.whatIf.on].length"), 1)
         for nonsense in ("7", "%5B%5D", "%22on%22", "%7B%22on%22%3A7%7D", "%7B%22pair%22%3A%5B%5D%7D"):

@@ -44,7 +44,8 @@ CLI::Validator is_second_system() {
       if (reference.rfind(form, 0) == 0) return "";
     }
     return fmt::format(
-        "'{}' is not supported by check; use static:OTHER.toml, total:OTHER.toml or total:STATIC+DYNAMIC",
+        "'{}' is not a second system; omit --reference (check uses GPS and laser without it), or give "
+        "static:OTHER.toml, total:OTHER.toml or total:STATIC+DYNAMIC",
         reference);
   };
   return {check, ""};
@@ -65,11 +66,11 @@ ModelDefinition read_second(const CheckArguments& options) {
   return is_pair(text) ? *read_reference(text, {})->model() : read_model(second_model(options));
 }
 
-/// Text like "-0.154 +- 0.024 hPa, difference of the systems; tolerance 0.3".
+/// Text like "-0.154 +- 0.024 hPa, difference of the systems; tolerance 0.3", and why a verdict is withheld.
 std::string key_number(const CheckResult& result) {
   const TestStatistic& key = result.key;
-  return fmt::format("{:+.3f} +- {:.3f} {}, {}; tolerance {:g}", key.value, key.standard_error, key.unit,
-                     key.what, key.matters);
+  return fmt::format("{:+.3f} +- {:.3f} {}, {}; tolerance {:g}{}{}", key.value, key.standard_error, key.unit,
+                     key.what, key.matters, result.withheld.empty() ? "" : "; ", result.withheld);
 }
 
 /// Prints the first rows of a table in columns, the first left-aligned and the others right-aligned.
@@ -107,7 +108,7 @@ std::size_t count_of(const Checks& checks, CheckVerdict verdict) {
 }
 
 /// Suggested next step: first for a fault that a refit cannot correct, then for the temperature, then for the
-/// model.
+/// model. Empty if no step remains.
 std::string next_step(const Checks& checks, const CheckArguments& options,
                       const std::optional<ModelDefinition>& model) {
   const auto fails = [&](const std::string& name) {
@@ -117,12 +118,14 @@ std::string next_step(const Checks& checks, const CheckArguments& options,
   };
   const std::string second =
       options.reference.empty() ? "" : " --reference " + reference_argument(options.reference);
-  std::string pictures = fmt::format("To see the pictures: {} check {}{} --report check.html", program(),
-                                     command_line(options), second);
+  const std::string pictures = options.common.report.empty()
+                                   ? fmt::format("To see the pictures: {} check {}{} --report check.html",
+                                                 program(), command_line(options), second)
+                                   : "";
   if (fails("total-pressure")) {
     return "A transducer, a pitot or a line of one system is wrong: static defects cancel in the total "
-           "pressure, so no term of the model can correct it.\n" +
-           pictures;
+           "pressure, so no term of the model can correct it." +
+           (pictures.empty() ? "" : "\n" + pictures);
   }
   const std::size_t inconsistent = count_of(checks, CheckVerdict::inconsistent);
   const std::size_t open = count_of(checks, CheckVerdict::inconclusive);
@@ -166,7 +169,17 @@ void print_details(const Checks& checks) {
 }
 
 void print(const Checks& checks, const CheckArguments& options, const std::optional<ModelDefinition>& model) {
-  if (!checks.model.empty()) say("{}\n", checks.model);
+  std::vector<std::string> counts;
+  const auto add_count = [&counts](std::size_t count, std::string_view what) {
+    if (count > 0) counts.push_back(fmt::format("{} {}", count, what));
+  };
+  for (const CheckVerdict verdict :
+       {CheckVerdict::inconsistent, CheckVerdict::consistent, CheckVerdict::inconclusive})
+    add_count(count_of(checks, verdict), to_string(verdict));
+  add_count(static_cast<std::size_t>(std::count_if(checks.results.begin(), checks.results.end(),
+                                                   [](const CheckResult& result) { return !result.ran; })),
+            "not run");
+  say("{}{}{}\n", checks.model, checks.model.empty() ? "" : ": ", fmt::join(counts, ", "));
   say("{:<18} {:<14} {}\n", "check", "verdict", "number");
   std::vector<std::string> not_run;
   for (const CheckResult& result : checks.results) {
@@ -179,7 +192,7 @@ void print(const Checks& checks, const CheckArguments& options, const std::optio
   if (is_verbose()) print_details(checks);
   say_notes(checks.notes);
   say_written({options.common.report, options.common.figures, options.table, options.common.json});
-  say("{}\n", next_step(checks, options, model));
+  if (const std::string next = next_step(checks, options, model); !next.empty()) say("{}\n", next);
 }
 
 /// Row for each check of each flight, which is checked separately.

@@ -40,9 +40,11 @@ void print_row(const std::string& name, const Statistics& s) {
       known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
 }
 
-void print_header() {
-  say("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter", "rms",
-      "noise", "ratio");
+void print_header(const ModelComparison& model) {
+  const bool by_gps = model.is_by_gps();
+  say("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n",
+      by_gps ? fmt::format("residual by {}, hPa", model.reference) : "residual, hPa", "samples",
+      by_gps ? "GPS bias" : "bias", "scatter", "rms", by_gps ? "max noise" : "noise", "ratio");
 }
 
 constexpr std::size_t listed_bands = 5;  // those with the largest errors, with --verbose
@@ -96,7 +98,7 @@ void print_parts(const ShownParts& parts, std::size_t more) {
 
 /// All samples of each model and reference; of a single model its main parts.
 void print_short(const Comparison& comparison) {
-  print_header();
+  print_header(comparison.models.front());
   const bool is_single = comparison.models.size() == 1;
   for (const ModelComparison& model : comparison.models) {
     print_row(is_single ? "all" : model.name, model.all);
@@ -108,8 +110,8 @@ void print_short(const Comparison& comparison) {
   }
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models)
-      say("{}, {}: bias {:+.3f}, rms {:.3f} hPa\n", is_single ? "all" : model.name, further.reference,
-          model.all.bias, model.all.rms);
+      say("{}, {}: {}bias {:+.3f}, rms {:.3f} hPa\n", is_single ? "all" : model.name, further.reference,
+          model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms);
   }
   say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
 }
@@ -118,7 +120,7 @@ void print_model(const ModelComparison& model, bool with_name) {
   if (with_name) say("\n{}\n", model.name);
   print_flaps_out(model.flaps_out, "the comparison");
   say("\n");
-  print_header();
+  print_header(model);
   print_row("all", model.all);
   print_parts(shown_parts(model, model.regimes.size(), listed_bands), 0);
   if (model.flights.size() > 1) {
@@ -131,7 +133,8 @@ void print_model(const ModelComparison& model, bool with_name) {
         utc_text(worst.end, "%H:%M:%S"), worst.statistics.bias, worst.statistics.rms, worst.regimes);
   }
   // Differences over time have no R2.
-  if (std::isfinite(model.r_squared)) say("R2 {:.4f}; ", model.r_squared);
+  if (std::isfinite(model.r_squared))
+    say("R2, 1 - (rms / standard deviation of the reference's delta-p)^2: {:.4f}\n", model.r_squared);
   say("the residuals are correlated in time: autocorrelation time {:.1f} samples\n",
       model.autocorrelation_time);
   if (model.reference_error > 0.0)
@@ -143,7 +146,7 @@ void print_model(const ModelComparison& model, bool with_name) {
 void print_further(const Comparison& comparison, bool with_names) {
   say("\nresidual = {}, reference minus model\n", comparison.reference);
   say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
-  print_header();
+  print_header(comparison.models.front());
   for (const ModelComparison& model : comparison.models) {
     print_row(with_names ? model.name : "all", model.all);
     for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
@@ -206,23 +209,83 @@ std::vector<std::string> undetermined_effects(const ComparedModel& compared) {
   return ids;
 }
 
-/// Next step: the model with the smallest rms is applied or refitted.
-std::string next_step(const Comparison& comparison, const std::vector<ComparedModel>& models,
-                      const CompareArguments& options) {
-  const auto best = std::min_element(
-      comparison.models.begin(), comparison.models.end(),
-      [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
-  const auto compared = std::find_if(models.begin(), models.end(),
-                                     [&best](const ComparedModel& each) { return each.name == best->name; });
-  const std::string& model = options.models[static_cast<std::size_t>(compared - models.begin())];
-  const std::string which =
-      comparison.models.size() > 1 ? fmt::format("{} has the smallest rms. ", best->name) : "";
-  const std::string flights = advised_command_line(options.comparison);
-  if (best->all.rms_over_noise() < 1.15) {
-    return fmt::format("{}The residual of {} is close to the noise. To apply it: {}", which, best->name,
-                       process_command(options.comparison.flights, compared->model, model,
-                                       options.comparison.timestamp_alignment));
+/// JSON result of the command.
+struct ComparisonWithGps {
+  Comparison comparison{};
+  std::vector<std::pair<std::string, LevelByGps>> levels{};
+};
+
+template <class Field>
+void describe(const ComparisonWithGps& self, Field& field) {
+  describe(self.comparison, field);
+  if (!field.has(!self.levels.empty())) return;
+  field.list("by_gps", self.levels, "error of delta-p by GPS; absent if not requested",
+             [](const auto& each, Field& level) {
+               level("model", each.first, "name of the model");
+               level("missing_hpa", each.second.missing, "mean correction of delta-p");
+               level("stderr_hpa", each.second.standard_error, "standard error of the correction");
+             });
+}
+
+constexpr double max_level_error = 1.0;  // hPa; above it GPS does not determine the level
+
+/// Whether the residuals are consistent with the model: its error by GPS is within two standard errors; the
+/// rms of a residual not by GPS is close to the noise. Effects with zero coefficients correct nothing.
+bool is_supported(const ModelComparison& result, const ModelDefinition& model,
+                  const std::vector<std::pair<std::string, LevelByGps>>& levels) {
+  const std::vector<ModelEffect>& effects = model.model.effects;
+  const bool is_zero = std::all_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
+    return !effect.is_surface() && std::all_of(effect.parameters.begin(), effect.parameters.end(),
+                                               [](double value) { return value == 0.0; });
+  });
+  if (is_zero && !effects.empty()) return false;
+  const auto found = std::find_if(levels.begin(), levels.end(),
+                                  [&result](const auto& each) { return each.first == result.name; });
+  if (found != levels.end()) {
+    const LevelByGps& level = found->second;
+    // A model without effects has no coefficient that a refit could determine.
+    const bool is_known = level.standard_error < max_level_error || effects.empty();
+    if (!is_known || !(std::abs(level.missing) <= 2.0 * level.standard_error)) return false;
+    if (result.is_by_gps()) return true;
   }
+  return !result.is_by_gps() && result.all.rms_over_noise() < 1.15;
+}
+
+/// Next step: a model is applied or refitted, that with the smallest rms. An rms by GPS contains gusts: there
+/// it is the first supported model, otherwise the first.
+std::string next_step(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
+                      const CompareArguments& options) {
+  const Comparison& comparison = result.comparison;
+  const auto definition_of = [&models](const ModelComparison& model) {
+    return std::find_if(models.begin(), models.end(),
+                        [&model](const ComparedModel& each) { return each.name == model.name; });
+  };
+  const auto is_good = [&](const ModelComparison& model) {
+    return is_supported(model, definition_of(model)->model, result.levels);
+  };
+  const bool by_gps = comparison.models.front().is_by_gps();
+  auto best = by_gps ? std::find_if(comparison.models.begin(), comparison.models.end(), is_good)
+                     : std::min_element(comparison.models.begin(), comparison.models.end(),
+                                        [](const ModelComparison& a, const ModelComparison& b) {
+                                          return a.all.rms < b.all.rms;
+                                        });
+  if (best == comparison.models.end()) best = comparison.models.begin();
+  const auto compared = definition_of(*best);
+  const std::string& model = options.models[static_cast<std::size_t>(compared - models.begin())];
+  std::string which;
+  if (comparison.models.size() > 1)
+    which = by_gps ? "An rms by GPS does not rank models. " : best->name + " has the smallest rms. ";
+  const std::string flights = advised_command_line(options.comparison);
+  if (is_good(*best)) {
+    return fmt::format(
+        "{}{}. To apply it: {}", which,
+        by_gps ? fmt::format("By GPS the mean delta-p error of {} is within two standard errors", best->name)
+               : fmt::format("The residual of {} is close to the noise", best->name),
+        process_command(options.comparison.flights, compared->model, model,
+                        options.comparison.timestamp_alignment));
+  }
+  if (!(best->all.rms > 0.0))
+    return fmt::format("The residual of {} is zero and tests nothing; give another --reference", best->name);
   const std::vector<std::string> undetermined = undetermined_effects(*compared);
   if (!undetermined.empty() && undetermined.size() == compared->model.model.effects.size()) {
     return fmt::format(
@@ -239,11 +302,13 @@ std::string next_step(const Comparison& comparison, const std::vector<ComparedMo
         "{0}To refit its coefficients: {1}\nTo refit both systems together: {1} --refit-reference {2}", which,
         refit, output_file("fitted-reference.toml", inputs));
   }
-  return fmt::format("{}To refit its coefficients: {}", which, refit);
+  return fmt::format("{}To refit {}: {}", which, by_gps && !which.empty() ? best->name : "its coefficients",
+                     refit);
 }
 
-void print(const Comparison& comparison, const std::vector<ComparedModel>& models,
+void print(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
            const ChosenReferences& references, const CompareArguments& options) {
+  const Comparison& comparison = result.comparison;
   if (is_verbose())
     print_in_full(comparison, references, options);
   else
@@ -254,7 +319,7 @@ void print(const Comparison& comparison, const std::vector<ComparedModel>& model
   written.insert(written.end(),
                  {options.common.report, options.common.figures, options.table, options.common.json});
   say_written(written);
-  say("{}\n", next_step(comparison, models, options));
+  say("{}\n", next_step(result, models, options));
 }
 
 /// Adds the references of a model to the references of earlier models, without repetition.
@@ -291,24 +356,6 @@ void write_flight_table(const Comparison& comparison, const std::string& path) {
   table.write(path);
 }
 
-/// JSON result of the command.
-struct ComparisonWithGps {
-  Comparison comparison{};
-  std::vector<std::pair<std::string, LevelByGps>> levels{};
-};
-
-template <class Field>
-void describe(const ComparisonWithGps& self, Field& field) {
-  describe(self.comparison, field);
-  if (!field.has(!self.levels.empty())) return;
-  field.list("by_gps", self.levels, "error of delta-p by GPS; absent if not requested",
-             [](const auto& each, Field& level) {
-               level("model", each.first, "name of the model");
-               level("missing_hpa", each.second.missing, "mean correction of delta-p");
-               level("stderr_hpa", each.second.standard_error, "standard error of the correction");
-             });
-}
-
 /// Mean error of delta-p of each model by GPS, if requested.
 void add_levels(const FlightSet& flights, const std::vector<ComparedModel>& models,
                 const CompareArguments& options, ComparisonWithGps& result) {
@@ -323,9 +370,8 @@ void add_levels(const FlightSet& flights, const std::vector<ComparedModel>& mode
 
 void print_levels(const ComparisonWithGps& result) {
   for (const auto& [name, level] : result.levels) {
-    constexpr double known = 1.0;  // hPa
-    if (level.standard_error < known)
-      say("{}: by GPS the mean delta-p error is {:+.2f} +- {:.2f} hPa\n", name, level.missing,
+    if (level.standard_error < max_level_error)
+      say("{}: by GPS delta-p needs a mean correction of {:+.2f} +- {:.2f} hPa\n", name, level.missing,
           level.standard_error);
     else
       say("{}: GPS does not determine the mean delta-p error on these flights; it requires circles or "
@@ -375,9 +421,8 @@ void run(const CompareArguments& options) {
                                     [](const auto& reference) { return reference->name() == "wind"; });
   if (has_wind) {
     comparison.notes.emplace_back(compare_options.separates_atmosphere
-                                      ? "rms, scatter and worst minutes by wind contain gusts and the drift "
-                                        "of the wind; a bias contains "
-                                        "them only if the flights do not determine the level of delta-p"
+                                      ? "rms and max noise by wind contain gusts and drift; the GPS bias "
+                                        "does not if the level is determined, and may exceed the rms"
                                       : "residuals by wind contain gusts and the drift of the wind; "
                                         "--reference wind separates them from "
                                         "the bias");
@@ -393,16 +438,15 @@ void run(const CompareArguments& options) {
   for (std::size_t i = 0; i < residuals.size(); ++i)
     write_residuals(comparison, i, flights[i], residuals[i], history_of(options));
   if (wants_report(options.common))
-    write_report_of_run(
-        comparison_report(comparison),
-        {options.models, options.comparison.flights, {}, next_step(comparison, models, options)},
-        options.common);
+    write_report_of_run(comparison_report(comparison),
+                        {options.models, options.comparison.flights, {}, next_step(result, models, options)},
+                        options.common);
   if (!options.table.empty()) write_flight_table(comparison, options.table);
   json.write(result);
   together.appear();
   if (!wants_text(options.common)) return;
   print_levels(result);
-  print(comparison, models, references, options);
+  print(result, models, references, options);
 }
 
 }  // namespace

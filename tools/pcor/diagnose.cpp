@@ -133,6 +133,9 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
   const std::string model = model_argument(options.model);
   const std::string compare =
       fmt::format("{} compare {} -m {}", program(), advised_command_line(options.comparison), model);
+  const auto [detectable, tested] = detectable_at_usual_size(diagnosis);
+  if (diagnosis.verdict == Verdict::silent && tested > 0 && detectable == 0)
+    return "To test the model, add flights or a further reference. To see the residual: " + compare;
   if (diagnosis.verdict == Verdict::silent) {
     return "To apply the model: " + process_command(options.comparison.flights, diagnosed, options.model,
                                                     options.comparison.timestamp_alignment);
@@ -204,9 +207,11 @@ void print(const Diagnosis& diagnosis, const ModelDefinition& model, const Chose
   } else {
     print_short(diagnosis);
   }
-  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, "
-      "linearised\n",
-      diagnosis.rms_given, diagnosis.noise_rms, diagnosis.residual_rms);
+  say("rms {:.3f} hPa; noise {:.3f} hPa", diagnosis.rms_given, diagnosis.noise_rms);
+  if (diagnosis.is_refitted) {
+    say("; rms {:.3f} hPa with the free coefficients fitted again, linearised", diagnosis.residual_rms);
+  }
+  say("\n");
   if (in_full) {
     print_flaps_out(diagnosis.flaps_out, "the diagnosis");
     print_findings(diagnosis.findings);

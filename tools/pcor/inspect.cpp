@@ -361,7 +361,10 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
   if (const std::size_t begin = text.find("[variables]\n"); begin != std::string::npos && !comments.empty()) {
     std::size_t end = text.find("\n\n", begin);
     end = end == std::string::npos ? text.size() : end + 1;
-    text.insert(end, "# other candidates, with their evidence:\n" + comments);
+    text.insert(
+        end,
+        "# not read: other candidates, with the score of their evidence (1: certain) and the evidence:\n" +
+            comments);
   }
   if (output == "-") {
     fmt::print("{}", text);

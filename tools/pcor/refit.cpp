@@ -135,8 +135,7 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
                               : std::isnan(p.standard_error) ? "unknown"
                                                              : fmt::format("{:.3g}", p.standard_error);
     say("{:<36} {:>13.6g} {:>13.6g} {:>13} {}{:>13}  {}\n", p.name, p.start, p.value, error,
-        likelihood(number(p.noise_error)), number(p.jackknife_error),
-        p.unit.empty() ? "formula unit" : p.unit);
+        likelihood(number(p.noise_error)), number(p.jackknife_error), p.unit.empty() ? "not stated" : p.unit);
   }
   if (omitted > 0) say("and {} more: add --verbose\n", omitted);
   for (const SurfaceFit& surface : result.surfaces) {
@@ -146,6 +145,9 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
   if (result.defect_error > 0.0)
     say("standard error of delta-p over the flights: {:.2f} hPa\n", result.defect_error);
 }
+
+/// ", before 0.123"; empty for NaN, if samples have no residual with the coefficients of the file.
+std::string before_text(double rms) { return std::isnan(rms) ? "" : fmt::format(", before {:.3f}", rms); }
 
 /// Number of the outliers, and their use in the fit.
 std::string outliers_text(const RefitResult& result, const RefitArguments& options) {
@@ -159,15 +161,15 @@ std::string outliers_text(const RefitResult& result, const RefitArguments& optio
 /// The residual, warnings and the fitted coefficients.
 void print_short(const RefitResult& result, const RefitArguments& options) {
   constexpr std::size_t max_rows = 6;
-  say("rms {:.3f} hPa, before {:.3f}; noise {:.3f} hPa; {} samples, {}\n", result.rms, result.rms_before,
+  say("rms {:.3f} hPa{}; noise {:.3f} hPa; {} samples, {}\n", result.rms, before_text(result.rms_before),
       result.noise_rms, result.samples, outliers_text(result, options));
   print_fit_summary(result);
   for (const std::string& warning : result.warnings) say("Warning: {}.\n", warning);
   print_coefficients(result, max_rows);
   for (const FlightFit& flight : result.flights) {
     if (flight.holdout)
-      say("held out {}: rms {:.3f} hPa, before {:.3f}, bias {:+.3f}\n", flight.flight, flight.after.rms,
-          flight.before.rms, flight.after.bias);
+      say("held out {}: rms {:.3f} hPa{}, bias {:+.3f}\n", flight.flight, flight.after.rms,
+          before_text(flight.before.rms), flight.after.bias);
   }
 }
 
@@ -182,7 +184,7 @@ void print_result(const RefitResult& result, const ChosenReferences& references,
   print_flaps_out(result.flaps_out, "the fit");
   say("\n");
   print_coefficients(result, result.parameters.size());
-  say("\nrms {:.3f} hPa, before {:.3f}; noise {:.3f} hPa; {}\n", result.rms, result.rms_before,
+  say("\nrms {:.3f} hPa{}; noise {:.3f} hPa; {}\n", result.rms, before_text(result.rms_before),
       result.noise_rms, outliers_text(result, options));
   say("rms of residual / static pressure {:.5f}; standard deviation by the median of absolute values {:.3f} "
       "hPa\n",

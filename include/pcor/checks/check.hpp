@@ -55,6 +55,8 @@ struct CheckResult {
   TestStatistic key{};                  ///< the deciding statistic
   /// Explanation of the verdict: value, standard error and tolerance, without full stop.
   std::string decided{};
+  /// Reason for which the check is inconclusive regardless of its numbers; empty without such a reason.
+  std::string withheld{};
   std::string finding{};  ///< verdict as a sentence with its numbers
   /// Limitations: errors to which the check is insensitive, one sentence.
   std::string cannot_see{};

@@ -80,6 +80,10 @@ struct ModelComparison {
   std::vector<PartStatistics> flights;
   std::vector<WorstInterval> worst;  ///< up to five, sorted by decreasing size
   Statistics flaps_out;              ///< samples excluded because of flaps
+
+  /// Whether the reference is wind or height. The residual contains variations of the atmosphere and, within
+  /// a minute, errors of the model, and so does its noise: an upper limit of that of the sensors.
+  bool is_by_gps() const { return reference == "wind" || reference == "height"; }
 };
 
 template <class Field>

@@ -97,9 +97,6 @@ struct Alias {
   double chi2_less = 0.0;      ///< chi2 of the named effect minus chi2 of this one
   double size_to_usual = 0.0;  ///< coefficient divided by its typical size; 0 if unknown
   std::vector<CoefficientEstimate> estimates{};
-  /// Difference of the log marginal likelihoods, with the sign of `chi2_less`; includes the prior of either
-  /// size.
-  double log_likelihood_less = 0.0;
   double probability = 0.0;         ///< posterior probability among the named effect and its aliases, 0 to 1
   ModelEffect correction{};         ///< effect with the estimated coefficients, ready for a model
   std::vector<std::string> held{};  ///< see `Finding::held`
@@ -193,8 +190,8 @@ struct Finding {
   double probability = 1.0;  ///< posterior probability among the finding and its aliases, 0 to 1
   double times_usual = 0.0;  ///< size divided by the typical size; 0 if unknown
   Advice advice{};
-  std::string
-      rival{};  ///< cause outside the catalogue that may replace it: "the atmosphere"; otherwise empty
+  /// Cause outside the catalogue that may replace it: "the atmosphere"; otherwise empty.
+  std::string rival{};
 
   /// Id of the effect; on another system "reference:ID", or "reference:PSFRD+QCFR:ID" if there are several.
   std::string id() const;
@@ -257,6 +254,8 @@ struct UpperLimit {
   std::vector<double> limits{};  ///< 95 % confidence limits of each coefficient's size, in its unit
   double rms = 0.0;              ///< contribution at the limit that the model does not absorb, hPa
   std::string note{};            ///< e.g. "size needed to explain the residual is outside physical bounds"
+  /// Expected decrease of chi2 by the effect at its usual size; NaN if its usual size is not known.
+  double chi2_at_usual_size = std::numeric_limits<double>::quiet_NaN();
 };
 
 template <class Field>
@@ -266,6 +265,8 @@ void describe(const UpperLimit& self, Field& field) {
   field("estimates", self.estimates, "estimated coefficients");
   field("limits", self.limits, "95 % limit of the size of each coefficient", "unit of the coefficient");
   field("rms_hpa", self.rms, "contribution at the limit that the model does not absorb, rms");
+  field("chi2_at_usual_size", self.chi2_at_usual_size,
+        "expected decrease of chi2 by the effect at its usual size");
   field("note", self.note, "note on the limit");
 }
 
@@ -374,10 +375,10 @@ struct FlightDiagnosis {
   std::size_t number = 0;                        ///< flight number
   std::string name;                              ///< file name
   std::shared_ptr<const FlightSamples> samples;  ///< records; nullptr if they are not kept
-  std::vector<Mask> mask;
-  /// Residual with the model's coefficients refitted, hPa; NaN for samples not used.
+  /// Residual with the model's coefficients refitted (`Diagnosis::is_refitted`), hPa; NaN for samples not
+  /// used.
   std::vector<double> before;
-  std::vector<double> after;               ///< residual with all findings and all coefficients refitted, hPa
+  std::vector<double> after;               ///< the same with all findings, hPa
   std::vector<std::vector<double>> added;  ///< contribution of each finding, hPa
   /// For each finding: chi2 reduction per minute around the sample.
   std::vector<std::vector<double>> evidence;
@@ -409,7 +410,7 @@ struct Diagnosis {
   std::vector<UpperLimit> limits{};  ///< sorted by decreasing size
   std::vector<NotTestable> not_testable{};
   std::vector<UnnamedRole> unnamed_roles{};  ///< the notes state them
-  /// Free coefficients of the model, refitted (see `residual_rms`), with names like "static-qp.a2", followed
+  /// Free coefficients of the model, refitted (see `is_refitted`), with names like "static-qp.a2", followed
   /// by those of the references' models.
   std::vector<CoefficientEstimate> own{};
   std::size_t candidates = 0;  ///< number of effects tested
@@ -417,9 +418,10 @@ struct Diagnosis {
   /// rms residual of the unchanged model, hPa, as in `compare` and `refit`.
   double rms_given = 0.0;
   double noise_rms = 0.0;  ///< rms noise with the unchanged model, hPa
-  /// rms residual after a linearised least-squares refit of the free coefficients of the model and of the
-  /// references' models, hPa.
-  double residual_rms = 0.0;
+  /// Whether the free coefficients of the model and of the references' models are refitted in `own`,
+  /// `residual_rms` and `flights`, by linearised least squares. By GPS alone they stay as given.
+  bool is_refitted = true;
+  double residual_rms = 0.0;             ///< rms residual, hPa
   double residual_rms_held_out = 0.0;    ///< cross-validated rms residual (five folds), hPa
   double noise_rms_with_findings = 0.0;  ///< rms noise of the residual with all findings, hPa
   std::size_t samples = 0;
@@ -446,8 +448,9 @@ void describe(const Diagnosis& self, Field& field) {
   field("candidates", self.candidates, "number of tested effects");
   field("threshold", self.threshold, "chi2 threshold of a detection");
   field("rms_given_hpa", self.rms_given, "rms residual of the unchanged model");
-  field("residual_rms_hpa", self.residual_rms, "rms residual after a linearised refit");
-  field("residual_rms_held_out_hpa", self.residual_rms_held_out, "the same, cross-validated");
+  field("residual_rms_hpa", self.residual_rms, "rms residual after a linearised refit; by GPS as given");
+  field("residual_rms_held_out_hpa", self.residual_rms_held_out,
+        "rms residual after a linearised refit, cross-validated");
   field("noise_rms_hpa", self.noise_rms, "rms noise with the unchanged model");
   field("noise_rms_with_findings_hpa", self.noise_rms_with_findings, "rms noise with all findings");
   field("samples", self.samples, "number of samples");

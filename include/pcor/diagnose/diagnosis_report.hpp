@@ -5,12 +5,17 @@
 #include <pcor/report/report.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcor {
 
 /// Verdict in one line, with the names of the missing effects; no full stop.
 std::string verdict_text(const Diagnosis& diagnosis);
+
+/// Among the effects that were tested and not found: how many would be detected at their usual size, and how
+/// many have a known usual size. If the first number is 0, the flights cannot test the model.
+std::pair<std::size_t, std::size_t> detectable_at_usual_size(const Diagnosis& diagnosis);
 
 /// Estimates with standard errors, both to two digits of the error: "tau = 0.151 ± 0.006 s".
 std::string estimates_text(const std::vector<CoefficientEstimate>& estimates);

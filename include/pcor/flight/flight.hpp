@@ -41,6 +41,14 @@ struct VariableInfo {
   std::vector<std::string> flags;  ///< flag variables that mark invalid samples, which become missing
   std::string ignored_range;       ///< valid range stated in the file as text that is not numeric
   std::optional<std::array<double, 2>> modulus_range;  ///< wrapping range of an angle
+
+  /// Text of an attribute; empty if absent.
+  std::string attribute(std::string_view requested) const {
+    for (const auto& [attribute_name, text] : attributes) {
+      if (attribute_name == requested) return text;
+    }
+    return "";
+  }
 };
 
 /// Attribute Category of true values in a simulated flight.

@@ -114,7 +114,7 @@ struct Improvement {
   std::vector<ImproveStep> steps{};
   StopReason stop_reason = StopReason::nothing_missing;
   std::string why_stopped{};  ///< the reason with its numbers, one sentence
-  RefitResult fit;            ///< fit of the best model, before averaging over alternatives
+  RefitResult fit;            ///< fit of the model with the added effects, before the choice of alternatives
   std::vector<ImprovedFlight> flights{};
   /// True: rms_holdout is from held-out flights or parts; false: from cross-validation.
   bool holdout_is_flights = false;

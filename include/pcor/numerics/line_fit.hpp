@@ -29,6 +29,13 @@ struct PairMoments {
   void add(double x, double y);
   /// Adds the pairs of another part (Chan, Golub and LeVeque 1983, The American Statistician 37, 242).
   void add(const PairMoments& other);
+  /// Correlation, -1 to 1; NaN if one of the two is constant.
+  double correlation() const;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(samples, mean_x, mean_y, xx, xy, yy);
+  }
 };
 
 /// Least-squares line with respect to distances in y: all noise is in y. Pairs with a NaN are ignored.

@@ -45,24 +45,20 @@ struct TimePanel {
 struct BinnedPanel {
   std::string title;
   std::string caption;
-  std::vector<std::string> y;
+  std::vector<std::string> columns;
   std::vector<std::string> x_choices;
-  std::size_t bins = 12;
   /// Integrated autocorrelation time in samples, at least 1; effective sample size = samples / this.
   double autocorrelation_time = 1.0;
   std::string axis{};  ///< see TimePanel
 };
 
-/// One column in the plane of two others, by colour.
+/// One column in the plane of two others, by colours centred on zero; y increases downwards, as for pressure.
 struct PlanePanel {
   std::string title;
   std::string caption;
   std::string x;
   std::string y;
   std::string colour;
-  bool reverse_y = false;  ///< smallest value at the top, as for pressure
-  /// True: colour scale centred on zero, as for a residual; false: from minimum to maximum.
-  bool diverging = true;
 };
 
 /// A line y = offset + slope * x.
@@ -86,7 +82,8 @@ struct TrackPanel {
   std::string latitude;   ///< column, deg
   std::string longitude;  ///< column, deg
   std::string colour;
-  bool diverging = true;           ///< see PlanePanel
+  /// True: colour scale centred on zero, as for a residual; false: from minimum to maximum.
+  bool diverging = true;
   std::vector<ReportBarb> wind{};  ///< barbs, shown on request of the reader
 };
 
@@ -113,14 +110,13 @@ struct QuantilePanel {
   std::string axis{};  ///< see TimePanel
 };
 
-/// Two columns against each other, with lines; below, the difference of each sample from the first line (from
-/// y = x without lines).
+/// Two columns against each other, with lines; below, the difference of each sample from the first line.
 struct PairPanel {
   std::string title;
   std::string caption;
   std::string x;
   std::string y;
-  std::vector<ReportLine> lines{};
+  std::vector<ReportLine> lines;  ///< one or more
 };
 
 /// Samples, bias and rms of columns for each name of the intervals, and for all.
@@ -182,7 +178,7 @@ struct ReportCurve {
   std::vector<double> error{};  ///< standard errors of y; same size, or empty
 };
 
-/// Curves, e.g. spectra; x must be positive on a logarithmic axis.
+/// Curves, e.g. spectra, on a logarithmic axis of x, which must be positive.
 struct CurvePanel {
   std::string title;
   std::string caption;
@@ -191,7 +187,6 @@ struct CurvePanel {
   std::string axis;
   std::string x_unit{};
   std::string unit{};
-  bool log_x = false;
 };
 
 /// Coefficient that the reader of a what-if changes or that is refitted there.
@@ -283,8 +278,8 @@ struct WhatIfPanel {
   WhatIfCommands commands{};
 };
 
-/// Table of text and numbers; cells that are numbers are aligned. The page folds a table of more than 30
-/// rows.
+/// Table of text and numbers; cells that are numbers are aligned. Each row has a cell for each header. The
+/// page folds a table of more than 30 rows, and omits a table without rows.
 struct ReportTable {
   std::string title;
   std::string caption;
@@ -323,9 +318,10 @@ struct Report {
 /// Self-contained HTML page, without network access or other files. The browser draws the panels from the
 /// columns; the reader selects samples by time or interval, and saves panels as SVG or PNG.
 ///
+/// A panel without values states so in its place.
+///
 /// @throws Error if the time of a flight does not increase, a column has the wrong length, two columns have
-/// the same name, a panel names an absent column, or a panel would be empty: no sample has a value in all its
-/// columns.
+/// the same name, or a panel names an absent column.
 std::string report_html(const Report& report);
 
 /// Writes `report_html` to the file `path` atomically.

@@ -32,7 +32,7 @@ void describe(const Statistics& self, Field& field) {
   field("bias_stderr_hpa", self.bias_error, "standard error of the bias, with the correlation of the noise");
   field("rms_hpa", self.rms, "rms residual");
   field("scatter_hpa", self.scatter(), "standard deviation of the residual");
-  field("noise_rms_hpa", self.noise_rms, "rms noise of the residual");
+  field("noise_rms_hpa", self.noise_rms, "rms noise of the residual; by wind and height an upper limit");
 }
 
 /// True if the excess of the mean square over the noise is larger in `a` than in `b`. False if the noise is

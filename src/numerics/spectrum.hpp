@@ -1,8 +1,23 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
+#include <pcor/numerics/noise.hpp>
+
 namespace pcor::internal {
+
+/// The power of a segment of a series, without its line, through Hann's window.
+struct Periodogram {
+  std::vector<double> squares;  ///< squared amplitudes of both signs, from 0 to half of the sampling rate
+  double window = 0.0;          ///< sum of the squares of the window
+};
+
+/// @param values of `count` samples, an even number, without missing ones
+Periodogram periodogram(const double* values, std::size_t count);
+
+/// First samples of the parts of `segments` with this length, an even number, which overlap by half.
+std::vector<std::size_t> overlapping_parts(const std::vector<Segment>& segments, std::size_t length);
 
 /// Distribution of the variance of a series over periods.
 struct OctaveSpectrum {

@@ -1,4 +1,4 @@
-#include "numerics/octave_spectrum.hpp"
+#include "numerics/spectrum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,25 @@
-#include "residuals/wind.hpp"
+#include "residuals/report_flight.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <string>
 
 #include <pcor/physics/constants.hpp>
 
 namespace pcor::internal {
+
+void add_flight(Report& report, const FlightSamples& flight, const std::vector<std::size_t>& records) {
+  report.flight_starts.push_back(report.time.size());
+  report.flight_names.push_back(flight.name);
+  for (const std::size_t i : records) report.time.push_back(flight.time[i]);
+  for (const Interval& interval : flight.intervals) {
+    const bool met = std::any_of(records.begin(), records.end(), [&](std::size_t i) {
+      return flight.time[i] >= interval.begin && flight.time[i] < interval.end;
+    });
+    if (met)
+      report.intervals.push_back({std::string(info_of(interval.regime).name), interval.begin, interval.end});
+  }
+}
 
 std::vector<ReportBarb> wind_of(const FlightSamples& flight) {
   constexpr double barbs = 40.0;
