@@ -36,6 +36,16 @@ class Demo(unittest.TestCase):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertIn("tools/demo [FLIGHT.nc [FOLDER]]", result.stdout)
 
+    def test_files_of_the_user_stay(self):
+        with tempfile.TemporaryDirectory() as folder:
+            model = Path(folder) / "model.toml"
+            model.write_text("mine")
+            result = subprocess.run([SOURCE / "tools/demo", "", folder], env={**os.environ, "PCOR": str(TOOL)},
+                                    capture_output=True, text=True)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(folder, result.stderr)
+            self.assertEqual(model.read_text(), "mine")
+
     @unittest.skipUnless(FLIGHTS, "PCOR_FLIGHTS is not set")
     def test_every_real_flight_is_corrected(self):
         for flight in FLIGHTS:
