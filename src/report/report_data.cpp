@@ -115,7 +115,7 @@ std::map<std::string, bool> shown_columns(const json& items) {
       for (const char* const key : keys) {
         const json found = item.value(key, json::array());
         for (const json& name : found.is_array() ? found : json::array({found})) {
-          if (!name.is_string() || name == "") continue;
+          if (!name.is_string() || name.get_ref<const std::string&>().empty()) continue;
           bool& full = shown[name];
           full = full || is_full;
         }
