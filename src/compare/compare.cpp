@@ -320,7 +320,8 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   result.notes = notes_of_flights(notes, flights.size());
   if (result.masks[0] == 0) return result;
   for (const Pairing& each : pairings) {
-    const ModelDefinition* const other = each.reference->model();
+    const ModelDefinition* const other =
+        each.reference->is_static_pressure() ? each.reference->model() : nullptr;
     const std::string own = each.compared->model.variable_of(Quantity::static_pressure);
     if (other == nullptr || own.empty() || other->variable_of(Quantity::static_pressure) != own) continue;
     result.notes.push_back(warning_note(

@@ -243,10 +243,9 @@ bool is_supported(const ModelComparison& result, const ModelDefinition& model,
                                   [&result](const auto& each) { return each.first == result.name; });
   if (found != levels.end()) {
     const LevelByGps& level = found->second;
-    // A model without effects has no coefficient that a refit could determine.
-    const bool is_known = level.standard_error < max_level_error || effects.empty();
-    if (!is_known || !(std::abs(level.missing) <= 2.0 * level.standard_error)) return false;
-    if (result.is_by_gps()) return true;
+    const bool is_known = level.standard_error < max_level_error;
+    if (is_known && std::abs(level.missing) > 2.0 * level.standard_error) return false;
+    if (result.is_by_gps()) return is_known;
   }
   return !result.is_by_gps() && result.all.rms_over_noise() < 1.15;
 }
@@ -283,6 +282,12 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
                : fmt::format("The residual of {} is close to the noise", best->name),
         process_command(options.comparison.flights, compared->model, model,
                         options.comparison.timestamp_alignment));
+  }
+  if (by_gps && compared->model.model.effects.empty()) {
+    return fmt::format(
+        "GPS does not support {}, which has no coefficient to refit; add an effect, or give another "
+        "--reference",
+        best->name);
   }
   if (!(best->all.rms > 0.0))
     return fmt::format("The residual of {} is zero and tests nothing; give another --reference", best->name);
