@@ -27,7 +27,7 @@ TOOL, SOURCE, FOLDER = (Path(word).resolve() for word in sys.argv[1:4])
 
 
 def run(*words, **more):
-    return subprocess.run([str(word) for word in words], cwd=FOLDER, check=True, capture_output=True, text=True, timeout=280, **more)
+    return subprocess.run([str(word) for word in words], cwd=FOLDER, check=True, capture_output=True, text=True, **more)
 
 
 def page(command):

@@ -65,11 +65,11 @@ class Pasting(ChangedTest):
 
     def here(self, *arguments):
         return subprocess.run(["pcor", *map(str, arguments)], cwd=self.work, env=self.environment,
-                              capture_output=True, text=True, timeout=300)
+                              capture_output=True, text=True)
 
     def paste(self, command):
         result = subprocess.run(command, shell=True, cwd=self.work, env=self.environment, capture_output=True,
-                                text=True, timeout=300)
+                                text=True)
         self.assertFalse((self.work / "pwned").exists() or (self.work / "pwned.nc").exists(), command)
         return result
 
